@@ -1,0 +1,57 @@
+# Everything happens in .venv, made from the locks; nothing has to be installed by hand
+# but Python 3.11. Figures and answers are to be the same everywhere, so the hashes are checked.
+HOST ?= 127.0.0.1
+PORT ?= 8000
+PYTHON ?= python3.11
+
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+# More BLAS threads than cores wait for each other and make small products slower, not faster.
+export OPENBLAS_NUM_THREADS := 1
+
+.PHONY: run test check bench openapi lock clean
+.DELETE_ON_ERROR:
+
+# `exec` makes the service itself the child of make, so that a signal to make reaches it.
+run: .venv/runtime
+	@exec $(BIN)/python -m mdr_service --host $(HOST) --port $(PORT)
+
+test: .venv/development
+	$(BIN)/python -m pytest
+
+check: .venv/development
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m mdr_service.openapi | diff openapi.json -
+
+bench: .venv/development
+	$(BIN)/python benchmarks/ratios.py
+
+openapi: .venv/development
+	$(BIN)/python -m mdr_service.openapi > openapi.json
+
+# Needs uv on the path; only for those who change a dependency.
+LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \
+	--python-version 3.11 --universal pyproject.toml
+lock:
+	$(LOCK) --extra build --output-file requirements.lock
+	$(LOCK) --all-extras --output-file requirements-dev.lock
+
+clean:
+	rm -rf .venv build dist src/*.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+.venv/bin/python:
+	$(PYTHON) -m venv .venv
+
+# The project goes in without build isolation: its build tool is in the lock like all else.
+.venv/runtime: requirements.lock pyproject.toml | .venv/bin/python
+	$(PIP) install --require-hashes --requirement requirements.lock
+	$(PIP) install --no-deps --no-build-isolation --editable .
+	touch $@
+
+.venv/development: requirements-dev.lock .venv/runtime
+	$(PIP) install --require-hashes --requirement requirements-dev.lock
+	touch $@
