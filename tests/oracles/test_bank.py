@@ -1,0 +1,72 @@
+"""The bank checks itself: ids, sources, coverage, and a sample computed again."""
+
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+
+import pytest
+from mpmath import mp, mpf
+from tests.oracles import bank
+from tests.oracles.generate import pressure_at, pressure_state
+from tests.oracles.reference import CONTROLS, OUTPUTS, state
+from tests.oracles.shapes import KINDS
+
+SOURCES = Path(__file__).parents[2] / "docs" / "sources.md"
+STORED = mpf(10) ** -29
+
+
+def everything() -> list[bank.Record]:
+    return [record for name in bank.NAMES for record in bank.load(name)]
+
+
+def test_ids_are_unique() -> None:
+    ids = [record["id"] for record in everything()]
+    assert len(ids) == len(set(ids))
+
+
+def test_every_equation_is_among_the_sources() -> None:
+    assert SOURCES.is_file(), f"{SOURCES} must list the equations that the bank claims"
+    known = set(re.findall(r"\(\d+\.\d+\)", SOURCES.read_text(encoding="utf-8")))
+    claimed = {record["equation"] for record in everything()}
+    assert claimed <= known, f"missing from docs/sources.md: {sorted(claimed - known)}"
+
+
+def test_every_kind_is_covered_by_every_control() -> None:
+    covered = {(r["profile"]["kind"], r["control"]) for r in bank.load("normal")}
+    expected = {(kind, control) for kind in KINDS for control in CONTROLS}
+    # A flat punch has its radius; it cannot be asked for.
+    assert covered == expected - {("flat_punch", "contact_radius")}
+
+
+def test_every_kind_has_a_pressure_and_an_image() -> None:
+    for name in ("pressure", "profile"):
+        assert {r["profile"]["kind"] for r in bank.load(name)} == set(KINDS)
+
+
+def test_pressures_are_compressive() -> None:
+    for record in bank.load("pressure"):
+        assert all(float(p) > 0 for p in record["expected"]), record["id"]
+
+
+def sample(name: str, count: int) -> list[bank.Record]:
+    return random.Random(f"{name} of the bank").sample(bank.load(name), count)
+
+
+@pytest.mark.parametrize("record", sample("normal", 12), ids=lambda record: str(record["id"]))
+def test_stored_answers_are_those_of_the_reference(record: bank.Record) -> None:
+    answer = state(record["profile"], record["control"], record["load"], record["e_star"])
+    with mp.workdps(40):
+        for name in OUTPUTS:
+            assert mp.almosteq(mpf(record["expected"][name]), answer.values[name], STORED)
+
+
+@pytest.mark.parametrize("record", sample("pressure", 6), ids=lambda record: str(record["id"]))
+def test_stored_pressures_are_those_of_the_reference(record: bank.Record) -> None:
+    given = pressure_state(record["profile"], record["control"], record["load"], record["e_star"])
+    chosen = random.Random(record["id"]).randrange(len(record["radius"]))
+    value = pressure_at(given, record["radius"][chosen]) * mpf(record["e_star"])
+    stored = mpf(record["expected"][chosen])
+    with mp.workdps(40):
+        assert value == stored or mp.almosteq(stored, value, STORED)
