@@ -1,0 +1,226 @@
+"""Laws that hold for every profile, on profiles drawn at random (the same ones every time)."""
+
+from __future__ import annotations
+
+import itertools
+from math import asin, pi, sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.polynomial.legendre import leggauss
+from tests.core.comparison import profile_from
+
+from mdr_core import fields
+from mdr_core.normal import NormalContact, solve
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+E_STAR = 3.7
+LOADS = ("indentation_depth", "normal_force", "contact_radius")
+#: Fields that are lengths; slopes and exponents are numbers.
+LENGTHS = frozenset(
+    {"radius", "height", "flat_radius", "rounding_radius", "tip_radius", "cap_radius"}
+)
+
+length = st.floats(0.3, 3.0)
+slope = st.floats(0.05, 1.5)
+coefficient = st.floats(0.05, 2.0)
+exponent = st.floats(0.3, 9.0)
+term = st.fixed_dictionaries({"coefficient": coefficient, "exponent": exponent})
+terms = st.lists(term, min_size=2, max_size=4)
+
+PROFILES: dict[str, dict[str, Any]] = {
+    "cone": {"slope": slope},
+    "paraboloid": {"radius": length},
+    "sphere": {"radius": length},
+    "ellipsoid": {"radius": length, "height": length},
+    "power": {"coefficient": coefficient, "exponent": exponent},
+    "series": {"terms": terms},
+    "rounded_punch": {"flat_radius": length, "rounding_radius": length},
+    "truncated_cone": {"flat_radius": length, "slope": slope},
+    "truncated_paraboloid": {"flat_radius": length, "radius": length},
+    "rounded_cone": {"slope": slope, "tip_radius": length},
+    "spherical_tip_cone": {"slope": slope, "tip_radius": length},
+    "hyperboloid": {"slope": slope, "tip_radius": length},
+    "capped_paraboloid": {
+        "cap_radius": length,
+        "tip_radius": st.floats(2.0, 5.0),
+        "radius": st.floats(0.3, 2.0),
+    },
+}
+
+
+def break_radius(fields_: dict[str, Any]) -> float:
+    """Radius where the profile's slope or curvature jumps, 0 where there is none."""
+    kind = fields_["kind"]
+    if kind == "rounded_cone":
+        return float(fields_["slope"] * fields_["tip_radius"])
+    if kind == "spherical_tip_cone":
+        return float(fields_["tip_radius"] * fields_["slope"] / sqrt(1 + fields_["slope"] ** 2))
+    return float(fields_.get("flat_radius", fields_.get("cap_radius", 0.0)))
+
+
+def edge(fields_: dict[str, Any], ratio: float) -> float:
+    """A contact radius: inside a sphere, beyond a flat, else on either side of the break."""
+    if fields_["kind"] in {"sphere", "ellipsoid"}:
+        return float(fields_["radius"] * 0.95 * ratio / 3)
+    if fields_["kind"] in {"rounded_punch", "truncated_cone", "truncated_paraboloid"}:
+        return break_radius(fields_) * (1 + ratio)
+    return (break_radius(fields_) or 1.0) * ratio
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> tuple[dict[str, Any], float]:
+    kind = draw(st.sampled_from(sorted(PROFILES)))
+    chosen = {"kind": kind, **draw(st.fixed_dictionaries(PROFILES[kind]))}
+    return chosen, edge(chosen, draw(st.floats(0.05, 3.0)))
+
+
+repeatable = settings(derandomize=True, deadline=None, max_examples=150)
+
+
+def at_radius(fields_: dict[str, Any], radius: float) -> NormalContact:
+    return solve(profile_from(fields_), E_STAR, contact_radius=radius, rtol=1e-12)
+
+
+def graded(low: float, high: float) -> tuple[Array, Array]:
+    """Nodes and weights that crowd at both ends, where the integrands have roots and logarithms."""
+    nodes, weights = leggauss(60)
+    u, w = (nodes + 1) / 2, weights / 2
+    for _ in range(2):
+        w = w * 30 * u**2 * (1 - u) ** 2
+        u = u**3 * (10 - 15 * u + 6 * u**2)
+    return low + (high - low) * u, (high - low) * w
+
+
+def integral(fn: Callable[[Array], Array], knots: list[float]) -> float:
+    total = 0.0
+    for low, high in itertools.pairwise(knots):
+        x, w = graded(low, high)
+        total += float(w @ fn(x))
+    return total
+
+
+@repeatable
+@given(scenes())
+def test_stiffness_is_the_derivative_of_the_force(scene: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = scene
+    depth = float(at_radius(fields_, radius).indentation_depth)
+    profile = profile_from(fields_)
+
+    def stiffness(d: Array) -> Array:
+        return solve(profile, E_STAR, indentation_depth=d).normal_stiffness
+
+    ends = solve(profile, E_STAR, indentation_depth=[depth, 1.3 * depth]).normal_force
+    work = integral(stiffness, [depth, 1.3 * depth])
+    # The bound is the rule's: where the step crosses a break, a(d) has a kink inside.
+    assert ends[1] - ends[0] == pytest.approx(work, rel=1e-5)
+
+
+@repeatable
+@given(scenes())
+def test_energy_is_the_work_of_the_force(scene: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = scene
+    contact = at_radius(fields_, radius)
+    profile = profile_from(fields_)
+
+    def force(d: Array) -> Array:
+        return solve(profile, E_STAR, indentation_depth=d).normal_force
+
+    knots = [0.0, float(contact.indentation_depth)]
+    b = break_radius(fields_)
+    if 0 < b < radius:
+        knots.insert(1, float(profile.g(np.array([b]))[0]))
+    work = integral(force, sorted(set(knots)))
+    assert float(contact.elastic_energy) == pytest.approx(work, rel=1e-10)
+
+
+@repeatable
+@given(scenes())
+def test_pressure_carries_the_force(scene: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = scene
+    contact = at_radius(fields_, radius)
+
+    def ring(angle: Array) -> Array:
+        r = radius * np.sin(angle)
+        return 2 * pi * r * fields.pressure(contact, r, rtol=1e-12) * radius * np.cos(angle)
+
+    b = break_radius(fields_)
+    knots = [0.0, asin(b / radius), pi / 2] if 0 < b < radius else [0.0, pi / 2]
+    assert integral(ring, knots) == pytest.approx(float(contact.normal_force), rel=1e-8)
+
+
+@repeatable
+@given(scenes())
+def test_image_transforms_back_to_the_shape(scene: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = scene
+    profile = profile_from(fields_)
+    b = break_radius(fields_)
+    knots = [0.0, asin(b / radius), pi / 2] if 0 < b < radius else [0.0, pi / 2]
+    back = 2 / pi * integral(lambda angle: profile.g(radius * np.sin(angle)), knots)
+    assert back == pytest.approx(float(profile.f(np.array([radius]))[0]), rel=1e-9, abs=1e-300)
+
+
+@repeatable
+@given(scenes())
+def test_shape_and_image_rise_with_their_slopes(scene: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = scene
+    profile = profile_from(fields_)
+    b = break_radius(fields_)
+    start = radius / 7
+    knots = [start, b, radius] if start < b < radius else [start, radius]
+    for value, rate in ((profile.f, profile.df), (profile.g, profile.dg)):
+        rise = float(np.diff(value(np.array([start, radius])))[0])
+        assert integral(rate, knots) == pytest.approx(rise, rel=1e-9, abs=1e-300)
+
+
+@repeatable
+@given(scenes())
+def test_each_answer_given_back_returns_the_others(scene: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = scene
+    first = at_radius(fields_, radius)
+    profile = profile_from(fields_)
+    for name in LOADS:
+        again = solve(profile, E_STAR, **{name: getattr(first, name)}, rtol=1e-12)
+        for other in LOADS:
+            expected = float(getattr(first, other))
+            # The largest power is that of a ninth-degree profile.
+            assert float(getattr(again, other)) == pytest.approx(expected, rel=2e-13)
+
+
+def rescaled(fields_: dict[str, Any], unit: float) -> dict[str, Any]:
+    """The same body in a unit of length 1/`unit` of the old one."""
+    out = dict(fields_)
+    for name in LENGTHS & out.keys():
+        out[name] = out[name] * unit
+    if "exponent" in out:
+        out["coefficient"] = out["coefficient"] * unit ** (1 - out["exponent"])
+    if "terms" in out:
+        out["terms"] = [rescaled(one, unit) for one in out["terms"]]
+    return out
+
+
+@repeatable
+@given(scenes(), st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
+def test_a_change_of_units_rescales_the_answers(
+    scene: tuple[dict[str, Any], float], length_power: float, modulus_power: float
+) -> None:
+    fields_, radius = scene
+    unit, modulus = 10.0**length_power, 10.0**modulus_power
+    old = at_radius(fields_, radius)
+    force = float(old.normal_force) * modulus * unit**2
+    new = solve(profile_from(rescaled(fields_, unit)), E_STAR * modulus, normal_force=force)
+    # The power's coefficient takes a large power of the unit: its rounding is the bound's.
+    assert float(new.contact_radius) == pytest.approx(radius * unit, rel=1e-12)
+    depth = float(old.indentation_depth) * unit
+    assert float(new.indentation_depth) == pytest.approx(depth, rel=1e-12)
+    energy = float(old.elastic_energy) * unit**3 * modulus
+    assert float(new.elastic_energy) == pytest.approx(energy, rel=1e-11)

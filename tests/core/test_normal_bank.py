@@ -1,0 +1,28 @@
+"""Depth, force and radius of every stored case, by every control."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from tests.core.comparison import INPUT, profile_from, relative_error
+from tests.oracles import bank
+
+from mdr_core.normal import solve
+
+BOUND = 1e-13
+
+
+@pytest.mark.parametrize("case", bank.load("normal"), ids=lambda case: str(case["id"]))
+def test_answers_and_their_error_estimate(case: dict[str, Any]) -> None:
+    load = {case["control"]: case["load"]}
+    contact = solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
+    failures = []
+    for name, expected in case["expected"].items():
+        error = relative_error(float(getattr(contact, name)), expected)
+        allowance = INPUT * case["condition"][name]
+        if error > BOUND + allowance:
+            failures.append(f"{name}: {error:.2e} > {BOUND + allowance:.2e}")
+        if contact.error_estimate < error - allowance:
+            failures.append(f"{name}: estimate {contact.error_estimate:.2e} < {error:.2e}")
+    assert not failures, failures
