@@ -24,13 +24,13 @@ check: .venv/development
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/python -m mdr_service.openapi | diff openapi.json -
+	$(BIN)/python -m mdr_service --openapi | diff openapi.json -
 
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
 openapi: .venv/development
-	$(BIN)/python -m mdr_service.openapi > openapi.json
+	$(BIN)/python -m mdr_service --openapi > openapi.json
 
 # Needs uv on the path; only for those who change a dependency.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \

@@ -1,0 +1,1 @@
+"""What the wire accepts and returns: names, bounds, dimensions, examples."""

@@ -1,0 +1,67 @@
+"""Filled-in requests, in SI units (N, m, Pa); a test compares each answer with its textbook."""
+
+from typing import Any, Final
+
+_STEEL: Final = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+_RUBBER: Final = {"youngs_modulus": 5e6, "poissons_ratio": 0.5}
+
+
+def _example(summary: str, value: dict[str, Any]) -> dict[str, Any]:
+    return {"summary": summary, "value": value}
+
+
+NORMAL_EXAMPLES: Final = {
+    "hertz": _example(
+        "Hertz: a steel ball of 10 mm radius on a steel flat, pressed by 10 N",
+        {
+            "profile": {"kind": "paraboloid", "radius": 0.01},
+            "material": {"bodies": [_STEEL, _STEEL]},
+            "load": {"normal_force": 10.0},
+        },
+    ),
+    "boussinesq": _example(
+        "Boussinesq: a rigid flat punch of 5 mm radius on rubber, four depths",
+        {
+            "profile": {"kind": "flat_punch", "radius": 0.005},
+            "material": {"bodies": ["rigid", _RUBBER]},
+            "load": {"indentation_depth": [0.0, 1e-4, 2e-4, 5e-4]},
+        },
+    ),
+    "sneddon": _example(
+        "Sneddon: a rigid cone with a slope of 0.1 on steel, pressed 1 µm deep",
+        {
+            "profile": {"kind": "cone", "slope": 0.1},
+            "material": {"bodies": ["rigid", _STEEL]},
+            "load": {"indentation_depth": 1e-6},
+        },
+    ),
+    "exact_sphere": _example(
+        "An exact sphere of 10 mm radius, E* = 1 MPa, by its contact radius",
+        {
+            "profile": {"kind": "sphere", "radius": 0.01},
+            "material": {"e_star": 1e6},
+            "load": {"contact_radius": [0.001, 0.005]},
+        },
+    ),
+    "worn_ball": _example(
+        "A ball of 10 mm radius with a worn flat of 1 mm radius, E* = 1 GPa",
+        {
+            "profile": {"kind": "truncated_paraboloid", "flat_radius": 0.001, "radius": 0.01},
+            "material": {"e_star": 1e9},
+            "load": {"contact_radius": 0.002},
+        },
+    ),
+    "table": _example(
+        "A measured profile: seven points of a ball, joined by a cubic spline",
+        {
+            "profile": {
+                "kind": "tabulated",
+                "r": [0.0, 0.0005, 0.001, 0.0015, 0.002, 0.0025, 0.003],
+                "f": [0.0, 1.25e-05, 5e-05, 0.0001125, 0.0002, 0.0003125, 0.00045],
+            },
+            "material": {"e_star": 1e9},
+            "load": {"contact_radius": [0.001, 0.002]},
+            "rtol": 1e-6,
+        },
+    ),
+}
