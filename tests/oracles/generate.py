@@ -14,6 +14,7 @@ from mpmath import mp, mpf
 from tests.oracles.reference import (
     CLOSED_DIGITS,
     CONTROLS,
+    OUTPUTS,
     QUAD_DIGITS,
     State,
     contact_radius,
@@ -23,6 +24,8 @@ from tests.oracles.reference import (
 )
 from tests.oracles.scenes import FAMILIES, SCALES, Family, Profile, scenes
 from tests.oracles.shapes import FlatPunch, Shape, shape_of
+from tests.oracles.table_scenes import TableScene, table_scenes
+from tests.oracles.tables import TABLE_DIGITS, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -291,6 +294,8 @@ def _profile_record(family: Family, profile: Profile, scale: str) -> Record:
     }
     with mp.workdps(CLOSED_DIGITS):
         shape = shape_of(profile)
+        # The steepest powers leave the doubles near the axis.
+        points[:] = [x for x in points if not 0 < shape.f(mpf(x)) < mpf("1e-250")]
         for name in ("f", "df", "g", "dg"):
             fn = getattr(shape, name)
             values = [fn(mpf(x)) for x in points]
@@ -300,6 +305,82 @@ def _profile_record(family: Family, profile: Profile, scale: str) -> Record:
                 for x, value in zip(points, values, strict=True)
             ]
     return record
+
+
+def table_cases() -> Iterable[Record]:
+    for scene in table_scenes():
+        with mp.workdps(TABLE_DIGITS):
+            table = Table(scene.profile)
+            for number, radius in enumerate(scene.radii):
+                yield from _table_records(scene, table, radius, fields=number == 0)
+
+
+def _table_records(
+    scene: TableScene, table: Table, radius: float, *, fields: bool
+) -> Iterable[Record]:
+    """One record per control; the fields are asked of the given radius alone."""
+    loads_ = {
+        "contact_radius": radius,
+        "indentation_depth": float(table.g(mpf(radius))),
+        "normal_force": float(table.force(mpf(radius))),
+    }
+    for control, load in loads_.items():
+        a = table.contact_radius(control, mpf(load))
+        d, n = table.g(a), table.force(a)
+        values = dict(zip(OUTPUTS, (d, n, a, n / (mp.pi * a**2), 2 * a), strict=False))
+        slope = table.dg(a)
+        rates = (a * slope / d, 2 * a**2 * slope / n, mpf(1), 2 * a**2 * slope / n - 2, mpf(1))
+        condition_ = dict(zip(OUTPUTS, rates, strict=False))
+        if fields and control == "contact_radius":
+            values["elastic_energy"] = table.energy(a)
+            condition_["elastic_energy"] = a * n * slope / values["elastic_energy"]
+        rate = condition_[control]
+        record: Record = {
+            "id": f"table-{scene.name}-5.74-{radius:g}-{SHORT[control]}",
+            "equation": "(5.74)",
+            "tags": {"family": f"table-{scene.name}", "interpolant": scene.name},
+            "profile": scene.profile,
+            "e_star": 1.0,
+            "control": control,
+            "load": load,
+            "expected": {name: digits(value) for name, value in values.items()},
+            "condition": {name: condition(value / rate) for name, value in condition_.items()},
+        }
+        if fields and control == "contact_radius":
+            record.update(_table_fields(scene, table, radius))
+        if scene.truth is not None:
+            truth = state(scene.truth, control, load, 1.0)
+            record["truth"] = {name: digits(truth.values[name]) for name in values}
+        yield record
+
+
+def table_radii(scene: TableScene, a: float) -> list[float]:
+    """Between the knots, just beside one, beside the breaks, near the axis and near the edge.
+
+    Not the axis itself: the interpolant of a smooth body has a slope of rounding's or the
+    spline's own size there, and so formally an infinite pressure.
+    """
+    knots = scene.profile["r"]
+    middle = next((r for r in knots if r > a / 2), a / 2)
+    points = [a * fraction for fraction in FRACTIONS[1:]] + [0.37 * a]
+    points += [middle * (1 + sign * 1e-6) for sign in (-1, 1)]
+    for b in scene.profile["breaks"]:
+        points += [b * (1 + sign * step) for sign in (-1, 1) for step in DISTANCES]
+    return sorted({r for r in points if 0 < r < a and r not in knots})
+
+
+def _table_fields(scene: TableScene, table: Table, radius: float) -> Record:
+    points = table_radii(scene, radius)
+    fields: Record = {"radius": points}
+    for name in ("f", "df", "g", "dg"):
+        fields[name] = [digits(getattr(table, name)(mpf(r))) for r in points]
+    fields["pressure"] = [digits(table.pressure(mpf(r), mpf(radius))) for r in points]
+    if scene.truth is not None:
+        with mp.workdps(QUAD_DIGITS):
+            shape = shape_of(scene.truth)
+            truth = [pressure(shape, mpf(r), mpf(radius)) for r in points]
+            fields["truth_pressure"] = [digits(p) for p in truth]
+    return fields
 
 
 def finite_range(record: Record) -> bool:
@@ -321,7 +402,12 @@ def write(name: str, records: Iterable[Record]) -> None:
     sys.stderr.write(f"{name}: {len(lines)} records, {len(text)} bytes, {seconds:.0f} s\n")
 
 
-MAKERS = {"profile": profile_cases, "normal": normal_cases, "pressure": pressure_cases}
+MAKERS = {
+    "profile": profile_cases,
+    "normal": normal_cases,
+    "pressure": pressure_cases,
+    "tabulated": table_cases,
+}
 
 
 def main(names: list[str]) -> None:

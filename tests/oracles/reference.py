@@ -144,6 +144,8 @@ def solve_increasing(fn: Callable[[mpf], mpf], target: mpf, start: mpf) -> mpf:
     step = mpf(1)
     while excess(high) < 0:
         high, step = high + step, 2 * step
+        if step > 1e6:
+            raise ArithmeticError("no contact is that large")
     root = low
     if low != high:
         # The residual is not checked: the sign change below says more.
