@@ -1,0 +1,32 @@
+"""The singular integrals: Abel transforms forward and back, and the two-limit stress kernel."""
+
+from mdr_core.abel.back import back
+from mdr_core.abel.panels import (
+    Jumps,
+    Panels,
+    forward,
+    forward_moment,
+    forward_slope,
+    jumps_at,
+    resolve,
+    slope_source,
+)
+from mdr_core.abel.roots import asinh_difference, between, one_sided
+from mdr_core.abel.stress import StressPanels, stress_panels
+
+__all__ = [
+    "Jumps",
+    "Panels",
+    "StressPanels",
+    "asinh_difference",
+    "back",
+    "between",
+    "forward",
+    "forward_moment",
+    "forward_slope",
+    "jumps_at",
+    "one_sided",
+    "resolve",
+    "slope_source",
+    "stress_panels",
+]

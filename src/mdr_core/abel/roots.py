@@ -1,0 +1,137 @@
+"""The singular integrals: forward and back Abel transforms, and the two-limit stress kernel.
+
+Nothing here knows any physics. Two substitutions make every integrand analytic in the strip
+|Im y| < pi/2, whatever the parameters, so that `mdr_core.quadrature` knows its error beforehand:
+
+* two real roots, r and b (the point tested and the nearest break below):
+  x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y removes both, near or far from each other;
+* a real and an imaginary root, r and i h, for functions smooth at the axis: no tip to resolve.
+
+Source: physics, section 10.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mdr_core.quadrature import Integrand, integrate_even, integrate_plain
+from mdr_core.typing import Array, Parameter
+
+# weight(x, s, index) = F(x) s / x with s = sqrt(x^2 - b^2): free of the root that F carries at b.
+# x and s have shape (nodes, k), index (k,) says to which integrals they belong.
+Weight = Callable[[Array, Array, Array], Array]
+
+# Below this distance from the break, relative to it, a continuous kernel no longer changes.
+_COINCIDENT = 1e-9
+
+
+def asinh_difference(high: Array, low: Array, square_difference: Array) -> Array:
+    """arcsinh(high) - arcsinh(low), given high^2 - low^2 with its digits."""
+    denominator = high * np.hypot(1.0, low) + low * np.hypot(1.0, high)
+    with np.errstate(invalid="ignore"):
+        ratio = square_difference / denominator
+    return np.asarray(np.arcsinh(np.where(denominator > 0, ratio, 0.0)))
+
+
+def one_sided(
+    weight: Weight,
+    b: Parameter,
+    r: Array,
+    upper: Array,
+    *,
+    width: Array | None = None,
+    edge: Array | None = None,
+    odd: bool,
+    rtol: float,
+    growth: float = 2.0,
+) -> Array:
+    """Return the integrals of F(x) / sqrt(x^2 - r^2) over x from max(r, b, c) to a.
+
+    F is analytic for x > b in s = sqrt(x^2 - b^2); the ends are given in that coordinate,
+    `upper` = sqrt(a^2 - b^2), `width` = upper - sqrt(c^2 - b^2) (None where c <= b), because
+    there the digits of a narrow annulus survive.
+
+    At r = b the integral is infinite where the weight does not vanish: F ~ 1/s there.
+
+    Source: physics, section 10 (two-root rule); mdr-5, Eqs. (5.68), (5.70).
+
+    Parameters
+    ----------
+    weight : F(x) s / x, analytic in s.
+    b, r : the break, b > 0, and the points, r < a, r >= 0. [length], shape (m,)
+    edge : a itself where it was given exactly: near it, a - r is then exact too.
+    odd : F is an odd function of s, which halves the work for r < b.
+    rtol : relative tolerance, 1e-3 to 1e-14.
+    growth : F grows at most like exp(growth |Re y|), or is a polynomial of twice that degree.
+    """
+    distance2 = np.abs(r - b) * (r + b)
+    distance2 = np.maximum(distance2, (_COINCIDENT * b) ** 2)
+    above = r > b
+    shift = np.where(above, distance2, 0.0)
+    base2 = np.where(above, r * r, b * np.asarray(b))
+    epsilon = np.sqrt(distance2)
+
+    def h(y: Array, index: Array) -> Array:
+        leg = np.sinh(y)
+        leg *= epsilon[index]
+        leg *= leg
+        x = np.sqrt(leg + base2[index])
+        leg += shift[index]
+        return weight(x, np.sqrt(leg, out=leg), index)
+
+    if edge is None:
+        top2 = np.maximum(upper * upper - shift, 0.0)
+    else:
+        top2 = np.where(above, (edge - r) * (edge + r), upper * upper)
+    top = np.sqrt(top2) / epsilon
+    if width is None:
+        result = between(h, top, odd | above, rtol, growth=growth)
+    else:
+        lower = upper - width
+        bottom = np.sqrt(np.maximum(lower * lower - shift, 0.0)) / epsilon
+        square_difference = width * (upper + lower) / distance2
+        result = between(h, top, odd | above, rtol, bottom, square_difference, growth)
+    on_break = (r == b) & (r > 0) if width is None else (r == b) & (r > 0) & (lower <= 0)
+    if on_break.any():
+        index = np.flatnonzero(on_break)
+        pole = weight(r[None, index], np.zeros((1, index.size)), index)[0]
+        result[index[pole != 0]] = np.inf
+    return result
+
+
+def between(
+    h: Integrand,
+    top: Array,
+    even: Array,
+    rtol: float,
+    bottom: Array | None = None,
+    square_difference: Array | None = None,
+    growth: float = 2.0,
+) -> Array:
+    """Return the integrals of h over [arcsinh(bottom), arcsinh(top)].
+
+    h is analytic in the strip, and even where `even` says so: there an integral from zero
+    takes half the nodes. `square_difference` = top^2 - bottom^2, with its digits, is needed
+    with `bottom`; both are left out for integrals from zero.
+    """
+    upper = np.arcsinh(top)
+    whole = even if bottom is None else even & (bottom == 0)
+    if whole.all():
+        return integrate_even(h, upper, rtol, growth)
+    result = np.empty_like(top)
+    index = np.flatnonzero(whole)
+    result[index] = integrate_even(_chosen(h, index), upper[index], rtol, growth)
+    index = np.flatnonzero(~whole)
+    if bottom is None or square_difference is None:
+        lower, length = np.zeros(index.size), upper[index]
+    else:
+        low = bottom[index]
+        gap2 = np.where(low > 0, square_difference[index], top[index] ** 2)
+        lower, length = np.arcsinh(low), asinh_difference(top[index], low, gap2)
+    result[index] = integrate_plain(_chosen(h, index), lower, length, rtol, growth)
+    return result
+
+
+def _chosen(h: Integrand, chosen: Array) -> Integrand:
+    """The integrand of the chosen integrals alone."""
+    return lambda y, index: h(y, chosen[index])

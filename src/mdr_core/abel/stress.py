@@ -1,0 +1,179 @@
+"""The two-limit stress kernel of functions known as panels."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from mdr_core.abel.panels import Jumps, bisect
+from mdr_core.abel.roots import one_sided
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array
+
+_FAR_NODES: Final = 16
+# A panel is far when the kernel's root is this many panel lengths away from it.
+_FAR: Final = 1.25
+_BLOCK: Final = 64
+# The axis of the first panel: nearer than this nothing changes for a function smooth there.
+_AXIS: Final = 1e-8
+# Rounding of G(0), relative to the panel's largest coefficient.
+_TIP: Final = 1e-12
+# The panels' polynomials have degree 23.
+_GROWTH: Final = 12.0
+_NEGLIGIBLE: Final = 1e-17
+_EPS: Final = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class StressPanels:
+    """G = g' on [0, end] as polynomials in s = sqrt(x^2 - b^2), b the panel's own break.
+
+    There the root that G carries at b is gone; what remains of a jump, `pole`/s, is kept apart.
+    All arrays have one entry a panel; `coefficients` are Chebyshev, on [start, stop] in s.
+    """
+
+    base: Array
+    start: Array
+    stop: Array
+    pole: Array
+    coefficients: Array
+    error: float
+
+    def kernel(self, a: Array, r: Array, rtol: float, width: Array | None = None) -> Array:
+        """Return int_max(r,c)^a G(x)/sqrt(x^2 - r^2) dx, c = a - width.
+
+        a of shape () or (m,), r of shape (m,), r < a. Source: mdr-5, Eqs. (5.68), (5.70).
+        """
+        a = np.broadcast_to(a, r.shape)
+        width = a if width is None else width
+        result = np.empty_like(r)
+        for begin in range(0, r.size, _BLOCK):
+            part = slice(begin, begin + _BLOCK)
+            inner = a[part] - width[part]
+            result[part] = self._block(a[part], r[part], inner, width[part], rtol)
+        return result
+
+    def _block(self, a: Array, r: Array, c: Array, width: Array, rtol: float) -> Array:
+        base, start, stop = self.base[:, None], self.start[:, None], self.stop[:, None]
+        leg_a, leg_c, leg_r = _leg(a, base), _leg(c, base), _leg(r, base)
+        low, high = np.maximum(start, leg_c), np.minimum(stop, leg_a)
+        used = (high > np.maximum(low, leg_r)) & (a > base)
+        # The root at r inside the panel: the rule starts on it, at y = 0, even in y.
+        on_root = leg_r >= low
+        shift = (base - r) * (base + r)
+        distance = np.where(
+            shift > 0, np.sqrt(start * start + np.maximum(shift, 0.0)), start - leg_r
+        )
+        whole = used & ~on_root & (low == start) & (high == stop)
+        far = whole & (distance > _FAR * (stop - start))
+        total = self._far(r, far)
+        panel, point = np.nonzero(used & ~far)
+        bottom = np.where(on_root, 0.0, low)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            annulus = width * (a + c) / (leg_a + leg_c)
+        cut_twice = (low == leg_c) & (high == leg_a) & ~on_root & (leg_c > 0)
+        span = np.where(cut_twice, annulus, high - bottom)
+        edge = np.where(high == leg_a, a, np.hypot(base, stop))
+        near = self._near(
+            panel,
+            r[point],
+            high[panel, point],
+            span[panel, point],
+            edge[panel, point],
+            rtol,
+        )
+        return np.asarray(total + np.bincount(point, weights=near, minlength=r.size))
+
+    def _far(self, r: Array, far: Array) -> Array:
+        """Fixed nodes, shared by all points, for the panels that the root does not touch."""
+        panels = np.flatnonzero(far.any(axis=1))
+        if not panels.size:
+            return np.zeros_like(r)
+        x, weights = self._fixed
+        x, weights = x[panels][:, :, None], weights[panels][:, :, None]
+        mask = far[panels][:, None, :]
+        gap = np.where(mask, (x - r) * (x + r), 1.0)
+        return np.asarray((np.where(mask, weights, 0.0) / np.sqrt(gap)).sum(axis=(0, 1)))
+
+    @property
+    def _fixed(self) -> tuple[Array, Array]:
+        """Nodes x and weights G dx of every whole panel, (panels, nodes)."""
+        nodes, weights = gauss_legendre(_FAR_NODES)
+        half = (self.stop - self.start)[:, None] / 2
+        s = self.start[:, None] + half * (1 + nodes)
+        x = np.hypot(self.base[:, None], s)
+        values = chebyshev.chebvander(nodes, self.coefficients.shape[1] - 1)
+        regular = self.coefficients @ values.T
+        return x, half * weights * (regular * s + self.pole[:, None]) / x
+
+    def _near(
+        self, panel: NDArray[np.intp], r: Array, high: Array, span: Array, edge: Array, rtol: float
+    ) -> Array:
+        """Two-root rule on each pair of a panel and a point, from high - span to high in s."""
+        base, start, stop = self.base[panel], self.start[panel], self.stop[panel]
+        middle, half = (start + stop) / 2, (stop - start) / 2
+        pole, rows = self.pole[panel], self.coefficients[panel].T
+
+        def weight(x: Array, s: Array, index: Array) -> Array:
+            u = np.clip((s - middle[index]) / half[index], -1, 1)
+            value = chebyshev.chebval(u, rows[:, None, index], tensor=False)
+            return np.asarray((value * s + pole[index]) / x)
+
+        on_axis = (r == 0) & (base == 0)
+        result = one_sided(
+            weight,
+            base,
+            np.where(on_axis, _AXIS * stop, r),
+            high,
+            width=span,
+            edge=edge,
+            odd=False,
+            rtol=rtol,
+            growth=_GROWTH,
+        )
+        if on_axis.any():
+            # G(0) > 0 is a tip, and the integral of G/x over it infinite.
+            left = np.abs(chebyshev.chebval(-1.0, rows))
+            tip = left > _TIP * np.abs(rows).max(axis=0)
+            result[on_axis & tip] = np.inf
+        return result
+
+
+def stress_panels(
+    slope: Callable[[Array, Array], Array], edges: Array, jumps: Jumps
+) -> StressPanels:
+    """Resolve G = g' between the given edges, each panel in s about its own left edge.
+
+    `slope(base, offset)` is G(base + offset) without the pole of the jump at `base`.
+
+    Raises
+    ------
+    AccuracyError : G is not piecewise smooth.
+    """
+    base = edges[:-1]
+    last = _leg(edges[1:], base)
+    intervals = np.stack([np.zeros_like(last), last], axis=1)
+
+    def in_s(s: Array, tags: NDArray[np.intp]) -> Array:
+        b = base[tags]
+        return slope(b, s * s / (b + np.hypot(b, s)))
+
+    def blur(s: Array) -> Array:
+        # x = sqrt(b^2 + s^2) is rounded to eps x, its root s to eps x^2/s; x <= the last edge.
+        return _EPS * np.square(edges[-1]) / s
+
+    negligible = _NEGLIGIBLE * float(np.abs(slope(base[:1], edges[1:2]))[0] * edges[1])
+    places, tags, coefficients, error = bisect(
+        in_s, intervals, np.arange(base.size), blur, negligible
+    )
+    pole = np.zeros_like(base)
+    pole[np.searchsorted(base, jumps.at)] = jumps.at * jumps.size
+    return StressPanels(base[tags], places[:, 0], places[:, 1], pole[tags], coefficients, error)
+
+
+def _leg(x: Array, b: Array) -> Array:
+    """sqrt(x^2 - b^2), zero for x < b."""
+    return np.asarray(np.sqrt(np.maximum(x - b, 0.0) * (x + b)))

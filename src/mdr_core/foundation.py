@@ -1,0 +1,143 @@
+"""The equivalent one-dimensional problem: where the springs touch, and what they carry."""
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from mdr_core.errors import DefectError, InputError
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Parameter
+
+_STEPS: Final = 200
+# Newton's step at which the next error is below rounding: it converges quadratically.
+_LAST_STEP: Final = 1e-9
+_STRIDE: Final = 16.0
+
+
+def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
+    """Return the contact coordinate at which g(a) equals the depth.
+
+    Source: mdr-5, Eqs. (5.7), (5.59); physics, section 4.1.
+
+    Raises
+    ------
+    InputError : the profile ends before this depth is reached.
+    """
+    closed = profile.coordinate_from_depth(indentation_depth)
+    if closed is not None:
+        return closed
+    _check_reach(profile, indentation_depth, profile.depth, "indentation_depth")
+
+    def log_slope(s: Array, value: Array) -> Array:
+        return s * profile.depth_slope(s) / value
+
+    return _invert(profile, profile.depth, log_slope, indentation_depth)
+
+
+def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
+    """Return the contact coordinate at which F_N/E* has the given value [length^2].
+
+    Source: mdr-5, Eqs. (5.14), (5.61); physics, section 4.1: dF_N/da = 2 E* a g'(a).
+
+    Raises
+    ------
+    InputError : the profile ends before this force is reached.
+    """
+    closed = profile.coordinate_from_reduced_force(reduced_force)
+    if closed is not None:
+        return closed
+    _check_reach(profile, reduced_force, profile.reduced_force, "normal_force")
+
+    def log_slope(s: Array, value: Array) -> Array:
+        return 2 * s * profile.contact_radius(s) * profile.depth_slope(s) / value
+
+    return _invert(profile, profile.reduced_force, log_slope, reduced_force)
+
+
+def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
+    """Return the contact coordinate of a given contact radius.
+
+    Raises
+    ------
+    InputError : the radius lies beyond the profile's end, or the profile fixes it itself.
+    """
+    return profile.coordinate_from_radius(_within(profile, contact_radius, "contact_radius"))
+
+
+def foundation_load(profile: Profile, e_star: Parameter, coordinate: Array, x: Array) -> Array:
+    """Return q(x) = E* (d - g(x)) inside the contact, 0 outside [force/length].
+
+    Source: mdr-5, Eqs. (5.8), (5.23).
+    """
+    load = e_star * (profile.depth(coordinate) - profile.g(x))
+    return np.where(x < profile.contact_radius(coordinate), load, 0.0)
+
+
+def _within(profile: Profile, contact_radius: Array, name: str) -> Array:
+    """The radius, refused where it passes the profile's end."""
+    if not np.all(np.isinf(profile.domain)):
+        _refuse(contact_radius > profile.domain, profile, name)
+    return contact_radius
+
+
+def _check_reach(
+    profile: Profile, target: Array, function: Callable[[Array], Array], name: str
+) -> None:
+    """Refuse targets that lie beyond the profile's end."""
+    end = profile.last_coordinate
+    if end is not None:
+        _refuse(np.asarray(target > function(np.asarray(end))), profile, name)
+
+
+def _refuse(outside: Array, profile: Profile, name: str) -> None:
+    if outside.any():
+        index = tuple(int(i[0]) for i in np.nonzero(outside))
+        raise InputError(
+            ("load", name, *index),
+            f"the contact would reach past radius {profile.domain!r}, where the profile ends "
+            "or ceases to be admissible",
+        )
+
+
+def _invert(
+    profile: Profile,
+    function: Callable[[Array], Array],
+    log_slope: Callable[[Array, Array], Array],
+    target: Array,
+) -> Array:
+    """Solve function(s) = target >= 0 for an increasing function, relatively accurate.
+
+    Newton's method in log(s) and log(function), which all profiles make nearly straight; the
+    signs seen so far bracket the root, and a step that leaves the bracket halves it.
+    """
+    positive = target > 0
+    shape = np.broadcast_shapes(target.shape, np.shape(profile.scale))
+    goal = np.where(positive, target, 1.0)
+    end = profile.last_coordinate
+    low = np.full(shape, profile.first_coordinate)
+    high = np.full(shape, np.inf if end is None else end)
+    s = np.minimum(np.broadcast_to(profile.scale, shape), high)
+    for _ in range(_STEPS):
+        value = function(s)
+        # A value that leaves the range of doubles still tells the side.
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            step = np.log(goal / value) / log_slope(s, value)
+            proposed = s * np.exp(step)
+        low = np.where(value < goal, s, low)
+        high = np.where(value > goal, s, high)
+        inside = ((proposed > low) & (proposed < high)) | (value == goal)
+        if not inside.all():
+            proposed = np.where(inside, proposed, _middle(low, high))
+        moved = np.where(positive, np.abs(proposed - s), 0.0)
+        s = proposed
+        if np.all(moved <= _LAST_STEP * s):
+            return np.where(positive, s, profile.first_coordinate)
+    raise DefectError(f"the inverse of a {profile.kind} did not converge")
+
+
+def _middle(low: Array, high: Array) -> Array:
+    """Geometric middle of the bracket, or a stride where it is still open."""
+    with np.errstate(invalid="ignore"):
+        middle = np.sqrt(low) * np.sqrt(high)
+    return np.where(low == 0, high / _STRIDE, np.where(np.isinf(high), low * _STRIDE, middle))

@@ -1,0 +1,179 @@
+"""Normal contact: of depth, force and radius, one is given and the others follow."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core.errors import InputError, Notice
+from mdr_core.foundation import (
+    coordinate_from_depth,
+    coordinate_from_force,
+    coordinate_from_radius,
+)
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Parameter
+
+
+@dataclass(frozen=True)
+class NormalContact:
+    """A profile pressed into the half-space, at every load at once.
+
+    Each answer is computed when it is first asked for. All are arrays over the loads (and, for
+    a sweep, over the scenes), without dimension where the load was a single number.
+    """
+
+    profile: Profile
+    e_star: Parameter
+    coordinate: Array
+    """The contact's edge in the profile's own contact coordinate."""
+    rtol: float = 1e-10
+    control: str = "contact_radius"
+    """Which of the three was given: it is the one known exactly."""
+
+    @cached_property
+    def contact_radius(self) -> Array:
+        """a [length]."""
+        return self.profile.contact_radius(self.coordinate)
+
+    @cached_property
+    def indentation_depth(self) -> Array:
+        """d = g(a) [length]."""
+        return self.profile.depth(self.coordinate)
+
+    @cached_property
+    def normal_force(self) -> Array:
+        """F_N = 2 E* int_0^a x g'(x) dx [force]. Source: physics, section 4.1."""
+        return self.e_star * self.profile.reduced_force(self.coordinate)
+
+    @cached_property
+    def mean_pressure(self) -> Array:
+        """F_N / (pi a^2) [pressure]; at zero load its limit, infinite on a needle's tip."""
+        area = np.pi * np.square(self.contact_radius)
+        if np.min(area) > 0:
+            return self.normal_force / area
+        limit = np.multiply(self.e_star, self.profile.tip_pressure)
+        return np.where(area > 0, self.normal_force / np.where(area > 0, area, 1.0), limit)
+
+    @cached_property
+    def normal_stiffness(self) -> Array:
+        """dF_N/dd = 2 E* a [force/length]. Source: mdr-5, text after Eq. (5.1)."""
+        return 2 * self.e_star * self.contact_radius
+
+    @cached_property
+    def elastic_energy(self) -> Array:
+        """E* int_0^a (d - g)^2 dx = int_0^d F_N dd [force length]."""
+        return self.e_star * self.profile.reduced_energy(self.coordinate)
+
+    @property
+    def method(self) -> str:
+        """The dearest route that the answers of a normal query need for this profile."""
+        return self.profile.normal_method
+
+    @property
+    def error_estimate(self) -> float:
+        """Bound on the relative error of each answer."""
+        return self.profile.rounding
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """`singular` and `accuracy`, where they apply."""
+        found = []
+        if not np.isfinite(np.max(self.mean_pressure)):
+            found.append(
+                Notice(
+                    "singular",
+                    "the mean pressure is infinite where the load vanishes: "
+                    "the tip is sharper than a cone",
+                )
+            )
+        if self.error_estimate > self.rtol:
+            found.append(
+                Notice(
+                    "accuracy",
+                    f"rtol = {self.rtol:.1e} is below what double precision reaches here: "
+                    "see error_estimate",
+                )
+            )
+        return tuple(found)
+
+
+def solve(
+    profile: Profile,
+    e_star: Parameter,
+    *,
+    indentation_depth: ArrayLike | None = None,
+    normal_force: ArrayLike | None = None,
+    contact_radius: ArrayLike | None = None,
+    rtol: float = 1e-10,
+) -> NormalContact:
+    """Return the normal contact under one given load.
+
+    a(d) inverts d = g(a); F_N = 2 E* int_0^a x g'(x) dx. Closed forms are used wherever they
+    exist; the inverses of the others are solved to rounding, in the contact coordinate.
+
+    Source: mdr-5, Eqs. (5.7), (5.14), (5.25)-(5.27), (5.59), (5.61); physics, section 4.
+
+    Parameters
+    ----------
+    profile : any kind; array parameters broadcast with the load.
+    e_star : effective modulus [pressure], > 0.
+    indentation_depth, normal_force, contact_radius : exactly one, >= 0
+        [length], [force], [length]; a number or an array.
+    rtol : relative accuracy asked for, 1e-13 to 1e-3.
+
+    Raises
+    ------
+    InputError : not exactly one load, a load that is negative or not finite, a contact beyond
+        the profile's end, or the radius of a flat punch given as the load.
+
+    Examples
+    --------
+    Eq. (5.14): a = (3 F R / (4 E*))^(1/3).
+
+    >>> from mdr_core.profiles import Paraboloid
+    >>> contact = solve(Paraboloid(0.01), 1e11, normal_force=[10.0, 80.0])
+    >>> [float(f"{a:.6g}") for a in contact.contact_radius]
+    [9.0856e-05, 0.000181712]
+    """
+    require_modulus(e_star)
+    given = {
+        "indentation_depth": indentation_depth,
+        "normal_force": normal_force,
+        "contact_radius": contact_radius,
+    }
+    named = [(name, value) for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        raise InputError(("load",), f"exactly one of {', '.join(given)} is needed")
+    name, load = named[0][0], _checked_load(*named[0])
+    if name == "indentation_depth":
+        coordinate = coordinate_from_depth(profile, load)
+    elif name == "normal_force":
+        coordinate = coordinate_from_force(profile, load / e_star)
+    else:
+        coordinate = coordinate_from_radius(profile, load)
+    contact = NormalContact(profile, e_star, coordinate, rtol, name)
+    if load.shape == coordinate.shape:
+        # What was given is answered as given, to the last digit.
+        vars(contact)[name] = load
+    return contact
+
+
+def require_modulus(e_star: Parameter) -> None:
+    """Raise InputError unless E* is positive and finite."""
+    values = np.asarray(e_star, dtype=float)
+    if not (values.size and np.min(values) > 0 and np.max(values) < inf):
+        raise InputError(("material", "e_star"), "must be positive and finite")
+
+
+def _checked_load(name: str, value: ArrayLike) -> Array:
+    load = np.asarray(value, dtype=float)
+    if load.size == 0:
+        raise InputError(("load", name), "at least one load is needed")
+    if not (np.min(load) >= 0 and np.max(load) < inf):
+        bad = ~((load >= 0) & (load < inf))
+        index = tuple(int(i[0]) for i in np.nonzero(bad))
+        raise InputError(("load", name, *index), "must be finite and not negative")
+    return load

@@ -1,0 +1,56 @@
+"""The fifteen kinds of profile, each with what it knows in closed form."""
+
+from typing import Final
+
+from mdr_core.profiles.blunt import (
+    FlatPunch,
+    RoundedPunch,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+from mdr_core.profiles.power_law import Cone, Paraboloid, Power
+from mdr_core.profiles.profile import Profile
+from mdr_core.profiles.rounded import Ellipsoid, Hyperboloid, Sphere
+from mdr_core.profiles.series import PowerTerm, Series
+from mdr_core.profiles.tabulated import Tabulated
+from mdr_core.profiles.two_part import CappedParaboloid, RoundedCone, SphericalTipCone
+
+_CLASSES: Final[tuple[type[Profile], ...]] = (
+    FlatPunch,
+    Cone,
+    Paraboloid,
+    Sphere,
+    Ellipsoid,
+    Power,
+    Series,
+    RoundedPunch,
+    TruncatedCone,
+    TruncatedParaboloid,
+    RoundedCone,
+    SphericalTipCone,
+    Hyperboloid,
+    CappedParaboloid,
+    Tabulated,
+)
+KINDS: Final[dict[str, type[Profile]]] = {cls.kind: cls for cls in _CLASSES}
+
+__all__ = [
+    "KINDS",
+    "CappedParaboloid",
+    "Cone",
+    "Ellipsoid",
+    "FlatPunch",
+    "Hyperboloid",
+    "Paraboloid",
+    "Power",
+    "PowerTerm",
+    "Profile",
+    "RoundedCone",
+    "RoundedPunch",
+    "Series",
+    "Sphere",
+    "SphericalTipCone",
+    "Tabulated",
+    "TruncatedCone",
+    "TruncatedParaboloid",
+]

@@ -1,0 +1,286 @@
+"""Profiles with a flat of radius b: the contact coordinate is s = sqrt(a^2 - b^2)."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from mdr_core.abel.roots import one_sided
+from mdr_core.errors import InputError
+from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
+from mdr_core.profiles.stable import atan_gap
+from mdr_core.typing import Array, Parameter
+
+
+@dataclass(frozen=True)
+class FlatPunch(Profile):
+    """A flat of `radius` with a vertical edge; the coordinate is the depth, the radius given.
+
+    Source: mdr-5, Eqs. (5.31), (5.33); physics, section 4.2.
+    """
+
+    radius: Parameter
+
+    kind: ClassVar[str] = "flat_punch"
+    formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        return (self.radius,)
+
+    def f(self, radius: Array) -> Array:
+        return np.asarray(np.where(radius <= self.radius, 0.0, np.inf))
+
+    df = g = dg = f
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        return self.radius + np.zeros_like(coordinate)
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        raise InputError(
+            ("load", "contact_radius"),
+            "the contact radius of a flat punch is its own at every load: "
+            "give the depth or the force",
+        )
+
+    def depth(self, coordinate: Array) -> Array:
+        return coordinate + np.zeros_like(self.radius)
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        return np.ones_like(coordinate)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        return 2 * self.radius * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        return depth
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        return reduced_force / (2 * self.radius)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        return self.radius * coordinate * coordinate
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        """d / (pi sqrt(a^2 - r^2)): the edge term of Eq. (5.34); no slip annulus exists."""
+        depth = coordinate if width is None else width
+        return depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
+
+
+class Blunt(Profile):
+    """Common to the flats of radius b that end in a slope: f = 0 for r <= b, h(r) beyond."""
+
+    flat_radius: Parameter
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        return (self.flat_radius,)
+
+    @property
+    def scale(self) -> Parameter:
+        return self.flat_radius
+
+    def _leg(self, radius: Array) -> Array:
+        """sqrt(x^2 - b^2), zero inside the flat."""
+        b = self.flat_radius
+        return np.asarray(np.sqrt(np.maximum(radius - b, 0.0) * (radius + b)))
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        return np.asarray(np.hypot(self.flat_radius, coordinate))
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        if np.any(contact_radius < self.flat_radius):
+            index = tuple(int(i[0]) for i in np.nonzero(contact_radius < self.flat_radius))
+            raise InputError(
+                ("load", "contact_radius", *index),
+                f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
+            )
+        return self._leg(contact_radius)
+
+    def g(self, x: Array) -> Array:
+        return self.depth(self._leg(x))
+
+    def dg(self, x: Array) -> Array:
+        s = self._leg(x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(x < self.flat_radius, 0.0, self._weight(x, s) * x / s)
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        return self._weight(self.contact_radius(coordinate), coordinate)
+
+    @abstractmethod
+    def _weight(self, x: Array, s: Array) -> Array:
+        """g'(x) s/x = dg/ds [1], analytic and even in s."""
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        value = one_sided(
+            lambda x, s, _: self._weight(x, s),
+            self.flat_radius,
+            radius,
+            coordinate,
+            width=width,
+            edge=edge,
+            odd=True,
+            rtol=rtol,
+        )
+        return value / np.pi
+
+
+@dataclass(frozen=True)
+class RoundedPunch(Blunt):
+    """f = (r - b)^2/(2R) beyond the flat b = `flat_radius`, R = `rounding_radius` [length].
+
+    Source: mdr-5, Eqs. (5.55)-(5.70).
+    """
+
+    flat_radius: Parameter
+    rounding_radius: Parameter
+
+    kind: ClassVar[str] = "rounded_punch"
+    formula: ClassVar[str] = (
+        "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
+    )
+    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
+
+    def __post_init__(self) -> None:
+        require_positive("flat_radius", self.flat_radius)
+        require_positive("rounding_radius", self.rounding_radius)
+
+    def f(self, radius: Array) -> Array:
+        return np.maximum(radius - self.flat_radius, 0.0) ** 2 / (2 * self.rounding_radius)
+
+    def df(self, radius: Array) -> Array:
+        return np.maximum(radius - self.flat_radius, 0.0) / self.rounding_radius
+
+    def dg(self, x: Array) -> Array:
+        s, b = self._leg(x), self.flat_radius
+        return (s + atan_gap(s, b)) / self.rounding_radius
+
+    def depth(self, coordinate: Array) -> Array:
+        """(a/R) (s - b phi). Source: mdr-5, Eq. (5.59)."""
+        gap = atan_gap(coordinate, self.flat_radius)
+        return self.contact_radius(coordinate) * gap / self.rounding_radius
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        """a d + s^3/(3R). Source: mdr-5, Eq. (5.61), in its stable form."""
+        cube = coordinate * coordinate * coordinate
+        edge = self.contact_radius(coordinate)
+        return edge * self.depth(coordinate) + cube / (3 * self.rounding_radius)
+
+    def _weight(self, x: Array, s: Array) -> Array:
+        b = self.flat_radius
+        return (2 * s - b * np.arctan(s / b)) * s / (x * self.rounding_radius)
+
+
+@dataclass(frozen=True)
+class TruncatedCone(Blunt):
+    """f = t (r - b) beyond the flat b = `flat_radius`, t = `slope` [1].
+
+    Source: physics, section 4.2.
+    """
+
+    flat_radius: Parameter
+    slope: Parameter
+
+    kind: ClassVar[str] = "truncated_cone"
+    formula: ClassVar[str] = "0 for r ≤ flat_radius, then slope·(r − flat_radius)"
+    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
+
+    def __post_init__(self) -> None:
+        require_positive("flat_radius", self.flat_radius)
+        require_positive("slope", self.slope)
+
+    def f(self, radius: Array) -> Array:
+        return self.slope * np.maximum(radius - self.flat_radius, 0.0)
+
+    def df(self, radius: Array) -> Array:
+        return np.asarray(np.where(radius < self.flat_radius, 0.0, self.slope))
+
+    def depth(self, coordinate: Array) -> Array:
+        """t a phi."""
+        phi = np.arctan(coordinate / self.flat_radius)
+        return self.slope * self.contact_radius(coordinate) * phi
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        """t (a^2 phi + b s)."""
+        b, edge = self.flat_radius, self.contact_radius(coordinate)
+        return self.slope * (edge * edge * np.arctan(coordinate / b) + b * coordinate)
+
+    def _weight(self, x: Array, s: Array) -> Array:
+        b = self.flat_radius
+        return self.slope * (np.arctan(s / b) * s + b) / x
+
+
+@dataclass(frozen=True)
+class TruncatedParaboloid(Blunt):
+    """f = (r^2 - b^2)/(2R) beyond the flat b = `flat_radius`, R = `radius` [length].
+
+    Source: physics, section 4.2.
+    """
+
+    flat_radius: Parameter
+    radius: Parameter
+
+    kind: ClassVar[str] = "truncated_paraboloid"
+    formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r² − flat_radius²)/(2·radius)"
+    closed_forms: ClassVar[tuple[str, ...]] = NORMAL_ANSWERS
+
+    def __post_init__(self) -> None:
+        require_positive("flat_radius", self.flat_radius)
+        require_positive("radius", self.radius)
+
+    def f(self, radius: Array) -> Array:
+        return self._leg(radius) ** 2 / (2 * self.radius)
+
+    def df(self, radius: Array) -> Array:
+        return np.where(radius < self.flat_radius, 0.0, radius / self.radius)
+
+    def depth(self, coordinate: Array) -> Array:
+        """a s/R."""
+        return self.contact_radius(coordinate) * coordinate / self.radius
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        """2 s (2 a^2 + b^2)/(3R)."""
+        b, s = self.flat_radius, coordinate
+        return 2 * s * (3 * (b * b) + 2 * s * s) / (3 * self.radius)
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        """s^2 = 2 h^2/(b^2 + sqrt(b^4 + 4 h^2)), h = R d: the root of s^4 + b^2 s^2 = h^2."""
+        b2, h = np.square(self.flat_radius), self.radius * depth
+        return np.sqrt(2 / (b2 + np.hypot(b2, 2 * h))) * h
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        """s^3 + (3/2) b^2 s = (3/4) R F/E*, by the hyperbolic form of the cubic's root."""
+        b = self.flat_radius
+        argument = reduced_force * self.radius * (1.5 / np.sqrt(2)) / (b * np.square(b))
+        return np.sqrt(2) * b * np.sinh(np.arcsinh(argument) / 3)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        """(1/R^2) [a s^2 (b^2 + s^2/3) + s^4 (3a^3 + 6a^2 b + 4a b^2 + 2b^3)/(15 (a + b)^2)]."""
+        b, s2 = self.flat_radius, coordinate * coordinate
+        a = self.contact_radius(coordinate)
+        cubic = ((3 * a + 6 * b) * a + 4 * (b * b)) * a + 2 * (b * b * b)
+        outer = s2 * s2 * cubic / (15 * np.square(a + b))
+        return (a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius)
+
+    def _weight(self, x: Array, s: Array) -> Array:
+        return (x * x + s * s) / (x * self.radius)

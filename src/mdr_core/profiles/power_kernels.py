@@ -1,0 +1,107 @@
+"""Powers of the radius and their stress integrals, at every scale and down to the tip."""
+
+from typing import Final
+
+import numpy as np
+
+from mdr_core.abel.roots import between
+from mdr_core.typing import Array, Parameter
+
+_TINY: Final = 1e-290
+_HUGE: Final = 1e290
+
+
+def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
+    """C r^n, also where r^n alone leaves the range of doubles."""
+    with np.errstate(over="ignore", under="ignore"):
+        bare = r**exponent
+        extreme = (r > 0) & ((bare < _TINY) | (bare > _HUGE))
+        direct = np.asarray(coefficient * np.where(extreme, 1.0, bare))
+        if not extreme.any():
+            return direct
+        scaled = (r * np.asarray(coefficient) ** (1 / np.asarray(exponent))) ** exponent
+    return np.asarray(np.where(extreme, scaled, direct))
+
+
+def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
+    """C n r^(n-1), infinite at r = 0 for n < 1."""
+    n = np.asarray(exponent, dtype=float)
+    with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
+        bare = r ** (n - 1)
+        extreme = (r > 0) & ((bare < _TINY) | (bare > _HUGE))
+        direct = np.asarray(coefficient * n * bare)
+        if not extreme.any():
+            return direct
+        scaled = n * power(coefficient, r, n) / np.where(r > 0, r, 1.0)
+    return np.asarray(np.where(extreme, scaled, direct))
+
+
+def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Array:
+    """(value / C)^(1/n), the quotient never formed where it could leave the range (n >= 1)."""
+    n = np.asarray(exponent, dtype=float)
+    c = np.asarray(coefficient, dtype=float)
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        split = value ** (1 / n) / c ** (1 / n)
+        return np.asarray(np.where(n < 1, (value / c) ** (1 / n), split))
+
+
+def root_step(a: Array, r: Array, width: Array | None) -> Array:
+    """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) with c = a - width, the second term for r < c only."""
+    root_a = np.sqrt((a - r) * (a + r))
+    if width is None:
+        return root_a
+    c = a - width
+    root_c = np.sqrt(np.maximum(c - r, 0.0) * (c + r))
+    return np.asarray(np.where(c > r, width * (a + c) / (root_a + root_c), root_a))
+
+
+def log_ratio(a: Array, r: Array, width: Array | None) -> Array:
+    """arccosh(a/r) - arccosh(c/r), c = a - width, without the infinite difference at r = 0."""
+    root_a = np.sqrt((a - r) * (a + r))
+    if width is None:
+        low, root_low, step = r, 0.0, (a - r) + root_a
+    else:
+        low = np.maximum(r, a - width)
+        root_low = np.sqrt((low - r) * (low + r))
+        step = np.minimum(a - r, width) + root_step(a, r, width)
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.log1p(step / (low + root_low)))
+
+
+def power_moment(m: float, a: Array, r: Array, rtol: float, width: Array | None) -> Array:
+    """int_max(r,c)^a (x/a)^m / sqrt(x^2 - r^2) dx [1], c = a - width.
+
+    x = r cosh(y) leaves (cosh y)^m, smooth in the strip; on the axis the integral is elementary.
+    """
+    if m == 0:
+        return log_ratio(a, r, width)
+    if m == 1:
+        return root_step(a, r, width) / a
+    on_axis = r == 0
+    safe = np.where(on_axis, a, r)
+    ratio = safe / a
+    top = np.sqrt((a - safe) * (a + safe)) / safe
+    growth = float(max(abs(m), 1.0))
+
+    def h(y: Array, index: Array) -> Array:
+        return np.asarray((ratio[index] * np.cosh(y)) ** m)
+
+    if width is None:
+        value = between(h, top, np.ones(top.shape, bool), rtol, growth=growth)
+    else:
+        c = np.maximum(a - width, safe)
+        bottom = np.sqrt((c - safe) * (c + safe)) / safe
+        difference = width * (2 * a - width) / safe**2
+        value = between(h, top, np.ones(top.shape, bool), rtol, bottom, difference, growth)
+    if on_axis.any():
+        value[on_axis] = _axis_moment(m, a, width)[on_axis]
+    return value
+
+
+def _axis_moment(m: float, a: Array, width: Array | None) -> Array:
+    """int_c^a (x/a)^m dx/x, infinite for c = 0 and m <= 0."""
+    if width is None:
+        return np.full_like(a, 1 / m if m > 0 else np.inf)
+    with np.errstate(divide="ignore"):
+        log_c = np.log1p(-width / a)
+        return np.asarray(-np.expm1(m * log_c) / m)

@@ -1,0 +1,198 @@
+"""Profiles that are powers of the radius: cone, paraboloid, C r^n, and sums of them."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from mdr_core.profiles.power_kernels import (
+    log_ratio,
+    power,
+    power_moment,
+    power_root,
+    power_slope,
+    root_step,
+)
+from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
+from mdr_core.profiles.stable import kappa
+from mdr_core.typing import Array, Parameter
+
+@dataclass(frozen=True)
+class Cone(Profile):
+    """f = t r with t = `slope` = tan(theta) [1]. Source: mdr-5, Eqs. (5.46)-(5.53)."""
+
+    slope: Parameter
+
+    kind: ClassVar[str] = "cone"
+    formula: ClassVar[str] = "slope·r"
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
+
+    def __post_init__(self) -> None:
+        require_positive("slope", self.slope)
+
+    def f(self, radius: Array) -> Array:
+        return self.slope * radius
+
+    def df(self, radius: Array) -> Array:
+        return self.slope * np.ones_like(radius)
+
+    def g(self, x: Array) -> Array:
+        return (np.pi / 2) * self.slope * x
+
+    def dg(self, x: Array) -> Array:
+        return (np.pi / 2) * self.slope * np.ones_like(x)
+
+    depth = g
+    depth_slope = dg
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        return (np.pi / 2) * self.slope * coordinate * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        return depth / ((np.pi / 2) * self.slope)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        return np.asarray(np.sqrt(reduced_force / ((np.pi / 2) * self.slope)))
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        return self.g(coordinate) ** 2 * coordinate / 3
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        return self.slope / 2
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        """(t/2) [arccosh(a/r) - arccosh(c/r)]. Source: mdr-5, Eq. (5.53)."""
+        return (self.slope / 2) * log_ratio(coordinate, radius, width)
+
+
+@dataclass(frozen=True)
+class Paraboloid(Profile):
+    """f = r^2/(2R), R = `radius` of curvature [length]. Source: mdr-5, Eqs. (5.5)-(5.17)."""
+
+    radius: Parameter
+
+    kind: ClassVar[str] = "paraboloid"
+    formula: ClassVar[str] = "r²/(2·radius)"
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+
+    def f(self, radius: Array) -> Array:
+        return radius * radius / (2 * self.radius)
+
+    def df(self, radius: Array) -> Array:
+        return radius / self.radius
+
+    def g(self, x: Array) -> Array:
+        return x * x / self.radius
+
+    def dg(self, x: Array) -> Array:
+        return 2 * x / self.radius
+
+    depth = g
+    depth_slope = dg
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        return coordinate * coordinate * coordinate * (4 / (3 * self.radius))
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        return np.sqrt(self.radius * depth)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        return np.cbrt((0.75 * self.radius) * reduced_force)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        return self.g(coordinate) ** 2 * coordinate * (8 / 15)
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)]. Source: mdr-5, Eq. (5.38)."""
+        return (2 / (np.pi * self.radius)) * root_step(coordinate, radius, width)
+
+
+@dataclass(frozen=True)
+class Power(Profile):
+    """f = C r^n, C = `coefficient` [length^(1-n)], n = `exponent` > 0 [1].
+
+    Source: mdr-5, Eqs. (5.24)-(5.33).
+    """
+
+    coefficient: Parameter
+    exponent: Parameter
+
+    kind: ClassVar[str] = "power"
+    formula: ClassVar[str] = "coefficient·r^exponent"
+    closed_forms: ClassVar[tuple[str, ...]] = NORMAL_ANSWERS
+
+    def __post_init__(self) -> None:
+        require_positive("coefficient", self.coefficient)
+        require_positive("exponent", self.exponent)
+
+    @property
+    def rounding(self) -> float:  # type: ignore[override]
+        # r^n carries n times the rounding of the scaled radius.
+        return float(8e-15 + 1e-15 * np.max(self.exponent))
+
+    def f(self, radius: Array) -> Array:
+        return power(self.coefficient, radius, self.exponent)
+
+    def df(self, radius: Array) -> Array:
+        return power_slope(self.coefficient, radius, self.exponent)
+
+    def g(self, x: Array) -> Array:
+        return kappa(self.exponent) * self.f(x)
+
+    def dg(self, x: Array) -> Array:
+        return kappa(self.exponent) * self.df(x)
+
+    depth = g
+    depth_slope = dg
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        n = self.exponent
+        return (2 * n / (n + 1)) * self.g(coordinate) * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        n = self.exponent
+        return power_root(depth / kappa(n), self.coefficient, n)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        n = np.asarray(self.exponent)
+        return power_root(reduced_force * (n + 1) / (2 * n * kappa(n)), self.coefficient, n + 1)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        n = self.exponent
+        return self.g(coordinate) ** 2 * coordinate * (2 * n * n / ((n + 1) * (2 * n + 1)))
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        n = np.asarray(self.exponent)
+        cone = np.asarray(self.coefficient) / 2
+        return np.where(n < 1, np.inf, np.where(n == 1, cone, 0.0))
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        n = np.asarray(self.exponent, dtype=float)
+        scale = kappa(n) / np.pi * self.df(coordinate)
+        return np.asarray(scale * power_moment(float(n) - 1, coordinate, radius, rtol, width))

@@ -1,0 +1,188 @@
+"""What every profile answers, and the one generic route for what a kind does not know."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from math import inf
+from typing import ClassVar, Final
+
+import numpy as np
+
+from mdr_core.errors import InputError
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Parameter
+
+# The answers of a normal query, in the words of `Profile.closed_forms`.
+NORMAL_ANSWERS: Final = (
+    "indentation_depth",
+    "normal_force",
+    "contact_radius",
+    "mean_pressure",
+    "normal_stiffness",
+    "elastic_energy",
+)
+# Below the last _DECAY of w lies exp(-2 _DECAY) of the energy: less than rounding.
+_DECAY: Final = 20.0
+# Rule and piece: the integrand grows at most like exp(5 w), the bound is 1e-17 (quadrature).
+_POINTS: Final = 16
+_PIECE: Final = 1.5
+_BLOCK: Final = 12_288
+
+
+def require_positive(name: str, value: Parameter) -> None:
+    """Raise InputError unless the profile's parameter is positive and finite."""
+    good = 0 < value < inf if isinstance(value, (int, float)) else _all_positive(value)
+    if not good:
+        raise InputError(("profile", name), "must be positive and finite")
+
+
+def _all_positive(value: Parameter) -> bool:
+    array = np.asarray(value, dtype=float)
+    return bool(array.size and np.min(array) > 0 and np.max(array) < inf)
+
+
+class Profile(ABC):
+    """A rigid axisymmetric profile f(r) and its one-dimensional image g(x).
+
+    The edge of the contact is described by the kind's *contact coordinate*, one number in which
+    radius, depth and force all keep their digits: the radius a itself, or sqrt(a^2 - b^2) behind
+    a flat of radius b, where a alone would lose them. It is zero at zero load.
+
+    Parameters of the closed-form kinds may be arrays over the scenes of a sweep; they broadcast
+    with the loads.
+    """
+
+    kind: ClassVar[str]
+    formula: ClassVar[str]
+    # The answers that are closed form; the rest is quadrature.
+    closed_forms: ClassVar[tuple[str, ...]]
+    # Bound on the relative rounding error of the closed forms.
+    rounding: float = 8e-15
+
+    @property
+    def normal_method(self) -> str:
+        """The dearest route among the answers of a normal query."""
+        return "closed_form" if set(NORMAL_ANSWERS) <= set(self.closed_forms) else "quadrature"
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        """Radii where f' or one of its derivatives jumps [length]."""
+        return ()
+
+    @property
+    def domain(self) -> Parameter:
+        """Radius up to which the profile is defined and admissible [length]."""
+        return inf
+
+    @property
+    def first_coordinate(self) -> float:
+        """Contact coordinate at zero load."""
+        return 0.0
+
+    @property
+    def last_coordinate(self) -> float | None:
+        """Contact coordinate of the domain's end, None where there is none."""
+        return None
+
+    @abstractmethod
+    def f(self, radius: Array) -> Array:
+        """Shape f(r) [length]."""
+
+    @abstractmethod
+    def df(self, radius: Array) -> Array:
+        """Slope f'(r) [1]; at a break, the limit from outside."""
+
+    @abstractmethod
+    def g(self, x: Array) -> Array:
+        """Equivalent profile g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr [length]."""
+
+    @abstractmethod
+    def dg(self, x: Array) -> Array:
+        """Its derivative g'(x) [1]; infinite at a break where f' jumps."""
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        """Contact coordinate of a contact radius."""
+        return contact_radius
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        """Contact radius a [length]."""
+        return coordinate
+
+    @abstractmethod
+    def depth(self, coordinate: Array) -> Array:
+        """Indentation depth d = g(a) [length]."""
+
+    @abstractmethod
+    def depth_slope(self, coordinate: Array) -> Array:
+        """Derivative of the depth with respect to the contact coordinate."""
+
+    @abstractmethod
+    def reduced_force(self, coordinate: Array) -> Array:
+        """F_N / E* = 2 int_0^a x g'(x) dx [length^2]."""
+
+    def coordinate_from_depth(self, depth: Array) -> Array | None:
+        """Inverse of `depth` where it is closed, else None."""
+        del depth
+        return None
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array | None:
+        """Inverse of `reduced_force` where it is closed, else None."""
+        del reduced_force
+        return None
+
+    @property
+    def scale(self) -> Parameter:
+        """Contact coordinate at which the profile changes its character."""
+        raise NotImplementedError(f"a {self.kind} has no scale: it inverts in closed form")
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        """Elastic energy / E* = int_0^a (d - g)^2 dx = int_0^d F/E* dd [length^3]."""
+        return energy_integral(
+            lambda s: self.reduced_force(s) * self.depth_slope(s), coordinate, self.scale
+        )
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        """Limit of mean pressure / E* as the load vanishes [1]: zero for smooth and blunt tips."""
+        return 0.0
+
+    @abstractmethod
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        """P = (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1], for 0 <= r < a.
+
+        All arrays have one shape (m,). The stick edge c is given by `width`, its distance from
+        the contact's edge in the contact coordinate; None stands for c = 0. `edge` is the contact
+        radius where it is what was given: then a - r is exact, otherwise the coordinate is.
+        Source: mdr-5, Eqs. (5.68), (5.70), (5.79).
+        """
+
+
+def energy_integral(
+    density: Callable[[Array], Array], upper: Array, scale: Parameter
+) -> Array:
+    """Return int_0^upper density(s) ds for a positive density, a power of s at either end.
+
+    With density = (F/E*) dd/ds this is the elastic energy without any cancellation.
+    s = scale sinh(w) resolves it also where s is much larger than the scale.
+    """
+    scale = np.asarray(scale, dtype=float)
+    top = np.arcsinh(upper / scale)
+    length = np.minimum(top, _DECAY)
+    count = int(np.ceil(np.max(length, initial=0.0) / _PIECE)) or 1
+    nodes, weights = gauss_legendre(_POINTS)
+    fractions = (np.arange(count)[:, None] + (1 - nodes) / 2).ravel() / count
+    weights = np.tile(weights, count) / (2 * count)
+    step = max(_BLOCK // max(top.size, 1), 1)
+    total = np.zeros_like(top)
+    for start in range(0, fractions.size, step):
+        part = slice(start, start + step)
+        w = top - np.multiply.outer(fractions[part], length)
+        values = density(scale * np.sinh(w)) * np.cosh(w)
+        total += np.tensordot(weights[part], values, axes=1)
+    return np.asarray(total * scale * length)

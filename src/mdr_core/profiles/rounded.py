@@ -1,0 +1,256 @@
+"""Profiles that are smooth at the axis: sphere, ellipsoid, hyperboloid."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+
+from mdr_core.abel.roots import asinh_difference, between
+from mdr_core.errors import InputError
+from mdr_core.profiles.power_kernels import root_step
+from mdr_core.profiles.profile import Profile, require_positive
+from mdr_core.profiles.stable import atan_gap, tanh_gap
+from mdr_core.typing import Array, Parameter
+
+_EQUATOR: Final = 17.0
+_CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
+
+
+class Spheroid(Profile):
+    """Half axes R = `radius` and h = `height`: f = h (1 - sqrt(1 - r^2/R^2)).
+
+    The contact coordinate is v = artanh(a/R): near the equator, a alone has no digits left.
+    Source: physics, section 4.2.
+    """
+
+    radius: Parameter
+    height: Parameter
+
+    closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
+
+    @property
+    def domain(self) -> Parameter:
+        return self.radius
+
+    @property
+    def last_coordinate(self) -> float:
+        """Where R - a is down to a few units in the last place of R."""
+        return _EQUATOR
+
+    def f(self, radius: Array) -> Array:
+        q = np.square(radius / self.radius)
+        return self.height * q / (1 + np.sqrt(1 - q))
+
+    def df(self, radius: Array) -> Array:
+        root = np.sqrt((self.radius - radius) * (self.radius + radius))
+        return np.asarray(self.height / self.radius * radius / root)
+
+    def g(self, x: Array) -> Array:
+        return self.depth(self._rapidity(x))
+
+    def dg(self, x: Array) -> Array:
+        pole = x * self.radius / ((self.radius - x) * (self.radius + x))
+        return np.asarray(self.height / self.radius * (self._rapidity(x) + pole))
+
+    def _rapidity(self, x: Array) -> Array:
+        """artanh(x/R), with the digits of R - x."""
+        return np.asarray(0.5 * np.log1p(2 * x / (self.radius - x)))
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        outside = contact_radius >= self.radius
+        if np.any(outside):
+            index = tuple(int(i[0]) for i in np.nonzero(outside))
+            raise InputError(
+                ("load", "contact_radius", *index),
+                f"must stay below the body's own radius, {self.radius}",
+            )
+        return self._rapidity(contact_radius)
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        return self.radius * np.tanh(coordinate)
+
+    def depth(self, coordinate: Array) -> Array:
+        """h v tanh(v)."""
+        return self.height * coordinate * np.tanh(coordinate)
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        sech = 1 / np.cosh(coordinate)
+        return self.height * (np.tanh(coordinate) + coordinate * sech * sech)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        """h R [t^3 + (1 + t^2)(v - t)], t = tanh(v): all terms positive."""
+        t = np.tanh(coordinate)
+        bracket = t * t * t + (1 + t * t) * tanh_gap(coordinate)
+        return self.height * self.radius * bracket
+
+    @property
+    def scale(self) -> Parameter:
+        return 1.0
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        kernel = sphere_kernel(self.radius, coordinate, radius, rtol, width, edge)
+        return np.asarray(self.height / self.radius * kernel)
+
+
+def sphere_kernel(
+    big_radius: Parameter,
+    v: Array,
+    r: Array,
+    rtol: float,
+    width: Array | None = None,
+    edge: Array | None = None,
+) -> Array:
+    """The pressure kernel of a sphere; edge and annulus in v = artanh(a/R).
+
+    With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the pole
+    at R are gone; what g' carries as a pole is elementary:
+    P = (1/pi) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
+    """
+    stretch = big_radius / np.sqrt((big_radius - r) * (big_radius + r))
+    tilt2 = np.square(stretch * (r / big_radius))
+    top = _sphere_leg(big_radius, v, r, edge)
+
+    def h(y: Array, index: Array) -> Array:
+        cosh = np.cosh(y)
+        z = np.sqrt(tilt2[index] + np.square(stretch[index] * np.sinh(y)))
+        return np.asarray(np.arcsinh(z) / (z * cosh))
+
+    even = np.ones(top.shape, bool)
+    if width is None:
+        smooth = between(h, top, even, rtol)
+        return np.asarray((stretch * np.arcsinh(top) + smooth) / np.pi)
+    bottom = _sphere_leg(big_radius, v - width, r)
+    difference = np.sinh(width) * np.sinh(2 * v - width) / np.square(stretch)
+    smooth = between(h, top, even, rtol, bottom, difference)
+    difference = np.where(bottom > 0, difference, top * top)
+    length = asinh_difference(top, bottom, difference)
+    return np.asarray((stretch * length + smooth) / np.pi)
+
+
+def _sphere_leg(
+    big_radius: Parameter, v: Array, r: Array, edge: Array | None = None
+) -> Array:
+    """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
+    a = big_radius * np.tanh(v) if edge is None else edge
+    return np.asarray(np.sqrt(np.maximum(a - r, 0.0) * (a + r)) * np.cosh(v) / big_radius)
+
+
+@dataclass(frozen=True)
+class Sphere(Spheroid):
+    """f = R - sqrt(R^2 - r^2), R = `radius` [length], exact. Source: physics, section 4.2."""
+
+    radius: Parameter
+
+    kind: ClassVar[str] = "sphere"
+    formula: ClassVar[str] = "radius − √(radius² − r²), contact radius < radius"
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+
+    @property
+    def height(self) -> Parameter:  # type: ignore[override]
+        return self.radius
+
+
+@dataclass(frozen=True)
+class Ellipsoid(Spheroid):
+    """f = h (1 - sqrt(1 - r^2/R^2)), semi-axes R = `radius` and h = `height` [length].
+
+    Source: physics, section 4.2.
+    """
+
+    radius: Parameter
+    height: Parameter
+
+    kind: ClassVar[str] = "ellipsoid"
+    formula: ClassVar[str] = "height·(1 − √(1 − r²/radius²)), contact radius < radius"
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+        require_positive("height", self.height)
+
+
+@dataclass(frozen=True)
+class Hyperboloid(Profile):
+    """f = R t^2 (sqrt(1 + r^2/(R t)^2) - 1): tip R = `tip_radius`, asymptote t = `slope`.
+
+    Source: api; physics, section 4.2 (cone limit); g = t x arctan(x/(R t)).
+    """
+
+    slope: Parameter
+    tip_radius: Parameter
+
+    kind: ClassVar[str] = "hyperboloid"
+    formula: ClassVar[str] = (
+        "tip_radius·slope²·(√(1 + r²/(tip_radius·slope)²) − 1)"
+    )
+    closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
+
+    def __post_init__(self) -> None:
+        require_positive("slope", self.slope)
+        require_positive("tip_radius", self.tip_radius)
+
+    @property
+    def scale(self) -> Parameter:
+        """h = R t, where the tip turns into the cone."""
+        return self.tip_radius * self.slope
+
+    def f(self, radius: Array) -> Array:
+        q = radius / self.scale
+        return self.slope * radius * q / (1 + np.hypot(1.0, q))
+
+    def df(self, radius: Array) -> Array:
+        return np.asarray(self.slope * radius / np.hypot(self.scale, radius))
+
+    def g(self, x: Array) -> Array:
+        return self.slope * x * np.arctan(x / self.scale)
+
+    def dg(self, x: Array) -> Array:
+        q = x / self.scale
+        return self.slope * (np.arctan(q) + q / (1 + q * q))
+
+    depth = g
+    depth_slope = dg
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        """t [a^2 arctan(a/h) + h (a - h arctan(a/h))]: all terms positive."""
+        a, h = coordinate, self.scale
+        return self.slope * (a * a * np.arctan(a / h) + h * atan_gap(a, h))
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        """x^2 + h^2 = (r^2 + h^2) cosh^2 y removes the root at r and the branch points +-ih."""
+        a, r, h = coordinate, radius, np.asarray(self.scale)
+        rho = np.hypot(h, r)
+        leg = root_step(a, r, None)
+        top = leg / rho
+        r2 = r * r
+
+        def integrand(y: Array, index: Array) -> Array:
+            x = np.sqrt(r2[index] + np.square(rho[index] * np.sinh(y)))
+            return np.asarray(rho[index] * np.cosh(y) * np.arctan(x / h) / x)
+
+        even = np.ones(top.shape, bool)
+        if width is None:
+            smooth = between(integrand, top, even, rtol)
+            pole = np.arctan(top)
+        else:
+            step = root_step(a, r, width)
+            bottom = np.maximum(leg - step, 0.0) / rho
+            difference = width * (2 * a - width) / (rho * rho)
+            smooth = between(integrand, top, even, rtol, bottom, difference)
+            pole = np.arctan2(step / rho, 1 + top * bottom)
+        return np.asarray(self.slope / np.pi * (h / rho * pole + smooth))

@@ -1,0 +1,182 @@
+"""Sums of powers, with negative terms where the profile stays admissible."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, isfinite
+from typing import ClassVar
+
+import numpy as np
+from scipy.optimize import brentq
+
+from mdr_core.errors import InputError
+from mdr_core.profiles.power_kernels import power, power_moment, power_slope
+from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile
+from mdr_core.profiles.stable import kappa
+from mdr_core.typing import Array, Parameter
+
+
+@dataclass(frozen=True)
+class PowerTerm:
+    """One term C r^n: `coefficient` [length^(1-n)], of either sign; `exponent` > 0 [1]."""
+
+    coefficient: float
+    exponent: float
+
+
+@dataclass(frozen=True)
+class Series(Profile):
+    """f = sum of C_i r^n_i over `terms`. Source: mdr-5, Eq. (5.24), superposed.
+
+    Negative terms are accepted; the profile then ends where f' or g' first falls to zero
+    (physics, section 4.3), and a contact that reaches there is refused.
+    """
+
+    terms: tuple[PowerTerm, ...]
+
+    kind: ClassVar[str] = "series"
+    formula: ClassVar[str] = "Σ coefficientᵢ·r^exponentᵢ"
+    closed_forms: ClassVar[tuple[str, ...]] = (
+        "normal_force",
+        "mean_pressure",
+        "normal_stiffness",
+        "elastic_energy",
+    )
+
+    def __post_init__(self) -> None:
+        if not self.terms:
+            raise InputError(("profile", "terms"), "at least one term is needed")
+        for i, term in enumerate(self.terms):
+            if not (isfinite(term.coefficient) and term.coefficient != 0):
+                raise InputError(
+                    ("profile", "terms", i, "coefficient"), "must be finite and not zero"
+                )
+            if not 0 < term.exponent < inf:
+                raise InputError(
+                    ("profile", "terms", i, "exponent"), "must be positive and finite"
+                )
+        if self.domain == 0:
+            raise InputError(
+                ("profile", "terms"), "f falls from radius 0 on: the leading term is not positive"
+            )
+
+    @cached_property
+    def _powers(self) -> tuple[tuple[float, float], ...]:
+        """(coefficient, exponent), ascending in the exponent, equal ones added up."""
+        merged: dict[float, float] = {}
+        for term in self.terms:
+            merged[term.exponent] = merged.get(term.exponent, 0.0) + term.coefficient
+        return tuple((c, n) for n, c in sorted(merged.items()) if c != 0)
+
+    @cached_property
+    def domain(self) -> float:  # type: ignore[override]
+        if all(c > 0 for c, _ in self._powers):
+            return inf
+        slope_f = tuple((c * n, n - 1) for c, n in self._powers)
+        slope_g = tuple((c * n * float(kappa(n)), n - 1) for c, n in self._powers)
+        return min(_first_fall(slope_f), _first_fall(slope_g))
+
+    @property
+    def last_coordinate(self) -> float | None:
+        return None if self.domain == inf else self.domain
+
+    @property
+    def rounding(self) -> float:  # type: ignore[override]
+        return 2e-14 + 1e-15 * max(n for _, n in self._powers)
+
+    def f(self, radius: Array) -> Array:
+        return np.asarray(sum(power(c, radius, n) for c, n in self._powers))
+
+    def df(self, radius: Array) -> Array:
+        return np.asarray(sum(power_slope(c, radius, n) for c, n in self._powers))
+
+    def g(self, x: Array) -> Array:
+        return np.asarray(sum(kappa(n) * power(c, x, n) for c, n in self._powers))
+
+    def dg(self, x: Array) -> Array:
+        return np.asarray(sum(kappa(n) * power_slope(c, x, n) for c, n in self._powers))
+
+    depth = g
+    depth_slope = dg
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        parts = (2 * n / (n + 1) * kappa(n) * power(c, coordinate, n) for c, n in self._powers)
+        return np.asarray(sum(parts) * coordinate)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        """sum_ij d_i d_j a n_i n_j (n_i + n_j + 2)/((n_i + 1)(n_j + 1)(n_i + n_j + 1))."""
+        depths = [(kappa(n) * power(c, coordinate, n), n) for c, n in self._powers]
+        total = np.zeros_like(coordinate)
+        for d_i, n in depths:
+            for d_j, m in depths:
+                factor = n * m * (n + m + 2) / ((n + 1) * (m + 1) * (n + m + 1))
+                total += factor * d_i * d_j
+        return total * coordinate
+
+    @property
+    def scale(self) -> Parameter:
+        """Radius where the first and the last term are equal, the change of character."""
+        (c, n), (k, m) = self._powers[0], self._powers[-1]
+        return 1.0 if n == m else float(abs(c / k) ** (1 / (m - n)))
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        c, n = self._powers[0]
+        return inf if n < 1 else c / 2 if n == 1 else 0.0
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
+        for c, n in self._powers:
+            scale = kappa(n) / np.pi * power_slope(c, coordinate, n)
+            total += scale * power_moment(n - 1, coordinate, radius, rtol, width)
+        return total
+
+
+def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
+    """Smallest r >= 0 beyond which sum c r^e, ascending in e, falls below zero, or infinity."""
+    if powers[0][0] < 0:
+        return 0.0
+    roots = _positive_roots(powers)
+    ends = (*roots, inf)
+    for start, end in zip(ends, ends[1:], strict=False):
+        middle = 2 * start if end == inf else (start * end) ** 0.5
+        if _value(powers, middle) < 0:
+            return start
+    return inf
+
+
+def _value(powers: tuple[tuple[float, float], ...], r: float) -> float:
+    """Sum of c r^(e - e_0): the sign of the sum, within range."""
+    lowest = powers[0][1]
+    return float(sum(c * r ** (e - lowest) for c, e in powers))
+
+
+def _positive_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
+    """All r > 0 where sum c r^e vanishes and changes sign, ascending.
+
+    Divided by its lowest power and differentiated, the sum loses one term (Rolle): between the
+    roots of that derivative it is monotone, so each stretch holds at most one root.
+    """
+    if len(powers) == 1:
+        return []
+    lowest = powers[0][1]
+    derivative = tuple((c * (e - lowest), e - lowest - 1) for c, e in powers[1:])
+    turns = [0.0, *_positive_roots(derivative), _outer_bound(powers)]
+    roots = []
+    for low, high in zip(turns, turns[1:], strict=False):
+        if _value(powers, low) * _value(powers, high) < 0:
+            roots.append(float(brentq(lambda r: _value(powers, r), low, high, xtol=1e-300)))
+    return roots
+
+
+def _outer_bound(powers: tuple[tuple[float, float], ...]) -> float:
+    """A radius beyond which the last term outweighs all others together."""
+    last, highest = powers[-1]
+    others = powers[:-1]
+    return 2 * max((len(others) * abs(c / last)) ** (1 / (highest - e)) for c, e in others)

@@ -1,0 +1,255 @@
+"""Profiles through the points of a table: piecewise cubic, with closed panel moments."""
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import ClassVar, Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from mdr_core.abel.panels import Jumps
+from mdr_core.abel.stress import StressPanels, stress_panels
+from mdr_core.errors import InputError
+from mdr_core.profiles.profile import Profile
+from mdr_core.profiles.table_moments import TableSlope
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Parameter
+
+Interpolation = Literal["cubic", "pchip", "linear"]
+_EPS: Final = float(np.finfo(float).eps)
+# Rounding of what should be zero, relative to the largest of its kind in the table.
+_NOISE: Final = 256 * _EPS
+# Places in each panel where the sign of g' is looked at.
+_LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
+_ENERGY_POINTS: Final = 16
+
+
+class Tabulated(Profile):
+    """The profile through (r_i, f_i), interpolated, never extrapolated.
+
+    Parameters
+    ----------
+    r, f : radii from 0 on, increasing, and the profile there, f(0) = 0 [length], shape (k,).
+    interpolation : "cubic" (not-a-knot), "pchip" or "linear".
+    breaks : radii of the table where slope or curvature jumps; nothing is interpolated across.
+
+    Raises
+    ------
+    InputError : a table that is not one, or not admissible (physics, section 4.3): the radius
+        is named where f falls, or where g' and with it the pressure turns negative.
+
+    Source: api; physics, section 10.
+    """
+
+    kind: ClassVar[str] = "tabulated"
+    formula: ClassVar[str] = "through the points (r, f): cubic (not-a-knot), pchip or linear"
+    closed_forms: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_stiffness")
+    rounding = 1e-11
+
+    def __init__(
+        self,
+        r: ArrayLike,
+        f: ArrayLike,
+        interpolation: Interpolation = "cubic",
+        breaks: tuple[float, ...] = (),
+    ) -> None:
+        self.r = np.asarray(r, dtype=float)
+        self.values = np.asarray(f, dtype=float)
+        self.interpolation = interpolation
+        self._breaks = tuple(float(b) for b in breaks)
+        self._check_points()
+        self._check_admissible()
+
+    @property
+    def normal_method(self) -> str:
+        return "panel_moments"
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        return self._breaks
+
+    @property
+    def domain(self) -> float:
+        return float(self.r[-1])
+
+    @property
+    def last_coordinate(self) -> float:
+        return self.domain
+
+    @property
+    def scale(self) -> float:
+        return self.domain / 2
+
+    @property
+    def first_coordinate(self) -> float:
+        """The flat that a table may start with is in contact at zero load."""
+        return float(self.r[np.flatnonzero(self.values == 0)[-1]])
+
+    def _check_points(self) -> None:
+        r, f = self.r, self.values
+        if r.ndim != 1 or r.size < 2:
+            raise InputError(("profile", "r"), "at least two points are needed")
+        if f.shape != r.shape:
+            raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
+        for name, column in (("r", r), ("f", f)):
+            if not np.isfinite(column).all():
+                bad = int(np.flatnonzero(~np.isfinite(column))[0])
+                raise InputError(("profile", name, bad), "must be finite")
+        if r[0] != 0:
+            raise InputError(("profile", "r", 0), "the table must start at radius 0")
+        if not (np.diff(r) > 0).all():
+            bad = int(np.flatnonzero(~(np.diff(r) > 0))[0]) + 1
+            raise InputError(("profile", "r", bad), "the radii must increase")
+        if f[0] != 0:
+            raise InputError(("profile", "f", 0), "the profile must start at f = 0")
+        if (np.diff(f) < 0).any():
+            bad = int(np.flatnonzero(np.diff(f) < 0)[0]) + 1
+            raise InputError(("profile", "f", bad), f"f falls before radius {r[bad]:.12g}")
+        if f[-1] == 0:
+            raise InputError(("profile", "f"), "f is zero everywhere: the edge is not in the table")
+        for i, b in enumerate(self._breaks):
+            if b not in r[1:-1]:
+                raise InputError(("profile", "breaks", i), "must be an inner radius of the table")
+
+    @cached_property
+    def _cubics(self) -> Array:
+        """Coefficients (4, panels) of f in r - r_i, ascending, segment by segment."""
+        cuts = np.searchsorted(self.r, sorted({0.0, *self._breaks, self.domain}))
+        parts = [
+            _interpolate(self.r[i : j + 1], self.values[i : j + 1], self.interpolation)
+            for i, j in zip(cuts[:-1], cuts[1:], strict=True)
+        ]
+        return np.concatenate(parts, axis=1)
+
+    @cached_property
+    def _slope(self) -> TableSlope:
+        """f' as quadratics in r - r_i."""
+        cubics = self._cubics
+        return TableSlope(self.r, cubics[1:] * np.array([[1.0], [2.0], [3.0]]))
+
+    @cached_property
+    def _jumps(self) -> Jumps:
+        return self._slope.jumps(_NOISE)
+
+    def _check_admissible(self) -> None:
+        slope = self._slope
+        fall = slope.first_negative(_NOISE)
+        if fall is not None:
+            raise InputError(
+                ("profile",),
+                f"f falls at radius {fall:.12g} between the points: declare a break where slope "
+                "or curvature jumps, or use pchip",
+            )
+        if (self._jumps.size < 0).any():
+            radius = self._jumps.at[self._jumps.size < 0][0]
+            raise InputError(
+                ("profile",),
+                f"the slope drops at radius {radius:.12g}: the pressure there would be negative",
+            )
+        if slope.source_is_positive(_NOISE):
+            return
+        x = (self.r[:-1, None] + np.diff(self.r)[:, None] * _LOOKS).ravel()
+        slopes = self.dg(x)
+        bad = slopes < -_NOISE * np.abs(slopes).max()
+        if bad.any():
+            raise InputError(
+                ("profile",),
+                f"g falls at radius {x[bad][0]:.12g}: the contact would not stay one disc and the "
+                "pressure there would be negative",
+            )
+
+    def _panel(self, radius: Array) -> Array:
+        return np.clip(np.searchsorted(self.r, radius, side="right") - 1, 0, self.r.size - 2)
+
+    def f(self, radius: Array) -> Array:
+        self._require_inside(radius)
+        index = self._panel(radius)
+        u = radius - self.r[index]
+        c = self._cubics[:, index]
+        return np.asarray(c[0] + u * (c[1] + u * (c[2] + u * c[3])))
+
+    def df(self, radius: Array) -> Array:
+        self._require_inside(radius)
+        index = self._panel(radius)
+        return self._slope.at(radius - self.r[index], index)
+
+    def g(self, x: Array) -> Array:
+        self._require_inside(x)
+        return np.asarray(x * self._slope.transform(x))
+
+    def dg(self, x: Array) -> Array:
+        self._require_inside(x)
+        flat = np.atleast_1d(x).ravel()
+        value = self._regular_slope(flat, np.zeros_like(flat))
+        return value.reshape(np.shape(x))
+
+    def _regular_slope(self, base: Array, offset: Array) -> Array:
+        """g' at x = base + offset, the pole of the jump at `base` left out."""
+        smooth = self._slope.source.transform(base, offset)
+        return smooth + self._jumps.contribution(base, offset)
+
+    def _require_inside(self, radius: Array) -> None:
+        if np.any(np.asarray(radius) > self.domain):
+            raise InputError(("profile", "r"), f"the table ends at radius {self.domain:.12g}")
+
+    depth = g
+    depth_slope = dg
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        """2 int_0^a r^2 f'/sqrt(a^2 - r^2) dr. Source: physics, section 4.1."""
+        return 2 * self._slope.transform(coordinate, weighted=True)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        """d^2 a - 2 d int g dx + int g^2 dx, the integrals summed up over whole panels once."""
+        a = np.asarray(coordinate, dtype=float).ravel()
+        panel = np.clip(np.searchsorted(self.r, a) - 1, 0, self.r.size - 2)
+        first, second = self._integrals(self.r[panel], a)
+        done = self._panel_sums[:, panel]
+        d = self.depth(a)
+        energy = d * d * a - 2 * d * (done[0] + first) + (done[1] + second)
+        return np.asarray(energy.reshape(np.shape(coordinate)))
+
+    @cached_property
+    def _panel_sums(self) -> Array:
+        """int g dx and int g^2 dx from the axis to each panel's left end (2, panels)."""
+        parts = np.stack(self._integrals(self.r[:-2], self.r[1:-1]))
+        return np.concatenate([np.zeros((2, 1)), np.cumsum(parts, axis=1)], axis=1)
+
+    def _integrals(self, left: Array, right: Array) -> tuple[Array, Array]:
+        """int g dx and int g^2 dx within panels: g is smooth in s about the left end."""
+        nodes, weights = gauss_legendre(_ENERGY_POINTS)
+        leg = np.sqrt((right - left) * (right + left))[:, None]
+        s = leg * (1 + nodes) / 2
+        x = np.minimum(np.hypot(left[:, None], s), right[:, None])
+        step = leg / 2 * weights * s / np.where(x > 0, x, 1.0)
+        g = self.g(x)
+        return (step * g).sum(axis=1), (step * g * g).sum(axis=1)
+
+    @property
+    def tip_pressure(self) -> float:
+        return float(self._slope.at(np.zeros(1), np.zeros(1, int))[0] / 2)
+
+    @cached_property
+    def _stress(self) -> StressPanels:
+        return stress_panels(self._regular_slope, self.r, self._jumps)
+
+    def pressure_kernel(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None = None,
+        edge: Array | None = None,
+    ) -> Array:
+        return self._stress.kernel(coordinate, radius, rtol, width) / np.pi
+
+
+def _interpolate(r: Array, f: Array, interpolation: Interpolation) -> Array:
+    """Coefficients (4, panels), ascending, of one segment."""
+    if interpolation == "linear" or r.size == 2:
+        slope = np.diff(f) / np.diff(r)
+        return np.stack([f[:-1], slope, np.zeros_like(slope), np.zeros_like(slope)])
+    build: Callable[[Array, Array], CubicSpline | PchipInterpolator]
+    build = CubicSpline if interpolation == "cubic" else PchipInterpolator
+    return np.flip(np.asarray(build(r, f).c), axis=0)

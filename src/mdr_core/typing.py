@@ -1,0 +1,10 @@
+"""The array type that all modules share."""
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+# A profile's parameter: one number, or an array over the scenes of a sweep.
+Parameter: TypeAlias = float | Array
