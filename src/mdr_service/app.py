@@ -11,9 +11,14 @@ from mdr_service import openapi, problems, routes
 def create_app() -> FastAPI:
     """Return the application, ready to serve."""
     # The framework's own pages load their scripts from other hosts.
-    app = FastAPI(openapi_url=None, docs_url=None, redoc_url=None, redirect_slashes=False)
+    app = FastAPI(
+        routes=routes.router.routes,
+        openapi_url=None,
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+    )
     problems.install(app)
-    app.include_router(routes.router)
     app.state.openapi = openapi.document(version("mdr"), app.routes)
     app.mount("/docs/swagger", StaticFiles(packages=[("fastapi_swagger", "resources")]))
     app.mount("/docs/page", StaticFiles(packages=[("mdr_service", "page")]))

@@ -1,0 +1,29 @@
+"""The documentation page lives from this host alone."""
+
+import re
+
+import pytest
+
+from tests.conftest import Client
+
+
+def test_every_address_on_the_page_is_served_here(client: Client) -> None:
+    page = client.get("/docs")
+    assert page.status_code == 200
+    found = re.findall(r'(?:src|href)="([^"]*)"', page.text)
+    assert len(found) == 4
+    for address in found:
+        assert "//" not in address
+        assert client.get(f"/{address}").status_code == 200
+
+
+def test_the_page_forbids_the_browser_to_ask_others(client: Client) -> None:
+    policy = client.get("/docs").headers["content-security-policy"]
+    assert "default-src 'self'" in policy
+    assert "http" not in policy
+    assert "*" not in policy
+
+
+@pytest.mark.parametrize("path", ["/docs", "/docs/page/docs.js"])
+def test_no_other_host_is_named(client: Client, path: str) -> None:
+    assert not re.search(r"https?://", client.get(path).text)

@@ -1,0 +1,95 @@
+"""The committed document is the one that is served, and it tells all."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from mdr_service import problems
+from mdr_service.schemas.answers import NormalAnswer, Problem
+from tests.conftest import Client
+from tests.contract import strict_json
+
+ROOT = Path(__file__).parents[2]
+DOCUMENT = json.loads((ROOT / "openapi.json").read_text("utf-8"))
+DIMENSIONS = ("[length]", "[pressure]", "[force]", "[1]")
+
+
+def operations() -> Iterator[tuple[str, dict[str, object]]]:
+    for path, methods in DOCUMENT["paths"].items():
+        for method, operation in methods.items():
+            yield f"{method} {path}", operation
+
+
+def references(part: object) -> Iterator[str]:
+    if isinstance(part, dict):
+        if isinstance(part.get("$ref"), str):
+            yield part["$ref"]
+        part = list(part.values())
+    if isinstance(part, list):
+        for each in part:
+            yield from references(each)
+
+
+def test_the_committed_document_is_the_served_one(client: Client) -> None:
+    assert strict_json.loads(client.get("/openapi.json").content) == DOCUMENT, "run make openapi"
+
+
+def test_every_reference_is_defined() -> None:
+    defined = {f"#/components/schemas/{name}" for name in DOCUMENT["components"]["schemas"]}
+    assert set(references(DOCUMENT)) <= defined
+
+
+@pytest.mark.parametrize(("name", "operation"), list(operations()))
+def test_every_operation_documents_its_failures(name: str, operation: dict[str, object]) -> None:
+    assert operation["summary"]
+    assert operation["operationId"]
+    expected = {"200", "500"}
+    if name.startswith("post"):
+        expected |= {"400", "413", "415", "422"}
+    assert set(operation["responses"]) == expected
+    for status in expected - {"200"}:
+        content = operation["responses"][status]["content"]
+        schema = {"$ref": "#/components/schemas/Problem"}
+        assert content == {problems.MEDIA_TYPE: {"schema": schema}}
+
+
+def test_every_field_of_a_profile_tells_its_dimension() -> None:
+    profile = DOCUMENT["components"]["schemas"]["NormalQuery"]["properties"]["profile"]
+    kinds = [reference.rpartition("/")[2] for reference in references(profile)]
+    assert len(set(kinds)) == 15
+    for kind in kinds:
+        fields = DOCUMENT["components"]["schemas"][kind]["properties"]
+        for name in set(fields) - {"kind", "terms", "interpolation"}:
+            description = fields[name]["description"]
+            assert description.endswith((*DIMENSIONS, "[length^(1-exponent)]")), (kind, name)
+
+
+def test_every_profile_states_the_limits_of_its_numbers() -> None:
+    for name, schema in DOCUMENT["components"]["schemas"].items():
+        for field, described in schema.get("properties", {}).items():
+            if described.get("type") == "number" and "error_estimate" != field:
+                limits = {"minimum", "exclusiveMinimum", "maximum"} & set(described)
+                assert len(limits) == 2, (name, field)
+
+
+def test_every_kind_of_problem_is_in_the_readme() -> None:
+    readme = (ROOT / "README.md").read_text("utf-8")
+    for kind in problems.KINDS:
+        assert f"| `{kind.name}` | {kind.status} |" in readme
+
+
+def test_the_answer_of_a_query_is_the_documented_one(client: Client) -> None:
+    post = DOCUMENT["paths"]["/v1/normal"]["post"]
+    examples = post["requestBody"]["content"]["application/json"]["examples"]
+    for example in examples.values():
+        answer = client.post("/v1/normal", example["value"])
+        assert answer.status_code == 200
+        assert answer.headers["content-type"] == "application/json"
+        strict_json.loads(answer.content)
+        NormalAnswer.model_validate_json(answer.content)
+
+
+def test_a_failure_is_the_documented_one(client: Client) -> None:
+    Problem.model_validate_json(client.post("/v1/normal", {}).content)

@@ -1,0 +1,144 @@
+"""The wire adds nothing to the core and takes nothing away."""
+
+import json
+
+import pytest
+
+from mdr_core import materials, profiles
+from mdr_core.normal import solve
+from tests.conftest import Client
+
+NAMES = (
+    "indentation_depth",
+    "normal_force",
+    "contact_radius",
+    "mean_pressure",
+    "normal_stiffness",
+    "elastic_energy",
+)
+E_STAR = 2.3e9
+PROFILES = {
+    "flat_punch": ({"radius": 0.3}, profiles.FlatPunch(0.3)),
+    "cone": ({"slope": 0.2}, profiles.Cone(0.2)),
+    "paraboloid": ({"radius": 2}, profiles.Paraboloid(2.0)),
+    "sphere": ({"radius": 2.0}, profiles.Sphere(2.0)),
+    "ellipsoid": ({"radius": 2.0, "height": 1.5}, profiles.Ellipsoid(2.0, 1.5)),
+    "power": ({"coefficient": 0.4, "exponent": 2.5}, profiles.Power(0.4, 2.5)),
+    "series": (
+        {"terms": [{"coefficient": 0.4, "exponent": 2}, {"coefficient": 0.1, "exponent": 4.0}]},
+        profiles.Series((profiles.PowerTerm(0.4, 2.0), profiles.PowerTerm(0.1, 4.0))),
+    ),
+    "rounded_punch": (
+        {"flat_radius": 0.3, "rounding_radius": 0.5},
+        profiles.RoundedPunch(0.3, 0.5),
+    ),
+    "truncated_cone": ({"flat_radius": 0.3, "slope": 0.5}, profiles.TruncatedCone(0.3, 0.5)),
+    "truncated_paraboloid": (
+        {"flat_radius": 0.3, "radius": 0.5},
+        profiles.TruncatedParaboloid(0.3, 0.5),
+    ),
+    "rounded_cone": ({"slope": 0.2, "tip_radius": 0.5}, profiles.RoundedCone(0.2, 0.5)),
+    "spherical_tip_cone": (
+        {"slope": 0.2, "tip_radius": 0.5},
+        profiles.SphericalTipCone(0.2, 0.5),
+    ),
+    "hyperboloid": ({"slope": 0.2, "tip_radius": 0.5}, profiles.Hyperboloid(0.2, 0.5)),
+    "capped_paraboloid": (
+        {"cap_radius": 0.1, "tip_radius": 0.5, "radius": 0.4},
+        profiles.CappedParaboloid(0.1, 0.5, 0.4),
+    ),
+    "tabulated": (
+        {"r": [0.0, 0.5, 1.0, 2.0], "f": [0, 0.1, 0.5, 2.5], "interpolation": "pchip"},
+        profiles.Tabulated([0.0, 0.5, 1.0, 2.0], [0.0, 0.1, 0.5, 2.5], interpolation="pchip"),
+    ),
+}
+
+
+def query(kind: str, **load: object) -> dict[str, object]:
+    return {
+        "profile": {"kind": kind, **PROFILES[kind][0]},
+        "material": {"e_star": E_STAR},
+        "load": load,
+    }
+
+
+def test_all_kinds_are_here() -> None:
+    assert list(PROFILES) == list(profiles.KINDS)
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str) -> None:
+    forces = [1e3, 1e5, 2.5e7]
+    answer = client.post("/v1/normal", query(kind, normal_force=forces)).json()
+    contact = solve(PROFILES[kind][1], E_STAR, normal_force=forces)
+    for name in NAMES:
+        assert answer[name] == getattr(contact, name).tolist()
+    assert answer["method"] == contact.method
+    assert answer["error_estimate"] == contact.error_estimate
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+def test_one_load_is_answered_by_lists_of_one(client: Client, kind: str, control: str) -> None:
+    load = 1e-3 if control == "indentation_depth" else 1e4
+    answer = client.post("/v1/normal", query(kind, **{control: load})).json()
+    for name in NAMES:
+        assert len(answer[name]) == 1
+    assert answer[control] == [load]
+
+
+def test_many_loads_are_answered_as_few_are(client: Client) -> None:
+    forces = [float(force) for force in range(2000)]
+    many = client.post("/v1/normal", query("cone", normal_force=forces)).json()
+    few = client.post("/v1/normal", query("cone", normal_force=forces[:100])).json()
+    for name in NAMES:
+        assert many[name][:100] == few[name]
+
+
+def test_bodies_are_reduced_to_their_modulus(client: Client) -> None:
+    steel = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+    question = query("cone", indentation_depth=1e-6) | {"material": {"bodies": [steel, "rigid"]}}
+    answer = client.post("/v1/normal", question).json()
+    e_star = materials.from_bodies([materials.Body(210e9, 0.3), "rigid"]).e_star
+    (a,), (stiffness,) = answer["contact_radius"], answer["normal_stiffness"]
+    assert stiffness == pytest.approx(2 * e_star * a, rel=1e-15)
+
+
+def test_a_true_infinity_is_null_and_is_announced(client: Client) -> None:
+    question = query("cone", normal_force=[0, 1.0])
+    question["profile"] = {"kind": "power", "coefficient": 1, "exponent": 0.5}
+    answer = client.post("/v1/normal", question).json()
+    assert answer["mean_pressure"][0] is None
+    assert answer["mean_pressure"][1] > 0
+    assert [warning["code"] for warning in answer["warnings"]] == ["singular"]
+
+
+def test_a_single_infinity_is_null_as_well(client: Client) -> None:
+    question = query("cone", contact_radius=0)
+    question["profile"] = {"kind": "power", "coefficient": 1, "exponent": 0.5}
+    assert client.post("/v1/normal", question).json()["mean_pressure"] == [None]
+
+
+def test_the_catalogue_lists_every_kind_with_its_fields(client: Client) -> None:
+    listed = {kind.pop("kind"): kind for kind in client.get("/v1/profiles").json()["profiles"]}
+    assert list(listed) == list(PROFILES)
+    for name, kind in listed.items():
+        assert kind["formula"]
+        required = {field["name"] for field in kind["fields"] if field["required"]}
+        assert required == set(PROFILES[name][0]) - {"interpolation"}
+    (slope,) = listed["cone"]["fields"]
+    assert slope["dimension"] == "1"
+    assert "normal_force" in listed["cone"]["closed_forms"]
+
+
+def test_health_and_the_way_to_the_documentation(client: Client) -> None:
+    assert client.get("/health").json() == {"status": "ok"}
+    root = client.get("/")
+    assert root.status_code == 307
+    assert root.headers["location"] == "docs"
+
+
+def test_numbers_keep_all_their_digits(client: Client) -> None:
+    load = 0.1 + 0.2
+    text = client.post("/v1/normal", query("cone", normal_force=load)).content
+    assert json.loads(text)["normal_force"] == [load]

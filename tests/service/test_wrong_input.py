@@ -1,0 +1,241 @@
+"""What cannot be answered is refused by pointing at it, in few bytes, without repeating it."""
+
+import json
+
+import httpx
+import pytest
+
+from mdr_service.problems import MAX_ERRORS, MEDIA_TYPE
+from mdr_service.settings import SETTINGS
+from tests.conftest import Client
+
+BALL = '{"kind": "paraboloid", "radius": 0.01}'
+MODULUS = '{"e_star": 1e9}'
+FORCE = '{"normal_force": 1}'
+
+
+def query(profile: str = BALL, material: str = MODULUS, load: str = FORCE, more: str = "") -> bytes:
+    return f'{{"profile": {profile}, "material": {material}, "load": {load}{more}}}'.encode()
+
+
+def table(r: str, f: str) -> str:
+    return f'{{"kind": "tabulated", "r": {r}, "f": {f}}}'
+
+
+def problem(answer: httpx.Response) -> dict[str, object]:
+    assert answer.headers["content-type"] == MEDIA_TYPE
+    assert len(answer.content) <= 4096
+    document = answer.json()
+    assert document["status"] == answer.status_code
+    assert document["type"].startswith("urn:mdr:problem:")
+    assert document["title"]
+    assert document["detail"]
+    return document
+
+
+def pointers(answer: httpx.Response) -> list[str]:
+    return [error["pointer"] for error in problem(answer)["errors"]]
+
+
+STEEL = '{"youngs_modulus": 210e9, "poissons_ratio": 0.3}'
+POINTED = {
+    # numbers that are none
+    "NaN": (query(load='{"normal_force": NaN}'), "/load/normal_force"),
+    "Infinity": (query(load='{"normal_force": Infinity}'), "/load/normal_force"),
+    "-Infinity": (query(load='{"normal_force": -Infinity}'), "/load/normal_force"),
+    "NaN in a list": (query(load='{"normal_force": [1, NaN]}'), "/load/normal_force/1"),
+    "1e999": (query(BALL.replace("0.01", "1e999")), "/profile/radius"),
+    "1e300 beyond the bound": (query(BALL.replace("0.01", "1e300")), "/profile/radius"),
+    "a string": (query(load='{"normal_force": "5"}'), "/load/normal_force"),
+    "a string in a list": (query(load='{"normal_force": [1, "5"]}'), "/load/normal_force/1"),
+    "true": (query(load='{"normal_force": true}'), "/load/normal_force"),
+    "true in a list": (query(load='{"normal_force": [true]}'), "/load/normal_force/0"),
+    "null": (query(load='{"normal_force": null}'), "/load/normal_force"),
+    "null in a list": (query(load='{"normal_force": [null]}'), "/load/normal_force/0"),
+    "null modulus": (query(material='{"e_star": 1, "g_star": null}'), "/material/g_star"),
+    "a million digits": (query(load=f'{{"normal_force": {"7" * 10**6}}}'), "/load/normal_force"),
+    "a million digits in a list": (
+        query(load=f'{{"normal_force": [1, -{"7" * 10**6}]}}'),
+        "/load/normal_force/1",
+    ),
+    # shapes of the request
+    "two dimensions": (query(load='{"normal_force": [[1, 2]]}'), "/load/normal_force/0"),
+    "an empty list": (query(load='{"normal_force": []}'), "/load/normal_force"),
+    "an unknown field": (query(more=', "mu": 0.3'), "/mu"),
+    "an unknown parameter": (query('{"kind": "cone", "slope": 1, "tip": 1}'), "/profile/tip"),
+    "a field to be escaped": (query(more=', "a/b~c": 0.3'), "/a~1b~0c"),
+    "an unknown kind": (query('{"kind": "pyramid"}'), "/profile/kind"),
+    "no kind": (query('{"radius": 1}'), "/profile/kind"),
+    "a kind that is a number": (query('{"kind": 5}'), "/profile/kind"),
+    "a missing parameter": (query('{"kind": "cone"}'), "/profile/slope"),
+    "a profile that is a word": (query('"cone"'), "/profile"),
+    "two controls": (query(load='{"normal_force": 1, "contact_radius": 1}'), "/load"),
+    "no control": (query(load="{}"), "/load"),
+    "no load": (f'{{"profile": {BALL}, "material": {MODULUS}}}'.encode(), "/load"),
+    "no material": (query(material="{}"), "/material/e_star"),
+    "two materials": (
+        query(material=f'{{"bodies": ["rigid", {STEEL}], "e_star": 1}}'),
+        "/material/e_star",
+    ),
+    "one body": (query(material=f'{{"bodies": [{STEEL}]}}'), "/material/bodies"),
+    "a soft word": (query(material=f'{{"bodies": [{STEEL}, "soft"]}}'), "/material/bodies/1"),
+    "a list for a request": (b"[1]", ""),
+    "nested 100 deep": (query(load="[" * 100 + "]" * 100), "/load"),
+    "a term's exponent": (
+        query('{"kind": "series", "terms": [{"coefficient": 1, "exponent": "2"}]}'),
+        "/profile/terms/0/exponent",
+    ),
+    # physics
+    "a negative depth": (query(load='{"indentation_depth": -1e-6}'), "/load/indentation_depth"),
+    "a negative depth in a list": (
+        query(load='{"indentation_depth": [0, -1e-6]}'),
+        "/load/indentation_depth/1",
+    ),
+    "two rigid bodies": (query(material='{"bodies": ["rigid", "rigid"]}'), "/material/bodies"),
+    "Poisson's ratio": (
+        query(material=f'{{"bodies": ["rigid", {STEEL.replace("0.3", "0.6")}]}}'),
+        "/material/bodies/1/poissons_ratio",
+    ),
+    "a whole sphere": (
+        query('{"kind": "sphere", "radius": 1}', load='{"contact_radius": 1}'),
+        "/load/contact_radius",
+    ),
+    "more than a sphere, in a list": (
+        query('{"kind": "sphere", "radius": 1}', load='{"contact_radius": [0.5, 2]}'),
+        "/load/contact_radius/1",
+    ),
+    "past the end of a table": (
+        query(table("[0, 1, 2]", "[0, 1, 4]"), load='{"contact_radius": [1, 2.5]}'),
+        "/load/contact_radius/1",
+    ),
+    "past the end of a table by depth": (
+        query(table("[0, 1, 2]", "[0, 1, 4]"), load='{"indentation_depth": 100}'),
+        "/load/indentation_depth",
+    ),
+    "an answer that overflows": (
+        query(
+            '{"kind": "power", "coefficient": 1, "exponent": 1000}',
+            load='{"contact_radius": [1, 1e5]}',
+        ),
+        "/load/contact_radius/1",
+    ),
+    "a tolerance too tight": (query(more=', "rtol": 1e-16'), "/rtol"),
+    "a curvature that drops": (
+        query('{"kind": "capped_paraboloid", "cap_radius": 1, "tip_radius": 1, "radius": 2}'),
+        "/profile/radius",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", POINTED)
+def test_is_refused_by_pointing_at_it(client: Client, name: str) -> None:
+    body, pointer = POINTED[name]
+    answer = client.post_text("/v1/normal", body)
+    assert answer.status_code == 422
+    assert pointers(answer) == [pointer]
+
+
+@pytest.mark.parametrize(
+    ("r", "f"),
+    [("[0, 1, 2]", "[0, 2, 1]"), ("[0, 2, 1]", "[0, 1, 2]"), ("[0, 1, 2]", "[0, 1]")],
+    ids=["falling", "radii not in order", "lengths that differ"],
+)
+def test_a_bad_table_is_refused(client: Client, r: str, f: str) -> None:
+    answer = client.post_text("/v1/normal", query(table(r, f)))
+    assert answer.status_code == 422
+    assert all(pointer.startswith("/profile") for pointer in pointers(answer))
+
+
+NOT_JSON = {
+    "words": b"hello",
+    "nothing": b"",
+    "half": query()[:-1],
+    "nested 100000 deep": b"[" * 100_000,
+    "nested 100000 deep in a field": query(load="[" * 100_000 + "]" * 100_000),
+    "half a surrogate": query(BALL.replace("paraboloid", "\\ud800")),
+    "half a surrogate in a name": query(more=', "\\ud800": 1'),
+    "not UTF-8": query(more=', "') + b'\xff": 1}',
+    "a long number, then rubbish": query(load=f'{{"normal_force": {"7" * 5000}') + b"?",
+}
+
+
+@pytest.mark.parametrize("name", NOT_JSON)
+def test_what_is_not_json_is_malformed(client: Client, name: str) -> None:
+    answer = client.post_text("/v1/normal", NOT_JSON[name])
+    assert answer.status_code == 400
+    assert pointers(answer) == [""]
+
+
+def test_the_input_is_never_repeated(client: Client) -> None:
+    secret = "s3cret" * 20
+    bodies = [
+        query(f'{{"kind": "{secret}"}}'),
+        query(load=f'{{"normal_force": "{secret}"}}'),
+        query(more=f', "{secret}": 1'),
+        secret.encode(),
+    ]
+    for body in bodies:
+        assert b"s3cret" not in client.post_text("/v1/normal", body).content
+
+
+def test_few_of_many_errors_are_told(client: Client) -> None:
+    many = "".join(f', "{"unknown" * 8}{i}": 1' for i in range(10_000))
+    answer = client.post_text("/v1/normal", query(more=many))
+    assert 1 <= len(pointers(answer)) <= MAX_ERRORS
+    exactly = "".join(f', "u{i}": 1' for i in range(30))
+    assert len(pointers(client.post_text("/v1/normal", query(more=exactly)))) == MAX_ERRORS
+
+
+def test_ten_thousand_bad_elements_make_a_short_answer(client: Client) -> None:
+    bad = json.dumps({"normal_force": ["x"] * 10_000})
+    assert pointers(client.post_text("/v1/normal", query(load=bad))) == ["/load/normal_force/0"]
+
+
+def test_a_list_may_be_as_long_as_the_limit(client: Client) -> None:
+    def loads(count: int) -> bytes:
+        return query(load=json.dumps({"normal_force": [1.0] * count}))
+
+    answer = client.post_text("/v1/normal", loads(SETTINGS.max_loads))
+    assert len(answer.json()["contact_radius"]) == SETTINGS.max_loads
+    answer = client.post_text("/v1/normal", loads(SETTINGS.max_loads + 1))
+    assert pointers(answer) == ["/load/normal_force"]
+
+
+def test_a_long_body_is_refused(client: Client) -> None:
+    answer = client.post_text("/v1/normal", b" " * (SETTINGS.max_body_bytes + 1))
+    assert answer.status_code == 413
+    problem(answer)
+
+
+@pytest.mark.parametrize("media_type", ["text/plain", "application/x-www-form-urlencoded", ""])
+def test_only_json_is_read(client: Client, media_type: str) -> None:
+    headers = {"content-type": media_type}
+    answer = client.request("POST", "/v1/normal", content=query(), headers=headers)
+    assert answer.status_code == 415
+    problem(answer)
+
+
+@pytest.mark.parametrize("media_type", ["application/json; charset=utf-8", "Application/JSON"])
+def test_json_is_read_however_it_is_written(client: Client, media_type: str) -> None:
+    headers = {"content-type": media_type}
+    answer = client.request("POST", "/v1/normal", content=query(), headers=headers)
+    assert answer.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [
+        ("GET", "/nothing", 404),
+        ("GET", "/docs/swagger/nothing.js", 404),
+        ("GET", "/v1/normal", 405),
+        ("DELETE", "/health", 405),
+        ("POST", "/docs/swagger/swagger-ui.css", 405),
+    ],
+)
+def test_a_wrong_address_is_a_problem_too(
+    client: Client, method: str, path: str, status: int
+) -> None:
+    answer = client.request(method, path)
+    assert answer.status_code == status
+    assert ("allow" in answer.headers) == (status == 405)
+    problem(answer)
