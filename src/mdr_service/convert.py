@@ -19,6 +19,7 @@ from mdr_service.schemas.queries import Bodies, Load, Material, NormalQuery
 Array = NDArray[np.float64]
 # One number or one per load, as they are written: a list, or an array where it is long.
 Numbers = list[float] | Array
+_Arguments = Callable[[Any], dict[str, Any]]
 
 _NORMAL_ANSWERS: Final = (
     "indentation_depth",
@@ -64,7 +65,7 @@ def normal_answer(query: NormalQuery, contact: NormalContact) -> dict[str, Any]:
 def profile(model: ProfileModel) -> profiles.Profile:
     """Return the core's profile; names and meanings are the same on both sides."""
     build = profiles.KINDS[model.kind]
-    arguments = _SPECIAL_ARGUMENTS.get(type(model), _fields)
+    arguments: _Arguments = _SPECIAL_ARGUMENTS.get(type(model), _fields)
     return build(**arguments(model))
 
 
@@ -119,7 +120,7 @@ def _tabulated_arguments(model: Tabulated) -> dict[str, Any]:
     }
 
 
-_SPECIAL_ARGUMENTS: Final[Mapping[type[Strict], Callable[[Any], dict[str, Any]]]] = {
+_SPECIAL_ARGUMENTS: Final[Mapping[type[Strict], _Arguments]] = {
     Series: _series_arguments,
     Tabulated: _tabulated_arguments,
 }
