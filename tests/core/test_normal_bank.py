@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.core.comparison import INPUT, profile_from, relative_error
-from tests.oracles import bank
 
 from mdr_core.normal import solve
+from tests.core.comparison import INPUT, profile_from, relative_error
+from tests.oracles import bank
 
 BOUND = 1e-13
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.core.comparison import DERIVED_BREAK, INPUT, profile_from, relative_error
-from tests.oracles import bank
 
 from mdr_core import fields
 from mdr_core.normal import solve
+from tests.core.comparison import DERIVED_BREAK, INPUT, profile_from, relative_error
+from tests.oracles import bank
 
 BOUND = 1e-12
 

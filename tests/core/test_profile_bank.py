@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from tests.core.comparison import DERIVED_BREAK, INPUT, profile_from, relative_error
 from tests.oracles import bank
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mpmath import mp, mpf
+
 from tests.oracles.reference import (
     CLOSED_DIGITS,
     CONTROLS,

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mpmath import mp, mpf
+
 from tests.oracles.shapes import FlatPunch, Monomials, Shape, shape_of
 
 if TYPE_CHECKING:

@@ -54,10 +54,6 @@ def _truncated(r: float) -> float:
     return 0.3 * (r - 0.5) if r > 0.5 else 0.0
 
 
-def _hyperbola(r: float) -> float:
-    return 0.5 * r * r / (1 + sqrt(1 + r * r))
-
-
 def table_scenes() -> Iterator[TableScene]:
     """All tables, of sizes near 1: their scale is that of their numbers."""
     sphere = {"kind": "sphere", "radius": 1.0}
@@ -73,8 +69,8 @@ def table_scenes() -> Iterator[TableScene]:
     yield TableScene(
         "truncated-cone", _table(_truncated, truncated, "cubic", (0.5,)), (0.55, 1.2), cone
     )
-    graded = [3 * (i / 49) ** 2 for i in range(50)]
-    yield TableScene("graded", _table(_hyperbola, graded), (2.0, 0.3))
+    graded = [0.9 * (i / 49) ** 2 for i in range(50)]
+    yield TableScene("graded", _table(_sphere, graded), (0.7, 0.1))
     yield TableScene("pchip", _table(_sphere, uniform(0.6, 40), "pchip"), (0.5, 0.1))
     yield TableScene("linear", _table(_sphere, uniform(0.6, 40), "linear"), (0.5, 0.1))
     yield TableScene("two-points", _table(lambda r: 0.2 * r, [0.0, 1.0]), (0.5, 0.9))

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from mpmath import mp, mpf
 from scipy.interpolate import CubicSpline, PchipInterpolator
+
 from tests.oracles.reference import solve_increasing
 
 if TYPE_CHECKING:

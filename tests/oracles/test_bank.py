@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from mpmath import mp, mpf
+
 from tests.oracles import bank
 from tests.oracles.generate import pressure_at, pressure_state
 from tests.oracles.reference import CONTROLS, OUTPUTS, state

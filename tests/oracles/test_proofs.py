@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from mpmath import mp, mpf
+
 from tests.oracles.reference import (
     QUAD_DIGITS,
     elasticities,
