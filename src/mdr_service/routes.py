@@ -18,7 +18,6 @@ from mdr_service.schemas.examples import NORMAL_EXAMPLES
 from mdr_service.schemas.queries import NormalQuery
 
 
-
 class DirectRoute(APIRoute):
     """A route whose endpoint takes the request and returns the response itself.
 

@@ -40,9 +40,7 @@ def is_served(port: int) -> bool:
 
 
 @contextmanager
-def running(
-    command: list[str], port: int, **environment: str
-) -> Iterator[subprocess.Popen[str]]:
+def running(command: list[str], port: int, **environment: str) -> Iterator[subprocess.Popen[str]]:
     """Start `command`, wait until it serves at `port`, and leave no process behind."""
     process = subprocess.Popen(
         command,

@@ -94,9 +94,7 @@ def test_a_long_body_in_chunks_is_refused(connection: http.client.HTTPConnection
     assert (answer.status, answer.getheader("content-type")) == (413, MEDIA_TYPE)
 
 
-def test_a_client_that_leaves_is_no_defect(
-    port: int, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_client_that_leaves_is_no_defect(port: int, caplog: pytest.LogCaptureFixture) -> None:
     leaving = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
     leaving.putrequest("POST", "/v1/normal")
     leaving.putheader("Content-Type", "application/json")

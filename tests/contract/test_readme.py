@@ -1,0 +1,64 @@
+"""What the README shows is what happens."""
+
+import contextlib
+import io
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from mdr_service.settings import PREFIX, Settings
+from tests.conftest import Client
+from tests.faults.server import free_port, running, service
+
+README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
+ADDRESS = "http://127.0.0.1:8000"
+
+
+def examples(language: str, output: str) -> list[tuple[str, str]]:
+    pattern = rf"```{language}\n(.*?)```\s+```{output}\n(.*?)```"
+    return re.findall(pattern, README, re.DOTALL)
+
+
+def same(found: object, shown: object) -> None:
+    """Compare documents: numbers to twelve digits, all else exactly."""
+    if isinstance(shown, dict):
+        assert isinstance(found, dict)
+        assert list(found) == list(shown)
+        for name in shown:
+            same(found[name], shown[name])
+    elif isinstance(shown, list) and shown and isinstance(shown[0], float):
+        assert found == pytest.approx(shown, rel=1e-12)
+    else:
+        assert found == shown
+
+
+@pytest.mark.parametrize(("command", "shown"), examples("sh", "json"))
+def test_curl_shows_the_real_answer(client: Client, command: str, shown: str) -> None:
+    curl, silent, address, header, json_type, data, body = shlex.split(command)
+    assert (curl, silent, header, data) == ("curl", "-s", "-H", "-d")
+    assert json_type == "Content-Type: application/json"
+    assert address.startswith(ADDRESS)
+    answer = client.post_text(address.removeprefix(ADDRESS), body.encode())
+    same(answer.json(), json.loads(shown))
+
+
+def test_python_prints_what_is_shown() -> None:
+    ((code, shown),) = examples("python", "text")
+    port = free_port()
+    output = io.StringIO()
+    with running(service(port), port), contextlib.redirect_stdout(output):
+        exec(code.replace(":8000", f":{port}"), {})  # noqa: S102 -- our own README
+    assert output.getvalue() == shown
+
+
+def test_every_limit_is_shown_with_its_default() -> None:
+    for name, field in Settings.model_fields.items():
+        assert f"| `{PREFIX}{name.upper()}` | {field.default} |" in README
+
+
+def test_nothing_shown_is_left_untried() -> None:
+    tried = len(examples("sh", "json")) + len(examples("python", "text"))
+    assert tried == len(re.findall(r"```(?:sh|python)\n", README)) == 3

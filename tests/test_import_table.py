@@ -1,0 +1,138 @@
+"""Who may import whom: data flows one way, so imports point one way."""
+
+import ast
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src"
+NUMBERS = {"numpy", "scipy"}
+WEB = {"fastapi", "starlette"}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A module, or a package as a whole, and what it may import besides the standard library."""
+
+    name: str
+    ours: set[str]
+    others: set[str]
+
+
+CORE = {"mdr_core.errors", "mdr_core.typing"}
+TRANSFORMS = {"mdr_core.quadrature", "mdr_core.abel"}
+CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_core.foundation"}
+# What the wire may name of the core: its public face, never the way it calculates.
+PUBLIC = {"mdr_core.errors", "mdr_core.materials", "mdr_core.profiles", "mdr_core.normal"}
+SCHEMAS = {"mdr_service.settings", "mdr_service.schemas"}
+WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
+
+# Each row imports only from rows above it.
+TABLE = (
+    Row("mdr_core.errors", set(), set()),
+    Row("mdr_core.typing", set(), NUMBERS),
+    Row("mdr_core.materials", CORE, NUMBERS),
+    Row("mdr_core.quadrature", CORE, NUMBERS),
+    Row("mdr_core.abel", CORE | {"mdr_core.quadrature"}, NUMBERS),
+    Row("mdr_core.profiles", CORE | TRANSFORMS, NUMBERS),
+    Row("mdr_core.foundation", CONTACT - {"mdr_core.foundation"}, NUMBERS),
+    Row("mdr_core.normal", CONTACT, NUMBERS),
+    Row("mdr_core.fields", CONTACT | {"mdr_core.normal"}, NUMBERS),
+    Row("mdr_core", set(), set()),
+    Row("mdr_service.settings", set(), {"pydantic"}),
+    Row("mdr_service.schemas", {"mdr_service.settings"}, {"pydantic", "pydantic_core"}),
+    Row("mdr_service.convert", PUBLIC | SCHEMAS, {"numpy"}),
+    Row(
+        "mdr_service.problems",
+        {"mdr_core.errors"} | SCHEMAS,
+        WEB | {"orjson", "pydantic", "pydantic_core"},
+    ),
+    Row("mdr_service.wire", WIRE - {"mdr_service.wire"}, WEB | {"orjson", "pydantic"}),
+    Row("mdr_service.compute", set(), {"anyio"}),
+    Row("mdr_service.openapi", WIRE, WEB | {"pydantic"}),
+    Row(
+        "mdr_service.routes",
+        PUBLIC | WIRE | {"mdr_service.convert", "mdr_service.compute", "mdr_service.openapi"},
+        WEB | {"numpy"},
+    ),
+    Row(
+        "mdr_service.app",
+        {"mdr_service.openapi", "mdr_service.problems", "mdr_service.routes"},
+        WEB,
+    ),
+    Row(
+        "mdr_service.__main__",
+        {"mdr_service.app", "mdr_service.settings"},
+        {"fastapi", "uvicorn"},
+    ),
+    Row("mdr_service", set(), set()),
+)
+
+
+def modules() -> Iterator[tuple[str, Path]]:
+    for path in sorted(SOURCE.rglob("*.py")):
+        parts = path.relative_to(SOURCE).with_suffix("").parts
+        yield ".".join(part for part in parts if part != "__init__"), path
+
+
+MODULES = dict(modules())
+
+
+def row_of(module: str) -> Row:
+    """Return the row of a module: its own, or that of the package around it."""
+    for row in TABLE:
+        if module == row.name or (row.name.count(".") and module.startswith(row.name + ".")):
+            return row
+    raise LookupError(f"{module} has no row in the table")
+
+
+def imports(path: Path) -> Iterator[str]:
+    """Yield what a file imports, wherever in the file, as full names of modules."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.module is not None
+            assert node.level == 0, "imports are absolute"
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield inner if inner in MODULES else node.module
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_imports_only_what_the_table_allows(module: str) -> None:
+    row = row_of(module)
+    for name in imports(MODULES[module]):
+        top = name.partition(".")[0]
+        if top in {"mdr_core", "mdr_service"}:
+            assert row_of(name).name in row.ours | {row.name}, f"{module} imports {name}"
+        else:
+            assert top in row.others | sys.stdlib_module_names, f"{module} imports {name}"
+
+
+def test_the_table_points_upwards() -> None:
+    above: set[str] = set()
+    for row in TABLE:
+        assert row.ours <= above, row.name
+        above.add(row.name)
+
+
+def test_the_table_has_no_row_without_a_module() -> None:
+    assert {row.name for row in TABLE} <= set(MODULES)
+
+
+def test_no_two_modules_need_each_other() -> None:
+    graph = {
+        module: {name for name in imports(path) if name in MODULES} - {module}
+        for module, path in MODULES.items()
+    }
+    TopologicalSorter(graph).prepare()
+
+
+def test_no_file_is_a_drawer() -> None:
+    nameless = {"utils", "helpers", "common", "base", "manager"}
+    assert not nameless & {module.rpartition(".")[2] for module in MODULES}
