@@ -21,7 +21,9 @@ def allowance(case: dict[str, Any], index: int) -> float:
     """
     total = 0.0
     if case["control"] != "contact_radius":
+        # The contact radius is then an answer, rounded as such.
         total += INPUT * (case["condition_load"][index] or 0.0)
+        total += INPUT * (case["condition_edge"][index] or 0.0)
     if case["profile"]["kind"] in DERIVED_BREAK:
         total += INPUT * (case["condition_radius"][index] or 0.0)
     return total

@@ -199,13 +199,16 @@ def _pressure_record(
         "expected": [],
         "condition_radius": [],
         "condition_load": [],
+        "condition_edge": [],
     }
     with mp.workdps(QUAD_DIGITS):
         for point in points:
             p = pressure_at(given, point)
             record["expected"].append(digits(p * mpf(e_star)))
             record["condition_radius"].append(condition(_rate_radius(given, mpf(point), p)))
-            record["condition_load"].append(condition(_rate_load(given, mpf(point), p)))
+            edge = _rate_edge(given, mpf(point), p)
+            record["condition_load"].append(condition(edge / given.rate))
+            record["condition_edge"].append(condition(edge))
     return record
 
 
@@ -251,15 +254,14 @@ def _rate_radius(given: PressureState, r: mpf, p: mpf) -> mpf:
     return (above - below) / (2 * width) / p
 
 
-def _rate_load(given: PressureState, r: mpf, p: mpf) -> mpf:
-    """d log p/d log load, from dp/da = g'(a)/(pi sqrt(a^2 - r^2)); the punch is linear."""
+def _rate_edge(given: PressureState, r: mpf, p: mpf) -> mpf:
+    """d log p/d log a, from dp/da = g'(a)/(pi sqrt(a^2 - r^2)); the punch is linear in its load."""
     if mp.isinf(p):
         return mp.inf
     if isinstance(given.shape, FlatPunch):
         return mpf(1)
     a = given.a
-    slope = given.shape.dg(a, given.s)
-    return a * slope / (mp.pi * mp.sqrt((a - r) * (a + r))) / p / given.rate
+    return a * given.shape.dg(a, given.s) / (mp.pi * mp.sqrt((a - r) * (a + r))) / p
 
 
 def profile_cases() -> Iterable[Record]:
