@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -246,6 +246,9 @@ FAMILIES: tuple[Family, ...] = (
     _capped("blunted", 3.0, 1.1),
     _capped("worn", 40.0, 1.1),
     _capped("same", 1.1, 1.1),
+    # A crossover of the two terms, or of cap and flank, at no radius that matters.
+    replace(_capped("nearly-same", 1.1, 1.0957), pressure=()),
+    replace(_series_family("close", (1.0, 0.65625), (0.125, 0.66015625)), pressure=()),
 )
 
 
