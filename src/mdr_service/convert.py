@@ -13,7 +13,7 @@ from mdr_core.normal import NormalContact
 from mdr_service.schemas.answers import Catalogue, ProfileField, ProfileKind
 from mdr_service.schemas.profiles import MODELS, Series, Tabulated
 from mdr_service.schemas.profiles import Profile as ProfileModel
-from mdr_service.schemas.quantities import Strict
+from mdr_service.schemas.quantities import SMALLEST_LOAD, Strict
 from mdr_service.schemas.queries import Bodies, Load, Material, NormalQuery
 
 Array = NDArray[np.float64]
@@ -50,12 +50,10 @@ def normal_arguments(query: NormalQuery) -> dict[str, Any]:
 def normal_answer(query: NormalQuery, contact: NormalContact) -> dict[str, Any]:
     """Return the document of a normal contact."""
     warnings = contact.warnings
-    singular = any(notice.code == "singular" for notice in warnings)
-    answers: dict[str, Any] = {}
-    for name in _NORMAL_ANSWERS:
-        values = getattr(contact, name)
-        infinite = singular and name in _MAY_BE_INFINITE
-        answers[name] = _numbers(name, values, query.load, may_be_infinite=infinite)
+    answers: dict[str, Any] = {name: _numbers(getattr(contact, name)) for name in _NORMAL_ANSWERS}
+    if not all(map(_all_finite, answers.values())):
+        announced = any(notice.code == "singular" for notice in warnings)
+        _check_non_finite(answers, query.load, _MAY_BE_INFINITE if announced else frozenset())
     answers["method"] = contact.method
     answers["error_estimate"] = contact.error_estimate
     answers["warnings"] = [_notice(notice) for notice in warnings]
@@ -85,7 +83,14 @@ def material(model: Material) -> materials.Material:
 
 def controls(load: Load) -> dict[str, float | Array]:
     """Return the one control that was given, by its name."""
-    return {name: _scalar_or_array(getattr(load, name)) for name in load.model_fields_set}
+    (control,) = load.model_fields_set
+    value = getattr(load, control)
+    if not isinstance(value, list):
+        return {control: _with_digits(value, load, 0)}
+    loads = np.array(value, dtype=float)
+    smallest = int(np.argmin(np.where(loads > 0, loads, np.inf)))
+    _with_digits(loads[smallest], load, smallest)
+    return {control: loads}
 
 
 def catalogue() -> Catalogue:
@@ -126,37 +131,53 @@ _SPECIAL_ARGUMENTS: Final[Mapping[type[Strict], _Arguments]] = {
 }
 
 
-def _scalar_or_array(value: float | list[float]) -> float | Array:
-    return np.array(value, dtype=float) if isinstance(value, list) else value
+def _with_digits(value: float, load: Load, index: int) -> float:
+    if 0 < value < SMALLEST_LOAD:
+        raise InputError(_path_to(load, index), f"must be 0 or at least {SMALLEST_LOAD}")
+    return value
 
 
 def _notice(notice: Notice) -> dict[str, str]:
     return {"code": notice.code, "message": notice.message}
 
 
-def _numbers(name: str, values: Array, load: Load, *, may_be_infinite: bool) -> Numbers:
-    """Return finite `values` over the loads; infinite ones, written as null, where announced."""
-    if values.size == 1:
-        number = values.item()
-        if isfinite(number):
-            return [number]
-    # Contiguous for the JSON writer, and one-dimensional also for a single load.
-    numbers = np.ascontiguousarray(values)
-    if not np.isfinite(numbers).all():
-        _check_infinities(name, numbers, load, may_be_infinite=may_be_infinite)
-    return numbers
+def _numbers(values: Array) -> Numbers:
+    """Return the values as the JSON writer takes them: one-dimensional and contiguous.
+
+    A list is written faster than an array where there is only one number.
+    """
+    return [values.item()] if values.size == 1 else np.ascontiguousarray(values)
 
 
-def _check_infinities(name: str, numbers: Array, load: Load, *, may_be_infinite: bool) -> None:
-    if np.isnan(numbers).any():
-        raise DefectError(f"{name} is not a number")
-    if not may_be_infinite:
-        (control,) = load.model_fields_set
-        first = int(np.argmax(~np.isfinite(numbers)))
-        index = (first,) if isinstance(getattr(load, control), list) else ()
-        raise InputError(
-            ("load", control, *index), f"{name} leaves the range of double precision here"
-        )
+def _all_finite(numbers: Numbers) -> bool:
+    if isinstance(numbers, list):
+        return isfinite(numbers[0])
+    return bool(np.isfinite(numbers).all())
+
+
+def _check_non_finite(
+    answers: Mapping[str, Numbers], load: Load, may_be_infinite: frozenset[str]
+) -> None:
+    """Let announced infinities pass, to be written as null, and raise for anything else.
+
+    An overflow comes first: what is computed from it may well be no number.
+    """
+    for name in answers.keys() - may_be_infinite:
+        overflow = np.flatnonzero(np.isinf(answers[name]))
+        if overflow.size:
+            detail = f"{name} leaves the range of double precision here"
+            raise InputError(_path_to(load, int(overflow[0])), detail)
+    for name, numbers in answers.items():
+        if np.isnan(numbers).any():
+            raise DefectError(f"{name} is not a number")
+
+
+def _path_to(load: Load, index: int) -> tuple[str | int, ...]:
+    """Return the path to one load of the request."""
+    (control,) = load.model_fields_set
+    if isinstance(getattr(load, control), list):
+        return ("load", control, index)
+    return ("load", control)
 
 
 def _profile_fields(model: type[Strict]) -> list[ProfileField]:

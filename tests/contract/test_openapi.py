@@ -69,7 +69,7 @@ def test_every_field_of_a_profile_tells_its_dimension() -> None:
 def test_every_profile_states_the_limits_of_its_numbers() -> None:
     for name, schema in DOCUMENT["components"]["schemas"].items():
         for field, described in schema.get("properties", {}).items():
-            if described.get("type") == "number" and "error_estimate" != field:
+            if described.get("type") == "number" and field != "error_estimate":
                 limits = {"minimum", "exclusiveMinimum", "maximum"} & set(described)
                 assert len(limits) == 2, (name, field)
 

@@ -21,7 +21,7 @@ class Cone(Strict):
     """A cone: slope·r."""
 
     kind: Literal["cone"]
-    slope: float = positive("1", "Slope of the flank, tan θ against the plane")
+    slope: float = positive("1", "Slope of the flank, tan θ against the plane", low=1e-15, high=1e6)
 
 
 class Paraboloid(Strict):
@@ -51,7 +51,7 @@ class Power(Strict):
 
     kind: Literal["power"]
     coefficient: float = positive(_COEFFICIENT, "Factor of the power", low=1e-300, high=1e300)
-    exponent: float = positive("1", "Real exponent", low=1e-3, high=1e3)
+    exponent: float = positive("1", "Real exponent", low=0.05, high=200)
 
 
 class PowerTerm(Strict):
@@ -60,7 +60,7 @@ class PowerTerm(Strict):
     coefficient: float = quantity(
         _COEFFICIENT, "Factor of the power, not 0 and of either sign", ge=-1e300, le=1e300
     )
-    exponent: float = positive("1", "Real exponent", low=1e-3, high=1e3)
+    exponent: float = positive("1", "Real exponent", low=0.05, high=200)
 
 
 class Series(Strict):
@@ -88,7 +88,7 @@ class TruncatedCone(Strict):
 
     kind: Literal["truncated_cone"]
     flat_radius: float = positive("length", "Radius b of the flat face")
-    slope: float = positive("1", "Slope of the flank")
+    slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
 
 
 class TruncatedParaboloid(Strict):
@@ -103,7 +103,7 @@ class RoundedCone(Strict):
     """A cone with a parabolic tip: r²/(2·tip_radius), then the tangent cone."""
 
     kind: Literal["rounded_cone"]
-    slope: float = positive("1", "Slope of the flank")
+    slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
     tip_radius: float = positive("length", "Radius of curvature at the tip")
 
 
@@ -111,7 +111,7 @@ class SphericalTipCone(Strict):
     """A cone with an exact spherical tip up to the tangent point, then the cone."""
 
     kind: Literal["spherical_tip_cone"]
-    slope: float = positive("1", "Slope of the flank")
+    slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
     tip_radius: float = positive("length", "Radius of the spherical tip")
 
 
@@ -119,7 +119,7 @@ class Hyperboloid(Strict):
     """A hyperboloid: R·t²·(√(1 + r²/(R·t)²) − 1), t the slope of its asymptote."""
 
     kind: Literal["hyperboloid"]
-    slope: float = positive("1", "Slope t of the asymptote")
+    slope: float = positive("1", "Slope t of the asymptote", low=1e-15, high=1e6)
     tip_radius: float = positive("length", "Radius of curvature R at the tip")
 
 

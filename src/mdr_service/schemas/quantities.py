@@ -9,6 +9,8 @@ from mdr_service.settings import SETTINGS
 # Any unit system fits in here, and products of a few such numbers stay finite.
 SMALLEST: Final = 1e-30
 LARGEST: Final = 1e30
+# Less load than this, but not none, leaves no digits for its squares and cubes.
+SMALLEST_LOAD: Final = 1e-90
 
 
 def drop_null_defaults(schema: dict[str, Any]) -> None:

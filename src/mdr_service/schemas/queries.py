@@ -69,7 +69,7 @@ def _describe_load(schema: dict[str, Any]) -> None:
 
 
 class Load(Strict, json_schema_extra=_describe_load):
-    """Exactly one control, a number or a list of them."""
+    """Exactly one control, a number or a list of them, each 0 or from 1e-90 to 1e30."""
 
     # A control that is left out is none; one that is given is never null.
     indentation_depth: ScalarOrArray = quantity("length", "Depth d of indentation", default=None)

@@ -1,0 +1,104 @@
+"""Whatever the schema lets in is answered with numbers or refused with a reason."""
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mdr_service.problems import MEDIA_TYPE
+from mdr_service.schemas.answers import NormalAnswer
+from mdr_service.schemas.quantities import LARGEST, SMALLEST, SMALLEST_LOAD
+from tests.conftest import Client
+from tests.contract import strict_json
+
+ORDINARY = st.floats(1e-9, 1e9)
+EXTREME = st.floats(SMALLEST, LARGEST)
+LENGTHS = ORDINARY | EXTREME | st.sampled_from([SMALLEST, 1.0, LARGEST])
+SLOPES = st.floats(1e-3, 2) | st.floats(1e-15, 1e6)
+EXPONENTS = st.floats(0.2, 60) | st.floats(0.05, 200)
+LOADS = (
+    st.just(0.0)
+    | ORDINARY
+    | st.floats(SMALLEST_LOAD, LARGEST)
+    | st.sampled_from([SMALLEST_LOAD, LARGEST])
+)
+
+PARAMETERS = {
+    "flat_punch": ["radius"],
+    "cone": ["slope"],
+    "paraboloid": ["radius"],
+    "sphere": ["radius"],
+    "ellipsoid": ["radius", "height"],
+    "rounded_punch": ["flat_radius", "rounding_radius"],
+    "truncated_cone": ["flat_radius", "slope"],
+    "truncated_paraboloid": ["flat_radius", "radius"],
+    "rounded_cone": ["slope", "tip_radius"],
+    "spherical_tip_cone": ["slope", "tip_radius"],
+    "hyperboloid": ["slope", "tip_radius"],
+    "capped_paraboloid": ["cap_radius", "tip_radius", "radius"],
+}
+
+
+@st.composite
+def simple(draw: st.DrawFn) -> dict[str, object]:
+    kind = draw(st.sampled_from(list(PARAMETERS)))
+    numbers = draw(st.sampled_from([ORDINARY, LENGTHS]))
+    return {"kind": kind} | {
+        name: draw(SLOPES if name == "slope" else numbers) for name in PARAMETERS[kind]
+    }
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> dict[str, object]:
+    steps = st.lists(st.tuples(ORDINARY, st.floats(0, 1e9)), min_size=1, max_size=8)
+    r, f = [0.0], [0.0]
+    for dr, df in draw(steps):
+        r.append(r[-1] + dr)
+        f.append(f[-1] + df)
+    interpolation = draw(st.sampled_from(["cubic", "pchip", "linear"]))
+    breaks = draw(st.lists(st.sampled_from(r), max_size=2))
+    return {"kind": "tabulated", "r": r, "f": f, "interpolation": interpolation, "breaks": breaks}
+
+
+TERMS = st.fixed_dictionaries(
+    {"coefficient": st.floats(-1e3, 1e3) | st.floats(1e-300, 1e300), "exponent": EXPONENTS}
+)
+PROFILES = (
+    simple()
+    | tables()
+    | TERMS.map(lambda term: {"kind": "power", **term})
+    | st.lists(TERMS, min_size=1, max_size=3).map(lambda terms: {"kind": "series", "terms": terms})
+)
+CONTROLS = st.sampled_from(["indentation_depth", "normal_force", "contact_radius"])
+QUERIES = st.fixed_dictionaries(
+    {
+        "profile": PROFILES,
+        "material": st.fixed_dictionaries({"e_star": LENGTHS}),
+        "load": st.dictionaries(
+            CONTROLS, LOADS | st.lists(LOADS, min_size=1, max_size=4), min_size=1, max_size=1
+        ),
+    }
+)
+
+
+def check(client: Client, query: object) -> None:
+    answer = client.post("/v1/normal", query)
+    document = strict_json.loads(answer.content)
+    assert isinstance(document, dict)
+    if answer.status_code == 200:
+        told = NormalAnswer.model_validate_json(answer.content)
+        singular = any(warning.code == "singular" for warning in told.warnings)
+        assert singular == (None in told.mean_pressure)
+    else:
+        assert answer.status_code == 422, answer.text
+        assert answer.headers["content-type"] == MEDIA_TYPE
+        assert all(error["pointer"] for error in document["errors"])
+
+
+@settings(
+    max_examples=400,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(query=QUERIES)
+def test_a_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, query)
