@@ -6,12 +6,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.checks import extremes
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array
 
-# Radii handled at once: the temporaries stay in the processor's cache.
-_BLOCK: Final = 16_384
+# Radii handled at once: the temporaries stay in cache, and below the size from which the
+# allocator fetches fresh pages for each.
+_BLOCK: Final = 8_192
 
 
 def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -55,21 +57,24 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
         block = r[part]
         highest = _checked_maximum(block, start)
         for row, a, s in zip(out, edges[:, None], coordinates[:, None], strict=True):
-            inside = slice(None) if highest < a[0] else block < a
-            row[part] = 0.0
-            chosen = block[inside]
-            if chosen.size:
-                row[part][inside] = contact.profile.pressure_kernel(
-                    s, chosen, rtol, edge=a if exact else None
-                )
-                row[part] *= contact.e_star
+            edge = a if exact else None
+            target = row[part]
+            if highest < a[0]:
+                kernel = contact.profile.pressure_kernel(s, block, rtol, edge=edge)
+                np.multiply(kernel, contact.e_star, out=target)
+                continue
+            inside = block < a
+            target[:] = 0.0
+            if inside.any():
+                kernel = contact.profile.pressure_kernel(s, block[inside], rtol, edge=edge)
+                target[inside] = kernel * contact.e_star
     return out.reshape(contact.contact_radius.shape + r.shape)
 
 
 def _checked_maximum(block: Array, start: int) -> float:
     """Largest radius of the block, all of them checked."""
-    highest = float(np.max(block))
-    if not (np.min(block) >= 0 and highest < inf):
+    lowest, highest = extremes(block)
+    if not (lowest >= 0 and highest < inf):
         bad = np.flatnonzero(~((block >= 0) & (block < inf)))
         raise InputError(("radius", start + int(bad[0])), "must be finite and not negative")
     return highest

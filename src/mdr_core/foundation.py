@@ -11,7 +11,7 @@ from mdr_core.typing import Array, Parameter
 
 _STEPS: Final = 200
 # Newton's step at which the next error is below rounding: it converges quadratically.
-_LAST_STEP: Final = 1e-9
+_LAST_STEP: Final = 1e-10
 _STRIDE: Final = 16.0
 
 
@@ -118,6 +118,7 @@ def _invert(
     low = np.full(shape, profile.first_coordinate)
     high = np.full(shape, np.inf if end is None else end)
     s = np.minimum(np.broadcast_to(profile.scale, shape), high)
+    settling = False
     for _ in range(_STEPS):
         value = function(s)
         # A value that leaves the range of doubles still tells the side.
@@ -126,12 +127,13 @@ def _invert(
             proposed = s * np.exp(step)
         low = np.where(value < goal, s, low)
         high = np.where(value > goal, s, high)
-        inside = ((proposed > low) & (proposed < high)) | (value == goal)
-        if not inside.all():
-            proposed = np.where(inside, proposed, _middle(low, high))
-        moved = np.where(positive, np.abs(proposed - s), 0.0)
-        s = proposed
-        if np.all(moved <= _LAST_STEP * s):
+        # One step more than the criterion asks: at a kink the last slope may be the other side's.
+        settled = settling
+        last = np.abs(step) <= _LAST_STEP
+        settling = bool(np.all(last | ~positive))
+        inside = (proposed > low) & (proposed < high)
+        s = np.where(inside | last, proposed, _middle(low, high))
+        if settled:
             return np.where(positive, s, profile.first_coordinate)
     raise DefectError(f"the inverse of a {profile.kind} did not converge")
 

@@ -7,6 +7,7 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.checks import extremes
 from mdr_core.errors import InputError, Notice
 from mdr_core.foundation import (
     coordinate_from_depth,
@@ -163,8 +164,8 @@ def solve(
 
 def require_modulus(e_star: Parameter) -> None:
     """Raise InputError unless E* is positive and finite."""
-    values = np.asarray(e_star, dtype=float)
-    if not (values.size and np.min(values) > 0 and np.max(values) < inf):
+    low, high = extremes(e_star)
+    if not (low > 0 and high < inf):
         raise InputError(("material", "e_star"), "must be positive and finite")
 
 
@@ -172,7 +173,8 @@ def _checked_load(name: str, value: ArrayLike) -> Array:
     load = np.asarray(value, dtype=float)
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
-    if not (np.min(load) >= 0 and np.max(load) < inf):
+    low, high = extremes(load)
+    if not (low >= 0 and high < inf):
         bad = ~((load >= 0) & (load < inf))
         index = tuple(int(i[0]) for i in np.nonzero(bad))
         raise InputError(("load", name, *index), "must be finite and not negative")

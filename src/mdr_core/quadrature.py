@@ -7,6 +7,7 @@ its length and the asked tolerance need, and is evaluated once.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, exp, floor, inf, log, log10, pi, sqrt
 from typing import Final
@@ -19,8 +20,6 @@ from mdr_core.typing import Array
 # h(y, index): y has shape (nodes, m), index (m,) says which integrals they belong to.
 Integrand = Callable[[Array, Array], Array]
 
-# Singularities sit on the strip's edge, pi/2 away: the bound is taken a little inside it.
-_STRIP: Final = 0.47 * pi
 # Number of nodes of the rules on offer, as points of the full rule on [-H, H].
 _POINTS: Final = (12, 24, 48)
 # Longest piece of an integral that is cut: the cheapest nodes per unit length.
@@ -31,6 +30,20 @@ _BLOCK: Final = 12_288
 ROUNDING: Final = 4e-15
 
 
+@dataclass(frozen=True)
+class Analytic:
+    """Where an integrand is analytic, |Im y| < strip, and how it grows, exp(growth |Re y|).
+
+    The singularities that the substitutions leave sit at |Im y| = pi/2; the strip stays inside.
+    """
+
+    growth: float = 2.0
+    strip: float = 0.47 * pi
+
+
+DEFAULT: Final = Analytic()
+
+
 @lru_cache(maxsize=64)
 def gauss_legendre(points: int) -> tuple[Array, Array]:
     """Return the nodes and weights of the rule on [-1, 1]."""
@@ -39,7 +52,7 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
     return nodes, weights
 
 
-def error_bound(points: int, half_length: float, growth: float) -> float:
+def error_bound(points: int, half_length: float, analytic: Analytic) -> float:
     """Bound the relative error of the `points`-point rule on an interval of length 2H.
 
     For h analytic and |h| <= M in the Bernstein ellipse of parameter rho the error is below
@@ -50,7 +63,7 @@ def error_bound(points: int, half_length: float, growth: float) -> float:
     """
     if half_length == 0:
         return 0.0
-    beta = _STRIP / half_length
+    growth, beta = analytic.growth, analytic.strip / half_length
     widest = log(beta + sqrt(1 + beta * beta))
     best = inf
     for part in np.linspace(0.1, 1, 10) * widest:
@@ -62,22 +75,22 @@ def error_bound(points: int, half_length: float, growth: float) -> float:
 
 
 @lru_cache(maxsize=256)
-def _longest(points: int, decade: int, growth: float) -> float:
+def _longest(points: int, decade: int, analytic: Analytic) -> float:
     """Largest half length at which the rule's bound stays below 10^decade."""
     low, high = 1e-3, 40.0
     tolerance = 10.0**decade
     for _ in range(40):
         middle = sqrt(low * high)
         low, high = (
-            (middle, high) if error_bound(points, middle, growth) < tolerance else (low, middle)
+            (middle, high) if error_bound(points, middle, analytic) < tolerance else (low, middle)
         )
     return low
 
 
 @lru_cache(maxsize=64)
-def _limits(decade: int, growth: float) -> Array:
+def _limits(decade: int, analytic: Analytic) -> Array:
     """Half lengths up to which each rule of `_POINTS` suffices."""
-    return np.array([_longest(points, decade, growth) for points in _POINTS])
+    return np.array([_longest(points, decade, analytic) for points in _POINTS])
 
 
 def _decade(rtol: float) -> int:
@@ -85,7 +98,7 @@ def _decade(rtol: float) -> int:
     return max(floor(log10(rtol) + 1e-9), -15)
 
 
-def integrate_even(h: Integrand, upper: Array, rtol: float, growth: float = 2.0) -> Array:
+def integrate_even(h: Integrand, upper: Array, rtol: float, analytic: Analytic = DEFAULT) -> Array:
     """Return the integrals of h over [0, upper], h even in y and analytic in the strip.
 
     The rule of 2n points on [-upper, upper] costs n evaluations and converges as twice as many.
@@ -93,17 +106,17 @@ def integrate_even(h: Integrand, upper: Array, rtol: float, growth: float = 2.0)
     Source: physics, section 10; trefethen, Thm 19.3.
     """
     result = np.empty_like(upper)
-    for index, points in _groups(upper, rtol, growth):
+    for index, points in _groups(upper, rtol, analytic):
         length = upper[index]
         if points:
             result[index] = _apply(h, _half_rule(points), None, length, index)
         else:
-            result[index] = _pieces(h, np.zeros_like(length), length, index, rtol, growth)
+            result[index] = _pieces(h, np.zeros_like(length), length, index, rtol, analytic)
     return result
 
 
 def integrate_plain(
-    h: Integrand, lower: Array, length: Array, rtol: float, growth: float = 2.0
+    h: Integrand, lower: Array, length: Array, rtol: float, analytic: Analytic = DEFAULT
 ) -> Array:
     """Return the integrals of h over [lower, lower + length], h analytic in the strip.
 
@@ -111,18 +124,18 @@ def integrate_plain(
     short interval.
     """
     result = np.empty_like(lower)
-    for index, points in _groups(length / 2, rtol, growth):
+    for index, points in _groups(length / 2, rtol, analytic):
         start, span = lower[index], length[index]
         if points:
             result[index] = _apply(h, _composite_rule(points, 1), start, span, index)
         else:
-            result[index] = _pieces(h, start, span, index, rtol, growth)
+            result[index] = _pieces(h, start, span, index, rtol, analytic)
     return result
 
 
-def _groups(half_length: Array, rtol: float, growth: float) -> list[tuple[Array, int]]:
+def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Array, int]]:
     """Indices of the integrals that share a rule, with its points; 0 where none suffices."""
-    choice = np.searchsorted(_limits(_decade(rtol), growth), half_length)
+    choice = np.searchsorted(_limits(_decade(rtol), analytic), half_length)
     if choice.size and choice.min() == choice.max() < len(_POINTS):
         return [(np.arange(choice.size), _POINTS[choice[0]])]
     return [
@@ -133,11 +146,11 @@ def _groups(half_length: Array, rtol: float, growth: float) -> list[tuple[Array,
 
 
 def _pieces(
-    h: Integrand, lower: Array, length: Array, index: Array, rtol: float, growth: float
+    h: Integrand, lower: Array, length: Array, index: Array, rtol: float, analytic: Analytic
 ) -> Array:
     """Cut [lower, lower + length] into equal pieces that one rule carries."""
     half = float(length.max()) / 2
-    count = ceil(half / _longest(_PIECE_POINTS, _decade(rtol), growth))
+    count = ceil(half / _longest(_PIECE_POINTS, _decade(rtol), analytic))
     return _apply(h, _composite_rule(_PIECE_POINTS, count), lower, length, index)
 
 

@@ -11,18 +11,23 @@ Source: physics, section 10.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mdr_core.quadrature import Integrand, integrate_even, integrate_plain
+from mdr_core.quadrature import (
+    DEFAULT,
+    Analytic,
+    Integrand,
+    integrate_even,
+    integrate_plain,
+)
 from mdr_core.typing import Array, Parameter
 
 # weight(x, s, index) = F(x) s / x with s = sqrt(x^2 - b^2): free of the root that F carries at b.
 # x and s have shape (nodes, k), index (k,) says to which integrals they belong.
 Weight = Callable[[Array, Array, Array], Array]
 
-# Below this distance from the break, relative to it, a continuous kernel no longer changes.
-_COINCIDENT = 1e-9
 
 
 def asinh_difference(high: Array, low: Array, square_difference: Array) -> Array:
@@ -43,7 +48,7 @@ def one_sided(
     edge: Array | None = None,
     odd: bool,
     rtol: float,
-    growth: float = 2.0,
+    analytic: Analytic = DEFAULT,
 ) -> Array:
     """Return the integrals of F(x) / sqrt(x^2 - r^2) over x from max(r, b, c) to a.
 
@@ -62,13 +67,75 @@ def one_sided(
     edge : a itself where it was given exactly: near it, a - r is then exact too.
     odd : F is an odd function of s, which halves the work for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
-    growth : F grows at most like exp(growth |Re y|), or is a polynomial of twice that degree.
+    analytic : where F s/x is analytic in y, if not in the whole strip, and how it grows.
     """
+    problem = _OneSided(weight, upper, width, edge, odd, rtol, analytic)
+    on_break = (r == b) & (r > 0)
+    if not on_break.any():
+        return _two_roots(problem, b, r)
+    result = np.empty_like(r)
+    for chosen, rule in ((on_break, _coincident_roots), (~on_break, _two_roots)):
+        index = np.flatnonzero(chosen)
+        if index.size:
+            at = np.broadcast_to(b, r.shape)[index]
+            result[index] = rule(problem.picked(index, r.shape), at, r[index])
+    return result
+
+
+@dataclass(frozen=True)
+class _OneSided:
+    """What `one_sided` was asked, but for the break and the points."""
+
+    weight: Weight
+    upper: Array
+    width: Array | None
+    edge: Array | None
+    odd: bool
+    rtol: float
+    analytic: Analytic
+
+    def picked(self, index: Array, shape: tuple[int, ...]) -> "_OneSided":
+        """The same for some of the points."""
+
+        def pick(part: Array | None) -> Array | None:
+            return None if part is None else np.broadcast_to(part, shape)[index]
+
+        return replace(
+            self,
+            weight=lambda x, s, chosen: self.weight(x, s, index[chosen]),
+            upper=np.broadcast_to(self.upper, shape)[index],
+            width=pick(self.width),
+            edge=pick(self.edge),
+        )
+
+
+def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
+    """r = b: x = b cosh(y), s = b sinh(y); infinite where F ~ 1/s and the stretch starts at b."""
+
+    def h(y: Array, index: Array) -> Array:
+        x, s = r[index] * np.cosh(y), r[index] * np.sinh(y)
+        return problem.weight(x, s, index) * x / s
+
+    upper = problem.upper
+    lower = np.zeros_like(r) if problem.width is None else upper - problem.width
+    low = np.arcsinh(lower / b)
+    square_difference = (upper - lower) * (upper + lower) / np.square(r)
+    length = asinh_difference(upper / b, lower / b, square_difference)
+    result = integrate_plain(h, low, length, problem.rtol, problem.analytic)
+    everything = np.arange(r.size)
+    pole = problem.weight(r[None], np.zeros((1, r.size)), everything)[0]
+    result[(lower <= 0) & (pole != 0)] = np.inf
+    return result
+
+
+def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
+    """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
+    weight, upper, width, edge = problem.weight, problem.upper, problem.width, problem.edge
+    rtol, analytic = problem.rtol, problem.analytic
     distance2 = np.abs(r - b) * (r + b)
-    distance2 = np.maximum(distance2, (_COINCIDENT * b) ** 2)
     above = r > b
     shift = np.where(above, distance2, 0.0)
-    base2 = np.where(above, r * r, b * np.asarray(b))
+    base2 = np.where(above, r * r, np.square(b))
     epsilon = np.sqrt(distance2)
 
     def h(y: Array, index: Array) -> Array:
@@ -84,19 +151,13 @@ def one_sided(
     else:
         top2 = np.where(above, (edge - r) * (edge + r), upper * upper)
     top = np.sqrt(top2) / epsilon
+    even = problem.odd | above
     if width is None:
-        result = between(h, top, odd | above, rtol, growth=growth)
-    else:
-        lower = upper - width
-        bottom = np.sqrt(np.maximum(lower * lower - shift, 0.0)) / epsilon
-        square_difference = width * (upper + lower) / distance2
-        result = between(h, top, odd | above, rtol, bottom, square_difference, growth)
-    on_break = (r == b) & (r > 0) if width is None else (r == b) & (r > 0) & (lower <= 0)
-    if on_break.any():
-        index = np.flatnonzero(on_break)
-        pole = weight(r[None, index], np.zeros((1, index.size)), index)[0]
-        result[index[pole != 0]] = np.inf
-    return result
+        return between(h, top, even, rtol, analytic=analytic)
+    lower = upper - width
+    bottom = np.sqrt(np.maximum(lower * lower - shift, 0.0)) / epsilon
+    square_difference = width * (upper + lower) / distance2
+    return between(h, top, even, rtol, bottom, square_difference, analytic)
 
 
 def between(
@@ -106,7 +167,7 @@ def between(
     rtol: float,
     bottom: Array | None = None,
     square_difference: Array | None = None,
-    growth: float = 2.0,
+    analytic: Analytic = DEFAULT,
 ) -> Array:
     """Return the integrals of h over [arcsinh(bottom), arcsinh(top)].
 
@@ -117,10 +178,10 @@ def between(
     upper = np.arcsinh(top)
     whole = even if bottom is None else even & (bottom == 0)
     if whole.all():
-        return integrate_even(h, upper, rtol, growth)
+        return integrate_even(h, upper, rtol, analytic)
     result = np.empty_like(top)
     index = np.flatnonzero(whole)
-    result[index] = integrate_even(_chosen(h, index), upper[index], rtol, growth)
+    result[index] = integrate_even(_chosen(h, index), upper[index], rtol, analytic)
     index = np.flatnonzero(~whole)
     if bottom is None or square_difference is None:
         lower, length = np.zeros(index.size), upper[index]
@@ -128,7 +189,7 @@ def between(
         low = bottom[index]
         gap2 = np.where(low > 0, square_difference[index], top[index] ** 2)
         lower, length = np.arcsinh(low), asinh_difference(top[index], low, gap2)
-    result[index] = integrate_plain(_chosen(h, index), lower, length, rtol, growth)
+    result[index] = integrate_plain(_chosen(h, index), lower, length, rtol, analytic)
     return result
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import one_sided
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.quadrature import Analytic, gauss_legendre
 from mdr_core.typing import Array
 
 _FAR_NODES: Final = 16
@@ -22,7 +22,7 @@ _AXIS: Final = 1e-8
 # Rounding of G(0), relative to the panel's largest coefficient.
 _TIP: Final = 1e-12
 # The panels' polynomials have degree 23.
-_GROWTH: Final = 12.0
+_POLYNOMIALS: Final = Analytic(growth=12.0)
 _NEGLIGIBLE: Final = 1e-17
 _EPS: Final = float(np.finfo(float).eps)
 
@@ -132,7 +132,7 @@ class StressPanels:
             edge=edge,
             odd=False,
             rtol=rtol,
-            growth=_GROWTH,
+            analytic=_POLYNOMIALS,
         )
         if on_axis.any():
             # G(0) > 0 is a tip, and the integral of G/x over it infinite.

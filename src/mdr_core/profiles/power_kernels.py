@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.roots import between
+from mdr_core.quadrature import Analytic
 from mdr_core.typing import Array, Parameter
 
 _TINY: Final = 1e-290
@@ -37,12 +38,18 @@ def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
 
 
 def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Array:
-    """(value / C)^(1/n), the quotient never formed where it could leave the range (n >= 1)."""
+    """(value / C)^(1/n), the quotient never formed where it could leave the range (n >= 1).
+
+    The rounding of 1/n is felt as log(value) eps/n; one step of Newton's method takes it out.
+    """
     n = np.asarray(exponent, dtype=float)
     c = np.asarray(coefficient, dtype=float)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         split = value ** (1 / n) / c ** (1 / n)
-        return np.asarray(np.where(n < 1, (value / c) ** (1 / n), split))
+        root = np.where(n < 1, (value / c) ** (1 / n), split)
+    safe = np.where(value > 0, value, 1.0)
+    miss = np.where(value > 0, (value - power(c, root, n)) / safe, 0.0)
+    return np.asarray(root * (1 + miss / n))
 
 
 def root_step(a: Array, r: Array, width: Array | None) -> Array:
@@ -81,20 +88,20 @@ def power_moment(m: float, a: Array, r: Array, rtol: float, width: Array | None)
     safe = np.where(on_axis, a, r)
     ratio = safe / a
     top = np.sqrt((a - safe) * (a + safe)) / safe
-    growth = float(max(abs(m), 1.0))
+    analytic = Analytic(growth=max(abs(m), 1.0))
 
     def h(y: Array, index: Array) -> Array:
         return np.asarray((ratio[index] * np.cosh(y)) ** m)
 
     if width is None:
-        value = between(h, top, np.ones(top.shape, bool), rtol, growth=growth)
+        value = between(h, top, np.ones(top.shape, bool), rtol, analytic=analytic)
     else:
         c = np.maximum(a - width, safe)
         bottom = np.sqrt((c - safe) * (c + safe)) / safe
         difference = width * (2 * a - width) / safe**2
-        value = between(h, top, np.ones(top.shape, bool), rtol, bottom, difference, growth)
+        value = between(h, top, np.ones(top.shape, bool), rtol, bottom, difference, analytic)
     if on_axis.any():
-        value[on_axis] = _axis_moment(m, a, width)[on_axis]
+        value[on_axis] = np.broadcast_to(_axis_moment(m, a, width), value.shape)[on_axis]
     return value
 
 

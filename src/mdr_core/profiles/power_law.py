@@ -146,7 +146,7 @@ class Power(Profile):
     @property
     def rounding(self) -> float:  # type: ignore[override]
         # r^n carries n times the rounding of the scaled radius.
-        return float(8e-15 + 1e-15 * np.max(self.exponent))
+        return float(2e-14 + 8e-15 * np.max(self.exponent))
 
     def f(self, radius: Array) -> Array:
         return power(self.coefficient, radius, self.exponent)

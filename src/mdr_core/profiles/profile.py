@@ -7,6 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.checks import extremes
 from mdr_core.errors import InputError
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Parameter
@@ -30,14 +31,9 @@ _BLOCK: Final = 12_288
 
 def require_positive(name: str, value: Parameter) -> None:
     """Raise InputError unless the profile's parameter is positive and finite."""
-    good = 0 < value < inf if isinstance(value, (int, float)) else _all_positive(value)
-    if not good:
+    low, high = (value, value) if isinstance(value, (int, float)) else extremes(value)
+    if not (low > 0 and high < inf):
         raise InputError(("profile", name), "must be positive and finite")
-
-
-def _all_positive(value: Parameter) -> bool:
-    array = np.asarray(value, dtype=float)
-    return bool(array.size and np.min(array) > 0 and np.max(array) < inf)
 
 
 class Profile(ABC):
@@ -56,7 +52,7 @@ class Profile(ABC):
     # The answers that are closed form; the rest is quadrature.
     closed_forms: ClassVar[tuple[str, ...]]
     # Bound on the relative rounding error of the closed forms.
-    rounding: float = 8e-15
+    rounding: float = 3e-14
 
     @property
     def normal_method(self) -> str:

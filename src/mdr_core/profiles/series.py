@@ -81,7 +81,7 @@ class Series(Profile):
 
     @property
     def rounding(self) -> float:  # type: ignore[override]
-        return 2e-14 + 1e-15 * max(n for _, n in self._powers)
+        return 4e-14 + 4e-15 * max(n for _, n in self._powers)
 
     def f(self, radius: Array) -> Array:
         return np.asarray(sum(power(c, radius, n) for c, n in self._powers))
@@ -114,9 +114,13 @@ class Series(Profile):
 
     @property
     def scale(self) -> Parameter:
-        """Radius where the first and the last term are equal, the change of character."""
+        """About where the first and the last term are equal: a start for the inverse.
+
+        Nearly equal exponents would put it out of the range of doubles.
+        """
         (c, n), (k, m) = self._powers[0], self._powers[-1]
-        return 1.0 if n == m else float(abs(c / k) ** (1 / (m - n)))
+        ratio = min(max(abs(c / k), 1e-30), 1e30)
+        return float(ratio ** (1 / max(m - n, 0.5)))
 
     @property
     def tip_pressure(self) -> Parameter:

@@ -12,6 +12,7 @@ from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, energy_integral, require_positive
 from mdr_core.profiles.rounded import Sphere, sphere_kernel
 from mdr_core.profiles.stable import atanh_gap
+from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
@@ -52,6 +53,11 @@ class TippedCone(Profile):
     @abstractmethod
     def _flank_weight(self, x: Array, s: Array) -> Array:
         """g'(x) s/x beyond the tangent radius."""
+
+    @property
+    def _flank_analytic(self) -> Analytic:
+        """Where the flank's weight is analytic in y."""
+        return DEFAULT
 
     def reduced_energy(self, coordinate: Array) -> Array:
         b = self.tangent_radius
@@ -102,6 +108,7 @@ class TippedCone(Profile):
             edge=a,
             odd=False,
             rtol=rtol,
+            analytic=self._flank_analytic,
         )
         return value / np.pi
 
@@ -215,6 +222,12 @@ class SphericalTipCone(TippedCone):
         inner = np.minimum(radius, self.tangent_radius)
         tip = inner / np.sqrt((big - inner) * (big + inner))
         return np.asarray(np.where(radius < self.tangent_radius, tip, self.slope))
+
+    @property
+    def _flank_analytic(self) -> Analytic:
+        """The sphere goes on behind the tangent point: a singularity at s = -h, y < 0."""
+        behind = float(np.min(np.arcsinh(1 / np.asarray(self.slope))))
+        return Analytic(strip=min(DEFAULT.strip, 0.9 * behind))
 
     def _tau(self, x: Array, s: Array) -> Array:
         """tanh(L) = b^2 (R h + x s)/((R^2 + s^2)(x h + s R))."""
