@@ -23,7 +23,7 @@ class Row:
     others: set[str]
 
 
-CORE = {"mdr_core.errors", "mdr_core.typing"}
+CORE = {"mdr_core.errors", "mdr_core.typing", "mdr_core.checks"}
 TRANSFORMS = {"mdr_core.quadrature", "mdr_core.abel"}
 CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_core.foundation"}
 # What the wire may name of the core: its public face, never the way it calculates.
@@ -35,6 +35,7 @@ WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
 TABLE = (
     Row("mdr_core.errors", set(), set()),
     Row("mdr_core.typing", set(), NUMBERS),
+    Row("mdr_core.checks", set(), NUMBERS),
     Row("mdr_core.materials", CORE, NUMBERS),
     Row("mdr_core.quadrature", CORE, NUMBERS),
     Row("mdr_core.abel", CORE | {"mdr_core.quadrature"}, NUMBERS),
