@@ -8,8 +8,9 @@ from anyio import to_thread
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
 
-# A few hundred numbers take less time than handing them to a thread and back.
-_AT_ONCE: Final = 500
+# So few loads and points of a table take milliseconds at most; the usual single load takes less
+# time than handing it to a thread and back.
+_AT_ONCE: Final = 100
 
 
 async def run(
