@@ -5,18 +5,25 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-# Both passes over a block find it in cache.
-_BLOCK: Final = 16_384
+from mdr_core.typing import Array
 
 
 def extremes(values: ArrayLike) -> tuple[float, float]:
     """Smallest and largest value, NaN if any is NaN; (NaN, NaN) of nothing."""
-    flat = np.asarray(values, dtype=float).ravel()
-    if flat.size == 0:
+    array = np.asarray(values, dtype=float)
+    if array.size == 0:
         return float("nan"), float("nan")
-    if flat.size <= _BLOCK:
-        return float(flat.min()), float(flat.max())
-    blocks = [flat[start : start + _BLOCK] for start in range(0, flat.size, _BLOCK)]
-    lowest = np.array([block.min() for block in blocks])
-    highest = np.array([block.max() for block in blocks])
-    return float(lowest.min()), float(highest.max())
+    return float(array.min()), float(array.max())
+
+
+def largest(values: Array) -> float:
+    """Largest of values >= 0; NaN if any is negative (zero included), infinite or NaN.
+
+    Non-negative doubles are ordered like their bits read as integers, and whatever else there
+    is lies above them: one pass says it all.
+    """
+    bits = values.view(np.uint64).max()
+    return float(bits.view(np.float64)) if bits < _INFINITY else float("nan")
+
+
+_INFINITY: Final = np.float64(np.inf).view(np.uint64)

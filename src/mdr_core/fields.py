@@ -6,14 +6,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.checks import extremes
+from mdr_core.checks import largest
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array
 
-# Radii handled at once: the temporaries stay in cache, and below the size from which the
-# allocator fetches fresh pages for each.
-_BLOCK: Final = 8_192
+# Radii handled at once: bounds the memory, whatever their number.
+_BLOCK: Final = 131_072
 
 
 def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -47,34 +46,55 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
-    r = np.atleast_1d(np.asarray(radius, dtype=float))
+    r = np.ascontiguousarray(np.atleast_1d(np.asarray(radius, dtype=float)))
     edges = np.atleast_1d(contact.contact_radius)
     coordinates = np.atleast_1d(contact.coordinate)
-    exact = contact.control == "contact_radius"
+    # Where the radius is what was given, a - r is exact.
+    exact = edges if contact.control == "contact_radius" else [None] * edges.size
+    shape = contact.contact_radius.shape + r.shape
+    if edges.size == 1 and r.size <= _BLOCK:
+        row = _row(contact, r, _checked_largest(r, 0), edges[0], coordinates[0], exact[0], rtol)
+        return row.reshape(shape)
     out = np.empty((edges.size, r.size))
     for start in range(0, r.size, _BLOCK):
         part = slice(start, start + _BLOCK)
         block = r[part]
-        highest = _checked_maximum(block, start)
-        for row, a, s in zip(out, edges[:, None], coordinates[:, None], strict=True):
-            edge = a if exact else None
-            target = row[part]
-            if highest < a[0]:
-                kernel = contact.profile.pressure_kernel(s, block, rtol, edge=edge)
-                np.multiply(kernel, contact.e_star, out=target)
-                continue
-            inside = block < a
-            target[:] = 0.0
-            if inside.any():
-                kernel = contact.profile.pressure_kernel(s, block[inside], rtol, edge=edge)
-                target[inside] = kernel * contact.e_star
-    return out.reshape(contact.contact_radius.shape + r.shape)
+        highest = _checked_largest(block, start)
+        for row, a, s, edge in zip(out, edges, coordinates, exact, strict=True):
+            row[part] = _row(contact, block, highest, a, s, edge, rtol)
+    return out.reshape(shape)
 
 
-def _checked_maximum(block: Array, start: int) -> float:
+def _row(
+    contact: NormalContact,
+    r: Array,
+    highest: float,
+    a: float,
+    coordinate: float,
+    exact: float | None,
+    rtol: float,
+) -> Array:
+    """The pressure of one load at some radii."""
+    kernel, modulus = contact.profile.pressure_kernel, float(contact.e_star)
+    at, edge = np.array([coordinate]), None if exact is None else np.array([exact])
+    if highest < a:
+        return kernel(at, r, rtol, edge=edge, modulus=modulus)
+    row = np.zeros(r.shape)
+    inside = r < a
+    if inside.any():
+        row[inside] = kernel(at, r[inside], rtol, edge=edge, modulus=modulus)
+    return row
+
+
+def _checked_largest(block: Array, start: int) -> float:
     """Largest radius of the block, all of them checked."""
-    lowest, highest = extremes(block)
-    if not (lowest >= 0 and highest < inf):
-        bad = np.flatnonzero(~((block >= 0) & (block < inf)))
-        raise InputError(("radius", start + int(bad[0])), "must be finite and not negative")
+    highest = largest(block)
+    if not highest < inf:
+        bad = ~((block >= 0) & (block < inf))
+        if not bad.any():
+            # Only a negative zero, which counts as zero.
+            return float(block.max())
+        raise InputError(
+            ("radius", start + int(np.flatnonzero(bad)[0])), "must be finite and not negative"
+        )
     return highest

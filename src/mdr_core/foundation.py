@@ -7,18 +7,19 @@ import numpy as np
 
 from mdr_core.errors import DefectError, InputError
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 _STEPS: Final = 200
 # Newton's step at which the next error is below rounding: it converges quadratically.
 _LAST_STEP: Final = 1e-10
 _STRIDE: Final = 16.0
+_LEAP: Final = 30.0
 
 
 def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
     """Return the contact coordinate at which g(a) equals the depth.
 
-    Source: mdr-5, Eqs. (5.7), (5.59); physics, section 4.1.
+    Source: mdr-5, Eqs. (5.7), (5.59); notes, §1.
 
     Raises
     ------
@@ -38,7 +39,7 @@ def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
 def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
     """Return the contact coordinate at which F_N/E* has the given value [length^2].
 
-    Source: mdr-5, Eqs. (5.14), (5.61); physics, section 4.1: dF_N/da = 2 E* a g'(a).
+    Source: mdr-5, Eqs. (5.14), (5.61); notes, §1: dF_N/da = 2 E* a g'(a).
 
     Raises
     ------
@@ -90,7 +91,7 @@ def _check_reach(
         _refuse(np.asarray(target > function(np.asarray(end))), profile, name)
 
 
-def _refuse(outside: Array, profile: Profile, name: str) -> None:
+def _refuse(outside: Flags, profile: Profile, name: str) -> None:
     if outside.any():
         index = tuple(int(i[0]) for i in np.nonzero(outside))
         raise InputError(
@@ -121,10 +122,10 @@ def _invert(
     settling = False
     for _ in range(_STEPS):
         value = function(s)
-        # A value that leaves the range of doubles still tells the side.
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             step = np.log(goal / value) / log_slope(s, value)
-            proposed = s * np.exp(step)
+            # Where the slope all but vanishes the step says no more than the direction.
+            proposed = s * np.exp(np.clip(step, -_LEAP, _LEAP))
         low = np.where(value < goal, s, low)
         high = np.where(value > goal, s, high)
         # One step more than the criterion asks: at a kink the last slope may be the other side's.

@@ -102,13 +102,9 @@ def _normal_compliance(body: Body) -> float:
 
 def _check_body(i: int, body: Body) -> None:
     if not 0 < body.youngs_modulus < inf:
-        raise InputError(
-            ("material", "bodies", i, "youngs_modulus"), "must be positive and finite"
-        )
+        raise InputError(("material", "bodies", i, "youngs_modulus"), "must be positive and finite")
     if not -1 < body.poissons_ratio <= 0.5:
-        raise InputError(
-            ("material", "bodies", i, "poissons_ratio"), "must lie in -1 < nu <= 1/2"
-        )
+        raise InputError(("material", "bodies", i, "poissons_ratio"), "must lie in -1 < nu <= 1/2")
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

@@ -46,7 +46,7 @@ class NormalContact:
 
     @cached_property
     def normal_force(self) -> Array:
-        """F_N = 2 E* int_0^a x g'(x) dx [force]. Source: physics, section 4.1."""
+        """F_N = 2 E* int_0^a x g'(x) dx [force]. Source: notes, §1."""
         return self.e_star * self.profile.reduced_force(self.coordinate)
 
     @cached_property
@@ -115,7 +115,7 @@ def solve(
     a(d) inverts d = g(a); F_N = 2 E* int_0^a x g'(x) dx. Closed forms are used wherever they
     exist; the inverses of the others are solved to rounding, in the contact coordinate.
 
-    Source: mdr-5, Eqs. (5.7), (5.14), (5.25)-(5.27), (5.59), (5.61); physics, section 4.
+    Source: mdr-5, Eqs. (5.7), (5.14), (5.25)-(5.27), (5.59), (5.61); notes, §1.
 
     Parameters
     ----------

@@ -15,10 +15,10 @@ from typing import Final
 import numpy as np
 from scipy.special import roots_legendre
 
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 # h(y, index): y has shape (nodes, m), index (m,) says which integrals they belong to.
-Integrand = Callable[[Array, Array], Array]
+Integrand = Callable[[Array, Indices], Array]
 
 # Number of nodes of the rules on offer, as points of the full rule on [-H, H].
 _POINTS: Final = (12, 24, 48)
@@ -103,7 +103,7 @@ def integrate_even(h: Integrand, upper: Array, rtol: float, analytic: Analytic =
 
     The rule of 2n points on [-upper, upper] costs n evaluations and converges as twice as many.
     `upper` has shape (m,); what is too long for one rule is cut into pieces.
-    Source: physics, section 10; trefethen, Thm 19.3.
+    Source: notes, §5; trefethen, Thm 19.3.
     """
     result = np.empty_like(upper)
     for index, points in _groups(upper, rtol, analytic):
@@ -133,7 +133,7 @@ def integrate_plain(
     return result
 
 
-def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Array, int]]:
+def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Indices, int]]:
     """Indices of the integrals that share a rule, with its points; 0 where none suffices."""
     choice = np.searchsorted(_limits(_decade(rtol), analytic), half_length)
     if choice.size and choice.min() == choice.max() < len(_POINTS):
@@ -146,7 +146,7 @@ def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[A
 
 
 def _pieces(
-    h: Integrand, lower: Array, length: Array, index: Array, rtol: float, analytic: Analytic
+    h: Integrand, lower: Array, length: Array, index: Indices, rtol: float, analytic: Analytic
 ) -> Array:
     """Cut [lower, lower + length] into equal pieces that one rule carries."""
     half = float(length.max()) / 2
@@ -155,7 +155,7 @@ def _pieces(
 
 
 def _apply(
-    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Array
+    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Indices
 ) -> Array:
     """Apply a rule on [0, 1] to [lower, lower + length], in blocks that stay in cache."""
     nodes, weights = rule

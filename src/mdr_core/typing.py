@@ -1,4 +1,4 @@
-"""The array type that all modules share."""
+"""The array types that all modules share."""
 
 from typing import TypeAlias
 
@@ -6,5 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.intp]
+Flags: TypeAlias = NDArray[np.bool_]
 # A profile's parameter: one number, or an array over the scenes of a sweep.
 Parameter: TypeAlias = float | Array

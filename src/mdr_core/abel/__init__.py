@@ -4,6 +4,7 @@ from mdr_core.abel.back import back
 from mdr_core.abel.panels import (
     Jumps,
     Panels,
+    find_breaks,
     forward,
     forward_moment,
     forward_slope,
@@ -21,6 +22,7 @@ __all__ = [
     "asinh_difference",
     "back",
     "between",
+    "find_breaks",
     "forward",
     "forward_moment",
     "forward_slope",

@@ -7,15 +7,15 @@ later quadratures know their error beforehand.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from mdr_core.errors import AccuracyError
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags, Indices
 
 Function = Callable[[Array], Array]
 
@@ -34,6 +34,8 @@ _CARRIES: Final = 3
 # What the axis panel may still hold, relative to the first one looked at.
 _NEGLIGIBLE: Final = 1e-17
 _MOST_PANELS: Final = 4000
+# Panels narrower than this have closed in on a break.
+_CLOSED_IN: Final = 1e-13
 # Values below have lost digits to underflow: there is no structure left to resolve.
 _UNDERFLOW: Final = float(np.finfo(float).tiny) / _EPS
 _NODES: Final = 32
@@ -41,9 +43,7 @@ _NODES: Final = 32
 # Chebyshev points of the first kind, which leave out the ends, and values -> coefficients.
 _POINTS: Final = chebyshev.chebpts1(_DEGREE + 1)
 _TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_POINTS, _DEGREE))
-_TO_SLOPES: Final = chebyshev.chebval(
-    _POINTS, chebyshev.chebder(np.eye(_DEGREE + 1), axis=0)
-).T
+_TO_SLOPES: Final = chebyshev.chebval(_POINTS, chebyshev.chebder(np.eye(_DEGREE + 1), axis=0)).T
 
 
 @dataclass(frozen=True)
@@ -66,10 +66,11 @@ class Panels:
 def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> Panels:
     """Return the function on [0, upper] as Chebyshev panels of degree 23.
 
-    A panel whose last two coefficients are not down to rounding is bisected, so that a kink or a jump nobody declared ends in panels of rounding's width.
-    The rounding of the nodes themselves, eps r f', is not mistaken for structure.
+    A panel whose last two coefficients are not down to rounding is bisected, so that a kink or a
+    jump nobody declared ends in panels of rounding's width. The rounding of the nodes
+    themselves, eps r f', is not mistaken for structure.
 
-    Source: physics, section 10.
+    Source: notes, §5.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> P
     """
     inner = sorted({float(b) for b in breaks if 0 < b < upper})
     ends = np.array([0.0, *inner, upper])
-    graded = [_graded(low, high) for low, high in zip(ends[:-1], ends[1:], strict=True)]
+    graded = [_graded(low, high) for low, high in pairwise(ends)]
     intervals = np.concatenate(graded)
     first = intervals[:1, 1]
     negligible = _NEGLIGIBLE * float(np.abs(function(first))[0] * first[0])
@@ -96,6 +97,23 @@ def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> P
     return Panels(np.append(intervals[:, 0], upper), coefficients, error)
 
 
+def find_breaks(function: Function, upper: float) -> list[float]:
+    """Return the radii in (0, upper) where the function has a kink, a jump or a root's end.
+
+    Bisection closes in on each; neighbouring panels of rounding's width count as one place.
+
+    Raises
+    ------
+    AccuracyError : the function is noise.
+    """
+    edges = resolve(function, upper).edges
+    left = edges[:-1][np.diff(edges) <= _CLOSED_IN * edges[1:]]
+    left = left[left > _FIRST_WIDTH * upper]
+    apart = np.diff(left, prepend=0.0) > _FIRST_WIDTH * left
+    groups = np.split(left, np.flatnonzero(apart)[1:]) if left.size else []
+    return [float(np.median(group)) for group in groups]
+
+
 def _graded(low: float, high: float) -> Array:
     """Intervals that halve towards `low`, so that what vanishes there keeps its digits."""
     ends = low + (high - low) * 0.5 ** np.arange(_OCTAVES, -1, -1)
@@ -103,19 +121,19 @@ def _graded(low: float, high: float) -> Array:
 
 
 def bisect(
-    function: Callable[[Array, NDArray[np.intp]], Array],
+    function: Callable[[Array, Indices], Array],
     intervals: Array,
-    tags: NDArray[np.intp],
+    tags: Indices,
     blur: Function,
     negligible: float,
-) -> tuple[Array, NDArray[np.intp], Array, float]:
+) -> tuple[Array, Indices, Array, float]:
     """Split tagged intervals until each is one polynomial; ascending in tag and place.
 
     `function(points, tags)` takes flat arrays; `blur(points)` is the rounding of the points.
     A panel that starts at zero is done when its length times its value is `negligible`.
     Returns intervals, tags, coefficients and the largest tail kept.
     """
-    done: list[tuple[Array, NDArray[np.intp], Array]] = []
+    done: list[tuple[Array, Indices, Array]] = []
     worst, count = 0.0, 0
     while len(intervals):
         low, high = intervals[:, 0], intervals[:, 1]
@@ -130,9 +148,7 @@ def bisect(
             coefficients = moved @ _TO_COEFFICIENTS.T
         tail = np.abs(coefficients[:, -2:]).max(axis=1)
         largest = np.abs(values).max(axis=1)
-        narrow = (high - low <= _JUMP_WIDTH * high) | (
-            (low == 0) & (high * largest <= negligible)
-        )
+        narrow = (high - low <= _JUMP_WIDTH * high) | ((low == 0) & (high * largest <= negligible))
         steepness = np.abs(np.diff(values, axis=1) / np.diff(nodes, axis=1))
         rounding = (steepness * blur(nodes[:, 1:])).max(axis=1)
         smooth = (tail <= _TAIL * largest + 2 * rounding) & ~_steep(values, low, high)
@@ -158,7 +174,7 @@ def _chopped(coefficients: Array, largest: Array) -> Array:
     return np.where(needed, coefficients, 0.0)
 
 
-def _steep(values: Array, low: Array, high: Array) -> NDArray[np.bool_]:
+def _steep(values: Array, low: Array, high: Array) -> Flags:
     """Panels that rise so much that their left end would lose its relative digits.
 
     The first panel behind the axis or a break is left alone: there the function may vanish.
@@ -185,7 +201,7 @@ def forward(slope: Panels, x: Array) -> Array:
 def forward_moment(slope: Panels, x: Array) -> Array:
     """Return 2 int_0^x r^2 F(r)/sqrt(x^2 - r^2) dr = 2 int_0^x y g'(y) dy.
 
-    Source: physics, section 4.1.
+    Source: notes, §1.
     """
     return 2 * _angle_sums(slope, x, np.zeros_like(x), weight=lambda r: r * r)
 
@@ -271,9 +287,7 @@ def _angle_sums(
     return total
 
 
-def _angles(
-    low: float, width: Array, above: Array, beyond: Array, x: Array
-) -> tuple[Array, Array]:
+def _angles(low: float, width: Array, above: Array, beyond: Array, x: Array) -> tuple[Array, Array]:
     """arccos(low/x), and how much it exceeds arccos(high/x), high = low + width <= x.
 
     `above` = x - low and `beyond` = x - high are given with their digits.

@@ -7,7 +7,7 @@ Nothing here knows any physics. Two substitutions make every integrand analytic 
   x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y removes both, near or far from each other;
 * a real and an imaginary root, r and i h, for functions smooth at the axis: no tip to resolve.
 
-Source: physics, section 10.
+Source: notes, §5.
 """
 
 from collections.abc import Callable
@@ -22,12 +22,11 @@ from mdr_core.quadrature import (
     integrate_even,
     integrate_plain,
 )
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 
 # weight(x, s, index) = F(x) s / x with s = sqrt(x^2 - b^2): free of the root that F carries at b.
 # x and s have shape (nodes, k), index (k,) says to which integrals they belong.
-Weight = Callable[[Array, Array, Array], Array]
-
+Weight = Callable[[Array, Array, Indices], Array]
 
 
 def asinh_difference(high: Array, low: Array, square_difference: Array) -> Array:
@@ -58,7 +57,7 @@ def one_sided(
 
     At r = b the integral is infinite where the weight does not vanish: F ~ 1/s there.
 
-    Source: physics, section 10 (two-root rule); mdr-5, Eqs. (5.68), (5.70).
+    Source: notes, §5 (two-root rule); mdr-5, Eqs. (5.68), (5.70).
 
     Parameters
     ----------
@@ -94,7 +93,7 @@ class _OneSided:
     rtol: float
     analytic: Analytic
 
-    def picked(self, index: Array, shape: tuple[int, ...]) -> "_OneSided":
+    def picked(self, index: Indices, shape: tuple[int, ...]) -> "_OneSided":
         """The same for some of the points."""
 
         def pick(part: Array | None) -> Array | None:
@@ -112,9 +111,9 @@ class _OneSided:
 def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     """r = b: x = b cosh(y), s = b sinh(y); infinite where F ~ 1/s and the stretch starts at b."""
 
-    def h(y: Array, index: Array) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         x, s = r[index] * np.cosh(y), r[index] * np.sinh(y)
-        return problem.weight(x, s, index) * x / s
+        return np.asarray(problem.weight(x, s, index) * x / s)
 
     upper = problem.upper
     lower = np.zeros_like(r) if problem.width is None else upper - problem.width
@@ -138,7 +137,7 @@ def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     base2 = np.where(above, r * r, np.square(b))
     epsilon = np.sqrt(distance2)
 
-    def h(y: Array, index: Array) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         leg = np.sinh(y)
         leg *= epsilon[index]
         leg *= leg
@@ -163,7 +162,7 @@ def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
 def between(
     h: Integrand,
     top: Array,
-    even: Array,
+    even: Flags,
     rtol: float,
     bottom: Array | None = None,
     square_difference: Array | None = None,
@@ -193,6 +192,6 @@ def between(
     return result
 
 
-def _chosen(h: Integrand, chosen: Array) -> Integrand:
+def _chosen(h: Integrand, chosen: Indices) -> Integrand:
     """The integrand of the chosen integrals alone."""
     return lambda y, index: h(y, chosen[index])

@@ -6,12 +6,11 @@ from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import one_sided
 from mdr_core.quadrature import Analytic, gauss_legendre
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 _FAR_NODES: Final = 16
 # A panel is far when the kernel's root is this many panel lengths away from it.
@@ -19,8 +18,8 @@ _FAR: Final = 1.25
 _BLOCK: Final = 64
 # The axis of the first panel: nearer than this nothing changes for a function smooth there.
 _AXIS: Final = 1e-8
-# Rounding of G(0), relative to the panel's largest coefficient.
-_TIP: Final = 1e-12
+# G(0) below this, relative to the largest G, is what an interpolation leaves of a smooth tip.
+_TIP: Final = 1e-6
 # The panels' polynomials have degree 23.
 _POLYNOMIALS: Final = Analytic(growth=12.0)
 _NEGLIGIBLE: Final = 1e-17
@@ -110,14 +109,14 @@ class StressPanels:
         return x, half * weights * (regular * s + self.pole[:, None]) / x
 
     def _near(
-        self, panel: NDArray[np.intp], r: Array, high: Array, span: Array, edge: Array, rtol: float
+        self, panel: Indices, r: Array, high: Array, span: Array, edge: Array, rtol: float
     ) -> Array:
         """Two-root rule on each pair of a panel and a point, from high - span to high in s."""
         base, start, stop = self.base[panel], self.start[panel], self.stop[panel]
         middle, half = (start + stop) / 2, (stop - start) / 2
         pole, rows = self.pole[panel], self.coefficients[panel].T
 
-        def weight(x: Array, s: Array, index: Array) -> Array:
+        def weight(x: Array, s: Array, index: Indices) -> Array:
             u = np.clip((s - middle[index]) / half[index], -1, 1)
             value = chebyshev.chebval(u, rows[:, None, index], tensor=False)
             return np.asarray((value * s + pole[index]) / x)
@@ -137,7 +136,7 @@ class StressPanels:
         if on_axis.any():
             # G(0) > 0 is a tip, and the integral of G/x over it infinite.
             left = np.abs(chebyshev.chebval(-1.0, rows))
-            tip = left > _TIP * np.abs(rows).max(axis=0)
+            tip = left > _TIP * np.abs(self.coefficients).max()
             result[on_axis & tip] = np.inf
         return result
 
@@ -157,13 +156,14 @@ def stress_panels(
     last = _leg(edges[1:], base)
     intervals = np.stack([np.zeros_like(last), last], axis=1)
 
-    def in_s(s: Array, tags: NDArray[np.intp]) -> Array:
+    def in_s(s: Array, tags: Indices) -> Array:
         b = base[tags]
-        return slope(b, s * s / (b + np.hypot(b, s)))
+        offset: Array = s * s / (b + np.hypot(b, s))
+        return slope(b, offset)
 
     def blur(s: Array) -> Array:
         # x = sqrt(b^2 + s^2) is rounded to eps x, its root s to eps x^2/s; x <= the last edge.
-        return _EPS * np.square(edges[-1]) / s
+        return np.asarray(_EPS * np.square(edges[-1]) / s)
 
     negligible = _NEGLIGIBLE * float(np.abs(slope(base[:1], edges[1:2]))[0] * edges[1])
     places, tags, coefficients, error = bisect(

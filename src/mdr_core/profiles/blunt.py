@@ -17,7 +17,7 @@ from mdr_core.typing import Array, Parameter
 class FlatPunch(Profile):
     """A flat of `radius` with a vertical edge; the coordinate is the depth, the radius given.
 
-    Source: mdr-5, Eqs. (5.31), (5.33); physics, section 4.2.
+    Source: mdr-5, Eqs. (5.31), (5.33); notes, §2.
     """
 
     radius: Parameter
@@ -36,7 +36,14 @@ class FlatPunch(Profile):
     def f(self, radius: Array) -> Array:
         return np.asarray(np.where(radius <= self.radius, 0.0, np.inf))
 
-    df = g = dg = f
+    def df(self, radius: Array) -> Array:
+        return self.f(radius)
+
+    def g(self, x: Array) -> Array:
+        return self.f(x)
+
+    def dg(self, x: Array) -> Array:
+        return self.f(x)
 
     def contact_radius(self, coordinate: Array) -> Array:
         return self.radius + np.zeros_like(coordinate)
@@ -49,7 +56,7 @@ class FlatPunch(Profile):
         )
 
     def depth(self, coordinate: Array) -> Array:
-        return coordinate + np.zeros_like(self.radius)
+        return np.asarray(coordinate + np.zeros_like(self.radius))
 
     def depth_slope(self, coordinate: Array) -> Array:
         return np.ones_like(coordinate)
@@ -73,10 +80,11 @@ class FlatPunch(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         """d / (pi sqrt(a^2 - r^2)): the edge term of Eq. (5.34); no slip annulus exists."""
         depth = coordinate if width is None else width
-        return depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
+        return modulus * depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
 
 class Blunt(Profile):
@@ -131,6 +139,7 @@ class Blunt(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         value = one_sided(
             lambda x, s, _: self._weight(x, s),
@@ -142,7 +151,8 @@ class Blunt(Profile):
             odd=True,
             rtol=rtol,
         )
-        return value / np.pi
+        value *= modulus / np.pi
+        return value
 
 
 @dataclass(frozen=True)
@@ -156,9 +166,7 @@ class RoundedPunch(Blunt):
     rounding_radius: Parameter
 
     kind: ClassVar[str] = "rounded_punch"
-    formula: ClassVar[str] = (
-        "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
-    )
+    formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
 
     def __post_init__(self) -> None:
@@ -195,7 +203,7 @@ class RoundedPunch(Blunt):
 class TruncatedCone(Blunt):
     """f = t (r - b) beyond the flat b = `flat_radius`, t = `slope` [1].
 
-    Source: physics, section 4.2.
+    Source: notes, §2.
     """
 
     flat_radius: Parameter
@@ -234,7 +242,7 @@ class TruncatedCone(Blunt):
 class TruncatedParaboloid(Blunt):
     """f = (r^2 - b^2)/(2R) beyond the flat b = `flat_radius`, R = `radius` [length].
 
-    Source: physics, section 4.2.
+    Source: notes, §2.
     """
 
     flat_radius: Parameter
@@ -272,7 +280,7 @@ class TruncatedParaboloid(Blunt):
         """s^3 + (3/2) b^2 s = (3/4) R F/E*, by the hyperbolic form of the cubic's root."""
         b = self.flat_radius
         argument = reduced_force * self.radius * (1.5 / np.sqrt(2)) / (b * np.square(b))
-        return np.sqrt(2) * b * np.sinh(np.arcsinh(argument) / 3)
+        return np.asarray(np.sqrt(2) * b * np.sinh(np.arcsinh(argument) / 3))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """(1/R^2) [a s^2 (b^2 + s^2/3) + s^4 (3a^3 + 6a^2 b + 4a b^2 + 2b^3)/(15 (a + b)^2)]."""
@@ -280,7 +288,7 @@ class TruncatedParaboloid(Blunt):
         a = self.contact_radius(coordinate)
         cubic = ((3 * a + 6 * b) * a + 4 * (b * b)) * a + 2 * (b * b * b)
         outer = s2 * s2 * cubic / (15 * np.square(a + b))
-        return (a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius)
+        return np.asarray((a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius))
 
     def _weight(self, x: Array, s: Array) -> Array:
         return (x * x + s * s) / (x * self.radius)

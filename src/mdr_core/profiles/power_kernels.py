@@ -6,7 +6,7 @@ import numpy as np
 
 from mdr_core.abel.roots import between
 from mdr_core.quadrature import Analytic
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Indices, Parameter
 
 _TINY: Final = 1e-290
 _HUGE: Final = 1e290
@@ -54,7 +54,9 @@ def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Arr
 
 def root_step(a: Array, r: Array, width: Array | None) -> Array:
     """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) with c = a - width, the second term for r < c only."""
-    root_a = np.sqrt((a - r) * (a + r))
+    root_a = a - r
+    root_a *= a + r
+    np.sqrt(root_a, out=root_a)
     if width is None:
         return root_a
     c = a - width
@@ -66,7 +68,7 @@ def log_ratio(a: Array, r: Array, width: Array | None) -> Array:
     """arccosh(a/r) - arccosh(c/r), c = a - width, without the infinite difference at r = 0."""
     root_a = np.sqrt((a - r) * (a + r))
     if width is None:
-        low, root_low, step = r, 0.0, (a - r) + root_a
+        low, root_low, step = r, np.zeros(1), (a - r) + root_a
     else:
         low = np.maximum(r, a - width)
         root_low = np.sqrt((low - r) * (low + r))
@@ -90,7 +92,7 @@ def power_moment(m: float, a: Array, r: Array, rtol: float, width: Array | None)
     top = np.sqrt((a - safe) * (a + safe)) / safe
     analytic = Analytic(growth=max(abs(m), 1.0))
 
-    def h(y: Array, index: Array) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         return np.asarray((ratio[index] * np.cosh(y)) ** m)
 
     if width is None:

@@ -17,6 +17,7 @@ from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
 
+
 @dataclass(frozen=True)
 class Cone(Profile):
     """f = t r with t = `slope` = tan(theta) [1]. Source: mdr-5, Eqs. (5.46)-(5.53)."""
@@ -42,9 +43,6 @@ class Cone(Profile):
     def dg(self, x: Array) -> Array:
         return (np.pi / 2) * self.slope * np.ones_like(x)
 
-    depth = g
-    depth_slope = dg
-
     def reduced_force(self, coordinate: Array) -> Array:
         return (np.pi / 2) * self.slope * coordinate * coordinate
 
@@ -68,9 +66,10 @@ class Cone(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         """(t/2) [arccosh(a/r) - arccosh(c/r)]. Source: mdr-5, Eq. (5.53)."""
-        return (self.slope / 2) * log_ratio(coordinate, radius, width)
+        return (modulus * self.slope / 2) * log_ratio(coordinate, radius, width)
 
 
 @dataclass(frozen=True)
@@ -93,13 +92,12 @@ class Paraboloid(Profile):
         return radius / self.radius
 
     def g(self, x: Array) -> Array:
-        return x * x / self.radius
+        square = np.asarray(x * x)
+        square /= self.radius
+        return square
 
     def dg(self, x: Array) -> Array:
         return 2 * x / self.radius
-
-    depth = g
-    depth_slope = dg
 
     def reduced_force(self, coordinate: Array) -> Array:
         return coordinate * coordinate * coordinate * (4 / (3 * self.radius))
@@ -108,7 +106,9 @@ class Paraboloid(Profile):
         return np.sqrt(self.radius * depth)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        return np.cbrt((0.75 * self.radius) * reduced_force)
+        cube = np.asarray(reduced_force * self.radius)
+        cube *= 0.75
+        return np.cbrt(cube, out=cube)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         return self.g(coordinate) ** 2 * coordinate * (8 / 15)
@@ -120,9 +120,12 @@ class Paraboloid(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)]. Source: mdr-5, Eq. (5.38)."""
-        return (2 / (np.pi * self.radius)) * root_step(coordinate, radius, width)
+        root = root_step(coordinate, radius, width)
+        root *= 2 * modulus / (np.pi * self.radius)
+        return root
 
 
 @dataclass(frozen=True)
@@ -160,9 +163,6 @@ class Power(Profile):
     def dg(self, x: Array) -> Array:
         return kappa(self.exponent) * self.df(x)
 
-    depth = g
-    depth_slope = dg
-
     def reduced_force(self, coordinate: Array) -> Array:
         n = self.exponent
         return (2 * n / (n + 1)) * self.g(coordinate) * coordinate
@@ -192,7 +192,8 @@ class Power(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         n = np.asarray(self.exponent, dtype=float)
-        scale = kappa(n) / np.pi * self.df(coordinate)
+        scale = modulus * kappa(n) / np.pi * self.df(coordinate)
         return np.asarray(scale * power_moment(float(n) - 1, coordinate, radius, rtol, width))

@@ -103,13 +103,13 @@ class Profile(ABC):
         """Contact radius a [length]."""
         return coordinate
 
-    @abstractmethod
     def depth(self, coordinate: Array) -> Array:
         """Indentation depth d = g(a) [length]."""
+        return self.g(coordinate)
 
-    @abstractmethod
     def depth_slope(self, coordinate: Array) -> Array:
         """Derivative of the depth with respect to the contact coordinate."""
+        return self.dg(coordinate)
 
     @abstractmethod
     def reduced_force(self, coordinate: Array) -> Array:
@@ -149,8 +149,9 @@ class Profile(ABC):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
-        """P = (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1], for 0 <= r < a.
+        """(M/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx, for 0 <= r < a; M = `modulus`.
 
         All arrays have one shape (m,). The stick edge c is given by `width`, its distance from
         the contact's edge in the contact coordinate; None stands for c = 0. `edge` is the contact
@@ -159,9 +160,7 @@ class Profile(ABC):
         """
 
 
-def energy_integral(
-    density: Callable[[Array], Array], upper: Array, scale: Parameter
-) -> Array:
+def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Parameter) -> Array:
     """Return int_0^upper density(s) ds for a positive density, a power of s at either end.
 
     With density = (F/E*) dd/ds this is the elastic energy without any cancellation.

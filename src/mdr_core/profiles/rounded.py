@@ -10,7 +10,7 @@ from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, require_positive
 from mdr_core.profiles.stable import atan_gap, tanh_gap
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Indices, Parameter
 
 _EQUATOR: Final = 17.0
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
@@ -20,7 +20,7 @@ class Spheroid(Profile):
     """Half axes R = `radius` and h = `height`: f = h (1 - sqrt(1 - r^2/R^2)).
 
     The contact coordinate is v = artanh(a/R): near the equator, a alone has no digits left.
-    Source: physics, section 4.2.
+    Source: notes, §2.
     """
 
     radius: Parameter
@@ -39,7 +39,7 @@ class Spheroid(Profile):
 
     def f(self, radius: Array) -> Array:
         q = np.square(radius / self.radius)
-        return self.height * q / (1 + np.sqrt(1 - q))
+        return np.asarray(self.height * q / (1 + np.sqrt(1 - q)))
 
     def df(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
@@ -94,9 +94,11 @@ class Spheroid(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         kernel = sphere_kernel(self.radius, coordinate, radius, rtol, width, edge)
-        return np.asarray(self.height / self.radius * kernel)
+        kernel *= modulus * self.height / self.radius
+        return kernel
 
 
 def sphere_kernel(
@@ -117,7 +119,7 @@ def sphere_kernel(
     tilt2 = np.square(stretch * (r / big_radius))
     top = _sphere_leg(big_radius, v, r, edge)
 
-    def h(y: Array, index: Array) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         cosh = np.cosh(y)
         z = np.sqrt(tilt2[index] + np.square(stretch[index] * np.sinh(y)))
         return np.asarray(np.arcsinh(z) / (z * cosh))
@@ -134,9 +136,7 @@ def sphere_kernel(
     return np.asarray((stretch * length + smooth) / np.pi)
 
 
-def _sphere_leg(
-    big_radius: Parameter, v: Array, r: Array, edge: Array | None = None
-) -> Array:
+def _sphere_leg(big_radius: Parameter, v: Array, r: Array, edge: Array | None = None) -> Array:
     """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
     a = big_radius * np.tanh(v) if edge is None else edge
     return np.asarray(np.sqrt(np.maximum(a - r, 0.0) * (a + r)) * np.cosh(v) / big_radius)
@@ -144,7 +144,7 @@ def _sphere_leg(
 
 @dataclass(frozen=True)
 class Sphere(Spheroid):
-    """f = R - sqrt(R^2 - r^2), R = `radius` [length], exact. Source: physics, section 4.2."""
+    """f = R - sqrt(R^2 - r^2), R = `radius` [length], exact. Source: notes, §2."""
 
     radius: Parameter
 
@@ -163,7 +163,7 @@ class Sphere(Spheroid):
 class Ellipsoid(Spheroid):
     """f = h (1 - sqrt(1 - r^2/R^2)), semi-axes R = `radius` and h = `height` [length].
 
-    Source: physics, section 4.2.
+    Source: notes, §2.
     """
 
     radius: Parameter
@@ -181,16 +181,14 @@ class Ellipsoid(Spheroid):
 class Hyperboloid(Profile):
     """f = R t^2 (sqrt(1 + r^2/(R t)^2) - 1): tip R = `tip_radius`, asymptote t = `slope`.
 
-    Source: api; physics, section 4.2 (cone limit); g = t x arctan(x/(R t)).
+    Source: notes, §2; g = t x arctan(x/(R t)).
     """
 
     slope: Parameter
     tip_radius: Parameter
 
     kind: ClassVar[str] = "hyperboloid"
-    formula: ClassVar[str] = (
-        "tip_radius·slope²·(√(1 + r²/(tip_radius·slope)²) − 1)"
-    )
+    formula: ClassVar[str] = "tip_radius·slope²·(√(1 + r²/(tip_radius·slope)²) − 1)"
     closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
 
     def __post_init__(self) -> None:
@@ -204,7 +202,7 @@ class Hyperboloid(Profile):
 
     def f(self, radius: Array) -> Array:
         q = radius / self.scale
-        return self.slope * radius * q / (1 + np.hypot(1.0, q))
+        return np.asarray(self.slope * radius * q / (1 + np.hypot(1.0, q)))
 
     def df(self, radius: Array) -> Array:
         return np.asarray(self.slope * radius / np.hypot(self.scale, radius))
@@ -215,9 +213,6 @@ class Hyperboloid(Profile):
     def dg(self, x: Array) -> Array:
         q = x / self.scale
         return self.slope * (np.arctan(q) + q / (1 + q * q))
-
-    depth = g
-    depth_slope = dg
 
     def reduced_force(self, coordinate: Array) -> Array:
         """t [a^2 arctan(a/h) + h (a - h arctan(a/h))]: all terms positive."""
@@ -231,6 +226,7 @@ class Hyperboloid(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         """x^2 + h^2 = (r^2 + h^2) cosh^2 y removes the root at r and the branch points +-ih."""
         a, r, h = coordinate, radius, np.asarray(self.scale)
@@ -239,7 +235,7 @@ class Hyperboloid(Profile):
         top = leg / rho
         r2 = r * r
 
-        def integrand(y: Array, index: Array) -> Array:
+        def integrand(y: Array, index: Indices) -> Array:
             x = np.sqrt(r2[index] + np.square(rho[index] * np.sinh(y)))
             return np.asarray(rho[index] * np.cosh(y) * np.arctan(x / h) / x)
 
@@ -253,4 +249,6 @@ class Hyperboloid(Profile):
             difference = width * (2 * a - width) / (rho * rho)
             smooth = between(integrand, top, even, rtol, bottom, difference)
             pole = np.arctan2(step / rho, 1 + top * bottom)
-        return np.asarray(self.slope / np.pi * (h / rho * pole + smooth))
+        smooth += h / rho * pole
+        smooth *= modulus * self.slope / np.pi
+        return smooth

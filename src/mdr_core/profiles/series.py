@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import inf, isfinite
 from typing import ClassVar
 
@@ -10,7 +11,7 @@ from scipy.optimize import brentq
 
 from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import power, power_moment, power_slope
-from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile
+from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
 
@@ -28,7 +29,7 @@ class Series(Profile):
     """f = sum of C_i r^n_i over `terms`. Source: mdr-5, Eq. (5.24), superposed.
 
     Negative terms are accepted; the profile then ends where f' or g' first falls to zero
-    (physics, section 4.3), and a contact that reaches there is refused.
+    (notes, §3), and a contact that reaches there is refused.
     """
 
     terms: tuple[PowerTerm, ...]
@@ -51,9 +52,7 @@ class Series(Profile):
                     ("profile", "terms", i, "coefficient"), "must be finite and not zero"
                 )
             if not 0 < term.exponent < inf:
-                raise InputError(
-                    ("profile", "terms", i, "exponent"), "must be positive and finite"
-                )
+                raise InputError(("profile", "terms", i, "exponent"), "must be positive and finite")
         if self.domain == 0:
             raise InputError(
                 ("profile", "terms"), "f falls from radius 0 on: the leading term is not positive"
@@ -68,7 +67,7 @@ class Series(Profile):
         return tuple((c, n) for n, c in sorted(merged.items()) if c != 0)
 
     @cached_property
-    def domain(self) -> float:  # type: ignore[override]
+    def domain(self) -> float:
         if all(c > 0 for c, _ in self._powers):
             return inf
         slope_f = tuple((c * n, n - 1) for c, n in self._powers)
@@ -94,9 +93,6 @@ class Series(Profile):
 
     def dg(self, x: Array) -> Array:
         return np.asarray(sum(kappa(n) * power_slope(c, x, n) for c, n in self._powers))
-
-    depth = g
-    depth_slope = dg
 
     def reduced_force(self, coordinate: Array) -> Array:
         parts = (2 * n / (n + 1) * kappa(n) * power(c, coordinate, n) for c, n in self._powers)
@@ -134,10 +130,11 @@ class Series(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
         for c, n in self._powers:
-            scale = kappa(n) / np.pi * power_slope(c, coordinate, n)
+            scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
             total += scale * power_moment(n - 1, coordinate, radius, rtol, width)
         return total
 
@@ -148,7 +145,7 @@ def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
         return 0.0
     roots = _positive_roots(powers)
     ends = (*roots, inf)
-    for start, end in zip(ends, ends[1:], strict=False):
+    for start, end in pairwise(ends):
         middle = 2 * start if end == inf else (start * end) ** 0.5
         if _value(powers, middle) < 0:
             return start
@@ -173,7 +170,7 @@ def _positive_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
     derivative = tuple((c * (e - lowest), e - lowest - 1) for c, e in powers[1:])
     turns = [0.0, *_positive_roots(derivative), _outer_bound(powers)]
     roots = []
-    for low, high in zip(turns, turns[1:], strict=False):
+    for low, high in pairwise(turns):
         if _value(powers, low) * _value(powers, high) < 0:
             roots.append(float(brentq(lambda r: _value(powers, r), low, high, xtol=1e-300)))
     return roots
@@ -183,4 +180,5 @@ def _outer_bound(powers: tuple[tuple[float, float], ...]) -> float:
     """A radius beyond which the last term outweighs all others together."""
     last, highest = powers[-1]
     others = powers[:-1]
-    return 2 * max((len(others) * abs(c / last)) ** (1 / (highest - e)) for c, e in others)
+    bounds = ((len(others) * abs(c / last)) ** (1 / (highest - e)) for c, e in others)
+    return 2 * float(max(bounds))

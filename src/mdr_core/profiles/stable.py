@@ -1,6 +1,6 @@
 """Elementary differences in forms that keep their digits.
 
-Source: physics, section 4.4.
+Source: notes, §4.
 """
 
 from typing import Final
@@ -12,17 +12,17 @@ from scipy.special import gamma
 from mdr_core.typing import Array, Parameter
 
 _THRESHOLD: Final = 0.5
+_TERMS: Final = 15
 
 
 def _economised(sign: float) -> tuple[float, ...]:
     """Coefficients in u of sum_k (sign u)^k / (2k + 3), economised on 0 <= u <= 1/4."""
     k = np.arange(60)
-
-    def series(v: Array) -> Array:
-        u = (v + 1) / 8
-        return np.asarray(((sign * u[:, None]) ** k / (2 * k + 3)).sum(axis=1))
-
-    cheb = chebyshev.Chebyshev(chebyshev.chebinterpolate(series, 14), domain=[0, 0.25])
+    points = chebyshev.chebpts1(_TERMS)
+    u = (points + 1) / 8
+    values = ((sign * u[:, None]) ** k / (2 * k + 3)).sum(axis=1)
+    fitted = np.linalg.solve(chebyshev.chebvander(points, _TERMS - 1), values)
+    cheb = chebyshev.Chebyshev(fitted, domain=[0, 0.25])
     return tuple(cheb.convert(kind=np.polynomial.Polynomial, domain=[-1, 1], window=[-1, 1]).coef)
 
 

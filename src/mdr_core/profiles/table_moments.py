@@ -3,7 +3,7 @@
 With r = x cos(alpha), int u^k dr/sqrt(x^2 - r^2) over a panel becomes int u^k dt over
 t = alpha(left) - alpha, where u = r - left = S sin t - L (1 - cos t), S = sqrt(x^2 - L^2), and the
 moments are elementary. Written in 1 - cos t and t - sin t they do not cancel, however narrow the
-panel and however far from the axis. Source: physics, section 10.
+panel and however far from the axis. Source: notes, §5.
 """
 
 from dataclasses import dataclass
@@ -40,9 +40,7 @@ class TableSlope:
         """(r F)' = F + r F', again quadratic in each panel."""
         left = self.edges[:-1]
         c0, c1, c2 = self.coefficients
-        return TableSlope(
-            self.edges, np.stack([c0 + left * c1, 2 * c1 + 2 * left * c2, 3 * c2])
-        )
+        return TableSlope(self.edges, np.stack([c0 + left * c1, 2 * c1 + 2 * left * c2, 3 * c2]))
 
     def jumps(self, noise: float) -> Jumps:
         """Jumps of F between the panels, but for rounding."""
@@ -56,16 +54,16 @@ class TableSlope:
 
     def first_negative(self, noise: float) -> float | None:
         """Radius where F first falls below zero, but for rounding."""
-        low, place = self._minimum()
+        low, place = self.minimum()
         bad = low < -noise * np.abs(self.coefficients[0]).max()
         return float(place[bad][0]) if bad.any() else None
 
     def source_is_positive(self, noise: float) -> bool:
         """(r F)' >= 0 everywhere: enough for g' >= 0, without a transform."""
-        low, _ = self.source._minimum()
+        low, _ = self.source.minimum()
         return bool((low >= -noise * np.abs(self.source.coefficients[0]).max()).all())
 
-    def _minimum(self) -> tuple[Array, Array]:
+    def minimum(self) -> tuple[Array, Array]:
         """Smallest value of each panel's quadratic, and where."""
         width = np.diff(self.edges)
         c0, c1, c2 = self.coefficients
@@ -77,9 +75,7 @@ class TableSlope:
         panel = np.arange(width.size)
         return values[lowest, panel], self.edges[:-1] + u[lowest, panel]
 
-    def transform(
-        self, x: Array, offset: Array | None = None, *, weighted: bool = False
-    ) -> Array:
+    def transform(self, x: Array, offset: Array | None = None, *, weighted: bool = False) -> Array:
         """Return int_0^x F dr/sqrt(x^2 - r^2), at x + offset where an offset is given.
 
         `weighted`: of r^2 F, a trigonometric polynomial of degree four, by a rule that is exact
@@ -118,9 +114,7 @@ class TableSlope:
         rise = 2 * np.square(np.sin(t / 2))
         first = leg * rise - left * _lag(t)
         # int sin^2, int sin (1 - cos) and int (1 - cos)^2.
-        second = (
-            leg * leg * (_lag(2 * t) / 4) - leg * left * rise * rise + left * left * _rise2(t)
-        )
+        second = leg * leg * (_lag(2 * t) / 4) - leg * left * rise * rise + left * left * _rise2(t)
         return np.asarray((c0 * t + c1 * first + c2 * second).sum(axis=1))
 
     def _weighted_sums(self, base: Array, offset: Array, used: int) -> Array:
@@ -136,7 +130,7 @@ class TableSlope:
 
 
 def _series(t2: Array, coefficients: tuple[float, ...]) -> Array:
-    value = np.full_like(t2, coefficients[-1])
+    value: Array = np.full_like(t2, coefficients[-1])
     for coefficient in coefficients[-2::-1]:
         value = value * t2 + coefficient
     return value
@@ -161,4 +155,4 @@ def _rise2(t: Array) -> Array:
     small = np.minimum(t, _SERIES)
     t2 = small * small
     direct = 1.5 * t - 2 * np.sin(t) + np.sin(2 * t) / 4
-    return np.where(t < _SERIES, small * t2 * t2 * _series(t2, _RISE2), direct)
+    return np.asarray(np.where(t < _SERIES, small * t2 * t2 * _series(t2, _RISE2), direct))

@@ -1,7 +1,7 @@
 """Profiles through the points of a table: piecewise cubic, with closed panel moments."""
 
-from collections.abc import Callable
 from functools import cached_property
+from itertools import pairwise
 from typing import ClassVar, Final, Literal
 
 import numpy as np
@@ -14,12 +14,15 @@ from mdr_core.errors import InputError
 from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.table_moments import TableSlope
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 Interpolation = Literal["cubic", "pchip", "linear"]
 _EPS: Final = float(np.finfo(float).eps)
 # Rounding of what should be zero, relative to the largest of its kind in the table.
 _NOISE: Final = 256 * _EPS
+# A smooth body's spline rings a little: a slope this much below zero, relative to the
+# steepest, is the interpolation's and not the body's.
+_RINGING: Final = 1e-8
 # Places in each panel where the sign of g' is looked at.
 _LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
 _ENERGY_POINTS: Final = 16
@@ -36,10 +39,10 @@ class Tabulated(Profile):
 
     Raises
     ------
-    InputError : a table that is not one, or not admissible (physics, section 4.3): the radius
+    InputError : a table that is not one, or not admissible (notes, §3): the radius
         is named where f falls, or where g' and with it the pressure turns negative.
 
-    Source: api; physics, section 10.
+    Source: notes, §5.
     """
 
     kind: ClassVar[str] = "tabulated"
@@ -58,7 +61,10 @@ class Tabulated(Profile):
         self.values = np.asarray(f, dtype=float)
         self.interpolation = interpolation
         self._breaks = tuple(float(b) for b in breaks)
-        self._check_points()
+        _check_points(self.r, self.values)
+        for i, b in enumerate(self._breaks):
+            if b not in self.r[1:-1]:
+                raise InputError(("profile", "breaks", i), "must be an inner radius of the table")
         self._check_admissible()
 
     @property
@@ -86,39 +92,13 @@ class Tabulated(Profile):
         """The flat that a table may start with is in contact at zero load."""
         return float(self.r[np.flatnonzero(self.values == 0)[-1]])
 
-    def _check_points(self) -> None:
-        r, f = self.r, self.values
-        if r.ndim != 1 or r.size < 2:
-            raise InputError(("profile", "r"), "at least two points are needed")
-        if f.shape != r.shape:
-            raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
-        for name, column in (("r", r), ("f", f)):
-            if not np.isfinite(column).all():
-                bad = int(np.flatnonzero(~np.isfinite(column))[0])
-                raise InputError(("profile", name, bad), "must be finite")
-        if r[0] != 0:
-            raise InputError(("profile", "r", 0), "the table must start at radius 0")
-        if not (np.diff(r) > 0).all():
-            bad = int(np.flatnonzero(~(np.diff(r) > 0))[0]) + 1
-            raise InputError(("profile", "r", bad), "the radii must increase")
-        if f[0] != 0:
-            raise InputError(("profile", "f", 0), "the profile must start at f = 0")
-        if (np.diff(f) < 0).any():
-            bad = int(np.flatnonzero(np.diff(f) < 0)[0]) + 1
-            raise InputError(("profile", "f", bad), f"f falls before radius {r[bad]:.12g}")
-        if f[-1] == 0:
-            raise InputError(("profile", "f"), "f is zero everywhere: the edge is not in the table")
-        for i, b in enumerate(self._breaks):
-            if b not in r[1:-1]:
-                raise InputError(("profile", "breaks", i), "must be an inner radius of the table")
-
     @cached_property
     def _cubics(self) -> Array:
         """Coefficients (4, panels) of f in r - r_i, ascending, segment by segment."""
         cuts = np.searchsorted(self.r, sorted({0.0, *self._breaks, self.domain}))
         parts = [
             _interpolate(self.r[i : j + 1], self.values[i : j + 1], self.interpolation)
-            for i, j in zip(cuts[:-1], cuts[1:], strict=True)
+            for i, j in pairwise(cuts)
         ]
         return np.concatenate(parts, axis=1)
 
@@ -134,7 +114,7 @@ class Tabulated(Profile):
 
     def _check_admissible(self) -> None:
         slope = self._slope
-        fall = slope.first_negative(_NOISE)
+        fall = slope.first_negative(_RINGING)
         if fall is not None:
             raise InputError(
                 ("profile",),
@@ -147,11 +127,11 @@ class Tabulated(Profile):
                 ("profile",),
                 f"the slope drops at radius {radius:.12g}: the pressure there would be negative",
             )
-        if slope.source_is_positive(_NOISE):
+        if slope.source_is_positive(_RINGING):
             return
         x = (self.r[:-1, None] + np.diff(self.r)[:, None] * _LOOKS).ravel()
         slopes = self.dg(x)
-        bad = slopes < -_NOISE * np.abs(slopes).max()
+        bad = slopes < -_RINGING * np.abs(slopes[np.isfinite(slopes)]).max()
         if bad.any():
             raise InputError(
                 ("profile",),
@@ -193,11 +173,8 @@ class Tabulated(Profile):
         if np.any(np.asarray(radius) > self.domain):
             raise InputError(("profile", "r"), f"the table ends at radius {self.domain:.12g}")
 
-    depth = g
-    depth_slope = dg
-
     def reduced_force(self, coordinate: Array) -> Array:
-        """2 int_0^a r^2 f'/sqrt(a^2 - r^2) dr. Source: physics, section 4.1."""
+        """2 int_0^a r^2 f'/sqrt(a^2 - r^2) dr. Source: notes, §1."""
         return 2 * self._slope.transform(coordinate, weighted=True)
 
     def reduced_energy(self, coordinate: Array) -> Array:
@@ -228,7 +205,7 @@ class Tabulated(Profile):
 
     @property
     def tip_pressure(self) -> float:
-        return float(self._slope.at(np.zeros(1), np.zeros(1, int))[0] / 2)
+        return max(float(self._slope.coefficients[0, 0]) / 2, 0.0)
 
     @cached_property
     def _stress(self) -> StressPanels:
@@ -241,8 +218,11 @@ class Tabulated(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
-        return self._stress.kernel(coordinate, radius, rtol, width) / np.pi
+        value = self._stress.kernel(coordinate, radius, rtol, width)
+        value *= modulus / np.pi
+        return value
 
 
 def _interpolate(r: Array, f: Array, interpolation: Interpolation) -> Array:
@@ -250,6 +230,28 @@ def _interpolate(r: Array, f: Array, interpolation: Interpolation) -> Array:
     if interpolation == "linear" or r.size == 2:
         slope = np.diff(f) / np.diff(r)
         return np.stack([f[:-1], slope, np.zeros_like(slope), np.zeros_like(slope)])
-    build: Callable[[Array, Array], CubicSpline | PchipInterpolator]
     build = CubicSpline if interpolation == "cubic" else PchipInterpolator
     return np.flip(np.asarray(build(r, f).c), axis=0)
+
+
+def _check_points(r: Array, f: Array) -> None:
+    """Refuse what is not a table of a rising profile."""
+    if r.ndim != 1 or r.size < 2:
+        raise InputError(("profile", "r"), "at least two points are needed")
+    if f.shape != r.shape:
+        raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
+    _refuse_first("r", ~np.isfinite(r), "must be finite")
+    _refuse_first("f", ~np.isfinite(f), "must be finite")
+    _refuse_first("r", r[:1] != 0, "the table must start at radius 0")
+    _refuse_first("f", f[:1] != 0, "the profile must start at f = 0")
+    _refuse_first("r", np.append(False, np.diff(r) <= 0), "the radii must increase")
+    falls = np.append(False, np.diff(f) < 0)
+    radius = r[np.argmax(falls)]
+    _refuse_first("f", falls, f"f falls before radius {radius:.12g}")
+    if f[-1] == 0:
+        raise InputError(("profile", "f"), "f is zero everywhere: the edge is not in the table")
+
+
+def _refuse_first(name: str, bad: Flags, detail: str) -> None:
+    if bad.any():
+        raise InputError(("profile", name, int(np.argmax(bad))), detail)

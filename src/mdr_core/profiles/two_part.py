@@ -76,6 +76,7 @@ class TippedCone(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         a, r = np.broadcast_arrays(coordinate, radius)
         width = a if width is None else np.broadcast_to(width, a.shape)
@@ -92,6 +93,7 @@ class TippedCone(Profile):
             total[flank] += self._flank_kernel(
                 b[flank], r[flank], a[flank], c[flank], width[flank], rtol
             )
+        total *= modulus
         return total
 
     def _flank_kernel(
@@ -117,16 +119,14 @@ class TippedCone(Profile):
 class RoundedCone(TippedCone):
     """r^2/(2R) up to b = R t, then its tangent cone: t = `slope`, R = `tip_radius`.
 
-    Source: physics, section 4.2.
+    Source: notes, §2.
     """
 
     slope: Parameter
     tip_radius: Parameter
 
     kind: ClassVar[str] = "rounded_cone"
-    formula: ClassVar[str] = (
-        "r²/(2·tip_radius) for r ≤ b = tip_radius·slope, then slope·(r − b/2)"
-    )
+    formula: ClassVar[str] = "r²/(2·tip_radius) for r ≤ b = tip_radius·slope, then slope·(r − b/2)"
     closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
 
     def __post_init__(self) -> None:
@@ -159,9 +159,6 @@ class RoundedCone(TippedCone):
         flank = self.slope * (np.arctan(s / b) + 2 * b / np.maximum(x + s, b))
         return np.where(x < b, 2 * x / self.tip_radius, flank)
 
-    depth = g
-    depth_slope = dg
-
     def reduced_force(self, coordinate: Array) -> Array:
         """4a^3/(3R), then t [a^2 phi + (4/3) a^2 b/(a + s) + b s/3]."""
         a, b = coordinate, self.tangent_radius
@@ -185,7 +182,7 @@ class RoundedCone(TippedCone):
 class SphericalTipCone(TippedCone):
     """A sphere R = `tip_radius` up to b = R t/sqrt(1 + t^2), then its tangent cone, t = `slope`.
 
-    With h = sqrt(R^2 - b^2): every term below is positive. Source: physics, section 4.2,
+    With h = sqrt(R^2 - b^2): every term below is positive. Source: notes, §2,
     rearranged with L = ln((R + x)/(h + s)) = artanh(tau).
     """
 
@@ -212,7 +209,7 @@ class SphericalTipCone(TippedCone):
         return self.tip_radius / np.hypot(1.0, self.slope)
 
     def f(self, radius: Array) -> Array:
-        b, big, h = self.tangent_radius, self.tip_radius, self._height
+        b, big = self.tangent_radius, self.tip_radius
         inner = np.minimum(radius, b)
         tip = inner * inner / (big + np.sqrt((big - inner) * (big + inner)))
         return tip + self.slope * np.maximum(radius - b, 0.0)
@@ -255,9 +252,6 @@ class SphericalTipCone(TippedCone):
         turn = np.arctanh(self._tau(x, s)) + t * np.arctan(s / b)
         return np.asarray(turn + t * b * big / (x * h + s * big))
 
-    depth = g
-    depth_slope = dg
-
     def reduced_force(self, coordinate: Array) -> Array:
         """Sphere, then b^4/(R a + h s) + (R^2 + a^2)(artanh(tau) - tau) + t (a^2 phi + b s)."""
         a, b, big, h = coordinate, self.tangent_radius, self.tip_radius, self._height
@@ -289,7 +283,7 @@ class CappedParaboloid(Profile):
 
     b = `cap_radius`, R1 = `tip_radius`, R2 = `radius` <= R1 [length]: with R2 > R1 the slope
     would drop at b and the pressure there fall to minus infinity. The contact coordinate is
-    a up to b and b + sqrt(a^2 - b^2) beyond. Source: physics, sections 4.2, 4.3.
+    a up to b and b + sqrt(a^2 - b^2) beyond. Source: notes, §2 and §3.
     """
 
     cap_radius: Parameter
@@ -390,6 +384,7 @@ class CappedParaboloid(Profile):
         rtol: float,
         width: Array | None = None,
         edge: Array | None = None,
+        modulus: float = 1.0,
     ) -> Array:
         b = self.cap_radius
         coordinate = np.broadcast_to(coordinate, radius.shape)
@@ -402,16 +397,21 @@ class CappedParaboloid(Profile):
         outer = s > 0
         if outer.any() and self._kink > 0:
             step = np.where(s_c > 0, coordinate - low, s)[outer]
-            total[outer] += self._kink / np.pi * one_sided(
-                lambda x, leg, _: (x * x + leg * leg) / x,
-                b,
-                radius[outer],
-                s[outer],
-                width=step,
-                edge=None if edge is None else np.broadcast_to(edge, s.shape)[outer],
-                odd=True,
-                rtol=rtol,
+            total[outer] += (
+                self._kink
+                / np.pi
+                * one_sided(
+                    lambda x, leg, _: (x * x + leg * leg) / x,
+                    b,
+                    radius[outer],
+                    s[outer],
+                    width=step,
+                    edge=None if edge is None else np.broadcast_to(edge, s.shape)[outer],
+                    odd=True,
+                    rtol=rtol,
+                )
             )
+        total *= modulus
         return total
 
     def _annulus(self, high: Array, low: Array, a: Array, c: Array) -> Array:
