@@ -35,7 +35,7 @@ WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
 TABLE = (
     Row("mdr_core.errors", set(), set()),
     Row("mdr_core.typing", set(), NUMBERS),
-    Row("mdr_core.checks", set(), NUMBERS),
+    Row("mdr_core.checks", {"mdr_core.typing"}, NUMBERS),
     Row("mdr_core.materials", CORE, NUMBERS),
     Row("mdr_core.quadrature", CORE, NUMBERS),
     Row("mdr_core.abel", CORE | {"mdr_core.quadrature"}, NUMBERS),
