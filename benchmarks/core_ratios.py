@@ -1,0 +1,240 @@
+"""The core against bare NumPy expressions and SciPy, one measurement to a process.
+
+`python core_ratios.py NAME STATE` prints the rows of one measurement as JSON. Each has a process
+of its own, because what was allocated before decides whether an array's memory is at hand:
+
+* "fresh pages": the C library's defaults. Large temporaries go back to the system on every call
+  and are faulted in again at the next, for both sides alike.
+* "kept memory": the environment tells the C library to keep what is freed (`KEPT` below).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+# Before NumPy is loaded: threads of its BLAS would wait for each other.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+import measure
+import mpmath
+import numpy as np
+from scipy.integrate import quad_vec
+
+from mdr_core import fields
+from mdr_core.normal import NormalContact, solve
+from mdr_core.profiles import Paraboloid, RoundedPunch
+
+FRESH, KEPT = "fresh pages", "kept memory"
+_KEEP = {"MALLOC_MMAP_THRESHOLD_": str(1 << 30), "MALLOC_TRIM_THRESHOLD_": str(1 << 30)}
+
+Array = np.ndarray
+Form = Callable[[Array, float, float], Callable[[float], Array]]
+
+
+def paraboloid_pressure(state: str) -> list[measure.Row]:
+    """p(r) of the closed form at 1e5 radii."""
+    R, e_star = 0.01, 1.1e11
+    contact = solve(Paraboloid(R), e_star, normal_force=10.0)
+    a = float(contact.contact_radius)
+    r = np.linspace(0.0, a, 100_000, endpoint=False)
+
+    def ours() -> Array:
+        return fields.pressure(contact, r)
+
+    def bare() -> Array:
+        return 2 * e_star / (np.pi * R) * np.sqrt(a * a - r * r)
+
+    difference = float(np.max(np.abs(ours() / bare() - 1)[: r.size // 2]))
+    rounds = measure.interleaved(ours, bare, 2.0)
+    detail = f"both agree to {difference:.0e} for r < a/2"
+    return [
+        measure.row("p(r), paraboloid, 1e5 radii / bare NumPy", state, rounds, "<= 1.3", detail)
+    ]
+
+
+def punch_pressure(state: str) -> list[measure.Row]:
+    """p(r) of the rounded punch with b/a = 0.95 at 1000 radii, to 1e-12."""
+    a, b, R, e_star = 1e-3, 0.95e-3, 0.02, 1.1e11
+    r = np.linspace(0.0, a, 1000, endpoint=False)
+    contact = solve(RoundedPunch(b, R), e_star, contact_radius=a, rtol=1e-12)
+
+    def ours() -> Array:
+        return fields.pressure(contact, r, rtol=1e-12)
+
+    def hertz() -> Array:
+        return 2 * e_star / (np.pi * R) * np.sqrt(a * a - r * r)
+
+    checked = [0, 300, 700, 949, 950, 951, 990, 999]
+    truth = [_punch_truth(float(r[i]), a, b, R, e_star) for i in checked]
+
+    def error(p: Array) -> float:
+        pairs = zip(checked, truth, strict=True)
+        return max(float(abs(mpmath.mpf(float(p[i])) / exact - 1)) for i, exact in pairs)
+
+    found = [
+        measure.row(
+            "p(r), rounded punch b/a = 0.95, 1000 radii / bare Hertz",
+            state,
+            measure.interleaved(ours, hertz, 2.0),
+            "<= 75",
+            f"true error {error(ours()):.1e} at {len(checked)} radii",
+        )
+    ]
+    for substitution, (form, target) in _SUBSTITUTIONS.items():
+
+        def scipy(epsrel: float, form: Form = form) -> Array:
+            integral, _ = quad_vec(form(r, a, b), 0.0, 1.0, epsabs=0.0, epsrel=epsrel, norm="max")
+            return e_star / (np.pi * R) * integral
+
+        # SciPy is asked for no more than it needs to be as good as what ours is held to.
+        tolerances = (1e-9, 1e-10, 1e-11, 1e-12, 1e-13)
+        epsrel = next(one for one in tolerances if error(scipy(one)) <= 1e-12)
+        found.append(
+            measure.row(
+                f"scipy quad_vec, {substitution} / the same p(r)",
+                state,
+                measure.interleaved(lambda run=scipy, tol=epsrel: run(tol), ours, 2.0),
+                target,
+                f"true error {error(scipy(epsrel)):.1e} at epsrel {epsrel:.0e}",
+            )
+        )
+    return found
+
+
+def _one_root_removed(r: Array, a: float, b: float) -> Callable[[float], Array]:
+    """The usual substitution, t = sqrt(x^2 - r^2), from the break on."""
+    low2 = np.maximum(b * b - r * r, 0.0)
+    start = np.sqrt(low2)
+    length = np.sqrt((a - r) * (a + r)) - start
+
+    def integrand(u: float) -> Array:
+        t = start + length * u
+        x = np.sqrt(t * t + r * r)
+        return _punch_slope(np.sqrt(np.maximum(x - b, 0.0) * (x + b)), b) * length / x
+
+    return integrand
+
+
+def _both_roots_removed(r: Array, a: float, b: float) -> Callable[[float], Array]:
+    """The best that SciPy can be handed: x = max(r, b) + (a - max(r, b)) u^2."""
+    low = np.maximum(r, b)
+    length, gap = a - low, low - r
+
+    def integrand(u: float) -> Array:
+        step = length * (u * u)
+        x = low + step
+        slope = _punch_slope(np.sqrt((x - b) * (x + b)), b)
+        return slope * (2 * u) * length / np.sqrt((gap + step) * (x + r))
+
+    return integrand
+
+
+_SUBSTITUTIONS: dict[str, tuple[Form, str]] = {
+    "t^2 = x^2 - r^2": (_one_root_removed, ">= 50"),
+    "x - max(r, b) ~ u^2": (_both_roots_removed, ""),
+}
+
+
+def _punch_slope(leg: Array, b: float) -> Array:
+    """R g'(x), leg = sqrt(x^2 - b^2)."""
+    return 2 * leg - b * np.arctan(leg / b)
+
+
+def _punch_truth(r: float, a: float, b: float, R: float, e_star: float) -> mpmath.mpf:
+    """(E*/(pi R)) int (2 sqrt(x^2 - b^2) - b arccos(b/x))/sqrt(x^2 - r^2) dx, 30 digits."""
+    with mpmath.workdps(40):
+        point, edge, flat = mpmath.mpf(r), mpmath.mpf(a), mpmath.mpf(b)
+        low = max(point, flat)
+        length, gap = edge - low, low - point
+
+        def integrand(v: mpmath.mpf) -> mpmath.mpf:
+            step = length * v * v
+            x = low + step
+            leg = mpmath.sqrt((low - flat + step) * (x + flat))
+            numerator = 2 * leg - flat * mpmath.atan(leg / flat)
+            return numerator * 2 * v * length / mpmath.sqrt((gap + step) * (x + point))
+
+        # The other root, at r or at b, is this far from the end.
+        other = mpmath.sqrt(abs(point - flat) / length)
+        value, error = mpmath.quad(integrand, sorted({0, min(other, 1), 1}), error=True)
+        if error > 1e-25 * length:
+            raise ArithmeticError(f"the reference at r = {r} is not one: {error}")
+        return mpmath.mpf(e_star) * value / (mpmath.pi * mpmath.mpf(R))
+
+
+def hertz_scenes(state: str) -> list[measure.Row]:
+    """A million scenes of Hertz in one call."""
+    random = np.random.default_rng(5)
+    R, e_star, force = (
+        10 ** random.uniform(low, high, 1_000_000) for low, high in ((-3, 0), (9, 12), (-3, 3))
+    )
+
+    def contact() -> NormalContact:
+        return solve(Paraboloid(R), e_star, normal_force=force)
+
+    def ours_two() -> tuple[Array, ...]:
+        one = contact()
+        return one.contact_radius, one.indentation_depth
+
+    def ours_four() -> tuple[Array, ...]:
+        one = contact()
+        return (
+            one.contact_radius,
+            one.indentation_depth,
+            one.mean_pressure,
+            one.normal_stiffness,
+        )
+
+    def bare_two() -> tuple[Array, ...]:
+        a = np.cbrt(0.75 * R * force / e_star)
+        return a, a * a / R
+
+    def bare_four() -> tuple[Array, ...]:
+        a = np.cbrt(0.75 * R * force / e_star)
+        return a, a * a / R, force / (np.pi * a * a), 2 * e_star * a
+
+    pairs = zip(ours_four(), bare_four(), strict=True)
+    difference = max(float(np.abs(mine / other - 1).max()) for mine, other in pairs)
+    detail = f"both agree to {difference:.0e}"
+    return [
+        measure.row(
+            "1e6 Hertz scenes: a, d, mean pressure, stiffness / bare NumPy",
+            state,
+            measure.interleaved(ours_four, bare_four, 3.0),
+            "<= 1.5",
+            detail,
+        ),
+        measure.row(
+            "1e6 Hertz scenes: a, d alone / bare NumPy",
+            state,
+            measure.interleaved(ours_two, bare_two, 2.0),
+            "<= 1.5",
+        ),
+    ]
+
+
+MEASUREMENTS = {run.__name__: run for run in (paraboloid_pressure, punch_pressure, hertz_scenes)}
+
+
+def rows() -> list[measure.Row]:
+    """All measurements in both states of the allocator."""
+    found = []
+    for name in MEASUREMENTS:
+        for state, extra in ((FRESH, {}), (KEPT, _KEEP)):
+            command = [sys.executable, str(Path(__file__)), name, state]
+            kept = {key: value for key, value in os.environ.items() if key not in _KEEP}
+            answer = subprocess.run(
+                command, env=kept | extra, check=True, capture_output=True, text=True
+            )
+            found += [measure.Row(**fields_) for fields_ in json.loads(answer.stdout)]
+    return found
+
+
+if __name__ == "__main__":
+    print(json.dumps([dataclasses.asdict(one) for one in MEASUREMENTS[sys.argv[1]](sys.argv[2])]))

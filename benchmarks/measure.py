@@ -1,0 +1,80 @@
+"""Ratios of running times, measured so that whatever else the machine does cancels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import median
+from time import perf_counter_ns
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+# A batch this long is timed to a fraction of a percent, and seldom loses the processor.
+BATCH_SECONDS = 4e-4
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table: `ratio` with the bounds between which half of its rounds lie."""
+
+    name: str
+    state: str
+    ratio: float
+    low: float
+    high: float
+    target: str
+    detail: str
+
+
+def interleaved(
+    ours: Callable[[], object], theirs: Callable[[], object], seconds: float
+) -> list[tuple[float, float]]:
+    """Seconds per call of both, in rounds A B A B ..., for about `seconds` of wall time."""
+    repeats = [_repeats(run) for run in (ours, theirs)]
+    rounds: list[tuple[float, float]] = []
+    end = perf_counter_ns() + int(seconds * 1e9)
+    while perf_counter_ns() < end or len(rounds) < 9:
+        rounds.append((_time(ours, repeats[0]), _time(theirs, repeats[1])))
+    return rounds
+
+
+def row(
+    name: str, state: str, rounds: list[tuple[float, float]], target: str, detail: str = ""
+) -> Row:
+    """The line for rounds of (first, second): the ratio is first / second within each round."""
+    times = " / ".join(_readable(median(column)) for column in zip(*rounds, strict=True))
+    return Row(
+        name,
+        state,
+        *spread(rounds),
+        target,
+        ", ".join(part for part in (times, detail) if part),
+    )
+
+
+def spread(rounds: list[tuple[float, float]]) -> tuple[float, float, float]:
+    """Median and quartiles of first / second, each ratio taken within its round."""
+    ratios = sorted(first / second for first, second in rounds)
+    quarter = len(ratios) // 4
+    return median(ratios), ratios[quarter], ratios[-1 - quarter]
+
+
+def _repeats(run: Callable[[], object]) -> int:
+    """Calls in a batch; the calls made to find it also load code and caches."""
+    fastest = min(_time(run, 1) for _ in range(5))
+    return max(1, round(BATCH_SECONDS / fastest))
+
+
+def _time(run: Callable[[], object], repeats: int) -> float:
+    start = perf_counter_ns()
+    for _ in range(repeats):
+        run()
+    return (perf_counter_ns() - start) / repeats / 1e9
+
+
+def _readable(seconds: float) -> str:
+    for factor, unit in ((1e6, "us"), (1e3, "ms")):
+        if seconds * factor < 1000:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds:.3g} s"

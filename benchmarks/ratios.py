@@ -1,0 +1,38 @@
+"""Print how fast the product is, as ratios that do not depend on the machine: `make bench`.
+
+Every ratio is measured within one run, both sides in turn; the median of the rounds is printed,
+with the bounds between which half of them lie. Nothing here passes or fails.
+"""
+
+from __future__ import annotations
+
+import os
+
+# Before NumPy is loaded: threads of its BLAS would wait for each other.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+import core_ratios
+import wire_ratio
+
+
+def main() -> None:
+    header = ("what", "state", "ratio", "half lie in", "target", "medians and accuracy")
+    found = [*core_ratios.rows(), *wire_ratio.rows()]
+    lines = [
+        (
+            row.name,
+            row.state,
+            f"{row.ratio:.3g}",
+            f"{row.low:.3g} .. {row.high:.3g}",
+            row.target,
+            row.detail,
+        )
+        for row in found
+    ]
+    widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
+    for line in (header, *lines):
+        print("  ".join(map(str.ljust, line, widths)).rstrip())
+
+
+if __name__ == "__main__":
+    main()

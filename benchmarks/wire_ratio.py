@@ -1,0 +1,156 @@
+"""Requests per second of `/v1/normal` against a bare endpoint of the same framework.
+
+The bare endpoint validates the same body by the same model and returns a constant. Both are
+served by one worker with the same event loop and parser, each in a process of its own, and are
+asked in turn, so that one is at work while the other waits.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from statistics import median
+
+import measure
+
+from mdr_service.schemas.examples import NORMAL_EXAMPLES
+
+HOST = "127.0.0.1"
+# Requests/s at PORT/PATH.
+Load = Callable[[str], float]
+BODY = json.dumps(NORMAL_EXAMPLES["hertz"]["value"])
+CONNECTIONS, ROUND_SECONDS, ROUNDS = 4, 1, 9
+
+
+def rows() -> list[measure.Row]:
+    """The ratios, with the rates and the load generator."""
+    with ExitStack() as stack:
+        service = [sys.executable, "-m", "mdr_service", "--port"]
+        bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
+        ours, theirs = (stack.enter_context(_server(command)) for command in (service, bare))
+        load = stack.enter_context(_load_generator())
+        targets = [f"{ours}/v1/normal", f"{theirs}/declared", f"{theirs}/dict"]
+        for target in targets:
+            _check(target)
+            load(target)
+        rounds = [[load(target) for target in targets] for _ in range(ROUNDS)]
+    return [
+        _row(load, f"bare FastAPI endpoint, {kind}", [(one[0], one[index]) for one in rounds])
+        for index, kind in ((1, "declared answer"), (2, "plain dict"))
+    ]
+
+
+def _row(load: Load, other: str, rounds: list[tuple[float, float]]) -> measure.Row:
+    ours, theirs = (median(column) for column in zip(*rounds, strict=True))
+    return measure.Row(
+        f"/v1/normal, one load, requests/s / {other}",
+        load.__name__.removeprefix("_"),
+        *measure.spread(rounds),
+        ">= 0.8",
+        f"{ours:.0f} / {theirs:.0f} requests/s, {CONNECTIONS} connections",
+    )
+
+
+@contextmanager
+def _server(command: list[str]) -> Iterator[int]:
+    """A server's process, ready, on a port that was free."""
+    with socket.socket() as probe:
+        probe.bind((HOST, 0))
+        port = int(probe.getsockname()[1])
+    process = subprocess.Popen(
+        [*command, str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    try:
+        for _ in range(200):
+            with socket.socket() as probe:
+                if probe.connect_ex((HOST, port)) == 0:
+                    break
+            time.sleep(0.05)
+        yield port
+    finally:
+        process.terminate()
+        process.wait(10)
+
+
+def _request(target: str) -> tuple[int, bytes]:
+    port, path = target.split("/", 1)
+    head = (
+        f"POST /{path} HTTP/1.1",
+        f"Host: {HOST}",
+        "Content-Type: application/json",
+        f"Content-Length: {len(BODY)}",
+    )
+    return int(port), ("\r\n".join(head) + "\r\n\r\n" + BODY).encode()
+
+
+def _check(target: str) -> None:
+    """Whether the server answers at all: what it answers is for the tests."""
+    port, request = _request(target)
+    with socket.create_connection((HOST, port)) as connection:
+        connection.sendall(request)
+        status = connection.recv(4096).split(b"\r\n", 1)[0]
+    if b" 200 " not in status:
+        raise RuntimeError(f"the server answers {status!r}")
+
+
+@contextmanager
+def _load_generator() -> Iterator[Load]:
+    if shutil.which("wrk") is None:
+        yield _asyncio_client
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        script = Path(folder) / "post.lua"
+        script.write_text(
+            f"wrk.method = 'POST'\nwrk.body = '{BODY}'\n"
+            "wrk.headers['Content-Type'] = 'application/json'\n"
+        )
+
+        def _wrk(target: str) -> float:
+            command = ["wrk", "-t1", f"-c{CONNECTIONS}", f"-d{ROUND_SECONDS}s", "-s", str(script)]
+            answer = subprocess.run(
+                [*command, f"http://{HOST}:{target}"],
+                check=True,
+                capture_output=True,
+                text=True,
+            ).stdout
+            if "Non-2xx" in answer:
+                raise RuntimeError(answer)
+            return float(answer.split("Requests/sec:")[1].split()[0])
+
+        yield _wrk
+
+
+def _asyncio_client(target: str) -> float:
+    """Requests/s by a client of one's own, which costs as much itself as a small server."""
+    return asyncio.run(_drive(target))
+
+
+async def _drive(target: str) -> float:
+    start = time.perf_counter()
+    end = start + ROUND_SECONDS
+    counts = await asyncio.gather(*(_ask(target, end) for _ in range(CONNECTIONS)))
+    return sum(counts) / (time.perf_counter() - start)
+
+
+async def _ask(target: str, end: float) -> int:
+    port, request = _request(target)
+    reader, writer = await asyncio.open_connection(HOST, port)
+    count = 0
+    while time.perf_counter() < end:
+        writer.write(request)
+        head = await reader.readuntil(b"\r\n\r\n")
+        length = head.lower().split(b"content-length:", 1)[1].split(b"\r\n", 1)[0]
+        await reader.readexactly(int(length))
+        count += 1
+    writer.close()
+    await writer.wait_closed()
+    return count
