@@ -31,7 +31,10 @@ def interleaved(
     ours: Callable[[], object], theirs: Callable[[], object], seconds: float
 ) -> list[tuple[float, float]]:
     """Seconds per call of both, in rounds A B A B ..., for about `seconds` of wall time."""
-    repeats = [_repeats(run) for run in (ours, theirs)]
+    fastest = [min(_time(run, 1) for _ in range(5)) for run in (ours, theirs)]
+    # Equal batches: neither side finds the caches colder than its own calls leave them.
+    batch = max(BATCH_SECONDS, *fastest)
+    repeats = [max(1, round(batch / one)) for one in fastest]
     rounds: list[tuple[float, float]] = []
     end = perf_counter_ns() + int(seconds * 1e9)
     while perf_counter_ns() < end or len(rounds) < 9:
@@ -58,12 +61,6 @@ def spread(rounds: list[tuple[float, float]]) -> tuple[float, float, float]:
     ratios = sorted(first / second for first, second in rounds)
     quarter = len(ratios) // 4
     return median(ratios), ratios[quarter], ratios[-1 - quarter]
-
-
-def _repeats(run: Callable[[], object]) -> int:
-    """Calls in a batch; the calls made to find it also load code and caches."""
-    fastest = min(_time(run, 1) for _ in range(5))
-    return max(1, round(BATCH_SECONDS / fastest))
 
 
 def _time(run: Callable[[], object], repeats: int) -> float:
