@@ -1,0 +1,176 @@
+"""The rules' a-priori bound against the truth, and what a tolerance costs."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import quadrature
+from mdr_core.fields import pressure
+from mdr_core.normal import solve
+from mdr_core.profiles import Hyperboloid, RoundedPunch, Sphere, TruncatedCone
+from mdr_core.quadrature import Analytic, error_bound, gauss_legendre, integrate_even
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+LENGTHS = (0.05, 0.2, 0.7, 1.5, 3.0, 6.0, 11.0, 20.0)
+POINTS = (12, 24, 48)
+DECADES = tuple(10.0**-k for k in range(3, 14))
+#: Rounding of a sum of some fifty positive terms.
+ROUNDING = 1e-14
+
+# Integrands with poles or branch points exactly at the strip's edge, and their growth. Each is
+# written once for arrays and for mpmath.
+FAMILY = {
+    "sech": (lambda m, y: 1 / m.cosh(y), 2.0, True),
+    "sech at 1": (lambda m, y: 1 / m.cosh(y - 1), 2.0, False),
+    "sech at -4": (lambda m, y: 1 / m.cosh(y + 4), 2.0, False),
+    "exp(2y) sech": (lambda m, y: m.exp(2 * y) / m.cosh(y), 2.0, False),
+    "cosh^2": (lambda m, y: m.cosh(y) ** 2, 2.0, True),
+    "cosh^2 + sech": (lambda m, y: m.cosh(y) ** 2 + 1 / m.cosh(y), 2.0, True),
+    "y tanh": (lambda m, y: y * m.tanh(y), 2.0, True),
+    "root": (lambda m, y: m.sqrt(m.cosh(y)), 2.0, True),
+    "two roots": (lambda m, y: m.sinh(y) ** 2 / m.sqrt(1.2 + m.sinh(y) ** 2), 2.0, True),
+    "cosh^6": (lambda m, y: m.cosh(y) ** 6, 6.0, True),
+}
+
+
+@cache
+def exact(name: str, low: float, high: float) -> mpf:
+    fn = FAMILY[name][0]
+    with mp.workdps(30):
+        # Pieces a tenth of the strip wide leave nothing to chance.
+        count = max(int((high - low) / 0.8), 1)
+        ends = [mpf(low) + (mpf(high) - mpf(low)) * i / count for i in range(count + 1)]
+        return mp.quad(lambda y: fn(mp, y), ends, method="gauss-legendre")
+
+
+def off(value: float, truth: mpf) -> float:
+    return float(abs(mpf(value) / truth - 1))
+
+
+@pytest.mark.parametrize("name", FAMILY)
+@pytest.mark.parametrize("points", POINTS)
+def test_the_bound_is_never_below_the_error(name: str, points: int) -> None:
+    fn, growth, _ = FAMILY[name]
+    nodes, weights = gauss_legendre(points)
+    for length in LENGTHS:
+        value = length / 2 * float(weights @ fn(np, length / 2 * nodes))
+        truth = exact(name, -length / 2, length / 2)
+        # The bound is relative to the largest |h| times the length, which is never less.
+        size = max(abs(fn(np, y)) for y in np.linspace(-length / 2, length / 2, 201)) * length
+        error = float(abs(mpf(value) - truth)) / size
+        bound = error_bound(points, length / 2, Analytic(growth=growth))
+        assert error <= bound + ROUNDING, (length, error, bound)
+
+
+def test_the_bound_falls_with_points_and_rises_with_length() -> None:
+    for length in LENGTHS:
+        bounds = [error_bound(points, length, quadrature.DEFAULT) for points in POINTS]
+        assert bounds == sorted(bounds, reverse=True)
+    for points in POINTS:
+        bounds = [error_bound(points, length, quadrature.DEFAULT) for length in LENGTHS]
+        assert bounds == sorted(bounds)
+    assert error_bound(12, 0.0, quadrature.DEFAULT) == 0
+
+
+@pytest.mark.parametrize("rtol", DECADES)
+@pytest.mark.parametrize("name", [name for name, (_, _, even) in FAMILY.items() if even])
+def test_even_integrals_reach_what_is_asked(name: str, rtol: float) -> None:
+    fn, growth, _ = FAMILY[name]
+    upper = np.array(LENGTHS)
+    found = integrate_even(lambda y, _: fn(np, y), upper, rtol, Analytic(growth=growth))
+    errors = [off(v, exact(name, 0.0, u)) for v, u in zip(found, LENGTHS, strict=True)]
+    assert max(errors) <= rtol + ROUNDING
+
+
+@pytest.mark.parametrize("rtol", DECADES)
+@pytest.mark.parametrize("name", FAMILY)
+def test_plain_integrals_reach_what_is_asked(name: str, rtol: float) -> None:
+    fn, growth, _ = FAMILY[name]
+    ends = [(low, low + length) for low in (0.0, 0.3, 2.0) for length in (1e-9, *LENGTHS)]
+    lower, length = np.array(ends).T[0], np.array([high - low for low, high in ends])
+    found = quadrature.integrate_plain(
+        lambda y, _: fn(np, y), lower, length, rtol, Analytic(growth=growth)
+    )
+    for value, (low, high) in zip(found, ends, strict=True):
+        assert off(value, exact(name, low, high)) <= rtol + ROUNDING, (low, high)
+
+
+def test_many_integrals_at_once_keep_their_places() -> None:
+    """Each is asked with its own number: a mixture of all rules, and of several blocks."""
+    upper = np.tile(np.array([0.0, 0.01, 0.5, 2.0, 7.0, 25.0]), 3000)
+    scale = np.linspace(1.0, 2.0, upper.size)
+
+    def h(y: Array, index: NDArray[np.intp]) -> Array:
+        return scale[index] / np.cosh(y)
+
+    kept = upper.copy()
+    found = integrate_even(h, upper, 1e-13)
+    assert np.allclose(found, scale * np.arctan(np.sinh(upper)), rtol=1e-13, atol=0)
+    plain = quadrature.integrate_plain(h, -upper, 2 * upper, 1e-13)
+    assert np.allclose(plain, 2 * scale * np.arctan(np.sinh(upper)), rtol=1e-13, atol=0)
+    assert np.array_equal(upper, kept)
+
+
+def evaluations(run: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> int:
+    """Values of integrands that a call needs."""
+    count = 0
+    original = quadrature._apply
+
+    def counting(h: quadrature.Integrand, *arguments: object) -> Array:
+        def counted(y: Array, index: NDArray[np.intp]) -> Array:
+            nonlocal count
+            count += y.size
+            return h(y, index)
+
+        return original(counted, *arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(quadrature, "_apply", counting)
+        run()
+    return count
+
+
+KERNELS = {
+    "rounded punch": (RoundedPunch(0.95, 2.0), 1.0),
+    "truncated cone": (TruncatedCone(0.3, 0.2), 1.0),
+    "sphere": (Sphere(1.3), 1.0),
+    "hyperboloid": (Hyperboloid(0.4, 0.1), 1.0),
+}
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_a_looser_tolerance_never_costs_more(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    profile, a = KERNELS[name]
+    contact = solve(profile, 1.0, contact_radius=a)
+    r = np.linspace(0, a, 300, endpoint=False)
+    costs = [
+        evaluations(lambda rtol=rtol: pressure(contact, r, rtol=rtol), monkeypatch)
+        for rtol in DECADES
+    ]
+    assert costs == sorted(costs)
+    assert 0 < costs[0] < costs[-1]
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_a_normal_query_needs_no_kernel(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    profile, a = KERNELS[name]
+
+    def query() -> None:
+        contact = solve(profile, 1.0, contact_radius=a)
+        force = float(contact.normal_force)
+        again = solve(profile, 1.0, normal_force=force)
+        assert float(again.indentation_depth) > 0
+        assert float(again.mean_pressure) > 0
+
+    assert evaluations(query, monkeypatch) == 0
