@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 
 
 def extremes(values: ArrayLike) -> tuple[float, float]:
@@ -14,6 +14,11 @@ def extremes(values: ArrayLike) -> tuple[float, float]:
     if array.size == 0:
         return float("nan"), float("nan")
     return float(array.min()), float(array.max())
+
+
+def first_index(bad: Flags) -> tuple[int, ...]:
+    """Index of the first true element, empty where `bad` has no dimension."""
+    return (int(np.flatnonzero(bad)[0]),) if bad.ndim else ()
 
 
 def largest(values: Array) -> float:

@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.checks import first_index
 from mdr_core.errors import DefectError, InputError
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
@@ -14,6 +15,7 @@ _STEPS: Final = 200
 _LAST_STEP: Final = 1e-10
 _STRIDE: Final = 16.0
 _LEAP: Final = 30.0
+_LARGEST: Final = 1e150
 
 
 def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
@@ -93,9 +95,8 @@ def _check_reach(
 
 def _refuse(outside: Flags, profile: Profile, name: str) -> None:
     if outside.any():
-        index = tuple(int(i[0]) for i in np.nonzero(outside))
         raise InputError(
-            ("load", name, *index),
+            ("load", name, *first_index(outside)),
             f"the contact would reach past radius {profile.domain!r}, where the profile ends "
             "or ceases to be admissible",
         )
@@ -121,8 +122,8 @@ def _invert(
     s = np.minimum(np.broadcast_to(profile.scale, shape), high)
     settling = False
     for _ in range(_STEPS):
-        value = function(s)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+            value = function(s)
             step = np.log(goal / value) / log_slope(s, value)
             # Where the slope all but vanishes the step says no more than the direction.
             proposed = s * np.exp(np.clip(step, -_LEAP, _LEAP))
@@ -130,10 +131,12 @@ def _invert(
         high = np.where(value > goal, s, high)
         # One step more than the criterion asks: at a kink the last slope may be the other side's.
         settled = settling
-        last = np.abs(step) <= _LAST_STEP
+        # Where the root leaves the range of doubles, infinity or zero say so to the caller.
+        last = (np.abs(step) <= _LAST_STEP) | ~((s > 0) & (s < _LARGEST))
         settling = bool(np.all(last | ~positive))
         inside = (proposed > low) & (proposed < high)
         s = np.where(inside | last, proposed, _middle(low, high))
+        s = np.where(s < _LARGEST, s, np.inf)
         if settled:
             return np.where(positive, s, profile.first_coordinate)
     raise DefectError(f"the inverse of a {profile.kind} did not converge")

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.checks import extremes
+from mdr_core.checks import extremes, first_index
 from mdr_core.errors import InputError, Notice
 from mdr_core.foundation import (
     coordinate_from_depth,
@@ -155,6 +155,7 @@ def solve(
         coordinate = coordinate_from_force(profile, load / e_star)
     else:
         coordinate = coordinate_from_radius(profile, load)
+    _require_range(name, load, coordinate)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     if load.shape == coordinate.shape:
         # What was given is answered as given, to the last digit.
@@ -169,13 +170,24 @@ def require_modulus(e_star: Parameter) -> None:
         raise InputError(("material", "e_star"), "must be positive and finite")
 
 
+def _require_range(name: str, load: Array, coordinate: Array) -> None:
+    """Refuse a load whose contact has no double to describe it."""
+    low, high = extremes(coordinate)
+    if high < inf and (low > 0 or not np.any((coordinate == 0) & (load > 0))):
+        return
+    bad = np.asarray(~(coordinate < inf) | ((coordinate == 0) & (load > 0)))
+    raise InputError(
+        ("load", name, *(first_index(bad) if load.ndim else ())),
+        "the contact that answers this load leaves the range of double precision",
+    )
+
+
 def _checked_load(name: str, value: ArrayLike) -> Array:
     load = np.asarray(value, dtype=float)
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     low, high = extremes(load)
     if not (low >= 0 and high < inf):
-        bad = ~((load >= 0) & (load < inf))
-        index = tuple(int(i[0]) for i in np.nonzero(bad))
-        raise InputError(("load", name, *index), "must be finite and not negative")
+        bad = np.asarray(~((load >= 0) & (load < inf)))
+        raise InputError(("load", name, *first_index(bad)), "must be finite and not negative")
     return load

@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from mdr_core.abel.roots import one_sided
+from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
 from mdr_core.profiles.stable import atan_gap
@@ -109,10 +110,10 @@ class Blunt(Profile):
         return np.asarray(np.hypot(self.flat_radius, coordinate))
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        if np.any(contact_radius < self.flat_radius):
-            index = tuple(int(i[0]) for i in np.nonzero(contact_radius < self.flat_radius))
+        inside = np.asarray(contact_radius < self.flat_radius)
+        if inside.any():
             raise InputError(
-                ("load", "contact_radius", *index),
+                ("load", "contact_radius", *first_index(inside)),
                 f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
             )
         return self._leg(contact_radius)

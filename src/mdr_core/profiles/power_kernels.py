@@ -20,7 +20,8 @@ def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
         direct = np.asarray(coefficient * np.where(extreme, 1.0, bare))
         if not extreme.any():
             return direct
-        scaled = (r * np.asarray(coefficient) ** (1 / np.asarray(exponent))) ** exponent
+        scale = np.abs(coefficient) ** (1 / np.asarray(exponent))
+        scaled = np.sign(coefficient) * (r * scale) ** exponent
     return np.asarray(np.where(extreme, scaled, direct))
 
 
@@ -47,9 +48,9 @@ def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Arr
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         split = value ** (1 / n) / c ** (1 / n)
         root = np.where(n < 1, (value / c) ** (1 / n), split)
-    safe = np.where(value > 0, value, 1.0)
-    miss = np.where(value > 0, (value - power(c, root, n)) / safe, 0.0)
-    return np.asarray(root * (1 + miss / n))
+        miss = (value - power(c, root, n)) / np.where(value > 0, value, 1.0)
+        polished = root * (1 + miss / n)
+    return np.asarray(np.where((value > 0) & np.isfinite(root), polished, root))
 
 
 def root_step(a: Array, r: Array, width: Array | None) -> Array:

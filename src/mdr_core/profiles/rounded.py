@@ -6,6 +6,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from mdr_core.abel.roots import asinh_difference, between
+from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, require_positive
@@ -57,11 +58,10 @@ class Spheroid(Profile):
         return np.asarray(0.5 * np.log1p(2 * x / (self.radius - x)))
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        outside = contact_radius >= self.radius
-        if np.any(outside):
-            index = tuple(int(i[0]) for i in np.nonzero(outside))
+        outside = np.asarray(contact_radius >= self.radius)
+        if outside.any():
             raise InputError(
-                ("load", "contact_radius", *index),
+                ("load", "contact_radius", *first_index(outside)),
                 f"must stay below the body's own radius, {self.radius}",
             )
         return self._rapidity(contact_radius)

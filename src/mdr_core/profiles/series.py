@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import inf, isfinite
-from typing import ClassVar
+from math import copysign, exp, inf, isfinite, log
+from typing import ClassVar, Final
 
 import numpy as np
 from scipy.optimize import brentq
@@ -14,6 +14,9 @@ from mdr_core.profiles.power_kernels import power, power_moment, power_slope
 from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
+
+# Bound on the logarithm of a starting radius: no power of it leaves the range of doubles soon.
+_FARTHEST: Final = 70.0
 
 
 @dataclass(frozen=True)
@@ -115,8 +118,8 @@ class Series(Profile):
         Nearly equal exponents would put it out of the range of doubles.
         """
         (c, n), (k, m) = self._powers[0], self._powers[-1]
-        ratio = min(max(abs(c / k), 1e-30), 1e30)
-        return float(ratio ** (1 / max(m - n, 0.5)))
+        crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
+        return exp(min(max(crossing, -_FARTHEST), _FARTHEST))
 
     @property
     def tip_pressure(self) -> Parameter:
@@ -143,23 +146,23 @@ def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
     """Smallest r >= 0 beyond which sum c r^e, ascending in e, falls below zero, or infinity."""
     if powers[0][0] < 0:
         return 0.0
-    roots = _positive_roots(powers)
-    ends = (*roots, inf)
+    ends = [*_log_roots(powers), inf]
     for start, end in pairwise(ends):
-        middle = 2 * start if end == inf else (start * end) ** 0.5
-        if _value(powers, middle) < 0:
-            return start
+        middle = start + 1 if end == inf else (start + end) / 2
+        if _sign_at(powers, middle) < 0:
+            return exp(start)
     return inf
 
 
-def _value(powers: tuple[tuple[float, float], ...], r: float) -> float:
-    """Sum of c r^(e - e_0): the sign of the sum, within range."""
-    lowest = powers[0][1]
-    return float(sum(c * r ** (e - lowest) for c, e in powers))
+def _sign_at(powers: tuple[tuple[float, float], ...], u: float) -> float:
+    """Sum of c r^e at r = exp(u), over its largest term: its sign, always within range."""
+    logs = [log(abs(c)) + e * u for c, e in powers]
+    top = max(logs)
+    return sum(copysign(exp(part - top), c) for part, (c, _) in zip(logs, powers, strict=True))
 
 
-def _positive_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
-    """All r > 0 where sum c r^e vanishes and changes sign, ascending.
+def _log_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
+    """All u where sum c exp(e u) vanishes and changes sign, ascending.
 
     Divided by its lowest power and differentiated, the sum loses one term (Rolle): between the
     roots of that derivative it is monotone, so each stretch holds at most one root.
@@ -167,18 +170,26 @@ def _positive_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
     if len(powers) == 1:
         return []
     lowest = powers[0][1]
-    derivative = tuple((c * (e - lowest), e - lowest - 1) for c, e in powers[1:])
-    turns = [0.0, *_positive_roots(derivative), _outer_bound(powers)]
-    roots = []
-    for low, high in pairwise(turns):
-        if _value(powers, low) * _value(powers, high) < 0:
-            roots.append(float(brentq(lambda r: _value(powers, r), low, high, xtol=1e-300)))
-    return roots
+    derivative = tuple((c * (e - lowest), e - lowest) for c, e in powers[1:])
+    low, high = _log_bounds(powers)
+    turns = [low, *(u for u in _log_roots(derivative) if low < u < high), high]
+    return [
+        float(brentq(lambda u: _sign_at(powers, u), start, end, xtol=1e-15))
+        for start, end in pairwise(turns)
+        if _sign_at(powers, start) * _sign_at(powers, end) < 0
+    ]
 
 
-def _outer_bound(powers: tuple[tuple[float, float], ...]) -> float:
-    """A radius beyond which the last term outweighs all others together."""
-    last, highest = powers[-1]
-    others = powers[:-1]
-    bounds = ((len(others) * abs(c / last)) ** (1 / (highest - e)) for c, e in others)
-    return 2 * float(max(bounds))
+def _log_bounds(powers: tuple[tuple[float, float], ...]) -> tuple[float, float]:
+    """Logarithms of radii within which every root lies.
+
+    Below the first the lowest power outweighs all others together, above the second the highest.
+    """
+    count = log(len(powers))
+
+    def crossing(one: tuple[float, float], other: tuple[float, float]) -> float:
+        return (log(abs(one[0])) - log(abs(other[0])) - count) / (other[1] - one[1])
+
+    low = min(crossing(powers[0], other) for other in powers[1:])
+    high = max(crossing(powers[-1], other) for other in powers[:-1])
+    return low - 1, high + 1

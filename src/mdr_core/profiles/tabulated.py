@@ -25,7 +25,7 @@ _NOISE: Final = 256 * _EPS
 _RINGING: Final = 1e-8
 # Places in each panel where the sign of g' is looked at.
 _LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
-_ENERGY_POINTS: Final = 16
+_ENERGY_POINTS: Final = 10
 
 
 class Tabulated(Profile):
