@@ -132,11 +132,11 @@ def _invert(
         # One step more than the criterion asks: at a kink the last slope may be the other side's.
         settled = settling
         # Where the root leaves the range of doubles, infinity or zero say so to the caller.
-        last = (np.abs(step) <= _LAST_STEP) | ~((s > 0) & (s < _LARGEST))
+        last = (np.abs(step) <= _LAST_STEP) | ~((s > 1 / _LARGEST) & (s < _LARGEST))
         settling = bool(np.all(last | ~positive))
         inside = (proposed > low) & (proposed < high)
         s = np.where(inside | last, proposed, _middle(low, high))
-        s = np.where(s < _LARGEST, s, np.inf)
+        s = np.where(s < _LARGEST, np.where(s > 1 / _LARGEST, s, 0.0), np.inf)
         if settled:
             return np.where(positive, s, profile.first_coordinate)
     raise DefectError(f"the inverse of a {profile.kind} did not converge")

@@ -23,7 +23,7 @@ class Settings(BaseModel):
     )
     max_loads: int = Field(default=100_000, ge=1, description="Most loads in one request.")
     max_table_points: int = Field(
-        default=1_000, ge=2, description="Most points of a tabulated profile."
+        default=2_000, ge=2, description="Most points of a tabulated profile."
     )
     max_series_terms: int = Field(default=100, ge=1, description="Most terms of a series profile.")
     shutdown_seconds: int = Field(

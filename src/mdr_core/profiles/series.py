@@ -1,5 +1,6 @@
 """Sums of powers, with negative terms where the profile stays admissible."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -17,6 +18,7 @@ from mdr_core.typing import Array, Parameter
 
 # Bound on the logarithm of a starting radius: no power of it leaves the range of doubles soon.
 _FARTHEST: Final = 70.0
+_LOG_LARGEST: Final = 700.0
 
 
 @dataclass(frozen=True)
@@ -86,20 +88,20 @@ class Series(Profile):
         return 4e-14 + 4e-15 * max(n for _, n in self._powers)
 
     def f(self, radius: Array) -> Array:
-        return np.asarray(sum(power(c, radius, n) for c, n in self._powers))
+        return _total(power(c, radius, n) for c, n in self._powers)
 
     def df(self, radius: Array) -> Array:
-        return np.asarray(sum(power_slope(c, radius, n) for c, n in self._powers))
+        return _total(power_slope(c, radius, n) for c, n in self._powers)
 
     def g(self, x: Array) -> Array:
-        return np.asarray(sum(kappa(n) * power(c, x, n) for c, n in self._powers))
+        return _total(kappa(n) * power(c, x, n) for c, n in self._powers)
 
     def dg(self, x: Array) -> Array:
-        return np.asarray(sum(kappa(n) * power_slope(c, x, n) for c, n in self._powers))
+        return _total(kappa(n) * power_slope(c, x, n) for c, n in self._powers)
 
     def reduced_force(self, coordinate: Array) -> Array:
         parts = (2 * n / (n + 1) * kappa(n) * power(c, coordinate, n) for c, n in self._powers)
-        return np.asarray(sum(parts) * coordinate)
+        return _total(parts) * coordinate
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """sum_ij d_i d_j a n_i n_j (n_i + n_j + 2)/((n_i + 1)(n_j + 1)(n_i + n_j + 1))."""
@@ -142,6 +144,13 @@ class Series(Profile):
         return total
 
 
+def _total(parts: Iterable[Array]) -> Array:
+    """The sum of positive total; where its terms overflow against each other, infinity."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = np.asarray(sum(parts))
+    return np.where(np.isnan(total), inf, total)
+
+
 def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
     """Smallest r >= 0 beyond which sum c r^e, ascending in e, falls below zero, or infinity."""
     if powers[0][0] < 0:
@@ -150,7 +159,7 @@ def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
     for start, end in pairwise(ends):
         middle = start + 1 if end == inf else (start + end) / 2
         if _sign_at(powers, middle) < 0:
-            return exp(start)
+            return exp(start) if start < _LOG_LARGEST else inf
     return inf
 
 
