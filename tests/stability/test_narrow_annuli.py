@@ -1,0 +1,176 @@
+"""The pressure kernel of an annulus c < x < a as c -> a: where tangential loading starts.
+
+A difference of two one-limit kernels has no digits left there; the annulus is asked for by its
+width in the kind's own contact coordinate, and so is the truth.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core.profiles import Tabulated
+from tests.core.comparison import EPS, profile_from
+from tests.oracles.shapes import shape_of
+from tests.oracles.tables import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mdr_core.profiles import Profile
+
+BOUND = 1e-11
+RTOL = 1e-13
+WIDTHS = (1e-3, 1e-6, 1e-9, 1e-12, 1e-14)
+#: Radii well inside, and as parts of the annulus from c (0) to a (1), also just inside c.
+INSIDE = (0.0, 1e-9, 0.5, 0.9)
+PARTS = (-1.0, -1e-3, 0.3, 0.9)
+
+SHAPES: dict[str, dict[str, Any]] = {
+    "rounded punch": {"kind": "rounded_punch", "flat_radius": 0.95, "rounding_radius": 2.0},
+    "cone": {"kind": "cone", "slope": 0.3},
+    "sphere": {"kind": "sphere", "radius": 1.3},
+    "hyperboloid": {"kind": "hyperboloid", "slope": 0.4, "tip_radius": 1.3},
+    "power 1.5": {"kind": "power", "coefficient": 0.7, "exponent": 1.5},
+    "capped paraboloid": {
+        "kind": "capped_paraboloid",
+        "cap_radius": 0.6,
+        "tip_radius": 3.0,
+        "radius": 1.1,
+    },
+    "paraboloid": {"kind": "paraboloid", "radius": 1.3},
+    "truncated cone": {"kind": "truncated_cone", "flat_radius": 0.5, "slope": 0.3},
+    "rounded cone": {"kind": "rounded_cone", "slope": 0.4, "tip_radius": 1.5},
+    "spherical-tip cone": {"kind": "spherical_tip_cone", "slope": 0.5, "tip_radius": 1.0},
+    "table": {
+        "kind": "tabulated",
+        "r": [0.15 * i for i in range(9)],
+        "f": [(0.15 * i) ** 2 / (1 + (1 - (0.15 * i / 1.3) ** 2) ** 0.5) for i in range(9)],
+        "interpolation": "cubic",
+        "breaks": [],
+    },
+}
+#: The contact's edge, not a knot of the table.
+A = 1.02
+
+
+class Annulus:
+    """What the coordinate and the width stand for exactly, and the integral of it."""
+
+    def __init__(self, name: str, profile: Profile) -> None:
+        self.kind = SHAPES[name]["kind"]
+        self.body = Table(SHAPES[name]) if self.kind == "tabulated" else shape_of(SHAPES[name])
+        self.profile = profile
+
+    def radius(self, coordinate: mpf) -> mpf:
+        """The kind's definition of its coordinate, in mpmath."""
+        if self.kind == "sphere":
+            return mpf(self.profile.radius) * mp.tanh(coordinate)
+        if self.kind in {"rounded_punch", "truncated_cone"}:
+            return mp.sqrt(self.body.b**2 + coordinate**2)
+        if self.kind == "capped_paraboloid":
+            b = self.body.b
+            return mp.sqrt(b**2 + (coordinate - b) ** 2) if coordinate > b else coordinate
+        return coordinate
+
+    def slope(self, x: mpf) -> mpf:
+        return self.body.dg(x)
+
+    def kernel(self, coordinate: mpf, width: mpf, r: mpf) -> mpf:
+        a, c = self.radius(coordinate), self.radius(coordinate - width)
+        low = max(c, r)
+        length, gap = a - low, low - r
+
+        def integrand(v: mpf) -> mpf:
+            step = length * v * v
+            x = low + step
+            return self.slope(x) * 2 * v * length / mp.sqrt((gap + step) * (x + r))
+
+        ends = sorted({mpf(0), min(mp.sqrt(gap / length), mpf(1)), mpf(1)})
+        return mp.quad(integrand, ends) / mp.pi
+
+
+#: The capped paraboloid takes its annulus from the difference of the two ends.
+LOST = pytest.mark.xfail(reason="the width is computed again from the ends", strict=True)
+CASES = [
+    pytest.param(name, width, marks=[LOST] if name == "capped paraboloid" and width < 1e-6 else [])
+    for name in SHAPES
+    for width in WIDTHS
+]
+
+
+@pytest.mark.parametrize(("name", "relative"), CASES)
+def test_narrow_annulus(name: str, relative: float) -> None:
+    profile = profile_of(name)
+    coordinate = float(profile.coordinate_from_radius(np.array(A)))
+    width = relative * coordinate
+    with mp.workdps(40):
+        truth = Annulus(name, profile)
+        a = float(truth.radius(mpf(coordinate)))
+        c = float(truth.radius(mpf(coordinate) - mpf(width)))
+        places = [a * part for part in INSIDE] + [c + (a - c) * part for part in PARTS]
+        # The edge is the coordinate's here: a radius must lie inside by more than its rounding.
+        r = np.array(sorted({p for p in places if p < a * (1 - 4 * EPS)}))
+        found = kernel(profile, coordinate, width, r)
+        for radius, value in zip(r, found, strict=True):
+            check(
+                truth.kernel,
+                tuple(map(mpf, (coordinate, width, float(radius)))),
+                float(value),
+            )
+
+
+def check(exact: Callable[..., mpf], arguments: tuple[mpf, ...], value: float) -> None:
+    """Within the bound, and what a rounding of the coordinate or of the radius does."""
+    truth = exact(*arguments)
+    s, w, r = arguments
+    eps = mpf(8 * EPS)
+    nearby = [exact(s * (1 + eps), w, r), exact(s, w, r * (1 - eps))]
+    doubt = sum(abs(one / truth - 1) for one in nearby)
+    error = abs(mpf(value) / truth - 1)
+    assert error <= BOUND + doubt, (float(r), float(w), float(error), float(doubt))
+
+
+def profile_of(name: str) -> Profile:
+    fields = SHAPES[name]
+    if fields["kind"] == "tabulated":
+        return Tabulated(fields["r"], fields["f"])
+    return profile_from(fields)
+
+
+def kernel(profile: Profile, coordinate: float, width: float, r: np.ndarray) -> np.ndarray:
+    def full(value: float) -> np.ndarray:
+        return np.full(r.shape, value)
+
+    return profile.pressure_kernel(full(coordinate), r, RTOL, width=full(width))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_wide_annulus_is_a_difference(name: str) -> None:
+    """Jaeger's superposition: c well below a, where the difference has its digits."""
+    profile = profile_of(name)
+    high = float(profile.coordinate_from_radius(np.array(A)))
+    for ratio in (0.9, 0.7):
+        low = high * ratio
+        c = float(profile.contact_radius(np.array(low)))
+        r = np.array([0.0, 0.2, 0.5, 0.9]) * c
+        # On the tip of a cone, or of a spline through a sphere, the whole is infinite.
+        r = r[1:] if name in {"cone", "table"} else r
+        ones = np.ones_like(r)
+        annulus = kernel(profile, high, high - low, r)
+        whole = profile.pressure_kernel(high * ones, r, RTOL)
+        inner = profile.pressure_kernel((high - (high - low)) * ones, r, RTOL)
+        # What the difference cancels is at most some ten times what is left.
+        assert np.allclose(annulus, whole - inner, rtol=1e-11, atol=1e-14 * whole.max())
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_an_annulus_that_is_the_whole_contact(name: str) -> None:
+    profile = profile_of(name)
+    high = float(profile.coordinate_from_radius(np.array(A)))
+    r = np.array([1e-9, 0.3, 0.97, 0.9999]) * A
+    whole = profile.pressure_kernel(np.full(r.shape, high), r, RTOL)
+    assert np.allclose(kernel(profile, high, high, r), whole, rtol=1e-12, atol=0)
