@@ -427,6 +427,25 @@ def test_pressure_of_an_undeclared_kink(name: str) -> None:
     assert np.abs(found / exact - 1).max() <= REACHED[name]
 
 
+def jumps(name: str) -> bool:
+    return name in {"truncated cone", "capped"}
+
+
+@pytest.mark.parametrize(
+    "name", marked(list(UNDECLARED), jumps, "the panel that holds the jump is not counted")
+)
+def test_pressure_across_an_undeclared_break_is_not_trusted(name: str) -> None:
+    """Nobody declared it and nobody looked for it: then the error says how bad the panels are."""
+    profile = profile_from(UNDECLARED[name])
+    route = GenericRoute(profile.df, 1.0)
+    b = float(profile.breaks[0])
+    r = np.array([0.0, 0.1, 0.9 * b, b * (1 - 1e-3), b * (1 + 1e-3), 1 - 1e-9])
+    ones = np.ones_like(r)
+    exact = profile.pressure_kernel(profile.coordinate_from_radius(ones), r, RTOL, edge=ones)
+    bound = max(route.slope.error, route.stress.error)
+    assert np.abs(route.pressure(r) / exact - 1).max() <= bound + BOUND
+
+
 @pytest.mark.parametrize("size", [1e-2, 1e-6, 1e-11])
 def test_noise_is_refused(size: float) -> None:
     random = np.random.default_rng(3)
