@@ -108,7 +108,7 @@ def test_one_exact_pair_from_end_to_end(name: str) -> None:
 
 
 def test_one_exact_pair_with_a_jump() -> None:
-    """The truncated cone: physics, section 4.2."""
+    """The truncated cone: its slope begins with a jump, and g with a root."""
     x = np.array([0.0, 0.3, B, B * (1 + 1e-12), B * (1 + 1e-6), 0.8, END])
     s = np.sqrt(np.maximum(x - B, 0) * (x + B))
     angle = np.arctan(s / B)
