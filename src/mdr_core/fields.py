@@ -1,22 +1,62 @@
-"""Fields over the radius."""
+"""Fields over the radius: stresses, slip, displacement, and what the foundation carries.
 
+Every function answers [load][radius], or [radius] where all loads were single numbers. Only what
+is called is computed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from math import inf
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core import annulus
 from mdr_core.checks import largest
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
 # Radii handled at once: bounds the memory, whatever their number.
 _BLOCK: Final = 131_072
 
 
+@dataclass(frozen=True)
+class _Load:
+    """One load's contact, as plain numbers; `edge` is a where it is what was given."""
+
+    profile: Profile
+    e_star: float
+    coordinate: float
+    a: float
+    edge: Array | None
+
+
+@dataclass(frozen=True)
+class _Slip:
+    """One load's partial slip, as plain numbers."""
+
+    normal: _Load
+    friction: float
+    compliance: float
+    g_star: float
+    width: float
+    c: float
+    sign: float
+    full: bool
+    excess: float
+    displacement: float
+
+
+# One load at some radii, of which `highest` is the largest.
+_Row = Callable[[Array, float], Array]
+
+
 def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
-    """Return p(r) = (E*/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx [pressure], [load][radius].
+    """Return p(r) = (E*/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx [pressure].
 
     Positive in compression, zero outside the contact, infinite only where the model says so.
 
@@ -46,44 +86,221 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
-    r = np.ascontiguousarray(np.atleast_1d(np.asarray(radius, dtype=float)))
+
+    def row(load: _Load) -> _Row:
+        return lambda r, highest: _kernel(load, r, highest, None, load.e_star, rtol)
+
+    return _fill(contact.contact_radius.shape, [row(load) for load in _loads(contact)], radius)
+
+
+def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+    """Return tau(r) = (mu E*/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [pressure].
+
+    Positive along a positive tangential force, zero outside the contact. It is the integral
+    over the slip annulus, not a difference of pressures: it keeps its digits as c -> a.
+
+    Source: mdr-5, Eqs. (5.18), (5.38), (5.53), (5.70). Parameters, returns and errors as of
+    `pressure`.
+    """
+
+    def row(slip: _Slip) -> _Row:
+        load, modulus = slip.normal, slip.sign * slip.friction * slip.normal.e_star
+        if slip.width == 0 and not slip.full:
+            return lambda r, _highest: np.zeros(r.shape)
+        width = None if slip.full else slip.width
+        return lambda r, highest: _kernel(load, r, highest, width, modulus, rtol)
+
+    return _fill(contact.width.shape, [row(slip) for slip in _slips(contact)], radius)
+
+
+def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+    """Return the slip s(r) = u_x(r) - delta_x of the surface in the contact [length].
+
+    s = -mu (E*/G*) (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx for c < r <= a, zero in the
+    stick zone and outside the contact: a slipping point lags behind, so the slip is negative
+    for a positive displacement. Beyond full slip the whole contact lags by the excess.
+
+    Source: mdr-5, Eqs. (5.39)-(5.45). Parameters, returns and errors as of `pressure`.
+    """
+
+    def row(part: _Slip) -> _Row:
+        scale = part.sign * part.compliance
+        profile, c, a = part.normal.profile, (0.0 if part.full else part.c), part.normal.a
+
+        def values(r: Array, _highest: float) -> Array:
+            result = np.zeros(r.shape)
+            inside = (r > c) & (r <= a)
+            result[inside] = -scale * _slip_kernel(profile, c, r[inside], rtol)
+            if part.excess:
+                result[r <= a] -= part.sign * part.excess
+            return result
+
+        return values
+
+    return _fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+
+
+def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+    """Return the normal displacement of the surface, positive into the body [length].
+
+    d - f(r) in the contact, (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx outside it.
+
+    Source: mdr-5, Eq. (5.75). Parameters, returns and errors as of `pressure`.
+    """
+    depths = np.atleast_1d(contact.indentation_depth)
+
+    def row(load: _Load, depth: float) -> _Row:
+        def values(r: Array, _highest: float) -> Array:
+            inside = r <= load.a
+            result = np.empty(r.shape)
+            result[inside] = depth - load.profile.f(r[inside])
+            outer = r[~inside]
+            if outer.size:
+                result[~inside] = load.profile.outer_displacement(
+                    np.full(outer.shape, load.a), outer, rtol, depth
+                )
+            return result
+
+        return values
+
+    rows = [row(load, float(d)) for load, d in zip(_loads(contact), depths, strict=True)]
+    return _fill(contact.contact_radius.shape, rows, radius)
+
+
+def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
+    """Return q(x) = E* (d - g(x)) of the one-dimensional foundation [force/length].
+
+    Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23). Parameters, returns and errors
+    as of `pressure`.
+    """
+    rows = [_foundation_row(load) for load in _loads(contact)]
+    return _fill(contact.contact_radius.shape, rows, radius)
+
+
+def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
+    """Return q_x(x) of the foundation [force/length].
+
+    G* u_x for |x| <= c, mu q(x) for c < |x| <= a, 0 outside. Source: mdr-5, Eq. (5.23).
+    Parameters, returns and errors as of `pressure`.
+    """
+
+    def row(part: _Slip) -> _Row:
+        load = _foundation_row(part.normal)
+
+        def values(r: Array, highest: float) -> Array:
+            sliding = part.sign * part.friction * load(r, highest)
+            sticks = (r <= part.c) & (not part.full)
+            return np.where(sticks, part.g_star * part.displacement, sliding)
+
+        return values
+
+    return _fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+
+
+def _foundation_row(load: _Load) -> _Row:
+    """q(x) as the step from x to a: near the edge a difference of depths has no digits."""
+    profile = load.profile
+
+    def values(r: Array, _highest: float) -> Array:
+        result = np.zeros(r.shape)
+        inside = r < load.a
+        if profile.slips_at_once:
+            result[r <= load.a] = load.e_star * load.coordinate
+        elif inside.any():
+            least = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+            x, a = np.maximum(r[inside], least), np.array([load.a])
+            top = np.array([load.coordinate])
+            width = profile.coordinate_width(a, x, top, profile.coordinate_from_radius(x))
+            result[inside] = load.e_star * annulus.depth_step(profile, top, width)
+        return result
+
+    return values
+
+
+def _kernel(
+    load: _Load, r: Array, highest: float, width: float | None, modulus: float, rtol: float
+) -> Array:
+    """The stress kernel at all radii, zero outside the contact; c = 0 for a width of None."""
+    at = np.array([load.coordinate])
+    span = None if width is None else np.array([width])
+    inside = slice(None) if highest < load.a else np.asarray(r < load.a)
+    chosen = r[inside]
+    values = np.zeros(0)
+    if chosen.size:
+        values = load.profile.pressure_kernel(
+            at, chosen, rtol, span, edge=load.edge, modulus=modulus
+        )
+        if chosen.size == r.size:
+            return values
+    result = np.zeros(r.shape)
+    result[inside] = values
+    if load.profile.slips_at_once:
+        # The rim of a flat punch carries an infinite stress.
+        result[r == load.a] = np.copysign(inf, modulus) if load.coordinate > 0 else 0.0
+    return result
+
+
+def _slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
+    if profile.slips_at_once:
+        return np.zeros(r.shape)
+    return profile.slip_kernel(np.full(r.shape, c), r, rtol)
+
+
+def _loads(contact: NormalContact) -> list[_Load]:
     edges = np.atleast_1d(contact.contact_radius)
-    coordinates = np.atleast_1d(contact.coordinate)
-    # Where the radius is what was given, a - r is exact.
-    exact = edges if contact.control == "contact_radius" else [None] * edges.size
-    shape = contact.contact_radius.shape + r.shape
-    if edges.size == 1 and r.size <= _BLOCK:
-        row = _row(contact, r, _checked_largest(r, 0), edges[0], coordinates[0], exact[0], rtol)
-        return row.reshape(shape)
-    out = np.empty((edges.size, r.size))
+    exact = contact.control == "contact_radius"
+    return [
+        _Load(
+            contact.profile,
+            float(contact.e_star),
+            float(coordinate),
+            float(a),
+            np.array([a]) if exact else None,
+        )
+        for a, coordinate in zip(edges, np.atleast_1d(contact.coordinate), strict=True)
+    ]
+
+
+def _slips(contact: TangentialContact) -> list[_Slip]:
+    shape = contact.width.shape
+    loads = _loads(contact.normal)
+    parts = (
+        contact.friction_coefficient,
+        contact.compliance,
+        contact.g_star,
+        contact.width,
+        contact.stick_radius,
+        contact.sign,
+        contact.full_slip,
+        contact.excess,
+        contact.tangential_displacement,
+    )
+    columns = [np.atleast_1d(np.broadcast_to(part, shape)).tolist() for part in parts]
+    rows: list[Any] = list(zip(*columns, strict=True))
+    spread = loads if len(loads) == len(rows) else loads * len(rows)
+    at_once = contact.normal.profile.slips_at_once
+    return [
+        # Where nothing slips before all does, the kernel takes the load itself as its width.
+        replace(part, width=part.width * part.normal.coordinate) if at_once else part
+        for part in (_Slip(load, *row) for load, row in zip(spread, rows, strict=True))
+    ]
+
+
+def _fill(shape: tuple[int, ...], rows: list[_Row], radius: ArrayLike) -> Array:
+    """Evaluate every load's row, block by block of the radii, all of them checked."""
+    r = np.ascontiguousarray(np.atleast_1d(np.asarray(radius, dtype=float)))
+    if r.size == 0:
+        raise InputError(("radius",), "at least one radius is needed")
+    if len(rows) == 1 and r.size <= _BLOCK:
+        return rows[0](r, _checked_largest(r, 0)).reshape(shape + r.shape)
+    out = np.empty((len(rows), r.size))
     for start in range(0, r.size, _BLOCK):
         part = slice(start, start + _BLOCK)
         block = r[part]
         highest = _checked_largest(block, start)
-        for row, a, s, edge in zip(out, edges, coordinates, exact, strict=True):
-            row[part] = _row(contact, block, highest, a, s, edge, rtol)
-    return out.reshape(shape)
-
-
-def _row(
-    contact: NormalContact,
-    r: Array,
-    highest: float,
-    a: float,
-    coordinate: float,
-    exact: float | None,
-    rtol: float,
-) -> Array:
-    """The pressure of one load at some radii."""
-    kernel, modulus = contact.profile.pressure_kernel, float(contact.e_star)
-    at, edge = np.array([coordinate]), None if exact is None else np.array([exact])
-    if highest < a:
-        return kernel(at, r, rtol, edge=edge, modulus=modulus)
-    row = np.zeros(r.shape)
-    inside = r < a
-    if inside.any():
-        row[inside] = kernel(at, r[inside], rtol, edge=edge, modulus=modulus)
-    return row
+        for target, row in zip(out, rows, strict=True):
+            target[part] = row(block, highest)
+    return out.reshape(shape + r.shape)
 
 
 def _checked_largest(block: Array, start: int) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from mdr_core.checks import first_index
 from mdr_core.errors import DefectError, InputError
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Flags
 
 _STEPS: Final = 200
 # Newton's step at which the next error is below rounding: it converges quadratically.
@@ -68,15 +68,6 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     return profile.coordinate_from_radius(_within(profile, contact_radius, "contact_radius"))
 
 
-def foundation_load(profile: Profile, e_star: Parameter, coordinate: Array, x: Array) -> Array:
-    """Return q(x) = E* (d - g(x)) inside the contact, 0 outside [force/length].
-
-    Source: mdr-5, Eqs. (5.8), (5.23).
-    """
-    load = e_star * (profile.depth(coordinate) - profile.g(x))
-    return np.where(x < profile.contact_radius(coordinate), load, 0.0)
-
-
 def _within(profile: Profile, contact_radius: Array, name: str) -> Array:
     """The radius, refused where it passes the profile's end."""
     if not np.all(np.isinf(profile.domain)):
@@ -108,18 +99,33 @@ def _invert(
     log_slope: Callable[[Array, Array], Array],
     target: Array,
 ) -> Array:
-    """Solve function(s) = target >= 0 for an increasing function, relatively accurate.
-
-    Newton's method in log(s) and log(function), which all profiles make nearly straight; the
-    signs seen so far bracket the root, and a step that leaves the bracket halves it.
-    """
-    positive = target > 0
-    shape = np.broadcast_shapes(target.shape, np.shape(profile.scale))
-    goal = np.where(positive, target, 1.0)
-    end = profile.last_coordinate
+    """Solve function(s) = target for a contact coordinate s, from the profile's own scale."""
+    end, shape = profile.last_coordinate, np.broadcast_shapes(target.shape, np.shape(profile.scale))
     low = np.full(shape, profile.first_coordinate)
     high = np.full(shape, np.inf if end is None else end)
-    s = np.minimum(np.broadcast_to(profile.scale, shape), high)
+    start = np.minimum(np.broadcast_to(profile.scale, shape), high)
+    return invert(function, log_slope, target, start, low, high, profile.kind)
+
+
+def invert(
+    function: Callable[[Array], Array],
+    log_slope: Callable[[Array, Array], Array],
+    target: Array,
+    start: Array,
+    low: Array,
+    high: Array,
+    name: str,
+) -> Array:
+    """Solve function(s) = target >= 0 for an increasing function, relatively accurate.
+
+    Newton's method in log(s) and log(function), which all profiles make nearly straight;
+    `log_slope(s, function(s))` is its derivative there. [low, high] brackets the root, the signs
+    seen narrow it, and a step that leaves it is replaced by its middle. Where the target is
+    zero the answer is `low`.
+    """
+    positive = target > 0
+    goal = np.where(positive, target, 1.0)
+    s, nothing = start, low
     settling = False
     for _ in range(_STEPS):
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
@@ -138,8 +144,8 @@ def _invert(
         s = np.where(inside | last, proposed, _middle(low, high))
         s = np.where(s < _LARGEST, np.where(s > 1 / _LARGEST, s, 0.0), np.inf)
         if settled:
-            return np.where(positive, s, profile.first_coordinate)
-    raise DefectError(f"the inverse of a {profile.kind} did not converge")
+            return np.where(positive, s, nothing)
+    raise DefectError(f"the inverse of a {name} did not converge")
 
 
 def _middle(low: Array, high: Array) -> Array:

@@ -127,7 +127,7 @@ def integrate_plain(
     for index, points in _groups(length / 2, rtol, analytic):
         start, span = lower[index], length[index]
         if points:
-            result[index] = _apply(h, _composite_rule(points, 1), start, span, index)
+            result[index] = _apply(h, composite_rule(points, 1), start, span, index)
         else:
             result[index] = _pieces(h, start, span, index, rtol, analytic)
     return result
@@ -151,7 +151,7 @@ def _pieces(
     """Cut [lower, lower + length] into equal pieces that one rule carries."""
     half = float(length.max()) / 2
     count = ceil(half / _longest(_PIECE_POINTS, _decade(rtol), analytic))
-    return _apply(h, _composite_rule(_PIECE_POINTS, count), lower, length, index)
+    return _apply(h, composite_rule(_PIECE_POINTS, count), lower, length, index)
 
 
 def _apply(
@@ -178,7 +178,7 @@ def _half_rule(points: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=256)
-def _composite_rule(points: int, count: int) -> tuple[Array, Array]:
+def composite_rule(points: int, count: int) -> tuple[Array, Array]:
     """Nodes and weights on [0, 1], cut into `count` equal pieces."""
     nodes, weights = gauss_legendre(points)
     starts = np.arange(count)[:, None]

@@ -15,6 +15,8 @@ _LOW: Final = 16
 _HIGH: Final = 24
 # No tolerance below what the sums' rounding allows.
 _FLOOR: Final = 1e-15
+# Multiples of a break at which the first stretches are cut.
+_TURNS: Final = 4.0 ** np.arange(12)
 # An interval this narrow holds a jump or a needle: its share of the error is kept.
 _NARROW: Final = 1e-15
 
@@ -110,15 +112,28 @@ def back(
 
 
 def _first_stretches(r: Array, bases: list[float], upper: float) -> _Stretches:
-    """One stretch for each point and each smooth piece of g below it."""
+    """Stretches for each point and each smooth piece of g below it.
+
+    Behind a break far below the point, x = sqrt(base^2 + s^2) turns at s = base: the stretch is
+    cut there and at multiples, or both rules would overlook it alike.
+    """
     parts = []
     for base, stop in zip(bases, [*bases[1:], inf], strict=True):
         end = np.minimum(r, min(stop, upper))
         point = np.flatnonzero(end > base)
         far, end = r[point], end[point]
         reach = np.sqrt((far - base) * (far + base))
-        high = np.arctan2(np.sqrt((end - base) * (end + base)), np.sqrt((far - end) * (far + end)))
-        parts.append(_Stretches(point, np.full_like(far, base), reach, np.zeros_like(far), high))
+        high = np.arctan2(
+            np.sqrt((end - base) * (end + base)), np.sqrt((far - end) * (far + end))
+        )
+        low = np.zeros_like(far)
+        for turn in base * _TURNS if base > 0 else ():
+            cut = np.clip(np.arcsin(np.minimum(turn / reach, 1.0)), low, high)
+            some = cut > low
+            parts.append(_Stretches(point, np.full_like(far, base), reach, low, cut).chosen(some))
+            low = cut
+        rest = _Stretches(point, np.full_like(far, base), reach, low, high)
+        parts.append(rest.chosen(high > low))
     return _Stretches(
         *(
             np.concatenate([getattr(part, name) for part in parts])

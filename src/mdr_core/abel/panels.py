@@ -29,6 +29,7 @@ _JUMP_WIDTH: Final = 8 * _EPS
 _CUT: Final = 0.4812118
 # Panels shrink by it this often towards the axis and each break: down to 1e-12 of the whole.
 _STEPS: Final = 38
+_NODE_WIDTH: Final = 1e-13
 _ROUNDING: Final = 4 * _EPS
 _FIRST_WIDTH: Final = 1e-9
 _RISE: Final = 0.02
@@ -120,7 +121,10 @@ def find_breaks(function: Function, upper: float) -> list[float]:
 
 def _graded(low: float, high: float) -> Array:
     """Intervals that shrink towards `low`, so that what vanishes there keeps its digits."""
-    ends = low + (high - low) * _CUT ** np.arange(_STEPS, -1, -1)
+    # No panel narrower than the rounding of its place leaves nodes enough to tell apart.
+    finest = max((high - low) / (_NODE_WIDTH * high), 1.0)
+    steps = min(_STEPS, int(np.log(finest) / -np.log(_CUT)))
+    ends = low + (high - low) * _CUT ** np.arange(steps, -1, -1)
     return np.stack([np.append(low, ends[:-1]), ends], axis=1)
 
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import one_sided
 from mdr_core.quadrature import Analytic, gauss_legendre
@@ -41,13 +43,29 @@ class StressPanels:
     coefficients: Array
     error: float
 
+    @cached_property
+    def branches(self) -> tuple[Branch, ...]:
+        """The panels as stretches for the displacement integrals."""
+        return tuple(self._branch(panel) for panel in range(self.base.size))
+
+    def _branch(self, panel: int) -> Branch:
+        base, start, stop = (float(part[panel]) for part in (self.base, self.start, self.stop))
+        middle, half = (start + stop) / 2, (stop - start) / 2
+        pole, row = float(self.pole[panel]), self.coefficients[panel]
+
+        def weight(x: Array, s: Array, _index: Indices) -> Array:
+            value = chebyshev.chebval(np.clip((s - middle) / half, -1, 1), row)
+            return np.asarray((value * s + pole) / x)
+
+        return Branch(base, weight, float(np.hypot(base, stop)), start=float(np.hypot(base, start)))
+
     def kernel(self, a: Array, r: Array, rtol: float, width: Array | None = None) -> Array:
         """Return int_max(r,c)^a G(x)/sqrt(x^2 - r^2) dx, c = a - width.
 
         a of shape () or (m,), r of shape (m,), r < a. Source: mdr-5, Eqs. (5.68), (5.70).
         """
         a = np.broadcast_to(a, r.shape)
-        width = a if width is None else width
+        width = a if width is None else np.broadcast_to(width, r.shape)
         result = np.empty_like(r)
         for begin in range(0, r.size, _BLOCK):
             part = slice(begin, begin + _BLOCK)

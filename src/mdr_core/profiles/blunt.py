@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.abel.roots import one_sided
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
@@ -45,6 +46,10 @@ class FlatPunch(Profile):
 
     def dg(self, x: Array) -> Array:
         return self.f(x)
+
+    @property
+    def slips_at_once(self) -> bool:
+        return True
 
     def contact_radius(self, coordinate: Array) -> Array:
         return self.radius + np.zeros_like(coordinate)
@@ -87,6 +92,10 @@ class FlatPunch(Profile):
         depth = coordinate if width is None else width
         return modulus * depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        """(2/pi) d arcsin(a/r)."""
+        return np.asarray(2 / np.pi * depth * np.arctan2(a, np.sqrt((r - a) * (r + a))))
+
 
 class Blunt(Profile):
     """Common to the flats of radius b that end in a slope: f = 0 for r <= b, h(r) beyond."""
@@ -117,6 +126,21 @@ class Blunt(Profile):
                 f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
             )
         return self._leg(contact_radius)
+
+    def radius_slope(self, coordinate: Array) -> Array:
+        return coordinate / self.contact_radius(coordinate)
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        return (a - c) * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0)
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
+        return width * (2 * s_a - width) / total
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        base = float(np.asarray(self.flat_radius))
+        return (Branch(base, lambda x, s, _index: self._weight(x, s)),)
 
     def g(self, x: Array) -> Array:
         return self.depth(self._leg(x))

@@ -53,6 +53,23 @@ def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Arr
     return np.asarray(np.where((value > 0) & np.isfinite(root), polished, root))
 
 
+def power_stick(a: Array, ratio: Array, rest: Array, exponent: Array) -> tuple[Array, Array]:
+    """c and a - c where 1 - (c/a)^m = ratio = 1 - rest, with the digits of both.
+
+    Source: mdr-5, Eqs. (5.29), (5.31); notes, §4.
+    """
+    with np.errstate(divide="ignore"):
+        exact = np.where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
+    e = exact / exponent
+    return np.asarray(a * np.exp(e)), np.asarray(-a * np.expm1(e))
+
+
+def power_step(a: Array, width: Array, exponent: Array) -> Array:
+    """1 - (c/a)^m, c = a - width [1]."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(-np.expm1(exponent * np.log1p(-width / np.where(a > 0, a, 1.0))))
+
+
 def root_step(a: Array, r: Array, width: Array | None) -> Array:
     """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) with c = a - width, the second term for r < c only."""
     root_a = a - r

@@ -5,16 +5,19 @@ from typing import ClassVar
 
 import numpy as np
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.profiles.power_kernels import (
     log_ratio,
     power,
     power_moment,
     power_root,
     power_slope,
+    power_step,
+    power_stick,
     root_step,
 )
 from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
-from mdr_core.profiles.stable import kappa
+from mdr_core.profiles.stable import atan_gap, kappa
 from mdr_core.typing import Array, Parameter
 
 
@@ -26,7 +29,7 @@ class Cone(Profile):
 
     kind: ClassVar[str] = "cone"
     formula: ClassVar[str] = "slope·r"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure", "shear_stress", "slip")
 
     def __post_init__(self) -> None:
         require_positive("slope", self.slope)
@@ -55,6 +58,34 @@ class Cone(Profile):
     def reduced_energy(self, coordinate: Array) -> Array:
         return self.g(coordinate) ** 2 * coordinate / 3
 
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c/a = sqrt(1 - rho). Source: mdr-5, Eq. (5.49)."""
+        k = np.sqrt(rest)
+        return coordinate * k, coordinate * (ratio / (1 + k))
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """Source: mdr-5, Eq. (5.47)."""
+        return coordinate * rest, coordinate * ratio
+
+    def force_step(self, coordinate: Array, width: Array) -> Array:
+        """Source: mdr-5, Eq. (5.48)."""
+        return (np.pi / 2) * self.slope * width * (2 * coordinate - width)
+
+    def depth_step(self, coordinate: Array, width: Array) -> Array:
+        return self.g(width + np.zeros_like(coordinate))
+
+    def slip_moment(self, coordinate: Array, width: Array) -> Array:
+        return np.square((np.pi / 2) * self.slope) * width**3 / 6 + np.zeros_like(coordinate)
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """t [sqrt(r^2 - c^2) - c arccos(c/r)]. Source: notes, §4."""
+        leg = np.sqrt((r - c) * (r + c))
+        return np.asarray(self.slope * np.where(c > 0, atan_gap(leg, np.where(c > 0, c, 1.0)), r))
+
     @property
     def tip_pressure(self) -> Parameter:
         return self.slope / 2
@@ -80,7 +111,7 @@ class Paraboloid(Profile):
 
     kind: ClassVar[str] = "paraboloid"
     formula: ClassVar[str] = "r²/(2·radius)"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure", "shear_stress", "slip")
 
     def __post_init__(self) -> None:
         require_positive("radius", self.radius)
@@ -126,6 +157,48 @@ class Paraboloid(Profile):
         root = root_step(coordinate, radius, width)
         root *= 2 * modulus / (np.pi * self.radius)
         return root
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c/a = (1 - rho)^(1/3). Source: mdr-5, Eq. (5.16)."""
+        k = np.asarray(np.cbrt(rest))
+        divisor = np.asarray(k + 1)
+        divisor *= k
+        divisor += 1
+        width = np.asarray(ratio / divisor)
+        width *= coordinate
+        return coordinate * k, width
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c^2 = R (d - G* u/(E* mu)). Source: mdr-5, Eqs. (5.11), (5.12)."""
+        k = np.sqrt(rest)
+        return coordinate * k, coordinate * (ratio / (1 + k))
+
+    def force_step(self, coordinate: Array, width: Array) -> Array:
+        """Source: mdr-5, Eq. (5.15)."""
+        cubes = 3 * coordinate * (coordinate - width) + width * width
+        return width * cubes * (4 / (3 * self.radius))
+
+    def depth_step(self, coordinate: Array, width: Array) -> Array:
+        step = np.asarray(2 * coordinate - width)
+        step *= width
+        step /= self.radius
+        return step
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2). Source: mdr-5, Eq. (5.45)."""
+        leg2 = (r - c) * (r + c)
+        leg = np.sqrt(leg2)
+        gap = atan_gap(leg, np.where(c > 0, c, 1.0))
+        return np.asarray((c * gap + leg2 * np.arctan2(leg, c)) / (np.pi * self.radius))
+
+    def slip_moment(self, coordinate: Array, width: Array) -> Array:
+        """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2). Source: mdr-5, section 5.2; notes, §6."""
+        a, c = coordinate, coordinate - width
+        return 2 / 15 * width**3 * (a * a + 3 * a * c + c * c) / np.square(self.radius)
 
 
 @dataclass(frozen=True)
@@ -178,6 +251,30 @@ class Power(Profile):
     def reduced_energy(self, coordinate: Array) -> Array:
         n = self.exponent
         return self.g(coordinate) ** 2 * coordinate * (2 * n * n / ((n + 1) * (2 * n + 1)))
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent) + 1)
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent))
+
+    def force_step(self, coordinate: Array, width: Array) -> Array:
+        return self.reduced_force(coordinate) * power_step(
+            coordinate, width, np.asarray(self.exponent) + 1
+        )
+
+    def depth_step(self, coordinate: Array, width: Array) -> Array:
+        return self.g(coordinate) * power_step(coordinate, width, np.asarray(self.exponent))
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        # The lower end holds a part reach^n of the integral.
+        reach = 1e-17 ** max(1.0, 1 / float(np.asarray(self.exponent)))
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x), reach=max(reach, 1e-280)),)
 
     @property
     def tip_pressure(self) -> Parameter:

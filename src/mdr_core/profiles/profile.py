@@ -7,6 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.abel.displacement import Branch, slope_integral
 from mdr_core.checks import extremes
 from mdr_core.errors import InputError
 from mdr_core.quadrature import gauss_legendre
@@ -27,6 +28,7 @@ _DECAY: Final = 20.0
 _POINTS: Final = 16
 _PIECE: Final = 1.5
 _BLOCK: Final = 12_288
+_NO_BREAKS: Final = np.empty(0)
 
 
 def require_positive(name: str, value: Parameter) -> None:
@@ -58,6 +60,12 @@ class Profile(ABC):
     def normal_method(self) -> str:
         """The dearest route among the answers of a normal query."""
         return "closed_form" if set(NORMAL_ANSWERS) <= set(self.closed_forms) else "quadrature"
+
+    @property
+    def tangential_method(self) -> str:
+        """The dearest route among the answers of a tangential query."""
+        closed = "closed_form" if "slip" in self.closed_forms else "quadrature"
+        return closed if self.normal_method == "closed_form" else self.normal_method
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -111,6 +119,10 @@ class Profile(ABC):
         """Derivative of the depth with respect to the contact coordinate."""
         return self.dg(coordinate)
 
+    def radius_slope(self, coordinate: Array) -> Array:
+        """Derivative of the contact radius with respect to the contact coordinate."""
+        return np.ones_like(coordinate)
+
     @abstractmethod
     def reduced_force(self, coordinate: Array) -> Array:
         """F_N / E* = 2 int_0^a x g'(x) dx [length^2]."""
@@ -135,6 +147,85 @@ class Profile(ABC):
         return energy_integral(
             lambda s: self.reduced_force(s) * self.depth_slope(s), coordinate, self.scale
         )
+
+    @property
+    def coordinate_breaks(self) -> Array:
+        """Contact coordinates inside a contact where the depth's slope is not smooth, ascending."""
+        return _NO_BREAKS
+
+    @property
+    def slips_at_once(self) -> bool:
+        """No slip annulus exists: the contact sticks wholly until it slides."""
+        return False
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        """s_a - s_c of two contact radii a >= c, with the digits of a - c."""
+        del s_a, s_c
+        return a - c
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        """a - c, from the difference of the contact coordinates."""
+        del s_a
+        return width
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array] | None:
+        """Stick edge at F_x/(mu F_N) = ratio = 1 - rest, and its width, where closed, else None.
+
+        Both in the contact coordinate. Source: mdr-5, Eqs. (5.16), (5.31), (5.49).
+        """
+        del coordinate, ratio, rest
+        return None
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array] | None:
+        """The same at u_x/u_x,max = ratio. Source: mdr-5, Eqs. (5.12), (5.29), (5.47)."""
+        del coordinate, ratio, rest
+        return None
+
+    def force_step(self, coordinate: Array, width: Array) -> Array | None:
+        """F(a)/E* - F(c)/E* where it is closed without cancellation, else None."""
+        del coordinate, width
+        return None
+
+    def depth_step(self, coordinate: Array, width: Array) -> Array | None:
+        """d(a) - d(c) where it is closed without cancellation, else None."""
+        del coordinate, width
+        return None
+
+    def slip_moment(self, coordinate: Array, width: Array) -> Array | None:
+        """int_c^a (g(a) - g)(g - g(c)) dx [length^3] where it is closed, else None."""
+        del coordinate, width
+        return None
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        """The stretches on which g' is smooth, but for the root at each one's start.
+
+        A profile smooth from the axis on needs no more than g' itself.
+        """
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x)),)
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length], c <= r; (m,).
+
+        S(0; r) is the profile itself. Source: mdr-5, Eqs. (5.40), (5.41).
+        """
+        value = slope_integral(self.branches, c, r, r, rtol, outside=False)
+        return 2 / np.pi * value
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        """(2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx [length] for r >= a; shape (m,).
+
+        Only a flat punch needs the depth: elsewhere it is g(a).
+
+        Source: mdr-5, Eq. (5.75), with the foundation's displacement d - g.
+        """
+        del depth
+        value = slope_integral(self.branches, np.zeros_like(r), a, r, rtol, outside=True)
+        return 2 / np.pi * value
 
     @property
     def tip_pressure(self) -> Parameter:

@@ -69,6 +69,19 @@ class Spheroid(Profile):
     def contact_radius(self, coordinate: Array) -> Array:
         return self.radius * np.tanh(coordinate)
 
+    def radius_slope(self, coordinate: Array) -> Array:
+        return np.asarray(self.radius / np.square(np.cosh(coordinate)))
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        """artanh of the difference of two tanh."""
+        del s_a, s_c
+        big = np.asarray(self.radius)
+        return np.asarray(np.arctanh(big * (a - c) / (big * big - a * c)))
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        sech = np.cosh(s_a) * np.cosh(s_a - width)
+        return np.asarray(self.radius * np.sinh(width) / sech)
+
     def depth(self, coordinate: Array) -> Array:
         """h v tanh(v)."""
         return self.height * coordinate * np.tanh(coordinate)

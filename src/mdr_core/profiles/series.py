@@ -10,6 +10,7 @@ from typing import ClassVar, Final
 import numpy as np
 from scipy.optimize import brentq
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import power, power_moment, power_slope
 from mdr_core.profiles.profile import Profile
@@ -122,6 +123,11 @@ class Series(Profile):
         (c, n), (k, m) = self._powers[0], self._powers[-1]
         crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
         return exp(min(max(crossing, -_FARTHEST), _FARTHEST))
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        reach = 1e-17 ** max(1.0, 1 / self._powers[0][1])
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x), reach=max(reach, 1e-280)),)
 
     @property
     def tip_pressure(self) -> Parameter:

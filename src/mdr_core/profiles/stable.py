@@ -49,7 +49,7 @@ def atan_gap(s: Array, b: Parameter) -> Array:
     s = np.asarray(s, dtype=float)
     z = s / b
     small = z < _THRESHOLD
-    u = np.where(small, z * z, 0.0)
+    u = np.square(np.minimum(z, _THRESHOLD))
     return np.asarray(np.where(small, s * u * _horner(_ATAN, u), s - b * np.arctan(z)))
 
 
@@ -57,7 +57,7 @@ def atanh_gap(t: Array) -> Array:
     """artanh(t) - t for 0 <= t < 1 [1]: t^3/3 for small t."""
     t = np.asarray(t, dtype=float)
     small = t < _THRESHOLD
-    u = np.where(small, t * t, 0.0)
+    u = np.square(np.minimum(t, _THRESHOLD))
     return np.asarray(np.where(small, t * u * _horner(_ATANH, u), np.arctanh(t) - t))
 
 

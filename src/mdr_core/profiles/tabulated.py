@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps
 from mdr_core.abel.stress import StressPanels, stress_panels
 from mdr_core.errors import InputError
@@ -82,6 +83,10 @@ class Tabulated(Profile):
     @property
     def last_coordinate(self) -> float:
         return self.domain
+
+    @property
+    def coordinate_breaks(self) -> Array:
+        return self.r[1:-1]
 
     @property
     def scale(self) -> float:
@@ -206,6 +211,10 @@ class Tabulated(Profile):
     @property
     def tip_pressure(self) -> float:
         return max(float(self._slope.coefficients[0, 0]) / 2, 0.0)
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        return self._stress.branches
 
     @cached_property
     def _stress(self) -> StressPanels:

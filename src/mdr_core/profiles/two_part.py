@@ -6,6 +6,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.abel.roots import one_sided
 from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import root_step
@@ -15,6 +16,8 @@ from mdr_core.profiles.stable import atanh_gap
 from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 
+# Just inside the tangent radius, where the tip's own form still holds.
+_BELOW: Final = 1 - 2.0**-53
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
 
@@ -42,6 +45,14 @@ class TippedCone(Profile):
     def scale(self) -> Parameter:
         return self.tangent_radius
 
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        b = float(np.asarray(self.tangent_radius))
+        return (
+            Branch(0.0, lambda x, _s, _index: self.dg(np.minimum(x, b * _BELOW)), b),
+            Branch(b, lambda x, s, _index: self._flank_weight(x, s)),
+        )
+
     @abstractmethod
     def _tip_energy(self, a: Array) -> Array:
         """Reduced energy for a <= b."""
@@ -53,6 +64,10 @@ class TippedCone(Profile):
     @abstractmethod
     def _flank_weight(self, x: Array, s: Array) -> Array:
         """g'(x) s/x beyond the tangent radius."""
+
+    @property
+    def coordinate_breaks(self) -> Array:
+        return np.atleast_1d(np.asarray(self.tangent_radius, dtype=float))
 
     @property
     def _flank_analytic(self) -> Analytic:
@@ -341,6 +356,27 @@ class CappedParaboloid(Profile):
         b = self.cap_radius
         return np.minimum(contact_radius, b) + _leg(contact_radius, b)
 
+    @property
+    def coordinate_breaks(self) -> Array:
+        return np.atleast_1d(np.asarray(self.cap_radius, dtype=float))
+
+    def radius_slope(self, coordinate: Array) -> Array:
+        beyond = self._outer(coordinate) / np.maximum(
+            self.contact_radius(coordinate), self.cap_radius
+        )
+        return np.where(coordinate < self.cap_radius, 1.0, beyond)
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        b = self.cap_radius
+        beyond = (a - c) * (a + c) / np.where(s_a + s_c > 2 * b, s_a + s_c - 2 * b, 1.0)
+        across = (s_a - b) + (b - np.minimum(s_c, b))
+        return np.where(a <= b, a - c, np.where(c >= b, beyond, across))
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        low = s_a - width
+        ends = self.contact_radius(s_a), self.contact_radius(low)
+        return self._annulus(s_a, low, width, *ends)
+
     def _outer(self, coordinate: Array) -> Array:
         """s = sqrt(a^2 - b^2), zero inside the cap."""
         return np.maximum(coordinate - self.cap_radius, 0.0)
@@ -392,11 +428,12 @@ class CappedParaboloid(Profile):
         a = a if edge is None else edge
         low = 0 * coordinate if width is None else coordinate - width
         c, s_c = self.contact_radius(low), self._outer(low)
-        annulus = None if width is None else self._annulus(coordinate, low, a, c)
+        annulus = None if width is None else self._annulus(coordinate, low, width, a, c)
         total = np.asarray(2 / (np.pi * self.tip_radius) * root_step(a, radius, annulus))
         outer = s > 0
         if outer.any() and self._kink > 0:
-            step = np.where(s_c > 0, coordinate - low, s)[outer]
+            step = s if width is None else np.where(s_c > 0, width, s)
+            step = step[outer]
             total[outer] += (
                 self._kink
                 / np.pi
@@ -414,10 +451,18 @@ class CappedParaboloid(Profile):
         total *= modulus
         return total
 
-    def _annulus(self, high: Array, low: Array, a: Array, c: Array) -> Array:
-        """a - c with its digits, from the coordinates."""
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        b, tip, kink = float(np.asarray(self.cap_radius)), self.tip_radius, self._kink
+        return (
+            Branch(0.0, lambda x, _s, _index: 2 * x / tip, b),
+            Branch(b, lambda x, s, _index: 2 * s / tip + kink * (x * x + s * s) / x),
+        )
+
+    def _annulus(self, high: Array, low: Array, width: Array, a: Array, c: Array) -> Array:
+        """a - c with its digits, from the coordinates and their difference."""
         b = self.cap_radius
         s, s_c = self._outer(high), self._outer(low)
-        beyond = (high - low) * (s + s_c) / np.where(a + c > 0, a + c, 1.0)
+        beyond = width * (s + s_c) / np.where(a + c > 0, a + c, 1.0)
         across = s * s / (a + b) + (b - np.minimum(low, b))
-        return np.where(high <= b, high - low, np.where(low >= b, beyond, across))
+        return np.where(high <= b, width, np.where(low >= b, beyond, across))

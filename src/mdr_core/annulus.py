@@ -1,0 +1,246 @@
+"""What lies between the stick edge c and the contact's edge a: steps of depth and force.
+
+Near incipient slip the annulus is narrow, and a difference of two values at a and c has no digits
+left; its width, in the contact coordinate, is therefore the unknown, and steps over a narrow
+annulus are integrals. Source: notes, §1 and §4.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from mdr_core.foundation import coordinate_from_depth, coordinate_from_force, invert
+from mdr_core.profiles import Profile
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array
+
+_Function = Callable[[Array], Array]
+
+# Up to this part of the contact an annulus is narrow; beyond, a difference keeps its digits.
+_NARROW: Final = 0.05
+_POINTS: Final = 16
+# Up to this part of full slip the width is the unknown, beyond it the stick edge itself.
+_HALF: Final = 0.5
+# Pieces of the energy's integral: each half of what is left, down to 1e-8 of the contact.
+_HALVINGS: Final = 27
+_MOMENT_POINTS: Final = 12
+_MOMENT_BLOCK: Final = 65_536
+
+
+def depth_step(profile: Profile, coordinate: Array, width: Array) -> Array:
+    """Return d(a) - d(c) = int_c^a g' dx [length]. Source: mdr-5, Eq. (5.20); notes, §1."""
+    closed = profile.depth_step(coordinate, width)
+    if closed is not None:
+        return closed
+    return _step(profile, profile.depth, profile.depth_slope, coordinate, width)
+
+
+def force_step(profile: Profile, coordinate: Array, width: Array) -> Array:
+    """Return (F(a) - F(c))/E* = 2 int_c^a x g' dx [length^2]. Source: mdr-5, Eq. (5.19)."""
+    closed = profile.force_step(coordinate, width)
+    if closed is not None:
+        return closed
+    return _step(profile, profile.reduced_force, _force_slope(profile), coordinate, width)
+
+
+def stick_from_force(
+    profile: Profile, coordinate: Array, ratio: Array, rest: Array
+) -> tuple[Array, Array]:
+    """Return the stick edge at F_x = ratio mu F_N and the annulus' width, in the coordinate.
+
+    `rest` = 1 - ratio, formed where it has its digits. Source: mdr-5, Eq. (5.19).
+    """
+    closed = profile.stick_from_force_ratio(coordinate, ratio, rest)
+    if closed is not None:
+        return closed
+    total = profile.reduced_force(coordinate)
+
+    def step(width: Array) -> Array:
+        return force_step(profile, coordinate, width)
+
+    return _stick(
+        profile,
+        coordinate,
+        step,
+        _force_slope(profile),
+        lambda part: coordinate_from_force(profile, part),
+        (total, ratio, rest),
+    )
+
+
+def stick_from_depth(
+    profile: Profile, coordinate: Array, ratio: Array, rest: Array
+) -> tuple[Array, Array]:
+    """Return the same at u_x = ratio u_x,max. Source: mdr-5, Eq. (5.20)."""
+    closed = profile.stick_from_depth_ratio(coordinate, ratio, rest)
+    if closed is not None:
+        return closed
+    total = profile.depth(coordinate)
+
+    def step(width: Array) -> Array:
+        return depth_step(profile, coordinate, width)
+
+    return _stick(
+        profile,
+        coordinate,
+        step,
+        profile.depth_slope,
+        lambda part: coordinate_from_depth(profile, part),
+        (total, ratio, rest),
+    )
+
+
+def slip_moment(profile: Profile, coordinate: Array, width: Array) -> Array:
+    """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx [length^3].
+
+    It grows like the third power of the width: both factors are integrals of g' over parts of
+    the annulus, formed from its values at the nodes. Source: notes, §6.
+    """
+    closed = profile.slip_moment(coordinate, width)
+    if closed is not None:
+        return closed
+    return np.asarray(_moment(profile, coordinate, width))
+
+
+def _force_slope(profile: Profile) -> _Function:
+    """d(F/E*)/ds = 2 a d'(s)."""
+    return lambda s: 2 * profile.contact_radius(s) * profile.depth_slope(s)
+
+
+def _stick(
+    profile: Profile,
+    coordinate: Array,
+    step: _Function,
+    slope: _Function,
+    inverse: _Function,
+    amounts: tuple[Array, Array, Array],
+) -> tuple[Array, Array]:
+    """Solve step(width) = ratio total by the width while slip begins, by the edge later on."""
+    total, ratio, rest = amounts
+    shape = np.broadcast_shapes(coordinate.shape, total.shape, ratio.shape)
+    coordinate, total = np.broadcast_to(coordinate, shape), np.broadcast_to(total, shape)
+    early = np.broadcast_to(ratio < _HALF, shape)
+    target = np.where(early, ratio * total, 0.0)
+    reach = coordinate - profile.first_coordinate
+    with np.errstate(divide="ignore", invalid="ignore"):
+        start = np.where(target > 0, np.minimum(target / slope(coordinate), reach / 2), reach / 2)
+    start = np.where(start > 0, start, 1.0)
+
+    def log_slope(width: Array, value: Array) -> Array:
+        return width * slope(coordinate - width) / value
+
+    width = invert(
+        step,
+        log_slope,
+        target,
+        start,
+        np.zeros(shape),
+        np.where(reach > 0, reach, 2.0),
+        f"{profile.kind}'s slip annulus",
+    )
+    late = inverse(np.where(early, 0.0, rest * total))
+    edge = np.where(early, coordinate - width, late)
+    return edge, np.where(early, width, coordinate - late)
+
+
+def _step(
+    profile: Profile, function: _Function, slope: _Function, high: Array, width: Array
+) -> Array:
+    """function(high) - function(high - width), by the integral of its slope where narrow."""
+    shape = np.broadcast_shapes(high.shape, width.shape)
+    high, width = np.broadcast_to(high, shape), np.broadcast_to(width, shape)
+    below = _break_below(profile, high)
+    limit = _NARROW * high if profile.coordinate_breaks.size < 2 else (high - below[1]) / 2
+    narrow = width <= limit
+    if narrow.all():
+        return _narrow_step(slope, high, width, below[0])
+    wide = function(high) - function(np.maximum(high - width, 0.0))
+    if not narrow.any():
+        return wide
+    part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below[0])
+    return np.where(narrow, part, wide)
+
+
+def _break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
+    """The nearest break below each coordinate and the one before; zero where there is none."""
+    breaks = np.concatenate([[0.0, 0.0], profile.coordinate_breaks])
+    index = np.searchsorted(breaks, high, side="left") - 1
+    index = np.maximum(index, 1)
+    return breaks[index], breaks[index - 1]
+
+
+def _narrow_step(slope: _Function, high: Array, width: Array, below: Array) -> Array:
+    """int slope ds over [high - width, high], split at the break `below` if that is inside.
+
+    Behind a break the slope is smooth in v, s = break + v^2.
+    """
+    low = high - width
+    beyond = np.maximum(low - below, 0.0)
+    top, bottom = np.sqrt(high - below), np.sqrt(beyond)
+    inner = np.minimum(width, high - below)
+    nodes, weights = gauss_legendre(_POINTS)
+    with np.errstate(invalid="ignore"):
+        half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
+    v = bottom + np.multiply.outer(1 + nodes, half)
+    total = half * np.tensordot(weights, 2 * v * slope(below + v * v), axes=1)
+    outer = width - inner
+    if np.any(outer > 0):
+        s = low + np.multiply.outer(1 + nodes, outer / 2)
+        values = np.where(outer > 0, slope(s), 0.0)
+        total = total + outer / 2 * np.tensordot(weights, values, axes=1)
+    return np.asarray(total)
+
+
+def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
+    """`slip_moment` by pieces that shrink towards the axis and end on every break."""
+    shape = np.broadcast_shapes(coordinate.shape, width.shape)
+    high, width = np.broadcast_to(coordinate, shape), np.broadcast_to(width, shape)
+    breaks = profile.coordinate_breaks
+    result = np.empty(high.size)
+    step = max(_MOMENT_BLOCK // ((breaks.size + _HALVINGS) * _MOMENT_POINTS), 1)
+    for start in range(0, high.size, step):
+        part = slice(start, start + step)
+        result[part] = _moment_block(profile, high.ravel()[part], width.ravel()[part])
+    return result.reshape(shape)
+
+
+def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
+    breaks = profile.coordinate_breaks
+    # Ends of the pieces as distances below the contact's edge, where they have their digits.
+    halves = np.multiply.outer(1 - 0.5 ** np.arange(1, _HALVINGS), high)
+    at_breaks = high - breaks[:, None]
+    ends = np.sort(np.clip(np.concatenate([halves, at_breaks]), 0.0, width), axis=0)
+    ends = np.concatenate([np.zeros_like(high)[None], ends, width[None]])
+    length, low = np.diff(ends, axis=0), high - ends[1:]
+    below, _ = _break_below(profile, low + length / 2)
+    below = np.minimum(below, low)
+    top, bottom = np.sqrt(low - below + length), np.sqrt(low - below)
+    nodes, weights = gauss_legendre(_MOMENT_POINTS)
+    with np.errstate(invalid="ignore"):
+        half = np.where(length > 0, length / (top + bottom), 0.0)[..., None] / 2
+    v = bottom[..., None] + half * (1 + nodes)
+    s = below[..., None] + v * v
+    with np.errstate(all="ignore"):
+        rise = np.where(half > 0, 2 * v * half * profile.depth_slope(s), 0.0)
+        run = np.where(half > 0, 2 * v * half * profile.radius_slope(s), 0.0)
+    piece = rise @ weights
+    # Rows run from the contact's edge inwards.
+    above = np.cumsum(piece, axis=0) - piece
+    inside = piece.sum(axis=0) - above - piece
+    climbed = rise @ _cumulative(_MOMENT_POINTS).T
+    to_edge = above[..., None] + (piece[..., None] - climbed)
+    to_stick = inside[..., None] + climbed
+    return np.asarray(((to_edge * to_stick * run) @ weights).sum(axis=0))
+
+
+@lru_cache(maxsize=4)
+def _cumulative(points: int) -> Array:
+    """Matrix of int_-1^(node i) of the polynomial through the values at the nodes."""
+    nodes, _ = gauss_legendre(points)
+    vander = legendre.legvander(nodes, points - 1)
+    integrals = [legendre.legint(row, lbnd=-1) for row in np.eye(points)]
+    values = np.stack([legendre.legval(nodes, row) for row in integrals], axis=1)
+    return np.asarray(values @ np.linalg.inv(vander))

@@ -1,0 +1,330 @@
+"""Partial slip under one monotonic tangential load: which part sticks, and how far it moves."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core import annulus
+from mdr_core.checks import extremes, first_index
+from mdr_core.errors import InputError, Notice
+from mdr_core.normal import NormalContact
+from mdr_core.typing import Array, Flags, Parameter
+
+_NAMES: Final = ("tangential_force", "tangential_displacement", "stick_radius")
+# Rounding of the steps over the annulus, in units of the profile's own.
+_STEPS: Final = 20.0
+
+
+@dataclass(frozen=True)
+class TangentialContact:
+    """A normal contact pushed sideways, at every pair of loads at once.
+
+    Each answer is computed when it is first asked for; all are arrays over the broadcast loads.
+    """
+
+    normal: NormalContact
+    g_star: Parameter
+    friction_coefficient: Parameter
+    stick_coordinate: Array
+    """The stick zone's edge in the profile's contact coordinate; meaningless in full slip."""
+    width: Array
+    """Distance of the stick edge from the contact's edge in that coordinate, with its digits."""
+    sign: Array
+    """Direction of the load; a single 1 where all are positive."""
+    full_slip: Flags
+    """A single false where nowhere everything slips."""
+    excess: Array
+    """What the displacement exceeds the one at full slip by [length]; a single 0 for none."""
+
+    @cached_property
+    def _coordinate(self) -> Array:
+        return np.broadcast_to(self.normal.coordinate, self.width.shape)
+
+    @cached_property
+    def limiting_force(self) -> Array:
+        """mu F_N [force]."""
+        return np.asarray(self.friction_coefficient * self.normal.normal_force)
+
+    @cached_property
+    def compliance(self) -> Array:
+        """mu E*/G* [1]: depth steps to tangential displacements, Eq. (5.20)."""
+        return np.asarray(self.friction_coefficient * self.normal.e_star / self.g_star)
+
+    @cached_property
+    def tangential_force(self) -> Array:
+        """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
+        profile = self.normal.profile
+        if profile.slips_at_once:
+            partial = self.limiting_force * self.width
+        else:
+            step = annulus.force_step(profile, self._coordinate, self.width)
+            partial = self.friction_coefficient * self.normal.e_star * step
+        if self.full_slip.any():
+            partial = np.where(self.full_slip, self.limiting_force, partial)
+        return self._signed(partial)
+
+    @cached_property
+    def tangential_displacement(self) -> Array:
+        """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
+        profile = self.normal.profile
+        if profile.slips_at_once:
+            # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
+            partial = self._largest_stick * self.width
+        else:
+            step = annulus.depth_step(profile, self._coordinate, self.width)
+            partial = np.asarray(self.compliance * step)
+        if self.full_slip.any():
+            partial = np.where(self.full_slip, self._largest_stick, partial) + self.excess
+        return self._signed(partial)
+
+    def _signed(self, size: Array) -> Array:
+        return size if self.sign.ndim == 0 and self.sign > 0 else self.sign * size
+
+    @cached_property
+    def _largest_stick(self) -> Array:
+        """mu (E*/G*) d [length], at which the last point lets go. Source: mdr-5, Eq. (5.17)."""
+        return np.asarray(self.compliance * self.normal.indentation_depth)
+
+    @cached_property
+    def slip_width(self) -> Array:
+        """a - c [length]."""
+        a = self.normal.contact_radius
+        if self.normal.profile.slips_at_once:
+            return np.where(self.full_slip, a, np.zeros_like(self.width))
+        width = self.normal.profile.radius_width(self._coordinate, self.width)
+        return np.where(self.full_slip, a, width) if self.full_slip.any() else width
+
+    @cached_property
+    def stick_radius(self) -> Array:
+        """c [length]: zero in full slip. Source: mdr-5, Eqs. (5.11), (5.16), (5.31), (5.49)."""
+        profile = self.normal.profile
+        if profile.slips_at_once:
+            a = np.broadcast_to(self.normal.contact_radius, self.width.shape)
+            return np.where(self.full_slip, 0.0, a)
+        c = profile.contact_radius(np.broadcast_to(self.stick_coordinate, self.width.shape))
+        return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
+
+    @cached_property
+    def tangential_stiffness(self) -> Array:
+        """dF_x/du_x = 2 G* c on further loading [force/length]. Source: mdr-5, Eq. (5.1)."""
+        return 2 * self.g_star * self.stick_radius
+
+    @cached_property
+    def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
+        """Regime: "stick", "partial_slip" or "full_slip"."""
+        at_once = self.normal.profile.slips_at_once
+        partial = "stick" if at_once else "partial_slip"
+        slipping = np.where(self.width > 0, partial, "stick").astype("U12")
+        return np.where(self.full_slip, "full_slip", slipping)
+
+    @cached_property
+    def dissipated_energy(self) -> Array:
+        """Energy lost to friction on the way from zero [force length].
+
+        (2 mu^2 E*^2/G*) int_c^a (g(a) - g)(g - g(c)) dx, a quarter of a cycle's, and mu F_N for
+        every length beyond full slip. Source: notes, §6.
+        """
+        profile, e_star = self.normal.profile, self.normal.e_star
+        if profile.slips_at_once:
+            slipping = np.zeros_like(self.width)
+        else:
+            reach = self._coordinate - profile.first_coordinate
+            moment = annulus.slip_moment(
+                profile, self._coordinate, np.where(self.full_slip, reach, self.width)
+            )
+            slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
+        return slipping + self.limiting_force * self.excess
+
+    @property
+    def method(self) -> str:
+        """The dearest route among the answers."""
+        return self.normal.profile.tangential_method
+
+    @property
+    def error_estimate(self) -> float:
+        """Bound on the relative error of each answer."""
+        return _STEPS * self.normal.error_estimate
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """Those of the normal contact."""
+        return self.normal.warnings
+
+
+def solve(
+    contact: NormalContact,
+    g_star: Parameter,
+    friction_coefficient: Parameter,
+    *,
+    tangential_force: ArrayLike | None = None,
+    tangential_displacement: ArrayLike | None = None,
+    stick_radius: ArrayLike | None = None,
+) -> TangentialContact:
+    """Return the partial slip of a normal contact under one tangential load, applied once.
+
+    F_x = mu [F_N(a) - F_N(c)] and u_x = mu (E*/G*) [d(a) - d(c)] for every profile; slip starts
+    at the edge and the stick radius c falls as the load grows. A flat punch sticks wholly and
+    slides at once, and slip cannot enter the flat of a blunt profile.
+
+    Source: mdr-5, Eqs. (5.18)-(5.23), (5.33), Problem 3.
+
+    Parameters
+    ----------
+    contact : the normal contact, from `mdr_core.normal.solve`.
+    g_star : effective shear modulus [pressure], > 0.
+    friction_coefficient : mu > 0 [1].
+    tangential_force, tangential_displacement, stick_radius : exactly one; the first two of
+        either sign [force], [length], [length]. Arrays broadcast with the normal loads.
+
+    Raises
+    ------
+    InputError : |F_x| > mu F_N, which no equilibrium carries; a stick radius outside the
+        contact or inside the flat; not exactly one load; parameters that are not positive.
+
+    Examples
+    --------
+    Eq. (5.16): c/a = (1 - F_x/(mu F_N))^(1/3).
+
+    >>> from mdr_core import normal
+    >>> from mdr_core.profiles import Paraboloid
+    >>> contact = normal.solve(Paraboloid(0.01), 1.1e11, normal_force=10.0)
+    >>> sideways = solve(contact, 0.9e11, 0.3, tangential_force=[0.0, 2.625])
+    >>> [float(f"{c:.6g}") for c in sideways.stick_radius / contact.contact_radius]
+    [1.0, 0.5]
+    """
+    for path, value in (
+        (("material", "g_star"), g_star),
+        (("friction_coefficient",), friction_coefficient),
+    ):
+        low, high = extremes(value)
+        if not (low > 0 and high < inf):
+            raise InputError(path, "must be positive and finite")
+    loads = (tangential_force, tangential_displacement, stick_radius)
+    named = [(name, load) for name, load in zip(_NAMES, loads, strict=True) if load is not None]
+    if len(named) != 1:
+        raise InputError(("tangential",), f"exactly one of {', '.join(_NAMES)} is needed")
+    name, given = named[0][0], np.asarray(named[0][1], dtype=float)
+    sign, size = _sign_and_size(name, given)
+    stick = _BY_CONTROL[name](contact, g_star, friction_coefficient, size)
+    shape = np.broadcast_shapes(size.shape, stick.width.shape, np.shape(g_star))
+    result = TangentialContact(
+        contact,
+        g_star,
+        friction_coefficient,
+        stick.edge,
+        np.broadcast_to(stick.width, shape),
+        sign,
+        stick.full,
+        stick.excess,
+    )
+    if given.shape == shape:
+        # What was given is answered as given, to the last digit.
+        vars(result)[name] = given
+    return result
+
+
+@dataclass(frozen=True)
+class _Stick:
+    """Stick edge and annulus in the contact coordinate, and what lies beyond full slip."""
+
+    edge: Array
+    width: Array
+    full: Flags
+    excess: Array
+
+
+def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
+    """Direction and amount of the load, all of it checked; the sign 1 stands for all."""
+    low, high = extremes(given)
+    if not (low > -inf and high < inf):
+        detail = "must be finite" if given.size else "at least one load is needed"
+        index = first_index(~np.isfinite(given)) if given.size else ()
+        raise InputError(("tangential", name, *index), detail)
+    if low >= 0 or name == "stick_radius":
+        return np.asarray(1.0), given
+    return np.sign(given), np.abs(given)
+
+
+def _by_force(
+    contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
+) -> _Stick:
+    del g_star
+    limit = np.asarray(friction * contact.normal_force)
+    left = np.asarray(limit - size)
+    if left.min() < 0:
+        raise InputError(
+            ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
+            "no equilibrium: the force exceeds friction_coefficient x normal_force",
+        )
+    ratio, rest = _ratios(size, left, limit)
+    if contact.profile.slips_at_once:
+        edge, width = contact.coordinate, ratio
+    else:
+        edge, width = annulus.stick_from_force(contact.profile, contact.coordinate, ratio, rest)
+    return _Stick(edge, width, _full(rest, limit), _NOTHING)
+
+
+def _by_displacement(
+    contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
+) -> _Stick:
+    limit = np.asarray(friction * contact.e_star / g_star * contact.indentation_depth)
+    left = np.asarray(limit - size)
+    ratio, rest = _ratios(np.minimum(size, limit), np.maximum(left, 0.0), limit)
+    if contact.profile.slips_at_once:
+        edge, width = contact.coordinate, ratio
+    else:
+        edge, width = annulus.stick_from_depth(contact.profile, contact.coordinate, ratio, rest)
+    # Without a normal load any displacement slides.
+    full = _full(rest, limit) | ((limit == 0) & (size > 0))
+    return _Stick(edge, width, full, np.maximum(-left, 0.0))
+
+
+def _ratios(size: Array, left: Array, limit: Array) -> tuple[Array, Array]:
+    """size/limit and left/limit, each with its own digits; 0 and 1 where both are zero."""
+    if limit.min() > 0:
+        left /= limit
+        return size / limit, left
+    safe = np.where(limit > 0, limit, 1.0)
+    return size / safe, np.where(limit > 0, left / safe, 1.0)
+
+
+def _full(rest: Array, limit: Array) -> Flags:
+    """Where nothing is left of the limit; a single false for nowhere."""
+    return _NOWHERE if rest.min() > 0 else np.asarray((rest <= 0) & (limit > 0))
+
+
+def _by_stick_radius(
+    contact: NormalContact, g_star: Parameter, friction: Parameter, radius: Array
+) -> _Stick:
+    del g_star, friction
+    profile, a = contact.profile, np.asarray(contact.contact_radius)
+    least = profile.contact_radius(np.asarray(profile.first_coordinate))
+    all_slips = np.asarray((radius == 0) & (a > 0))
+    bad = np.asarray((radius > a) | (radius < 0) | ((radius > 0) & (radius < least)))
+    detail = "must lie between the flat's radius, or 0, and the contact radius"
+    if profile.slips_at_once:
+        bad = bad | (radius > 0)
+        detail = "a flat punch sticks wholly under any force below full slip: give the force"
+    if bad.any():
+        index = first_index(bad) if radius.ndim else ()
+        raise InputError(("tangential", "stick_radius", *index), detail)
+    if profile.slips_at_once:
+        shape = np.broadcast_shapes(radius.shape, a.shape)
+        return _Stick(contact.coordinate, np.ones(shape), all_slips, _NOTHING)
+    c = np.maximum(radius, least)
+    edge = profile.coordinate_from_radius(c)
+    width = profile.coordinate_width(a, c, contact.coordinate, edge)
+    return _Stick(edge, width, all_slips, _NOTHING)
+
+
+_NOTHING: Final = np.asarray(0.0)
+_NOWHERE: Final = np.zeros((), dtype=bool)
+_BY_CONTROL: Final = {
+    "tangential_force": _by_force,
+    "tangential_displacement": _by_displacement,
+    "stick_radius": _by_stick_radius,
+}
