@@ -35,10 +35,12 @@ class Analytic:
     """Where an integrand is analytic, |Im y| < strip, and how it grows, exp(growth |Re y|).
 
     The singularities that the substitutions leave sit at |Im y| = pi/2; the strip stays inside.
+    `fewest`: points that an integrand of some degree needs on any interval, however short.
     """
 
     growth: float = 2.0
     strip: float = 0.47 * pi
+    fewest: int = 0
 
 
 DEFAULT: Final = Analytic()
@@ -90,7 +92,12 @@ def _longest(points: int, decade: int, analytic: Analytic) -> float:
 @lru_cache(maxsize=64)
 def _limits(decade: int, analytic: Analytic) -> Array:
     """Half lengths up to which each rule of `_POINTS` suffices."""
-    return np.array([_longest(points, decade, analytic) for points in _POINTS])
+    return np.array(
+        [
+            _longest(points, decade, analytic) if points >= analytic.fewest else 0.0
+            for points in _POINTS
+        ]
+    )
 
 
 def _decade(rtol: float) -> int:

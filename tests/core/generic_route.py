@@ -26,8 +26,8 @@ class GenericRoute:
         self, slope: Callable[[Array], Array], upper: float, breaks: Sequence[float] = ()
     ) -> None:
         inner = sorted(float(b) for b in breaks if 0 < b < upper)
-        self.edges = np.array([0.0, *inner, upper])
         self.slope = abel.resolve(slope, upper, inner)
+        self.edges = np.array([0.0, *sorted({*inner, *self.slope.found}), upper])
         self.jumps = abel.jumps_at(self.slope, inner)
 
     @cached_property

@@ -123,9 +123,7 @@ def _first_stretches(r: Array, bases: list[float], upper: float) -> _Stretches:
         point = np.flatnonzero(end > base)
         far, end = r[point], end[point]
         reach = np.sqrt((far - base) * (far + base))
-        high = np.arctan2(
-            np.sqrt((end - base) * (end + base)), np.sqrt((far - end) * (far + end))
-        )
+        high = np.arctan2(np.sqrt((end - base) * (end + base)), np.sqrt((far - end) * (far + end)))
         low = np.zeros_like(far)
         for turn in base * _TURNS if base > 0 else ():
             cut = np.clip(np.arcsin(np.minimum(turn / reach, 1.0)), low, high)

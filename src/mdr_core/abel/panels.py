@@ -29,7 +29,8 @@ _JUMP_WIDTH: Final = 8 * _EPS
 _CUT: Final = 0.4812118
 # Panels shrink by it this often towards the axis and each break: down to 1e-12 of the whole.
 _STEPS: Final = 38
-_NODE_WIDTH: Final = 1e-13
+# A narrower panel has its nodes on too few doubles.
+_NODE_WIDTH: Final = 1e3 * _EPS
 _ROUNDING: Final = 4 * _EPS
 _FIRST_WIDTH: Final = 1e-9
 _RISE: Final = 0.02
@@ -38,6 +39,9 @@ _CARRIES: Final = 3
 # What the axis panel may still hold, relative to the first one looked at.
 _NEGLIGIBLE: Final = 1e-17
 _MOST_PANELS: Final = 4000
+# A panel this narrow, relative to its place, whose tail is this large, holds a jump.
+_NEEDLE: Final = 1e-11
+_UNRESOLVED: Final = 1e-8
 # Panels narrower than this, relative to their place, are closing in on a break.
 _CLOSING_IN: Final = 1e-3
 # Values below have lost digits to underflow: there is no structure left to resolve.
@@ -60,6 +64,8 @@ class Panels:
     edges: Array
     coefficients: Array
     error: float
+    found: tuple[float, ...] = ()
+    """Where the function jumps and nobody had declared it."""
 
     def at_ends(self) -> tuple[Array, Array]:
         """Values at the left and the right end of each panel."""
@@ -87,7 +93,7 @@ def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> P
     """
     inner = sorted({float(b) for b in breaks if 0 < b < upper})
     ends = np.array([0.0, *inner, upper])
-    graded = [_graded(low, high) for low, high in pairwise(ends)]
+    graded = [_graded(function, low, high) for low, high in pairwise(ends)]
     intervals = np.concatenate(graded)
     first = intervals[:1, 1]
     negligible = _NEGLIGIBLE * float(np.abs(function(first))[0] * first[0])
@@ -95,10 +101,35 @@ def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> P
         lambda r, _: function(r),
         intervals,
         np.zeros(len(intervals), int),
-        lambda r: _EPS * r,
-        negligible,
+        lambda r, _: _EPS * r,
+        lambda high, largest: high * largest <= negligible,
     )
-    return Panels(np.append(intervals[:, 0], upper), coefficients, error)
+    return _without_needles(Panels(np.append(intervals[:, 0], upper), coefficients, error))
+
+
+def _without_needles(panels: Panels) -> Panels:
+    """The same with panels of rounding's width replaced by the jump that they closed in on.
+
+    Their error is left out of account: a jump is exact.
+    """
+    low, high = panels.edges[:-1], panels.edges[1:]
+    tail = np.abs(panels.coefficients[:, -2:]).max(axis=1)
+    unresolved = tail > _UNRESOLVED * np.abs(panels.coefficients).max(axis=1)
+    needle = (high - low <= _NEEDLE * high) & (low > 0) & unresolved
+    if not needle.any():
+        return panels
+    # A run of needles is one jump: it moves to where the run ends.
+    last = needle & ~np.append(needle[1:], False)
+    edges = np.append(low[~needle], panels.edges[-1])
+    kept = panels.coefficients[~needle]
+    return Panels(edges, kept, _largest_tail(kept), tuple(high[last].tolist()))
+
+
+def _largest_tail(coefficients: Array) -> float:
+    """Largest of the last two coefficients, relative to the largest of their panel."""
+    scale = np.abs(coefficients).max(axis=1)
+    tail = np.abs(coefficients[:, -2:]).max(axis=1)
+    return float((tail[scale > _UNDERFLOW] / scale[scale > _UNDERFLOW]).max(initial=0.0))
 
 
 def find_breaks(function: Function, upper: float) -> list[float]:
@@ -119,12 +150,16 @@ def find_breaks(function: Function, upper: float) -> list[float]:
     return [float((edges[i] + edges[i + 1]) / 2) for i in tightest]
 
 
-def _graded(low: float, high: float) -> Array:
-    """Intervals that shrink towards `low`, so that what vanishes there keeps its digits."""
-    # No panel narrower than the rounding of its place leaves nodes enough to tell apart.
-    finest = max((high - low) / (_NODE_WIDTH * high), 1.0)
-    steps = min(_STEPS, int(np.log(finest) / -np.log(_CUT)))
-    ends = low + (high - low) * _CUT ** np.arange(steps, -1, -1)
+def _graded(function: Function, low: float, high: float) -> Array:
+    """Intervals that shrink towards `low` where the function vanishes there, to keep its digits.
+
+    Elsewhere they would only lose the digits of its derivative.
+    """
+    near, far = np.abs(function(low + (high - low) * np.array([_FIRST_WIDTH, 0.5])))
+    if low > 0 and near > _RISE * far:
+        return np.array([[low, high]])
+    widths = (high - low) * _CUT ** np.arange(_STEPS, -1, -1)
+    ends = low + widths[widths > _NODE_WIDTH * low]
     return np.stack([np.append(low, ends[:-1]), ends], axis=1)
 
 
@@ -132,13 +167,13 @@ def bisect(
     function: Callable[[Array, Indices], Array],
     intervals: Array,
     tags: Indices,
-    blur: Function,
-    negligible: float,
+    blur: Callable[[Array, Indices], Array],
+    tip_is_done: Callable[[Array, Array], Flags],
 ) -> tuple[Array, Indices, Array, float]:
     """Split tagged intervals until each is one polynomial; ascending in tag and place.
 
-    `function(points, tags)` takes flat arrays; `blur(points)` is the rounding of the points.
-    A panel that starts at zero is done when its length times its value is `negligible`.
+    `function(points, tags)` takes flat arrays; `blur(points, tags)` is the points' rounding.
+    `tip_is_done(high, largest)` says when a panel that starts at zero needs no more cutting.
     Returns intervals, tags, coefficients and the largest tail kept.
     """
     done: list[tuple[Array, Indices, Array]] = []
@@ -156,9 +191,9 @@ def bisect(
             coefficients = moved @ _TO_COEFFICIENTS.T
         tail = np.abs(coefficients[:, -2:]).max(axis=1)
         largest = np.abs(values).max(axis=1)
-        narrow = (high - low <= _JUMP_WIDTH * high) | ((low == 0) & (high * largest <= negligible))
+        narrow = (high - low <= _JUMP_WIDTH * high) | ((low == 0) & tip_is_done(high, largest))
         steepness = np.abs(np.diff(values, axis=1) / np.diff(nodes, axis=1))
-        rounding = (steepness * blur(nodes[:, 1:])).max(axis=1)
+        rounding = (steepness * blur(nodes[:, 1:], tags[:, None])).max(axis=1)
         smooth = (tail <= _TAIL * largest + 2 * rounding) & ~_steep(values, low, high)
         good = smooth | narrow | (largest < _UNDERFLOW)
         done.append((intervals[good], tags[good], _chopped(coefficients[good], largest[good])))
@@ -257,13 +292,16 @@ def forward_slope(source: Panels, base: Array, offset: Array) -> Array:
 
 
 def jumps_at(slope: Panels, breaks: Sequence[float]) -> Jumps:
-    """Jumps of the resolved function at its declared breaks."""
+    """Jumps of the resolved function at its declared breaks and at those found."""
     left, right = slope.at_ends()
-    found = np.searchsorted(slope.edges, np.array(breaks, dtype=float))
+    found = np.searchsorted(slope.edges, np.unique([*breaks, *slope.found]))
     inner = [int(i) for i in found if 0 < i < len(left)]
     size = np.array([left[i] - right[i - 1] for i in inner])
     scale = np.array([np.abs(slope.coefficients[i - 1 : i + 1]).sum() for i in inner])
-    real = np.abs(size) > 64 * _EPS * scale
+    # The function's own change over the rounding of the break is no jump.
+    widths = np.diff(slope.edges)
+    rise = np.array([np.abs(right[i] - left[i]) / widths[i] for i in inner])
+    real = np.abs(size) > 64 * _EPS * scale + 16 * _EPS * slope.edges[inner] * rise
     return Jumps(slope.edges[inner][real], size[real])
 
 

@@ -12,7 +12,7 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import one_sided
 from mdr_core.quadrature import Analytic, gauss_legendre
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Flags, Indices
 
 _FAR_NODES: Final = 16
 # A panel is far when the kernel's root is this many panel lengths away from it.
@@ -23,8 +23,8 @@ _AXIS: Final = 1e-8
 # G(0) below this, relative to the largest G, is what an interpolation leaves of a smooth tip.
 _TIP: Final = 1e-6
 # The panels' polynomials have degree 23.
-_POLYNOMIALS: Final = Analytic(growth=12.0)
-_NEGLIGIBLE: Final = 1e-17
+_POLYNOMIALS: Final = Analytic(growth=12.0, fewest=24)
+_NEGLIGIBLE: Final = 1e-16
 _EPS: Final = float(np.finfo(float).eps)
 
 
@@ -155,7 +155,7 @@ class StressPanels:
             # G(0) > 0 is a tip, and the integral of G/x over it infinite.
             left = np.abs(chebyshev.chebval(-1.0, rows))
             tip = left > _TIP * np.abs(self.coefficients).max()
-            result[on_axis & tip] = np.inf
+            result[on_axis & tip & (start == 0)] = np.inf
         return result
 
 
@@ -179,13 +179,21 @@ def stress_panels(
         offset: Array = s * s / (b + np.hypot(b, s))
         return slope(b, offset)
 
-    def blur(s: Array) -> Array:
-        # x = sqrt(b^2 + s^2) is rounded to eps x, its root s to eps x^2/s; x <= the last edge.
-        return np.asarray(_EPS * np.square(edges[-1]) / s)
+    def blur(s: Array, tags: Indices) -> Array:
+        # x = sqrt(b^2 + s^2) is rounded to eps x, its root s to eps x^2/s.
+        return np.asarray(_EPS * (np.square(base[tags]) / s + s))
 
-    negligible = _NEGLIGIBLE * float(np.abs(slope(base[:1], edges[1:2]))[0] * edges[1])
+    # The pressure on the axis holds int G/x and feels G itself there; where G grows towards the
+    # axis that pressure is infinite, and elsewhere int G is what counts.
+    at_edge = float(np.abs(slope(base[-1:], edges[-1:] - base[-1:]))[0])
+    at_tip = float(np.abs(slope(base[:1], edges[1:2]))[0] * edges[1])
+
+    def tip_is_done(high: Array, largest: Array) -> Flags:
+        steep = (largest > at_edge) & (high * largest <= _NEGLIGIBLE * at_tip)
+        return np.asarray(steep | (largest <= _NEGLIGIBLE * at_edge))
+
     places, tags, coefficients, error = bisect(
-        in_s, intervals, np.arange(base.size), blur, negligible
+        in_s, intervals, np.arange(base.size), blur, tip_is_done
     )
     pole = np.zeros_like(base)
     pole[np.searchsorted(base, jumps.at)] = jumps.at * jumps.size
