@@ -23,7 +23,7 @@ class Row:
     others: set[str]
 
 
-CORE = {"mdr_core.errors", "mdr_core.typing", "mdr_core.checks"}
+CORE = {"mdr_core.errors", "mdr_core.typing", "mdr_core.checks", "mdr_core.lazy"}
 TRANSFORMS = {"mdr_core.quadrature", "mdr_core.abel"}
 CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_core.foundation"}
 # What the wire may name of the core: its public face, never the way it calculates.
@@ -36,6 +36,7 @@ TABLE = (
     Row("mdr_core.errors", set(), set()),
     Row("mdr_core.typing", set(), NUMBERS),
     Row("mdr_core.checks", {"mdr_core.typing"}, NUMBERS),
+    Row("mdr_core.lazy", set(), set()),
     Row("mdr_core.materials", CORE, NUMBERS),
     Row("mdr_core.quadrature", CORE, NUMBERS),
     Row("mdr_core.abel", CORE | {"mdr_core.quadrature"}, NUMBERS),

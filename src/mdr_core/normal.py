@@ -1,7 +1,6 @@
 """Normal contact: of depth, force and radius, one is given and the others follow."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 
 import numpy as np
@@ -14,6 +13,7 @@ from mdr_core.foundation import (
     coordinate_from_force,
     coordinate_from_radius,
 )
+from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Parameter
 

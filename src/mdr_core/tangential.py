@@ -1,7 +1,6 @@
 """Partial slip under one monotonic tangential load: which part sticks, and how far it moves."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 from typing import Any, Final
 
@@ -11,12 +10,13 @@ from numpy.typing import ArrayLike
 from mdr_core import annulus
 from mdr_core.checks import extremes, first_index
 from mdr_core.errors import InputError, Notice
+from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array, Flags, Parameter
 
 _NAMES: Final = ("tangential_force", "tangential_displacement", "stick_radius")
 # Rounding of the steps over the annulus, in units of the profile's own.
-_STEPS: Final = 20.0
+_STEPS: Final = 40.0
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,10 @@ class TangentialContact:
         return np.broadcast_to(self.normal.coordinate, self.width.shape)
 
     @cached_property
+    def _stick(self) -> Array:
+        return np.broadcast_to(self.stick_coordinate, self.width.shape)
+
+    @cached_property
     def limiting_force(self) -> Array:
         """mu F_N [force]."""
         return np.asarray(self.friction_coefficient * self.normal.normal_force)
@@ -61,7 +65,7 @@ class TangentialContact:
         if profile.slips_at_once:
             partial = self.limiting_force * self.width
         else:
-            step = annulus.force_step(profile, self._coordinate, self.width)
+            step = annulus.force_step(profile, self._coordinate, self.width, self._stick)
             partial = self.friction_coefficient * self.normal.e_star * step
         if self.full_slip.any():
             partial = np.where(self.full_slip, self.limiting_force, partial)
@@ -75,7 +79,7 @@ class TangentialContact:
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
             partial = self._largest_stick * self.width
         else:
-            step = annulus.depth_step(profile, self._coordinate, self.width)
+            step = annulus.depth_step(profile, self._coordinate, self.width, self._stick)
             partial = np.asarray(self.compliance * step)
         if self.full_slip.any():
             partial = np.where(self.full_slip, self._largest_stick, partial) + self.excess
@@ -105,7 +109,10 @@ class TangentialContact:
         if profile.slips_at_once:
             a = np.broadcast_to(self.normal.contact_radius, self.width.shape)
             return np.where(self.full_slip, 0.0, a)
-        c = profile.contact_radius(np.broadcast_to(self.stick_coordinate, self.width.shape))
+        c = profile.contact_radius(self._stick)
+        if not self.width.all():
+            # Nothing slips: the edges are the same, to the last digit.
+            c = np.where(self.width > 0, c, self.normal.contact_radius)
         return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
 
     @cached_property

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.polynomial import chebyshev
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import one_sided
+from mdr_core.lazy import cached_property
 from mdr_core.quadrature import Analytic, gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
 
@@ -59,18 +59,25 @@ class StressPanels:
 
         return Branch(base, weight, float(np.hypot(base, stop)), start=float(np.hypot(base, start)))
 
-    def kernel(self, a: Array, r: Array, rtol: float, width: Array | None = None) -> Array:
+    def kernel(
+        self,
+        a: Array,
+        r: Array,
+        rtol: float,
+        width: Array | None = None,
+        inner: Array | None = None,
+    ) -> Array:
         """Return int_max(r,c)^a G(x)/sqrt(x^2 - r^2) dx, c = a - width.
 
         a of shape () or (m,), r of shape (m,), r < a. Source: mdr-5, Eqs. (5.68), (5.70).
         """
         a = np.broadcast_to(a, r.shape)
         width = a if width is None else np.broadcast_to(width, r.shape)
+        c = a - width if inner is None else np.broadcast_to(inner, r.shape)
         result = np.empty_like(r)
         for begin in range(0, r.size, _BLOCK):
             part = slice(begin, begin + _BLOCK)
-            inner = a[part] - width[part]
-            result[part] = self._block(a[part], r[part], inner, width[part], rtol)
+            result[part] = self._block(a[part], r[part], c[part], width[part], rtol)
         return result
 
     def _block(self, a: Array, r: Array, c: Array, width: Array, rtol: float) -> Array:

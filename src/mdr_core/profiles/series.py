@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from math import copysign, exp, inf, isfinite, log
 from typing import ClassVar, Final
@@ -12,6 +11,7 @@ from scipy.optimize import brentq
 
 from mdr_core.abel.displacement import Branch
 from mdr_core.errors import InputError
+from mdr_core.lazy import cached_property
 from mdr_core.profiles.power_kernels import power, power_moment, power_slope
 from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.stable import kappa
@@ -127,7 +127,18 @@ class Series(Profile):
     @property
     def branches(self) -> tuple[Branch, ...]:
         reach = 1e-17 ** max(1.0, 1 / self._powers[0][1])
-        return (Branch(0.0, lambda x, _s, _index: self.dg(x), reach=max(reach, 1e-280)),)
+        return (
+            Branch(
+                0.0,
+                lambda x, _s, _index: self.dg(x),
+                reach=max(reach, 1e-280),
+                steepness=self.steepness,
+            ),
+        )
+
+    @property
+    def steepness(self) -> float:
+        return max(3.5, *(n for _, n in self._powers))
 
     @property
     def tip_pressure(self) -> Parameter:
@@ -142,11 +153,12 @@ class Series(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
         for c, n in self._powers:
             scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
-            total += scale * power_moment(n - 1, coordinate, radius, rtol, width)
+            total += scale * power_moment(n - 1, coordinate, radius, rtol, width, inner)
         return total
 
 

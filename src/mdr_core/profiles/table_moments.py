@@ -7,13 +7,13 @@ panel and however far from the axis. Source: notes, §5.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import factorial
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.panels import Jumps
+from mdr_core.lazy import cached_property
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array
 

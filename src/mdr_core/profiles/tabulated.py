@@ -1,6 +1,5 @@
 """Profiles through the points of a table: piecewise cubic, with closed panel moments."""
 
-from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar, Final, Literal
 
@@ -12,6 +11,7 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps
 from mdr_core.abel.stress import StressPanels, stress_panels
 from mdr_core.errors import InputError
+from mdr_core.lazy import cached_property
 from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.table_moments import TableSlope
 from mdr_core.quadrature import gauss_legendre
@@ -228,8 +228,9 @@ class Tabulated(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
-        value = self._stress.kernel(coordinate, radius, rtol, width)
+        value = self._stress.kernel(coordinate, radius, rtol, width, inner)
         value *= modulus / np.pi
         return value
 
