@@ -24,26 +24,31 @@ _NARROW: Final = 0.05
 _POINTS: Final = 16
 # Up to this part of full slip the width is the unknown, beyond it the stick edge itself.
 _HALF: Final = 0.5
-# Pieces of the energy's integral: each half of what is left, down to 1e-8 of the contact.
+# Pieces of the energy's integral: over each, the steepest power changes by exp(2.4).
+_RESOLVED: Final = 2.4
 _HALVINGS: Final = 27
 _MOMENT_POINTS: Final = 12
 _MOMENT_BLOCK: Final = 65_536
 
 
-def depth_step(profile: Profile, coordinate: Array, width: Array) -> Array:
-    """Return d(a) - d(c) = int_c^a g' dx [length]. Source: mdr-5, Eq. (5.20); notes, §1."""
-    closed = profile.depth_step(coordinate, width)
+def depth_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+    """Return d(a) - d(c) = int_c^a g' dx [length]. Source: mdr-5, Eq. (5.20); notes, §1.
+
+    `stick` = coordinate - width: of the two, each is used where it has its digits.
+    """
+    closed = profile.depth_step(coordinate, width, stick)
     if closed is not None:
         return closed
-    return _step(profile, profile.depth, profile.depth_slope, coordinate, width)
+    return _step(profile, profile.depth, profile.depth_slope, (coordinate, width, stick))
 
 
-def force_step(profile: Profile, coordinate: Array, width: Array) -> Array:
+def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
     """Return (F(a) - F(c))/E* = 2 int_c^a x g' dx [length^2]. Source: mdr-5, Eq. (5.19)."""
-    closed = profile.force_step(coordinate, width)
+    closed = profile.force_step(coordinate, width, stick)
     if closed is not None:
         return closed
-    return _step(profile, profile.reduced_force, _force_slope(profile), coordinate, width)
+    ends = coordinate, width, stick
+    return _step(profile, profile.reduced_force, _force_slope(profile), ends)
 
 
 def stick_from_force(
@@ -59,7 +64,7 @@ def stick_from_force(
     total = profile.reduced_force(coordinate)
 
     def step(width: Array) -> Array:
-        return force_step(profile, coordinate, width)
+        return force_step(profile, coordinate, width, coordinate - width)
 
     return _stick(
         profile,
@@ -81,7 +86,7 @@ def stick_from_depth(
     total = profile.depth(coordinate)
 
     def step(width: Array) -> Array:
-        return depth_step(profile, coordinate, width)
+        return depth_step(profile, coordinate, width, coordinate - width)
 
     return _stick(
         profile,
@@ -147,17 +152,16 @@ def _stick(
 
 
 def _step(
-    profile: Profile, function: _Function, slope: _Function, high: Array, width: Array
+    profile: Profile, function: _Function, slope: _Function, ends: tuple[Array, Array, Array]
 ) -> Array:
-    """function(high) - function(high - width), by the integral of its slope where narrow."""
-    shape = np.broadcast_shapes(high.shape, width.shape)
-    high, width = np.broadcast_to(high, shape), np.broadcast_to(width, shape)
+    """function(high) - function(low), by the integral of its slope where they are close."""
+    high, width, low = np.broadcast_arrays(*ends)
     below = _break_below(profile, high)
     limit = _NARROW * high if profile.coordinate_breaks.size < 2 else (high - below[1]) / 2
     narrow = width <= limit
     if narrow.all():
         return _narrow_step(slope, high, width, below[0])
-    wide = function(high) - function(np.maximum(high - width, 0.0))
+    wide = function(high) - function(np.maximum(low, 0.0))
     if not narrow.any():
         return wide
     part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below[0])
@@ -210,7 +214,8 @@ def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
 def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     breaks = profile.coordinate_breaks
     # Ends of the pieces as distances below the contact's edge, where they have their digits.
-    halves = np.multiply.outer(1 - 0.5 ** np.arange(1, _HALVINGS), high)
+    ratio = np.exp(-_RESOLVED / profile.steepness)
+    halves = np.multiply.outer(1 - ratio ** np.arange(1, _HALVINGS), high)
     at_breaks = high - breaks[:, None]
     ends = np.sort(np.clip(np.concatenate([halves, at_breaks]), 0.0, width), axis=0)
     ends = np.concatenate([np.zeros_like(high)[None], ends, width[None]])

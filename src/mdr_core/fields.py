@@ -107,8 +107,8 @@ def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float =
         load, modulus = slip.normal, slip.sign * slip.friction * slip.normal.e_star
         if slip.width == 0 and not slip.full:
             return lambda r, _highest: np.zeros(r.shape)
-        width = None if slip.full else slip.width
-        return lambda r, highest: _kernel(load, r, highest, width, modulus, rtol)
+        slip_annulus = None if slip.full else (slip.width, slip.c)
+        return lambda r, highest: _kernel(load, r, highest, slip_annulus, modulus, rtol)
 
     return _fill(contact.width.shape, [row(slip) for slip in _slips(contact)], radius)
 
@@ -210,25 +210,34 @@ def _foundation_row(load: _Load) -> _Row:
             least = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
             x, a = np.maximum(r[inside], least), np.array([load.a])
             top = np.array([load.coordinate])
-            width = profile.coordinate_width(a, x, top, profile.coordinate_from_radius(x))
-            result[inside] = load.e_star * annulus.depth_step(profile, top, width)
+            at = profile.coordinate_from_radius(x)
+            width = profile.coordinate_width(a, x, top, at)
+            result[inside] = load.e_star * annulus.depth_step(profile, top, width, at)
         return result
 
     return values
 
 
 def _kernel(
-    load: _Load, r: Array, highest: float, width: float | None, modulus: float, rtol: float
+    load: _Load,
+    r: Array,
+    highest: float,
+    slip_annulus: tuple[float, float] | None,
+    modulus: float,
+    rtol: float,
 ) -> Array:
-    """The stress kernel at all radii, zero outside the contact; c = 0 for a width of None."""
+    """The stress kernel at all radii, zero outside the contact.
+
+    `slip_annulus` is its width in the contact coordinate and c; None for c = 0.
+    """
     at = np.array([load.coordinate])
-    span = None if width is None else np.array([width])
+    span, inner = (None, None) if slip_annulus is None else map(_single, slip_annulus)
     inside = slice(None) if highest < load.a else np.asarray(r < load.a)
     chosen = r[inside]
     values = np.zeros(0)
     if chosen.size:
         values = load.profile.pressure_kernel(
-            at, chosen, rtol, span, edge=load.edge, modulus=modulus
+            at, chosen, rtol, span, edge=load.edge, modulus=modulus, inner=inner
         )
         if chosen.size == r.size:
             return values
@@ -238,6 +247,10 @@ def _kernel(
         # The rim of a flat punch carries an infinite stress.
         result[r == load.a] = np.copysign(inf, modulus) if load.coordinate > 0 else 0.0
     return result
+
+
+def _single(value: float) -> Array:
+    return np.array([value])
 
 
 def _slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:

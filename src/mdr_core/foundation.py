@@ -144,7 +144,7 @@ def invert(
         s = np.where(inside | last, proposed, _middle(low, high))
         s = np.where(s < _LARGEST, np.where(s > 1 / _LARGEST, s, 0.0), np.inf)
         if settled:
-            return np.where(positive, s, nothing)
+            return np.where(positive, np.maximum(s, nothing), nothing)
     raise DefectError(f"the inverse of a {name} did not converge")
 
 

@@ -7,7 +7,7 @@ int_0^a (g(a) - g(x))/sqrt(r^2 - x^2) dx = int_0^a g'(x) arcsin(x/r) dx.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
+from math import ceil, inf
 from typing import Final
 
 import numpy as np
@@ -20,6 +20,8 @@ from mdr_core.typing import Array
 # the logarithm of its distance from the break.
 _UPPER: Final = 0.5
 _PIECE: Final = 2.0
+# Power of the radius that one piece resolves.
+_STEEP: Final = 8.0
 # Nodes by the tolerance: pieces have a half length of one in a strip of pi/2.
 _POINTS: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 
@@ -29,7 +31,7 @@ class Branch:
     """A stretch base <= x <= stop on which weight(x, s, index) = g'(x) s/x is analytic in s.
 
     s = sqrt(x^2 - base^2); the stretch may begin only at `start`. Below `reach` times the radius
-    nothing of the integral is left.
+    nothing of the integral is left; `steepness` is the highest power that g' resembles.
     """
 
     base: float
@@ -37,6 +39,7 @@ class Branch:
     stop: float = inf
     reach: float = 1e-18
     start: float = 0.0
+    steepness: float = 3.5
 
 
 def slope_integral(
@@ -73,7 +76,7 @@ def _branch(
     def kernel(x: Array, leg: Array) -> Array:
         return np.arctan2(x, leg) if outside else np.arctan2(leg, x)
 
-    nodes, weights = composite_rule(points, 1)
+    nodes, weights = composite_rule(points, max(ceil(branch.steepness / _STEEP), 1))
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)
     x = np.hypot(base, s)
@@ -99,7 +102,8 @@ def _lower(
         upper = np.log(high)
         with np.errstate(divide="ignore"):
             length = np.minimum(upper - np.log(low), -np.log(branch.reach))
-    nodes, weights = composite_rule(points, max(int(np.ceil(length.max() / _PIECE)), 1))
+    piece = _PIECE * min(1.0, _STEEP / branch.steepness)
+    nodes, weights = composite_rule(points, max(ceil(length.max() / piece), 1))
     y = upper - nodes[:, None] * length
     s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
     x = np.hypot(base, s)

@@ -45,6 +45,7 @@ def one_sided(
     *,
     width: Array | None = None,
     edge: Array | None = None,
+    inner: Array | None = None,
     odd: bool,
     rtol: float,
     analytic: Analytic = DEFAULT,
@@ -63,12 +64,13 @@ def one_sided(
     ----------
     weight : F(x) s / x, analytic in s.
     b, r : the break, b > 0, and the points, r < a, r >= 0. [length], shape (m,)
-    edge : a itself where it was given exactly: near it, a - r is then exact too.
+    edge, inner : a and c themselves where they are known as radii: near them, a - r and c - r
+        are then exact.
     odd : F is an odd function of s, which halves the work for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
     analytic : where F s/x is analytic in y, if not in the whole strip, and how it grows.
     """
-    problem = _OneSided(weight, upper, width, edge, odd, rtol, analytic)
+    problem = _OneSided(weight, upper, width, edge, inner, odd, rtol, analytic)
     on_break = (r == b) & (r > 0)
     if not on_break.any():
         return _two_roots(problem, b, r)
@@ -89,6 +91,7 @@ class _OneSided:
     upper: Array
     width: Array | None
     edge: Array | None
+    inner: Array | None
     odd: bool
     rtol: float
     analytic: Analytic
@@ -105,25 +108,44 @@ class _OneSided:
             upper=np.broadcast_to(self.upper, shape)[index],
             width=pick(self.width),
             edge=pick(self.edge),
+            inner=pick(self.inner),
         )
 
 
 def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
-    """r = b: x = b cosh(y), s = b sinh(y); infinite where F ~ 1/s and the stretch starts at b."""
+    """r = b: F dx/s = weight ds/s, in log(s) over an annulus, in arcsinh(s/b) from the break on.
 
-    def h(y: Array, index: Indices) -> Array:
-        x, s = r[index] * np.cosh(y), r[index] * np.sinh(y)
-        return np.asarray(problem.weight(x, s, index) * x / s)
+    Infinite where F ~ 1/s and the stretch starts at b.
+    """
+    weight, upper = problem.weight, problem.upper
+    width = upper if problem.width is None else problem.width
+    result = np.empty_like(r)
+    apart = width < upper
+    index = np.flatnonzero(apart)
+    if index.size:
+        low = (upper - width)[index]
 
-    upper = problem.upper
-    lower = np.zeros_like(r) if problem.width is None else upper - problem.width
-    low = np.arcsinh(lower / b)
-    square_difference = (upper - lower) * (upper + lower) / np.square(r)
-    length = asinh_difference(upper / b, lower / b, square_difference)
-    result = integrate_plain(h, low, length, problem.rtol, problem.analytic)
-    everything = np.arange(r.size)
-    pole = problem.weight(r[None], np.zeros((1, r.size)), everything)[0]
-    result[(lower <= 0) & (pole != 0)] = np.inf
+        def over_annulus(t: Array, chosen: Indices) -> Array:
+            s = np.exp(t)
+            return weight(np.hypot(r[index[chosen]], s), s, index[chosen])
+
+        length = np.log1p(width[index] / low)
+        result[index] = integrate_plain(
+            over_annulus, np.log(low), length, problem.rtol, problem.analytic
+        )
+    index = np.flatnonzero(~apart)
+    if index.size:
+
+        def from_break(y: Array, chosen: Indices) -> Array:
+            at = r[index[chosen]]
+            x, s = at * np.cosh(y), at * np.sinh(y)
+            return np.asarray(weight(x, s, index[chosen]) * x / s)
+
+        length = np.arcsinh(upper[index] / r[index])
+        nothing = np.zeros(index.size)
+        result[index] = integrate_plain(from_break, nothing, length, problem.rtol, problem.analytic)
+        pole = weight(r[None, index], nothing[None], index)[0]
+        result[index[pole != 0]] = np.inf
     return result
 
 
@@ -154,7 +176,12 @@ def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     if width is None:
         return between(h, top, even, rtol, analytic=analytic)
     lower = upper - width
-    bottom = np.sqrt(np.maximum(lower * lower - shift, 0.0)) / epsilon
+    if problem.inner is None:
+        bottom2 = np.maximum(lower * lower - shift, 0.0)
+    else:
+        c = problem.inner
+        bottom2 = np.where(above, np.maximum(c - r, 0.0) * (c + r), lower * lower)
+    bottom = np.sqrt(bottom2) / epsilon
     square_difference = width * (upper + lower) / distance2
     return between(h, top, even, rtol, bottom, square_difference, analytic)
 

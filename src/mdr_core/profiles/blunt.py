@@ -87,6 +87,7 @@ class FlatPunch(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         """d / (pi sqrt(a^2 - r^2)): the edge term of Eq. (5.34); no slip annulus exists."""
         depth = coordinate if width is None else width
@@ -165,6 +166,7 @@ class Blunt(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         value = one_sided(
             lambda x, s, _: self._weight(x, s),
@@ -173,6 +175,7 @@ class Blunt(Profile):
             coordinate,
             width=width,
             edge=edge,
+            inner=inner,
             odd=True,
             rtol=rtol,
         )

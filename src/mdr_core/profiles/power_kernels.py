@@ -64,46 +64,59 @@ def power_stick(a: Array, ratio: Array, rest: Array, exponent: Array) -> tuple[A
     return np.asarray(a * np.exp(e)), np.asarray(-a * np.expm1(e))
 
 
-def power_step(a: Array, width: Array, exponent: Array) -> Array:
-    """1 - (c/a)^m, c = a - width [1]."""
+def power_step(a: Array, width: Array, c: Array, exponent: Array) -> Array:
+    """1 - (c/a)^m [1], from the width while the annulus is narrow, else from c itself."""
+    safe = np.where(a > 0, a, 1.0)
+    part = np.minimum(width / safe, 0.5)
     with np.errstate(divide="ignore"):
-        return np.asarray(-np.expm1(exponent * np.log1p(-width / np.where(a > 0, a, 1.0))))
+        log_ratio_ = np.where(width < safe / 2, np.log1p(-part), np.log(c / safe))
+    return np.asarray(-np.expm1(exponent * log_ratio_))
 
 
-def root_step(a: Array, r: Array, width: Array | None) -> Array:
-    """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) with c = a - width, the second term for r < c only."""
+def root_step(a: Array, r: Array, width: Array | None, inner: Array | None = None) -> Array:
+    """sqrt(a^2 - r^2) - sqrt(c^2 - r^2), the second term for r < c only.
+
+    c = a - width, or `inner` where it is known by itself.
+    """
     root_a = a - r
     root_a *= a + r
     np.sqrt(root_a, out=root_a)
     if width is None:
         return root_a
-    c = a - width
+    c = a - width if inner is None else inner
     root_c = np.sqrt(np.maximum(c - r, 0.0) * (c + r))
     return np.asarray(np.where(c > r, width * (a + c) / (root_a + root_c), root_a))
 
 
-def log_ratio(a: Array, r: Array, width: Array | None) -> Array:
+def log_ratio(a: Array, r: Array, width: Array | None, inner: Array | None = None) -> Array:
     """arccosh(a/r) - arccosh(c/r), c = a - width, without the infinite difference at r = 0."""
     root_a = np.sqrt((a - r) * (a + r))
     if width is None:
         low, root_low, step = r, np.zeros(1), (a - r) + root_a
     else:
-        low = np.maximum(r, a - width)
+        low = np.maximum(r, a - width if inner is None else inner)
         root_low = np.sqrt((low - r) * (low + r))
-        step = np.minimum(a - r, width) + root_step(a, r, width)
+        step = np.minimum(a - r, width) + root_step(a, r, width, inner)
     with np.errstate(divide="ignore"):
         return np.asarray(np.log1p(step / (low + root_low)))
 
 
-def power_moment(m: float, a: Array, r: Array, rtol: float, width: Array | None) -> Array:
+def power_moment(
+    m: float,
+    a: Array,
+    r: Array,
+    rtol: float,
+    width: Array | None,
+    inner: Array | None = None,
+) -> Array:
     """int_max(r,c)^a (x/a)^m / sqrt(x^2 - r^2) dx [1], c = a - width.
 
     x = r cosh(y) leaves (cosh y)^m, smooth in the strip; on the axis the integral is elementary.
     """
     if m == 0:
-        return log_ratio(a, r, width)
+        return log_ratio(a, r, width, inner)
     if m == 1:
-        return root_step(a, r, width) / a
+        return root_step(a, r, width, inner) / a
     on_axis = r == 0
     safe = np.where(on_axis, a, r)
     ratio = safe / a
@@ -116,7 +129,7 @@ def power_moment(m: float, a: Array, r: Array, rtol: float, width: Array | None)
     if width is None:
         value = between(h, top, np.ones(top.shape, bool), rtol, analytic=analytic)
     else:
-        c = np.maximum(a - width, safe)
+        c = np.maximum(a - width if inner is None else inner, safe)
         bottom = np.sqrt((c - safe) * (c + safe)) / safe
         difference = width * (2 * a - width) / safe**2
         value = between(h, top, np.ones(top.shape, bool), rtol, bottom, difference, analytic)

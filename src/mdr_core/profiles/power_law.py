@@ -1,7 +1,7 @@
 """Profiles that are powers of the radius: cone, paraboloid, C r^n, and sums of them."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from mdr_core.profiles.power_kernels import (
 from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
 from mdr_core.profiles.stable import atan_gap, kappa
 from mdr_core.typing import Array, Parameter
+
+# From this part of a characteristic annulus on, a/n, the closed energy loses few digits.
+_WIDE: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -71,11 +74,11 @@ class Cone(Profile):
         """Source: mdr-5, Eq. (5.47)."""
         return coordinate * rest, coordinate * ratio
 
-    def force_step(self, coordinate: Array, width: Array) -> Array:
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.48)."""
         return (np.pi / 2) * self.slope * width * (2 * coordinate - width)
 
-    def depth_step(self, coordinate: Array, width: Array) -> Array:
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         return self.g(width + np.zeros_like(coordinate))
 
     def slip_moment(self, coordinate: Array, width: Array) -> Array:
@@ -98,9 +101,10 @@ class Cone(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         """(t/2) [arccosh(a/r) - arccosh(c/r)]. Source: mdr-5, Eq. (5.53)."""
-        return (modulus * self.slope / 2) * log_ratio(coordinate, radius, width)
+        return (modulus * self.slope / 2) * log_ratio(coordinate, radius, width, inner)
 
 
 @dataclass(frozen=True)
@@ -152,9 +156,10 @@ class Paraboloid(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)]. Source: mdr-5, Eq. (5.38)."""
-        root = root_step(coordinate, radius, width)
+        root = root_step(coordinate, radius, width, inner)
         root *= 2 * modulus / (np.pi * self.radius)
         return root
 
@@ -177,12 +182,12 @@ class Paraboloid(Profile):
         k = np.sqrt(rest)
         return coordinate * k, coordinate * (ratio / (1 + k))
 
-    def force_step(self, coordinate: Array, width: Array) -> Array:
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.15)."""
         cubes = 3 * coordinate * (coordinate - width) + width * width
         return width * cubes * (4 / (3 * self.radius))
 
-    def depth_step(self, coordinate: Array, width: Array) -> Array:
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         step = np.asarray(2 * coordinate - width)
         step *= width
         step /= self.radius
@@ -262,19 +267,40 @@ class Power(Profile):
     ) -> tuple[Array, Array]:
         return power_stick(coordinate, ratio, rest, np.asarray(self.exponent))
 
-    def force_step(self, coordinate: Array, width: Array) -> Array:
-        return self.reduced_force(coordinate) * power_step(
-            coordinate, width, np.asarray(self.exponent) + 1
-        )
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        step = power_step(coordinate, width, stick, np.asarray(self.exponent) + 1)
+        return self.reduced_force(coordinate) * step
 
-    def depth_step(self, coordinate: Array, width: Array) -> Array:
-        return self.g(coordinate) * power_step(coordinate, width, np.asarray(self.exponent))
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        return self.g(coordinate) * power_step(coordinate, width, stick, np.asarray(self.exponent))
+
+    def slip_moment(self, coordinate: Array, width: Array) -> Array | None:
+        """Closed where the annulus is wide enough for its terms not to cancel, see notes, §6."""
+        n = np.asarray(self.exponent, dtype=float)
+        y = 1 - width / np.where(coordinate > 0, coordinate, 1.0)
+        if np.min(n * (1 - y)) < _WIDE:
+            return None
+        y = np.maximum(y, 0.0)
+        yn = y**n
+        bracket = (1 + yn) * (1 - yn * y) / (n + 1) - (1 - yn * yn * y) / (2 * n + 1)
+        return np.asarray(np.square(self.g(coordinate)) * coordinate * (bracket - yn * (1 - y)))
+
+    @property
+    def steepness(self) -> float:
+        return max(3.5, float(np.max(self.exponent)))
 
     @property
     def branches(self) -> tuple[Branch, ...]:
         # The lower end holds a part reach^n of the integral.
         reach = 1e-17 ** max(1.0, 1 / float(np.asarray(self.exponent)))
-        return (Branch(0.0, lambda x, _s, _index: self.dg(x), reach=max(reach, 1e-280)),)
+        return (
+            Branch(
+                0.0,
+                lambda x, _s, _index: self.dg(x),
+                reach=max(reach, 1e-280),
+                steepness=self.steepness,
+            ),
+        )
 
     @property
     def tip_pressure(self) -> Parameter:
@@ -290,7 +316,10 @@ class Power(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         n = np.asarray(self.exponent, dtype=float)
         scale = modulus * kappa(n) / np.pi * self.df(coordinate)
-        return np.asarray(scale * power_moment(float(n) - 1, coordinate, radius, rtol, width))
+        return np.asarray(
+            scale * power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
+        )

@@ -154,6 +154,11 @@ class Profile(ABC):
         return _NO_BREAKS
 
     @property
+    def steepness(self) -> float:
+        """Highest power that g resembles over a stretch of the contact: how fine to resolve it."""
+        return 3.5
+
+    @property
     def slips_at_once(self) -> bool:
         """No slip annulus exists: the contact sticks wholly until it slides."""
         return False
@@ -185,14 +190,17 @@ class Profile(ABC):
         del coordinate, ratio, rest
         return None
 
-    def force_step(self, coordinate: Array, width: Array) -> Array | None:
-        """F(a)/E* - F(c)/E* where it is closed without cancellation, else None."""
-        del coordinate, width
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
+        """F(a)/E* - F(c)/E* where it is closed without cancellation, else None.
+
+        `stick` = coordinate - width, with the digits that the difference may not have.
+        """
+        del coordinate, width, stick
         return None
 
-    def depth_step(self, coordinate: Array, width: Array) -> Array | None:
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
         """d(a) - d(c) where it is closed without cancellation, else None."""
-        del coordinate, width
+        del coordinate, width, stick
         return None
 
     def slip_moment(self, coordinate: Array, width: Array) -> Array | None:
@@ -206,7 +214,7 @@ class Profile(ABC):
 
         A profile smooth from the axis on needs no more than g' itself.
         """
-        return (Branch(0.0, lambda x, _s, _index: self.dg(x)),)
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x), steepness=self.steepness),)
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length], c <= r; (m,).
@@ -241,12 +249,14 @@ class Profile(ABC):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         """(M/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx, for 0 <= r < a; M = `modulus`.
 
         All arrays have one shape (m,). The stick edge c is given by `width`, its distance from
         the contact's edge in the contact coordinate; None stands for c = 0. `edge` is the contact
         radius where it is what was given: then a - r is exact, otherwise the coordinate is.
+        `inner` is c as a radius, where it is known as one: near it, c - r is exact.
         Source: mdr-5, Eqs. (5.68), (5.70), (5.79).
         """
 

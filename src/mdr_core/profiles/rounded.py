@@ -73,10 +73,11 @@ class Spheroid(Profile):
         return np.asarray(self.radius / np.square(np.cosh(coordinate)))
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        """artanh of the difference of two tanh."""
-        del s_a, s_c
+        """artanh of the difference of two tanh, while it is small."""
         big = np.asarray(self.radius)
-        return np.asarray(np.arctanh(big * (a - c) / (big * big - a * c)))
+        difference = big * (a - c) / (big * big - a * c)
+        narrow = np.arctanh(np.minimum(difference, 0.5))
+        return np.asarray(np.where(difference < 0.5, narrow, s_a - s_c))
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         sech = np.cosh(s_a) * np.cosh(s_a - width)
@@ -108,8 +109,9 @@ class Spheroid(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
-        kernel = sphere_kernel(self.radius, coordinate, radius, rtol, width, edge)
+        kernel = sphere_kernel(self.radius, coordinate, radius, rtol, width, edge, inner)
         kernel *= modulus * self.height / self.radius
         return kernel
 
@@ -121,6 +123,7 @@ def sphere_kernel(
     rtol: float,
     width: Array | None = None,
     edge: Array | None = None,
+    inner: Array | None = None,
 ) -> Array:
     """The pressure kernel of a sphere; edge and annulus in v = artanh(a/R).
 
@@ -141,7 +144,7 @@ def sphere_kernel(
     if width is None:
         smooth = between(h, top, even, rtol)
         return np.asarray((stretch * np.arcsinh(top) + smooth) / np.pi)
-    bottom = _sphere_leg(big_radius, v - width, r)
+    bottom = _sphere_leg(big_radius, v - width, r, inner)
     difference = np.sinh(width) * np.sinh(2 * v - width) / np.square(stretch)
     smooth = between(h, top, even, rtol, bottom, difference)
     difference = np.where(bottom > 0, difference, top * top)
@@ -240,6 +243,7 @@ class Hyperboloid(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         """x^2 + h^2 = (r^2 + h^2) cosh^2 y removes the root at r and the branch points +-ih."""
         a, r, h = coordinate, radius, np.asarray(self.scale)
@@ -257,7 +261,7 @@ class Hyperboloid(Profile):
             smooth = between(integrand, top, even, rtol)
             pole = np.arctan(top)
         else:
-            step = root_step(a, r, width)
+            step = root_step(a, r, width, inner)
             bottom = np.maximum(leg - step, 0.0) / rho
             difference = width * (2 * a - width) / (rho * rho)
             smooth = between(integrand, top, even, rtol, bottom, difference)

@@ -49,7 +49,12 @@ class TippedCone(Profile):
     def branches(self) -> tuple[Branch, ...]:
         b = float(np.asarray(self.tangent_radius))
         return (
-            Branch(0.0, lambda x, _s, _index: self.dg(np.minimum(x, b * _BELOW)), b),
+            Branch(
+                0.0,
+                lambda x, _s, _index: self.dg(np.minimum(x, b * _BELOW)),
+                b,
+                steepness=self.steepness,
+            ),
             Branch(b, lambda x, s, _index: self._flank_weight(x, s)),
         )
 
@@ -58,7 +63,7 @@ class TippedCone(Profile):
         """Reduced energy for a <= b."""
 
     @abstractmethod
-    def _tip_kernel(self, a: Array, r: Array, rtol: float, width: Array) -> Array:
+    def _tip_kernel(self, a: Array, r: Array, rtol: float, width: Array, c: Array) -> Array:
         """The tip's part of the kernel, from max(r, c) to a <= b."""
 
     @abstractmethod
@@ -92,17 +97,18 @@ class TippedCone(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         a, r = np.broadcast_arrays(coordinate, radius)
         width = a if width is None else np.broadcast_to(width, a.shape)
         b = np.broadcast_to(np.asarray(self.tangent_radius, dtype=float), a.shape)
-        c = a - width
+        c = a - width if inner is None else np.broadcast_to(inner, a.shape)
         total = np.zeros(a.shape)
         inside = (r < b) & (c < b)
         if inside.any():
             low, high = c[inside], np.minimum(a, b)[inside]
             step = np.where(a[inside] < b[inside], width[inside], high - low)
-            total[inside] = self._tip_kernel(high, r[inside], rtol, step)
+            total[inside] = self._tip_kernel(high, r[inside], rtol, step, low)
         flank = a > b
         if flank.any():
             total[flank] += self._flank_kernel(
@@ -123,6 +129,7 @@ class TippedCone(Profile):
             upper,
             width=annulus,
             edge=a,
+            inner=c,
             odd=False,
             rtol=rtol,
             analytic=self._flank_analytic,
@@ -185,8 +192,8 @@ class RoundedCone(TippedCone):
     def _tip_energy(self, a: Array) -> Array:
         return np.asarray(8 / 15 * a**5 / np.square(self.tip_radius))
 
-    def _tip_kernel(self, a: Array, r: Array, rtol: float, width: Array) -> Array:
-        return np.asarray(2 / (np.pi * self.tip_radius) * root_step(a, r, width))
+    def _tip_kernel(self, a: Array, r: Array, rtol: float, width: Array, c: Array) -> Array:
+        return np.asarray(2 / (np.pi * self.tip_radius) * root_step(a, r, width, c))
 
     def _flank_weight(self, x: Array, s: Array) -> Array:
         b = self.tangent_radius
@@ -241,6 +248,11 @@ class SphericalTipCone(TippedCone):
         behind = float(np.min(np.arcsinh(1 / np.asarray(self.slope))))
         return Analytic(strip=min(DEFAULT.strip, 0.9 * behind))
 
+    @property
+    def steepness(self) -> float:
+        """The sphere's equator lies at b sqrt(1 + t^2)/t, the nearer the steeper the cone."""
+        return 3.5 * (1 + 4 * float(np.max(np.square(self.slope))))
+
     def _tau(self, x: Array, s: Array) -> Array:
         """tanh(L) = b^2 (R h + x s)/((R^2 + s^2)(x h + s R))."""
         b, big, h = self.tangent_radius, self.tip_radius, self._height
@@ -282,11 +294,10 @@ class SphericalTipCone(TippedCone):
         tip = Sphere(self.tip_radius)
         return tip.reduced_energy(tip.coordinate_from_radius(a))
 
-    def _tip_kernel(self, a: Array, r: Array, rtol: float, width: Array) -> Array:
+    def _tip_kernel(self, a: Array, r: Array, rtol: float, width: Array, c: Array) -> Array:
         big = self.tip_radius
-        c = a - width
         step = np.arctanh(big * width / (big * big - a * c))
-        return sphere_kernel(big, np.arctanh(a / big), r, rtol, step, a)
+        return sphere_kernel(big, np.arctanh(a / big), r, rtol, step, a, c)
 
     def _flank_weight(self, x: Array, s: Array) -> Array:
         return self._flank_slope(x, s) * s / x
@@ -421,6 +432,7 @@ class CappedParaboloid(Profile):
         width: Array | None = None,
         edge: Array | None = None,
         modulus: float = 1.0,
+        inner: Array | None = None,
     ) -> Array:
         b = self.cap_radius
         coordinate = np.broadcast_to(coordinate, radius.shape)
@@ -429,7 +441,7 @@ class CappedParaboloid(Profile):
         low = 0 * coordinate if width is None else coordinate - width
         c, s_c = self.contact_radius(low), self._outer(low)
         annulus = None if width is None else self._annulus(coordinate, low, width, a, c)
-        total = np.asarray(2 / (np.pi * self.tip_radius) * root_step(a, radius, annulus))
+        total = np.asarray(2 / (np.pi * self.tip_radius) * root_step(a, radius, annulus, inner))
         outer = s > 0
         if outer.any() and self._kink > 0:
             step = s if width is None else np.where(s_c > 0, width, s)
@@ -444,6 +456,7 @@ class CappedParaboloid(Profile):
                     s[outer],
                     width=step,
                     edge=None if edge is None else np.broadcast_to(edge, s.shape)[outer],
+                    inner=None if inner is None else np.broadcast_to(inner, s.shape)[outer],
                     odd=True,
                     rtol=rtol,
                 )
