@@ -361,6 +361,7 @@ def field_tasks() -> Iterator[FieldTask]:
         regimes = list(family.regimes[:1])
         if family.name == "rounded-punch":
             regimes.append(("b(1+1e-6)", 1 + 1e-6))
+        far = [one for one in family.regimes if one[0] == FAR.get(family.name)]
         ratios = (*STICKS, 0.25, 0.75) if two else STICKS
         for regime, size in regimes:
             for ratio in ratios:
@@ -368,7 +369,26 @@ def field_tasks() -> Iterator[FieldTask]:
                 task = _field_task(family, regime, size, ratio, turn)
                 if task is not None:
                     yield task
+        for regime, size in far:
+            for turn_, ratio in ((1, 0.3), (2, 0.99)):
+                task = _field_task(family, regime, size, ratio, turn_)
+                if task is not None:
+                    yield task
     yield from _table_fields()
+
+
+#: Contacts near a body's end, or far beyond its break.
+FAR = {
+    "sphere": "0.999",
+    "ellipsoid-tall": "0.9",
+    "power60": "1.9",
+    "series-real": "1.9",
+    "hyperboloid0.4": "1000",
+    "rounded-punch": "b/a=1e-3",
+    "truncated-cone": "b/a=1e-3",
+    "spherical-tip-cone0.1": "b/a=1e-6",
+    "capped-paraboloid-worn": "b/a=1e-3",
+}
 
 
 #: A narrow annulus of many panels, and one beside a break; both radii exact.

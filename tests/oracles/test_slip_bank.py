@@ -1,0 +1,100 @@
+"""The bank of partial slip checks itself: ids, sources, coverage, and a sample computed again."""
+
+from __future__ import annotations
+
+import random
+import re
+
+import pytest
+from mpmath import mp, mpf
+
+from tests.oracles import slip_bank
+from tests.oracles import slip_reference as reference
+from tests.oracles.shapes import KINDS
+from tests.oracles.slip_reference import CONTROLS, Material
+from tests.oracles.test_bank import SOURCES, STORED
+
+
+def everything() -> list[slip_bank.Record]:
+    return [record for name in slip_bank.NAMES for record in slip_bank.load(name)]
+
+
+def test_ids_are_unique() -> None:
+    ids = [record["id"] for record in everything()]
+    assert len(ids) == len(set(ids))
+
+
+def test_every_equation_is_among_the_sources() -> None:
+    known = set(re.findall(r"\(\d+\.\d+\)", SOURCES.read_text(encoding="utf-8")))
+    claimed = {record["equation"] for record in everything()}
+    assert claimed <= known, f"missing from docs/sources.md: {sorted(claimed - known)}"
+
+
+def test_every_kind_is_covered_by_every_control() -> None:
+    covered = {(r["profile"]["kind"], r["tangential_control"]) for r in everything()}
+    expected = {(kind, control) for kind in (*KINDS, "tabulated") for control in CONTROLS}
+    # A flat punch has one stick radius, and it says nothing about the force.
+    assert covered == expected - {("flat_punch", "stick_radius")}
+
+
+def test_every_regime_and_direction_is_covered() -> None:
+    records = slip_bank.load("tangential")
+    found = {regime for record in records for regime in record["regime"]}
+    assert found == {"stick", "partial_slip", "full_slip"}
+    signs = {value > 0 for record in records for value in record["given"]}
+    assert signs == {True, False}
+    assert {r["tags"]["scale"] for r in records} >= {"nm-TPa", "km-kPa"}
+
+
+def test_every_kind_has_its_fields() -> None:
+    kinds = {record["profile"]["kind"] for record in slip_bank.load("slip_fields")}
+    assert kinds == {*KINDS, "tabulated"}
+
+
+def test_slip_opposes_and_traction_follows_the_force() -> None:
+    for record in slip_bank.load("slip_fields"):
+        sign = 1 if record["given"] > 0 else -1
+        expected = record["expected"]
+        assert all(sign * float(v) >= 0 for v in expected["shear_stress"]), record["id"]
+        assert all(sign * float(v) <= 0 for v in expected["slip"]), record["id"]
+        assert all(float(v) > 0 for v in expected["normal_displacement"]), record["id"]
+
+
+def sample(name: str, count: int) -> list[slip_bank.Record]:
+    eligible = [r for r in slip_bank.load(name) if r["profile"]["kind"] != "flat_punch"]
+    return random.Random(f"{name} of the bank").sample(eligible, count)
+
+
+def setting(record: slip_bank.Record) -> reference.Setting:
+    material = Material(record["e_star"], record["g_star"], record["friction_coefficient"])
+    return reference.setting(record["profile"], record["control"], record["load"], material)
+
+
+@pytest.mark.parametrize("record", sample("tangential", 12), ids=lambda record: str(record["id"]))
+def test_stored_answers_are_those_of_the_reference(record: slip_bank.Record) -> None:
+    at = setting(record)
+    partial = [i for i, regime in enumerate(record["regime"]) if regime == "partial_slip"]
+    energy = "dissipated_energy" in record["expected"]
+    for index in random.Random(record["id"]).sample(partial, 2):
+        control, given = record["tangential_control"], record["given"][index]
+        answer = reference.solve(at, control, given, energy=energy)
+        with mp.workdps(40):
+            for name, row in record["expected"].items():
+                assert mp.almosteq(mpf(row[index]), answer.values[name], STORED), name
+
+
+@pytest.mark.parametrize("record", sample("slip_fields", 6), ids=lambda record: str(record["id"]))
+def test_stored_fields_are_those_of_the_reference(record: slip_bank.Record) -> None:
+    at = setting(record)
+    answer = reference.solve(at, record["tangential_control"], record["given"], energy=False)
+    index = random.Random(record["id"]).randrange(len(record["radius"]))
+    with mp.workdps(reference.WORK_DIGITS):
+        r, sign = mpf(record["radius"][index]), 1 if record["given"] > 0 else -1
+        found = {
+            "shear_stress": sign * at.mu * reference.traction(at, answer.c, r),
+            "slip": sign * reference.slip(at, answer.c, r),
+            "normal_displacement": reference.displacement(at, r),
+        }
+        for name, value in found.items():
+            stored = mpf(record["expected"][name][index])
+            assert value == stored or mp.almosteq(stored, value, STORED), name
