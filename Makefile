@@ -10,7 +10,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test check bench openapi lock clean
+.PHONY: run test check bench figures openapi lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -28,6 +28,9 @@ check: .venv/development
 
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
+
+figures: .venv/development
+	$(BIN)/python docs/figures/make_figures.py
 
 openapi: .venv/development
 	$(BIN)/python -m mdr_service --openapi > openapi.json
