@@ -32,6 +32,9 @@ class Client:
     def post_text(self, path: str, body: bytes) -> httpx.Response:
         return self.request("POST", path, content=body, headers=JSON)
 
+    def send(self, request: httpx.Request) -> httpx.Response:
+        return self._runner.run(self._client.send(request))
+
     def close(self) -> None:
         self._runner.run(self._client.aclose())
 

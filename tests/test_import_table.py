@@ -27,7 +27,8 @@ CORE = {"mdr_core.errors", "mdr_core.typing", "mdr_core.checks", "mdr_core.lazy"
 TRANSFORMS = {"mdr_core.quadrature", "mdr_core.abel"}
 CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_core.foundation"}
 # What the wire may name of the core: its public face, never the way it calculates.
-PUBLIC = {"mdr_core.errors", "mdr_core.materials", "mdr_core.profiles", "mdr_core.normal"}
+RESULTS = {"mdr_core.normal", "mdr_core.tangential"}
+PUBLIC = {"mdr_core.errors", "mdr_core.materials", "mdr_core.profiles", "mdr_core.fields"} | RESULTS
 SCHEMAS = {"mdr_service.settings", "mdr_service.schemas"}
 WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
 
@@ -54,17 +55,33 @@ TABLE = (
     Row("mdr_service.settings", set(), {"pydantic"}),
     Row("mdr_service.schemas", {"mdr_service.settings"}, {"pydantic", "pydantic_core"}),
     Row("mdr_service.convert", PUBLIC | SCHEMAS, {"numpy"}),
+    Row("mdr_service.solve", PUBLIC | SCHEMAS | {"mdr_service.convert"}, {"numpy"}),
+    Row(
+        "mdr_service.documents",
+        PUBLIC | SCHEMAS | {"mdr_service.convert", "mdr_service.solve"},
+        {"numpy"},
+    ),
     Row(
         "mdr_service.problems",
         {"mdr_core.errors"} | SCHEMAS,
         WEB | {"orjson", "pydantic", "pydantic_core"},
     ),
     Row("mdr_service.wire", WIRE - {"mdr_service.wire"}, WEB | {"orjson", "pydantic"}),
+    Row("mdr_service.table", set(), {"numpy", "starlette"}),
+    Row(
+        "mdr_service.pictures",
+        RESULTS | {"mdr_service.convert", "mdr_service.solve"},
+        {"matplotlib", "numpy", "starlette"},
+    ),
+    Row("mdr_service.forms", {"mdr_service.problems"}, WEB),
     Row("mdr_service.compute", set(), {"anyio"}),
     Row("mdr_service.openapi", WIRE, WEB | {"pydantic"}),
     Row(
         "mdr_service.routes",
-        PUBLIC | WIRE | {"mdr_service.convert", "mdr_service.compute", "mdr_service.openapi"},
+        WIRE
+        | {"mdr_service.convert", "mdr_service.solve", "mdr_service.documents"}
+        | {"mdr_service.table", "mdr_service.pictures", "mdr_service.forms"}
+        | {"mdr_service.compute", "mdr_service.openapi"},
         WEB | {"numpy"},
     ),
     Row(

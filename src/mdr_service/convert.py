@@ -1,36 +1,30 @@
-"""Requests to the core's dataclasses and results to documents; the one place that knows both."""
+"""Requests to the arguments of the core; the one place that knows the models of both."""
 
 from collections.abc import Callable, Mapping
-from math import isfinite
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mdr_core import materials, profiles
-from mdr_core.errors import DefectError, InputError, Notice
-from mdr_core.normal import NormalContact
+from mdr_core.errors import DefectError, InputError
 from mdr_service.schemas.answers import Catalogue, ProfileField, ProfileKind
 from mdr_service.schemas.profiles import MODELS, Series, Tabulated
 from mdr_service.schemas.profiles import Profile as ProfileModel
 from mdr_service.schemas.quantities import SMALLEST_LOAD, Strict
-from mdr_service.schemas.queries import Bodies, Load, Material, NormalQuery
+from mdr_service.schemas.queries import (
+    SHEAR_FIELDS,
+    Bodies,
+    Load,
+    Material,
+    NormalQuery,
+    StressQuery,
+    TangentialQuery,
+)
+from mdr_service.settings import SETTINGS
 
 Array = NDArray[np.float64]
-# One number or one per load, as they are written: a list, or an array where it is long.
-Numbers = list[float] | Array
 _Arguments = Callable[[Any], dict[str, Any]]
-
-_NORMAL_ANSWERS: Final = (
-    "indentation_depth",
-    "normal_force",
-    "contact_radius",
-    "mean_pressure",
-    "normal_stiffness",
-    "elastic_energy",
-)
-# The only answers with a true infinity, which the core announces by a notice.
-_MAY_BE_INFINITE: Final = frozenset({"mean_pressure"})
 
 
 def normal_arguments(query: NormalQuery) -> dict[str, Any]:
@@ -47,17 +41,35 @@ def normal_arguments(query: NormalQuery) -> dict[str, Any]:
     }
 
 
-def normal_answer(query: NormalQuery, contact: NormalContact) -> dict[str, Any]:
-    """Return the document of a normal contact."""
-    warnings = contact.warnings
-    answers: dict[str, Any] = {name: _numbers(getattr(contact, name)) for name in _NORMAL_ANSWERS}
-    if not all(map(_all_finite, answers.values())):
-        announced = any(notice.code == "singular" for notice in warnings)
-        _check_non_finite(answers, query.load, _MAY_BE_INFINITE if announced else frozenset())
-    answers["method"] = contact.method
-    answers["error_estimate"] = contact.error_estimate
-    answers["warnings"] = [_notice(notice) for notice in warnings]
-    return answers
+def tangential_arguments(query: TangentialQuery | StressQuery) -> dict[str, Any]:
+    """Return the arguments of `mdr_core.tangential.solve`, besides the normal contact."""
+    g_star = material(query.material).g_star
+    if g_star is None:
+        raise InputError(("material", "g_star"), "is needed where there is friction")
+    given = query.tangential
+    if given.count > 1 and query.load.count not in {1, given.count}:
+        detail = f"{given.count} values for {query.load.count} loads: one or as many are needed"
+        raise InputError(("tangential", given.control), detail)
+    return {
+        "g_star": g_star,
+        "friction_coefficient": query.friction_coefficient,
+        given.control: np.array(given.value, dtype=float),
+    }
+
+
+def require_consistent(query: StressQuery) -> None:
+    """Raise InputError where fields that are fine alone do not fit together."""
+    given = query.model_fields_set
+    friction = {"friction_coefficient", "tangential"}
+    if len(friction & given) == 1:
+        (missing,) = friction - given
+        raise InputError((missing,), f"is needed together with {', '.join(friction & given)}")
+    for index, name in enumerate(query.quantities):
+        if name in SHEAR_FIELDS and not query.has_friction:
+            raise InputError(("quantities", index), f"{name} needs tangential")
+    if query.loads * len(query.radius) > SETTINGS.max_numbers:
+        detail = f"at most {SETTINGS.max_numbers} loads times radii are answered at once"
+        raise InputError(("radius",), detail)
 
 
 def profile(model: ProfileModel) -> profiles.Profile:
@@ -83,14 +95,13 @@ def material(model: Material) -> materials.Material:
 
 def controls(load: Load) -> dict[str, float | Array]:
     """Return the one control that was given, by its name."""
-    (control,) = load.model_fields_set
-    value = getattr(load, control)
+    value = load.value
     if not isinstance(value, list):
-        return {control: _with_digits(value, load, 0)}
+        return {load.control: _with_digits(value, load, 0)}
     loads = np.array(value, dtype=float)
     smallest = int(np.argmin(np.where(loads > 0, loads, np.inf)))
     _with_digits(loads[smallest], load, smallest)
-    return {control: loads}
+    return {load.control: loads}
 
 
 def catalogue() -> Catalogue:
@@ -133,51 +144,8 @@ _SPECIAL_ARGUMENTS: Final[Mapping[type[Strict], _Arguments]] = {
 
 def _with_digits(value: float, load: Load, index: int) -> float:
     if 0 < value < SMALLEST_LOAD:
-        raise InputError(_path_to(load, index), f"must be 0 or at least {SMALLEST_LOAD}")
+        raise InputError(("load", *load.place(index)), f"must be 0 or at least {SMALLEST_LOAD}")
     return value
-
-
-def _notice(notice: Notice) -> dict[str, str]:
-    return {"code": notice.code, "message": notice.message}
-
-
-def _numbers(values: Array) -> Numbers:
-    """Return the values as the JSON writer takes them: one-dimensional and contiguous.
-
-    A list is written faster than an array where there is only one number.
-    """
-    return [values.item()] if values.size == 1 else np.ascontiguousarray(values)
-
-
-def _all_finite(numbers: Numbers) -> bool:
-    if isinstance(numbers, list):
-        return isfinite(numbers[0])
-    return bool(np.isfinite(numbers).all())
-
-
-def _check_non_finite(
-    answers: Mapping[str, Numbers], load: Load, may_be_infinite: frozenset[str]
-) -> None:
-    """Let announced infinities pass, to be written as null, and raise for anything else.
-
-    An overflow comes first: what is computed from it may well be no number.
-    """
-    for name in answers.keys() - may_be_infinite:
-        overflow = np.flatnonzero(np.isinf(answers[name]))
-        if overflow.size:
-            detail = f"{name} leaves the range of double precision here"
-            raise InputError(_path_to(load, int(overflow[0])), detail)
-    for name, numbers in answers.items():
-        if np.isnan(numbers).any():
-            raise DefectError(f"{name} is not a number")
-
-
-def _path_to(load: Load, index: int) -> tuple[str | int, ...]:
-    """Return the path to one load of the request."""
-    (control,) = load.model_fields_set
-    if isinstance(getattr(load, control), list):
-        return ("load", control, index)
-    return ("load", control)
 
 
 def _profile_fields(model: type[Strict]) -> list[ProfileField]:

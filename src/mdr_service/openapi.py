@@ -1,6 +1,7 @@
 """The OpenAPI document: the request models, the answers, and every failure."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Final
 
 from fastapi.openapi.utils import get_openapi
@@ -10,12 +11,27 @@ from starlette.routing import BaseRoute
 
 from mdr_service import problems, wire
 from mdr_service.problems import Kind
-from mdr_service.schemas.answers import Catalogue, Health, NormalAnswer, Problem
-from mdr_service.schemas.queries import NormalQuery
+from mdr_service.schemas.answers import (
+    Catalogue,
+    Health,
+    NormalAnswer,
+    Problem,
+    StressAnswer,
+    TangentialAnswer,
+)
+from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
 
 _REF: Final = "#/components/schemas/{model}"
-_QUERIES: Final[Sequence[type[BaseModel]]] = (NormalQuery,)
-_ANSWERS: Final[Sequence[type[BaseModel]]] = (NormalAnswer, Catalogue, Health, Problem)
+_QUERIES: Final[Sequence[type[BaseModel]]] = (NormalQuery, TangentialQuery, StressQuery)
+_ANSWERS: Final[Sequence[type[BaseModel]]] = (
+    NormalAnswer,
+    TangentialAnswer,
+    StressAnswer,
+    Catalogue,
+    Health,
+    Problem,
+)
+_NO_OTHERS: Final[Mapping[str, str]] = MappingProxyType({})
 
 _DESCRIPTION: Final = """\
 Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
@@ -25,6 +41,9 @@ converted; each field names its dimension in brackets, `[1]` for a plain number.
 
 **Arrays.** Where a load is given it may be a number or a list; answers are always lists over the
 loads. `null` stands for a true infinity only, and a warning with the code `singular` says where.
+
+**Forms.** `Accept: text/csv` asks for a table with a column per quantity, where infinities are
+written `inf`; `Accept: image/svg+xml` for a picture, where there is one. JSON is the default.
 
 **Errors** are `application/problem+json` (RFC 9457); `errors` points into the request.
 """
@@ -36,14 +55,17 @@ def asks(model: type[BaseModel], examples: Mapping[str, Any]) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {wire.MEDIA_TYPE: content}}}
 
 
-def answers(model: type[BaseModel], failures: Iterable[Kind] = ()) -> dict[str, Any]:
-    """Return the part of an operation that describes its answer and its failures."""
-    responses: dict[str, Any] = {
-        "200": {
-            "description": "The answer",
-            "content": {wire.MEDIA_TYPE: {"schema": _reference(model)}},
-        }
-    }
+def answers(
+    model: type[BaseModel], failures: Iterable[Kind] = (), others: Mapping[str, str] = _NO_OTHERS
+) -> dict[str, Any]:
+    """Return the part of an operation that describes its answer and its failures.
+
+    `others` are the forms of the answer besides JSON: their media types, and what they hold.
+    """
+    content: dict[str, Any] = {wire.MEDIA_TYPE: {"schema": _reference(model)}}
+    for media_type, meaning in others.items():
+        content[media_type] = {"schema": {"type": "string", "description": meaning}}
+    responses: dict[str, Any] = {"200": {"description": "The answer", "content": content}}
     by_status: dict[int, list[str]] = {}
     for kind in (*failures, problems.INTERNAL):
         by_status.setdefault(kind.status, []).append(f"`{kind.type}`: {kind.title}")

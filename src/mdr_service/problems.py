@@ -48,6 +48,7 @@ class Kind:
 MALFORMED_JSON = Kind("malformed-json", 400, "The body is not JSON")
 NOT_FOUND = Kind("not-found", 404, "There is nothing at this address")
 METHOD_NOT_ALLOWED = Kind("method-not-allowed", 405, "This address knows other methods")
+NOT_ACCEPTABLE = Kind("not-acceptable", 406, "The answer has no such form")
 BODY_TOO_LARGE = Kind("body-too-large", 413, "The body is too long")
 UNSUPPORTED_MEDIA_TYPE = Kind("unsupported-media-type", 415, "The body must be JSON")
 INVALID_REQUEST = Kind("invalid-request", 422, "The request cannot be answered as it stands")
@@ -58,6 +59,7 @@ KINDS: Final = (
     MALFORMED_JSON,
     NOT_FOUND,
     METHOD_NOT_ALLOWED,
+    NOT_ACCEPTABLE,
     BODY_TOO_LARGE,
     UNSUPPORTED_MEDIA_TYPE,
     INVALID_REQUEST,

@@ -10,12 +10,18 @@ from fastapi.routing import APIRoute
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import request_response
 
-from mdr_core import normal
-from mdr_service import compute, convert, problems, wire
+from mdr_service import compute, convert, documents, forms, pictures, problems, solve, table, wire
+from mdr_service.forms import Form
 from mdr_service.openapi import answers, asks
-from mdr_service.schemas.answers import Catalogue, Health, NormalAnswer
-from mdr_service.schemas.examples import NORMAL_EXAMPLES
-from mdr_service.schemas.queries import NormalQuery
+from mdr_service.schemas.answers import (
+    Catalogue,
+    Health,
+    NormalAnswer,
+    StressAnswer,
+    TangentialAnswer,
+)
+from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES, TANGENTIAL_EXAMPLES
+from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
 
 
 class DirectRoute(APIRoute):
@@ -34,11 +40,22 @@ router = APIRouter(route_class=DirectRoute)
 
 _QUERY_FAILURES: Final = (
     problems.MALFORMED_JSON,
+    problems.NOT_ACCEPTABLE,
     problems.BODY_TOO_LARGE,
     problems.UNSUPPORTED_MEDIA_TYPE,
     problems.INVALID_REQUEST,
     problems.ACCURACY,
 )
+_JSON: Final = Form(wire.MEDIA_TYPE, lambda document, _result: wire.answer(document))
+_TABLE: Final = Form(table.MEDIA_TYPE, lambda document, _result: table.answer(document))
+_NORMAL_FORMS: Final = (_JSON, _TABLE)
+_TANGENTIAL_FORMS: Final = (
+    _JSON,
+    _TABLE,
+    Form(pictures.MEDIA_TYPE, pictures.tangential, pictures.EFFORT),
+)
+_STRESS_FORMS: Final = (_JSON, _TABLE, Form(pictures.MEDIA_TYPE, pictures.stress, pictures.EFFORT))
+_ROW_PER_LOAD: Final = {table.MEDIA_TYPE: "One column per list, one row per load."}
 _CATALOGUE: Final = convert.catalogue().model_dump()
 _HEALTH: Final = Health(status="ok").model_dump()
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
@@ -55,7 +72,8 @@ _DOCS_HEADERS: Final = {
     operation_id="normal",
     tags=["contact"],
     summary="Depth, force and radius of a normal contact: give one, get the others",
-    openapi_extra=asks(NormalQuery, NORMAL_EXAMPLES) | answers(NormalAnswer, _QUERY_FAILURES),
+    openapi_extra=asks(NormalQuery, NORMAL_EXAMPLES)
+    | answers(NormalAnswer, _QUERY_FAILURES, _ROW_PER_LOAD),
 )
 async def normal_contact(request: Request) -> Response:
     """Answer the contact of a profile with an elastic half-space, without friction.
@@ -63,15 +81,78 @@ async def normal_contact(request: Request) -> Response:
     Every list of the answer has one entry per load. `method` names the dearest route that was
     taken, `error_estimate` bounds the relative error of every number.
     """
+    form = forms.chosen(request, _NORMAL_FORMS)
     query = await wire.read(request, NormalQuery)
-    return await compute.run(query.size, _solve_normal, query)
+    return await compute.run(query.size, _answer_normal, query, form)
 
 
-def _solve_normal(query: NormalQuery) -> Response:
-    # What is not finite is looked for in the answer, once, instead of at every operation.
+@router.post(
+    "/v1/tangential",
+    operation_id="tangential",
+    tags=["contact"],
+    summary="Stick and slip under a tangential load: give force, displacement or stick radius",
+    openapi_extra=asks(TangentialQuery, TANGENTIAL_EXAMPLES)
+    | answers(
+        TangentialAnswer,
+        _QUERY_FAILURES,
+        _ROW_PER_LOAD
+        | {pictures.MEDIA_TYPE: "Force over displacement up to full slip, first normal load."},
+    ),
+)
+async def tangential_contact(request: Request) -> Response:
+    """Answer a contact with friction, pressed first and then loaded tangentially once.
+
+    Every list of the answer has one entry per pair of loads. A tangential force beyond µ F_N has
+    no equilibrium and is refused; a displacement beyond full slip is answered as `full_slip`.
+    """
+    form = forms.chosen(request, _TANGENTIAL_FORMS)
+    query = await wire.read(request, TangentialQuery)
+    return await compute.run(query.size + form.effort, _answer_tangential, query, form)
+
+
+@router.post(
+    "/v1/stress",
+    operation_id="stress",
+    tags=["contact"],
+    summary="Stresses, slip and displacement over the radius",
+    openapi_extra=asks(StressQuery, STRESS_EXAMPLES)
+    | answers(
+        StressAnswer,
+        _QUERY_FAILURES,
+        {
+            table.MEDIA_TYPE: "One column per field, one row per radius; with several loads the "
+            "index of the load in a first column, and one row per load and radius.",
+            pictures.MEDIA_TYPE: "The fields over the radius, with a, c and the breaks b marked.",
+        },
+    ),
+)
+async def stress_fields(request: Request) -> Response:
+    """Answer the fields named in `quantities`, and nothing else, by load and radius.
+
+    `error_estimate` bounds the error of each field relative to its largest value.
+    """
+    form = forms.chosen(request, _STRESS_FORMS)
+    query = await wire.read(request, StressQuery)
+    return await compute.run(query.size + form.effort, _answer_stress, query, form)
+
+
+# What is not finite is looked for in the documents, once, instead of at every operation.
+def _answer_normal(query: NormalQuery, form: Form) -> Response:
     with np.errstate(all="ignore"):
-        contact = normal.solve(**convert.normal_arguments(query))
-        return wire.answer(convert.normal_answer(query, contact))
+        contact = solve.normal(query)
+        return form.write(documents.normal(query, contact), contact)
+
+
+def _answer_tangential(query: TangentialQuery, form: Form) -> Response:
+    with np.errstate(all="ignore"):
+        contact = solve.tangential(query)
+        return form.write(documents.tangential(query, contact), contact)
+
+
+def _answer_stress(query: StressQuery, form: Form) -> Response:
+    with np.errstate(all="ignore"):
+        solved = solve.stress(query)
+        return form.write(documents.stress(query, solved), solved)
 
 
 @router.get(

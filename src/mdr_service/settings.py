@@ -22,6 +22,12 @@ class Settings(BaseModel):
         default=4 * 1024**2, ge=1024, description="Longest request body, in bytes."
     )
     max_loads: int = Field(default=100_000, ge=1, description="Most loads in one request.")
+    max_radii: int = Field(
+        default=100_000, ge=2, description="Most radii at which fields are asked for."
+    )
+    max_numbers: int = Field(
+        default=1_000_000, ge=2, description="Most loads times radii in one request."
+    )
     max_table_points: int = Field(
         default=2_000, ge=2, description="Most points of a tabulated profile."
     )

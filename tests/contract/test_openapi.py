@@ -1,13 +1,20 @@
 """The committed document is the one that is served, and it tells all."""
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from mdr_service import problems
-from mdr_service.schemas.answers import NormalAnswer, Problem
+from mdr_service.schemas.answers import (
+    Answer,
+    NormalAnswer,
+    Problem,
+    StressAnswer,
+    TangentialAnswer,
+)
 from tests.conftest import Client
 from tests.contract import strict_json
 
@@ -47,7 +54,7 @@ def test_every_operation_documents_its_failures(name: str, operation: dict[str, 
     assert operation["operationId"]
     expected = {"200", "500"}
     if name.startswith("post"):
-        expected |= {"400", "413", "415", "422"}
+        expected |= {"400", "406", "413", "415", "422"}
     assert set(operation["responses"]) == expected
     for status in expected - {"200"}:
         content = operation["responses"][status]["content"]
@@ -80,15 +87,36 @@ def test_every_kind_of_problem_is_in_the_readme() -> None:
         assert f"| `{kind.name}` | {kind.status} |" in readme
 
 
-def test_the_answer_of_a_query_is_the_documented_one(client: Client) -> None:
-    post = DOCUMENT["paths"]["/v1/normal"]["post"]
+@pytest.mark.parametrize(
+    ("path", "model"),
+    [
+        ("/v1/normal", NormalAnswer),
+        ("/v1/tangential", TangentialAnswer),
+        ("/v1/stress", StressAnswer),
+    ],
+)
+def test_the_answer_of_a_query_is_the_documented_one(
+    client: Client, path: str, model: type[Answer]
+) -> None:
+    post = DOCUMENT["paths"][path]["post"]
     examples = post["requestBody"]["content"]["application/json"]["examples"]
     for example in examples.values():
-        answer = client.post("/v1/normal", example["value"])
-        assert answer.status_code == 200
+        for media_type in post["responses"]["200"]["content"]:
+            headers = {"accept": media_type}
+            answer = client.request("POST", path, json=example["value"], headers=headers)
+            assert answer.status_code == 200
+            assert answer.headers["content-type"].partition(";")[0] == media_type
+        answer = client.post(path, example["value"])
         assert answer.headers["content-type"] == "application/json"
         strict_json.loads(answer.content)
-        NormalAnswer.model_validate_json(answer.content)
+        model.model_validate_json(answer.content)
+
+
+def test_every_query_and_answer_tells_its_dimensions() -> None:
+    for query in ("Load", "Tangential", "NormalAnswer", "TangentialAnswer", "StressAnswer"):
+        for name, field in DOCUMENT["components"]["schemas"][query]["properties"].items():
+            if name not in {"method", "warnings", "regime"}:
+                assert re.search(r"\[[a-z0-9/*]+\]$", field["description"]), (query, name)
 
 
 def test_a_failure_is_the_documented_one(client: Client) -> None:

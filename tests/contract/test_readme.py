@@ -1,12 +1,14 @@
 """What the README shows is what happens."""
 
 import contextlib
+import csv
 import io
 import json
 import re
 import shlex
 from pathlib import Path
 
+import httpx
 import pytest
 
 from mdr_service.settings import PREFIX, Settings
@@ -18,8 +20,8 @@ ADDRESS = "http://127.0.0.1:8000"
 
 
 def examples(language: str, output: str) -> list[tuple[str, str]]:
-    pattern = rf"```{language}\n(.*?)```\s+```{output}\n(.*?)```"
-    return re.findall(pattern, README, re.DOTALL)
+    pattern = rf"```{language}\n([^`]*)```\s+```{output}\n([^`]*)```"
+    return re.findall(pattern, README)
 
 
 def same(found: object, shown: object) -> None:
@@ -35,14 +37,37 @@ def same(found: object, shown: object) -> None:
         assert found == shown
 
 
+def asked(client: Client, command: str) -> httpx.Response:
+    """Return the answer to a command of curl."""
+    curl, silent, address, *options = shlex.split(command)
+    assert (curl, silent) == ("curl", "-s")
+    assert address.startswith(ADDRESS)
+    headers = {}
+    while options[0] == "-H":
+        name, _, value = options[1].partition(": ")
+        headers[name] = value
+        del options[:2]
+    data, body = options
+    assert data == "-d"
+    assert headers["Content-Type"] == "application/json"
+    path = address.removeprefix(ADDRESS)
+    return client.request("POST", path, content=body.encode(), headers=headers)
+
+
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "json"))
 def test_curl_shows_the_real_answer(client: Client, command: str, shown: str) -> None:
-    curl, silent, address, header, json_type, data, body = shlex.split(command)
-    assert (curl, silent, header, data) == ("curl", "-s", "-H", "-d")
-    assert json_type == "Content-Type: application/json"
-    assert address.startswith(ADDRESS)
-    answer = client.post_text(address.removeprefix(ADDRESS), body.encode())
-    same(answer.json(), json.loads(shown))
+    same(asked(client, command).json(), json.loads(shown))
+
+
+@pytest.mark.parametrize(("command", "shown"), examples("sh", "csv"))
+def test_curl_shows_the_real_table(client: Client, command: str, shown: str) -> None:
+    found, expected = (
+        list(csv.reader(io.StringIO(text, newline="")))
+        for text in (asked(client, command).text, shown)
+    )
+    assert found[0] == expected[0]
+    for one, other in zip(found[1:], expected[1:], strict=True):
+        assert list(map(float, one)) == pytest.approx(list(map(float, other)), rel=1e-12)
 
 
 def test_python_prints_what_is_shown() -> None:
@@ -60,5 +85,5 @@ def test_every_limit_is_shown_with_its_default() -> None:
 
 
 def test_nothing_shown_is_left_untried() -> None:
-    tried = len(examples("sh", "json")) + len(examples("python", "text"))
-    assert tried == len(re.findall(r"```(?:sh|python)\n", README)) == 3
+    tried = [*examples("sh", "json"), *examples("sh", "csv"), *examples("python", "text")]
+    assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 5

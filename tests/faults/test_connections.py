@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 import uvicorn
 
-from mdr_service import routes
+from mdr_service import solve
 from mdr_service.app import create_app
 from mdr_service.problems import MEDIA_TYPE
 from mdr_service.settings import SETTINGS
@@ -59,7 +59,7 @@ def test_a_bug_is_answered_and_the_connection_stays(
 
     socket = connection.sock
     with monkeypatch.context() as patch:
-        patch.setattr(routes.normal, "solve", broken)
+        patch.setattr(solve, "normal", broken)
         status, media_type, body = ask(connection, BODY)
     assert (status, media_type) == (500, MEDIA_TYPE)
     assert b"secret" not in body

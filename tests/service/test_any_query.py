@@ -1,10 +1,12 @@
 """Whatever the schema lets in is answered with numbers or refused with a reason."""
 
+from collections.abc import Callable
+
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mdr_service.problems import MEDIA_TYPE
-from mdr_service.schemas.answers import NormalAnswer
+from mdr_service.schemas.answers import Known, NormalAnswer, StressAnswer, TangentialAnswer
 from mdr_service.schemas.quantities import LARGEST, SMALLEST, SMALLEST_LOAD
 from tests.conftest import Client
 from tests.contract import strict_json
@@ -68,37 +70,81 @@ PROFILES = (
     | st.lists(TERMS, min_size=1, max_size=3).map(lambda terms: {"kind": "series", "terms": terms})
 )
 CONTROLS = st.sampled_from(["indentation_depth", "normal_force", "contact_radius"])
-QUERIES = st.fixed_dictionaries(
-    {
-        "profile": PROFILES,
-        "material": st.fixed_dictionaries({"e_star": LENGTHS}),
-        "load": st.dictionaries(
-            CONTROLS, LOADS | st.lists(LOADS, min_size=1, max_size=4), min_size=1, max_size=1
-        ),
-    }
+PRESSED = {
+    "profile": PROFILES,
+    "material": st.fixed_dictionaries({"e_star": LENGTHS}),
+    "load": st.dictionaries(
+        CONTROLS, LOADS | st.lists(LOADS, min_size=1, max_size=4), min_size=1, max_size=1
+    ),
+}
+QUERIES = st.fixed_dictionaries(PRESSED)
+SIGNED = LOADS | LOADS.map(lambda load: -load)
+PUSHES = st.sampled_from(["tangential_force", "tangential_displacement"]).flatmap(
+    lambda name: (SIGNED | st.lists(SIGNED, min_size=1, max_size=4)).map(lambda one: {name: one})
+) | (LOADS | st.lists(LOADS, min_size=1, max_size=4)).map(lambda one: {"stick_radius": one})
+FRICTION = {
+    "material": st.fixed_dictionaries({"e_star": LENGTHS, "g_star": LENGTHS}),
+    "friction_coefficient": st.floats(0.01, 2) | st.floats(1e-15, 1e6),
+    "tangential": PUSHES,
+}
+PUSHED = st.fixed_dictionaries(PRESSED | FRICTION)
+NORMAL_FIELDS = ["pressure", "foundation_load"]
+SHEAR_FIELDS = ["shear_stress", "slip", "foundation_shear"]
+PLACES = st.lists(st.just(0.0) | ORDINARY, min_size=1, max_size=8).map(
+    lambda radius: {"radius": radius}
 )
 
 
-def check(client: Client, query: object) -> None:
-    answer = client.post("/v1/normal", query)
+def quantities(names: list[str]) -> st.SearchStrategy[list[str]]:
+    return st.lists(st.sampled_from(names), min_size=1, unique=True)
+
+
+STRESSES = st.builds(
+    lambda query, places: query | places,
+    st.fixed_dictionaries(PRESSED | {"quantities": quantities(NORMAL_FIELDS)})
+    | st.fixed_dictionaries(
+        PRESSED | FRICTION | {"quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS)}
+    ),
+    PLACES,
+)
+
+
+def check(client: Client, path: str, query: object, model: type[Known]) -> None:
+    answer = client.post(path, query)
     document = strict_json.loads(answer.content)
     assert isinstance(document, dict)
     if answer.status_code == 200:
-        told = NormalAnswer.model_validate_json(answer.content)
+        told = model.model_validate_json(answer.content)
         singular = any(warning.code == "singular" for warning in told.warnings)
-        assert singular == (None in told.mean_pressure)
+        assert singular == (b"null" in answer.content)
     else:
         assert answer.status_code == 422, answer.text
         assert answer.headers["content-type"] == MEDIA_TYPE
         assert all(error["pointer"] for error in document["errors"])
 
 
-@settings(
-    max_examples=400,
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
+def many(test: Callable[..., None]) -> Callable[..., None]:
+    return settings(
+        max_examples=400,
+        deadline=None,
+        derandomize=True,
+        suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+    )(test)
+
+
+@many
 @given(query=QUERIES)
-def test_a_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
-    check(client, query)
+def test_a_normal_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/normal", query, NormalAnswer)
+
+
+@many
+@given(query=PUSHED)
+def test_a_tangential_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/tangential", query, TangentialAnswer)
+
+
+@many
+@given(query=STRESSES)
+def test_a_stress_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/stress", query, StressAnswer)

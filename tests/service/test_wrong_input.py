@@ -140,6 +140,156 @@ def test_is_refused_by_pointing_at_it(client: Client, name: str) -> None:
     assert pointers(answer) == [pointer]
 
 
+SHEARED = '{"e_star": 1e9, "g_star": 8e8}'
+PUSH = '{"tangential_force": 0.1}'
+
+
+def pushed(
+    tangential: str = PUSH, friction: str = "0.3", material: str = SHEARED, load: str = FORCE
+) -> bytes:
+    more = f', "friction_coefficient": {friction}, "tangential": {tangential}'
+    return query(material=material, load=load, more=more)
+
+
+def fields(
+    quantities: str = '["pressure"]', more: str = ', "radius": [0]', material: str = MODULUS
+) -> bytes:
+    return query(material=material, more=f', "quantities": {quantities}{more}')
+
+
+FRICTION = f', "friction_coefficient": 0.3, "tangential": {PUSH}, "radius": [0]'
+POINTED_ELSEWHERE = {
+    # friction
+    "no shear modulus": ("tangential", pushed(material=MODULUS), "/material/g_star"),
+    "a negative shear modulus": (
+        "tangential",
+        pushed(material=SHEARED.replace("8e8", "-8e8")),
+        "/material/g_star",
+    ),
+    "two rigid bodies": (
+        "tangential",
+        pushed(material='{"bodies": ["rigid", "rigid"]}'),
+        "/material/bodies",
+    ),
+    "no friction": ("tangential", pushed(friction="0"), "/friction_coefficient"),
+    "negative friction": ("tangential", pushed(friction="-0.3"), "/friction_coefficient"),
+    "friction that is a list": ("tangential", pushed(friction="[0.3]"), "/friction_coefficient"),
+    "friction that is NaN": ("tangential", pushed(friction="NaN"), "/friction_coefficient"),
+    "no tangential load": ("tangential", query(more=', "friction_coefficient": 1'), "/tangential"),
+    "no tangential control": ("tangential", pushed("{}"), "/tangential"),
+    "two tangential controls": (
+        "tangential",
+        pushed('{"tangential_force": 0, "stick_radius": 0}'),
+        "/tangential",
+    ),
+    "an unknown tangential control": ("tangential", pushed('{"force": 0}'), "/tangential/force"),
+    "a push beyond friction": (
+        "tangential",
+        pushed('{"tangential_force": 0.31}'),
+        "/tangential/tangential_force",
+    ),
+    "a pull beyond friction, in a list": (
+        "tangential",
+        pushed('{"tangential_force": [0.1, 0, 0.3, -0.31]}'),
+        "/tangential/tangential_force/3",
+    ),
+    "a push beyond the friction of one load": (
+        "tangential",
+        pushed('{"tangential_force": 0.5}', load='{"normal_force": [2, 1]}'),
+        "/tangential/tangential_force",
+    ),
+    "a push of a string": (
+        "tangential",
+        pushed('{"tangential_force": [0, "1"]}'),
+        "/tangential/tangential_force/1",
+    ),
+    "a push of 1e999": (
+        "tangential",
+        pushed('{"tangential_displacement": -1e999}'),
+        "/tangential/tangential_displacement",
+    ),
+    "a push of null": (
+        "tangential",
+        pushed('{"stick_radius": [null]}'),
+        "/tangential/stick_radius/0",
+    ),
+    "an empty list of pushes": (
+        "tangential",
+        pushed('{"stick_radius": []}'),
+        "/tangential/stick_radius",
+    ),
+    "sticking outside the contact": (
+        "tangential",
+        pushed('{"stick_radius": [0, 0.2]}'),
+        "/tangential/stick_radius/1",
+    ),
+    "a negative stick radius": (
+        "tangential",
+        pushed('{"stick_radius": -1e-9}'),
+        "/tangential/stick_radius",
+    ),
+    "three pushes for two loads": (
+        "tangential",
+        pushed('{"tangential_force": [0, 0, 0]}', load='{"normal_force": [1, 1]}'),
+        "/tangential/tangential_force",
+    ),
+    # fields
+    "no quantities": ("stress", query(more=', "radius": [0]'), "/quantities"),
+    "an empty list of quantities": ("stress", fields("[]"), "/quantities"),
+    "an unknown quantity": ("stress", fields('["pressure", "heat"]'), "/quantities/1"),
+    "a quantity twice": ("stress", fields('["pressure", "pressure"]'), "/quantities"),
+    "shear without friction": ("stress", fields('["pressure", "slip"]'), "/quantities/1"),
+    "shear without a modulus": (
+        "stress",
+        fields('["slip"]', FRICTION),
+        "/material/g_star",
+    ),
+    "friction without a push": (
+        "stress",
+        fields(more=', "radius": [0], "friction_coefficient": 0.3'),
+        "/tangential",
+    ),
+    "a push without friction": (
+        "stress",
+        fields(more=f', "radius": [0], "tangential": {PUSH}'),
+        "/friction_coefficient",
+    ),
+    "no radii": ("stress", fields(more=""), "/radius"),
+    "an empty list of radii": ("stress", fields(more=', "radius": []'), "/radius"),
+    "a radius that is no list": ("stress", fields(more=', "radius": 0'), "/radius"),
+    "a negative radius": ("stress", fields(more=', "radius": [0, -1e-9]'), "/radius/1"),
+    "a radius of NaN": ("stress", fields(more=', "radius": [0, NaN]'), "/radius/1"),
+    "a radius of true": ("stress", fields(more=', "radius": [true]'), "/radius/0"),
+    "too many radii": (
+        "stress",
+        fields(more=f', "radius": [{"0," * SETTINGS.max_radii}0]'),
+        "/radius",
+    ),
+    "null for friction": (
+        "stress",
+        fields(more=', "radius": [0], "friction_coefficient": null'),
+        "/friction_coefficient",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", POINTED_ELSEWHERE)
+def test_is_refused_elsewhere_by_pointing_at_it(client: Client, name: str) -> None:
+    path, body, pointer = POINTED_ELSEWHERE[name]
+    answer = client.post_text(f"/v1/{path}", body)
+    assert answer.status_code == 422
+    assert pointers(answer) == [pointer]
+
+
+@pytest.mark.parametrize("path", ["/v1/tangential", "/v1/stress"])
+@pytest.mark.parametrize("name", ["NaN", "a string in a list", "two controls", "no kind"])
+def test_the_shared_parts_are_refused_everywhere(client: Client, path: str, name: str) -> None:
+    body, pointer = POINTED[name]
+    answer = client.post_text(path, body)
+    assert answer.status_code == 422
+    assert pointer in pointers(answer)
+
+
 @pytest.mark.parametrize(
     ("r", "f"),
     [("[0, 1, 2]", "[0, 2, 1]"), ("[0, 2, 1]", "[0, 1, 2]"), ("[0, 1, 2]", "[0, 1]")],

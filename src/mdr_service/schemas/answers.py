@@ -1,10 +1,10 @@
 """The answers, as OpenAPI documents them; the service writes them straight from arrays."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from mdr_service.schemas.quantities import quantity
+from mdr_service.schemas.quantities import drop_null_defaults, quantity
 
 
 class Answer(BaseModel):
@@ -20,7 +20,15 @@ class AnswerWarning(Answer):
     message: str = Field(description="What it means here.")
 
 
-class NormalAnswer(Answer):
+class Known(Answer):
+    """How an answer was found, and what to know about it."""
+
+    method: str = Field(description="The cheapest route that meets the tolerance, as taken.")
+    error_estimate: float = quantity("1", "Upper bound of the relative error of all numbers")
+    warnings: list[AnswerWarning] = Field(description="What the caller should know.")
+
+
+class NormalAnswer(Known):
     """One entry per load in every list."""
 
     indentation_depth: list[float] = quantity("length", "Depth d of indentation")
@@ -31,9 +39,61 @@ class NormalAnswer(Answer):
     )
     normal_stiffness: list[float] = quantity("force/length", "dF_N/dd = 2 E* a")
     elastic_energy: list[float] = quantity("force*length", "Energy stored in the contact")
-    method: str = Field(description="The cheapest route that meets the tolerance, as taken.")
-    error_estimate: float = quantity("1", "Upper bound of the relative error of all numbers")
-    warnings: list[AnswerWarning] = Field(description="What the caller should know.")
+
+
+class TangentialAnswer(NormalAnswer):
+    """One entry per pair of normal and tangential load in every list."""
+
+    tangential_force: list[float] = quantity("force", "Tangential force F_x")
+    tangential_displacement: list[float] = quantity(
+        "length", "Tangential displacement u_x of the bodies"
+    )
+    stick_radius: list[float] = quantity("length", "Radius c of the stick zone, 0 in full slip")
+    slip_width: list[float] = quantity("length", "Width a − c of the slip zone")
+    tangential_stiffness: list[float] = quantity(
+        "force/length", "dF_x/du_x = 2 G* c on further loading"
+    )
+    regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
+        description="Whether nothing, the rim or all of the contact slips."
+    )
+    dissipated_energy: list[float] = quantity(
+        "force*length", "Energy dissipated by slip on the way to this load"
+    )
+
+
+_Field = list[list[float | None]]
+
+
+def _field(dimension: str, meaning: str) -> Any:
+    return quantity(dimension, f"{meaning}, by load and radius", default=None)
+
+
+class StressAnswer(Known):
+    """The fields that were asked for, by load and radius; the others are left out."""
+
+    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
+
+    radius: list[float] = quantity("length", "The radii r, as asked for or chosen")
+    pressure: _Field = _field(
+        "pressure", "Pressure p(r); null where infinite, with a warning `singular`"
+    )
+    shear_stress: _Field = _field(
+        "pressure",
+        "Tangential traction τ(r), positive in the direction of a positive force; null where "
+        "infinite, with a warning `singular`",
+    )
+    slip: _Field = _field(
+        "length",
+        "Tangential displacement of the surface in the slip zone relative to the stick zone, "
+        "negative for a positive displacement of the bodies",
+    )
+    normal_displacement: _Field = _field(
+        "length", "Displacement of the surface into the half-space, inside and outside the contact"
+    )
+    foundation_load: _Field = _field("force/length", "Load q of the equivalent foundation at x = r")
+    foundation_shear: _Field = _field(
+        "force/length", "Tangential load q_x of the equivalent foundation at x = r"
+    )
 
 
 class ProfileField(Answer):

@@ -65,3 +65,86 @@ NORMAL_EXAMPLES: Final = {
         },
     ),
 }
+
+# A steel ball of 10 mm radius on a steel flat, pressed by 10 N, as in NORMAL_EXAMPLES.
+_BALL: Final = {
+    "profile": {"kind": "paraboloid", "radius": 0.01},
+    "material": {"bodies": [_STEEL, _STEEL]},
+    "load": {"normal_force": 10.0},
+}
+
+TANGENTIAL_EXAMPLES: Final = {
+    "cattaneo_mindlin": _example(
+        "Cattaneo and Mindlin: a steel ball on a steel flat, µ = 0.3, pushed sideways",
+        {
+            **_BALL,
+            "friction_coefficient": 0.3,
+            "tangential": {"tangential_force": [0.0, 1.0, 2.0, 2.9, 3.0]},
+        },
+    ),
+    "truman": _example(
+        "Truman: a rigid cone with a slope of 0.1 on rubber, by the radius of its stick zone",
+        {
+            "profile": {"kind": "cone", "slope": 0.1},
+            "material": {"bodies": ["rigid", _RUBBER]},
+            "load": {"contact_radius": 0.004},
+            "friction_coefficient": 0.8,
+            "tangential": {"stick_radius": [0.001, 0.002, 0.003]},
+        },
+    ),
+    "flat_punch": _example(
+        "A rigid flat punch on rubber: it sticks as a whole, then slides at once",
+        {
+            "profile": {"kind": "flat_punch", "radius": 0.005},
+            "material": {"bodies": ["rigid", _RUBBER]},
+            "load": {"indentation_depth": 1e-4},
+            "friction_coefficient": 0.5,
+            "tangential": {"tangential_displacement": [1e-5, 1e-3]},
+        },
+    ),
+}
+
+STRESS_EXAMPLES: Final = {
+    "cattaneo_mindlin": _example(
+        "Cattaneo and Mindlin: pressure, shear stress and slip at seven radii",
+        {
+            **_BALL,
+            "friction_coefficient": 0.3,
+            "tangential": {"tangential_force": 2.0},
+            "radius": [0.0, 2e-5, 4e-5, 6e-5, 7e-5, 8e-5, 9e-5],
+            "quantities": ["pressure", "shear_stress", "slip"],
+        },
+    ),
+    "sneddon": _example(
+        "Sneddon: the pressure of a cone, infinite at the tip",
+        {
+            "profile": {"kind": "cone", "slope": 0.1},
+            "material": {"e_star": 1e9},
+            "load": {"contact_radius": [0.001, 0.002]},
+            "radius": [0.0, 0.0005, 0.001, 0.0015],
+            "quantities": ["pressure"],
+        },
+    ),
+    "boussinesq": _example(
+        "Boussinesq: a flat punch on rubber, its pressure and the surface around it",
+        {
+            "profile": {"kind": "flat_punch", "radius": 0.005},
+            "material": {"bodies": ["rigid", _RUBBER]},
+            "load": {"indentation_depth": 1e-4},
+            "radius": [0.0, 0.004, 0.006, 0.01],
+            "quantities": ["pressure", "normal_displacement", "foundation_load"],
+        },
+    ),
+    "rounded_punch": _example(
+        "A flat punch with rounded edges in partial slip",
+        {
+            "profile": {"kind": "rounded_punch", "flat_radius": 0.004, "rounding_radius": 0.05},
+            "material": {"bodies": ["rigid", _RUBBER]},
+            "load": {"contact_radius": 0.005},
+            "friction_coefficient": 0.5,
+            "tangential": {"stick_radius": 0.0045},
+            "radius": [5e-5 * step for step in range(101)],
+            "quantities": ["pressure", "shear_stress"],
+        },
+    ),
+}

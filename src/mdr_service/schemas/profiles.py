@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.quantities import LARGEST, Strict, positive, quantity
+from mdr_service.schemas.quantities import Signed, Size, Strict, positive, quantity
 from mdr_service.settings import SETTINGS
 
 _COEFFICIENT = "length^(1-exponent)"
@@ -132,22 +132,18 @@ class CappedParaboloid(Strict):
     radius: float = positive("length", "Radius of curvature R₂ ≤ R₁ outside the cap")
 
 
-_Radius = Annotated[float, Field(ge=0, le=LARGEST)]
-_Height = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-
-
 class Tabulated(Strict):
     """A measured profile through points; it is never extrapolated."""
 
     kind: Literal["tabulated"]
-    r: list[_Radius] = quantity(
+    r: list[Size] = quantity(
         "length",
         "Radii of the points, from 0, increasing",
         min_length=2,
         max_length=SETTINGS.max_table_points,
         fail_fast=True,
     )
-    f: list[_Height] = quantity(
+    f: list[Signed] = quantity(
         "length",
         "Heights of the profile at the points, from 0, not falling",
         min_length=2,
@@ -157,7 +153,7 @@ class Tabulated(Strict):
     interpolation: Literal["cubic", "pchip", "linear"] = quantity(
         "text", "The curve through the points; cubic is not-a-knot", default="cubic"
     )
-    breaks: list[_Radius] = quantity(
+    breaks: list[Size] = quantity(
         "length",
         "Radii of the table where slope or curvature jumps; nothing is interpolated across them",
         default=[],

@@ -46,14 +46,17 @@ def _scalar_or_array(value: object) -> str:
     return "array" if isinstance(value, list) else "scalar"
 
 
+Size = Annotated[float, Field(ge=0, le=LARGEST)]
+Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+# One bad element is told, not a hundred thousand.
+_Many = Field(min_length=1, max_length=SETTINGS.max_loads, fail_fast=True)
+
 # The discriminator keeps the errors of the branch that was not meant out of the answer.
 ScalarOrArray = Annotated[
-    Annotated[float, Field(ge=0, le=LARGEST), Tag("scalar")]
-    | Annotated[
-        list[Annotated[float, Field(ge=0, le=LARGEST)]],
-        # One bad element is told, not a hundred thousand.
-        Field(min_length=1, max_length=SETTINGS.max_loads, fail_fast=True),
-        Tag("array"),
-    ],
+    Annotated[Size, Tag("scalar")] | Annotated[list[Size], _Many, Tag("array")],
+    Discriminator(_scalar_or_array),
+]
+SignedScalarOrArray = Annotated[
+    Annotated[Signed, Tag("scalar")] | Annotated[list[Signed], _Many, Tag("array")],
     Discriminator(_scalar_or_array),
 ]

@@ -1,0 +1,144 @@
+"""Results to documents; what is not finite is found here, once."""
+
+from collections.abc import Iterable, Mapping
+from math import isfinite
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdr_core.errors import DefectError, InputError, Notice
+from mdr_core.normal import NormalContact
+from mdr_core.tangential import TangentialContact
+from mdr_service.convert import Array
+from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
+from mdr_service.solve import Stress
+
+# One number or one per load, as they are written: a list, or an array where it is long.
+Numbers = list[float] | Array
+Indices = NDArray[np.intp]
+
+_NORMAL_ANSWERS: Final = (
+    "indentation_depth",
+    "normal_force",
+    "contact_radius",
+    "mean_pressure",
+    "normal_stiffness",
+    "elastic_energy",
+)
+_TANGENTIAL_ANSWERS: Final = (
+    "tangential_force",
+    "tangential_displacement",
+    "stick_radius",
+    "slip_width",
+    "tangential_stiffness",
+    "dissipated_energy",
+)
+# The only answers with a true infinity, which the core announces by a notice.
+_MAY_BE_INFINITE: Final = frozenset({"mean_pressure"})
+_FIELDS_MAY_BE_INFINITE: Final = frozenset({"pressure", "shear_stress"})
+# Radii that a warning names; the nulls show the others.
+_NAMED: Final = 5
+
+
+def normal(query: NormalQuery, contact: NormalContact) -> dict[str, Any]:
+    """Return the document of a normal contact."""
+    answers = {name: _numbers(getattr(contact, name)) for name in _NORMAL_ANSWERS}
+    return _checked(query, answers, contact) | _about(contact, contact.warnings)
+
+
+def tangential(query: TangentialQuery, contact: TangentialContact) -> dict[str, Any]:
+    """Return the document of a contact with friction."""
+    found = {name: getattr(contact.normal, name) for name in _NORMAL_ANSWERS} | {
+        name: getattr(contact, name) for name in _TANGENTIAL_ANSWERS
+    }
+    shape = (query.loads,)
+    answers = {name: _numbers(np.broadcast_to(value, shape)) for name, value in found.items()}
+    regime = {"regime": np.broadcast_to(contact.regime, shape).tolist()}
+    return _checked(query, answers, contact) | regime | _about(contact, contact.warnings)
+
+
+def stress(query: StressQuery, solved: Stress) -> dict[str, Any]:
+    """Return the document of the fields that were asked for."""
+    document = {"radius": solved.radius, **solved.fields}
+    result = solved.sheared or solved.contact
+    # What is singular in the answers of a normal query is not asked for here.
+    warnings = [notice for notice in result.warnings if notice.code != "singular"]
+    singular = {
+        name: np.flatnonzero(np.isinf(field).any(axis=0))
+        for name, field in solved.fields.items()
+        if not np.isfinite(field).all()
+    }
+    if singular:
+        _check_fields(query, solved, singular)
+        warnings += [_singular(name, solved.radius[at]) for name, at in singular.items()]
+    return document | _about(solved, warnings)
+
+
+def _about(
+    result: NormalContact | TangentialContact | Stress, warnings: Iterable[Notice]
+) -> dict[str, Any]:
+    return {
+        "method": result.method,
+        "error_estimate": result.error_estimate,
+        "warnings": [{"code": notice.code, "message": notice.message} for notice in warnings],
+    }
+
+
+def _numbers(values: Array) -> Numbers:
+    """Return the values as the JSON writer takes them: one-dimensional and contiguous.
+
+    A list is written faster than an array where there is only one number.
+    """
+    return [values.item()] if values.size == 1 else np.ascontiguousarray(values)
+
+
+def _checked(
+    query: NormalQuery, answers: dict[str, Numbers], contact: NormalContact | TangentialContact
+) -> dict[str, Any]:
+    """Return the answers if they are finite, or infinite where that is announced.
+
+    An overflow is looked for first: what is computed from it may well be no number.
+    """
+    if all(map(_all_finite, answers.values())):
+        return answers
+    announced = any(notice.code == "singular" for notice in contact.warnings)
+    for name in answers.keys() - (_MAY_BE_INFINITE if announced else frozenset()):
+        overflow = np.flatnonzero(np.isinf(answers[name]))
+        if overflow.size:
+            raise _overflow(name, query.place(int(overflow[0])))
+    for name, numbers in answers.items():
+        _require_numbers(name, np.asarray(numbers))
+    return answers
+
+
+def _all_finite(numbers: Numbers) -> bool:
+    if isinstance(numbers, list):
+        return isfinite(numbers[0])
+    return bool(np.isfinite(numbers).all())
+
+
+def _check_fields(query: StressQuery, solved: Stress, infinite: Mapping[str, Indices]) -> None:
+    """Let true infinities pass, to be written as null, and raise for anything else."""
+    for name, at in infinite.items():
+        field = solved.fields[name]
+        stray = ~np.isin(solved.radius[at], solved.singular_radii)
+        if at.size and (name not in _FIELDS_MAY_BE_INFINITE or stray.any()):
+            load = np.flatnonzero(np.isinf(field).any(axis=1))[0]
+            raise _overflow(name, query.place(int(load)))
+        _require_numbers(name, field)
+
+
+def _overflow(name: str, place: tuple[str | int, ...]) -> InputError:
+    return InputError(place, f"{name} leaves the range of double precision here")
+
+
+def _require_numbers(name: str, values: Array) -> None:
+    if np.isnan(values).any():
+        raise DefectError(f"{name} is not a number")
+
+
+def _singular(name: str, radii: Array) -> Notice:
+    named = ", ".join(map(repr, radii[:_NAMED].tolist()))
+    more = f" and {radii.size - _NAMED} more" if radii.size > _NAMED else ""
+    return Notice("singular", f"{name} is infinite at radius {named}{more}")

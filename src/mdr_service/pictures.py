@@ -1,0 +1,232 @@
+"""Answers as pictures (SVG), for people who look rather than read."""
+
+import io
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from threading import Lock
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from starlette.responses import Response
+
+from mdr_core.tangential import TangentialContact
+from mdr_service.convert import Array
+from mdr_service.solve import Stress, travel_to_full_slip
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MEDIA_TYPE: Final = "image/svg+xml"
+# What a picture costs, in numbers that could be answered meanwhile.
+EFFORT: Final = 10_000
+
+_NAMES: Final = {
+    "pressure": "pressure $p$",
+    "shear_stress": r"shear stress $\tau$",
+    "slip": "slip $s$",
+    "normal_displacement": "normal displacement $u_z$",
+    "foundation_load": "foundation load $q$",
+    "foundation_shear": "foundation shear $q_x$",
+}
+_UNITS: Final = "in the units of the request"
+_MAY_BE_INFINITE: Final = frozenset({"pressure", "shear_stress"})
+# Lines that can still be told apart.
+_MOST_LINES: Final = 8
+_WIDTH, _PANEL = 7.2, 2.6
+_STYLE: Final[dict[Any, Any]] = {
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
+    "axes.grid": True,
+    "axes.linewidth": 0.6,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "font.size": 9.0,
+    "grid.alpha": 0.25,
+    "grid.linewidth": 0.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "mathtext.fontset": "dejavusans",
+    # The same answer makes the same picture.
+    "svg.hashsalt": "mdr",
+}
+_SYMBOLS: Final = {
+    "indentation_depth": "$d$",
+    "normal_force": "$F_N$",
+    "contact_radius": "$a$",
+    "tangential_force": "$F_x$",
+    "tangential_displacement": "$u_x$",
+    "stick_radius": "$c$",
+}
+# A curve that runs to infinity is cut above what it exceeds on the rest of the axis.
+_REST, _HEADROOM = 0.03, 1.15
+# Marks closer than this share of the axis have one label.
+_CLOSE: Final = 0.025
+# The library keeps its style in one place for all threads.
+_lock: Final = Lock()
+
+
+def stress(_document: dict[str, Any], solved: Stress) -> Response:
+    """Return the fields over the radius, a panel for each, with a, b and c marked."""
+    order = np.argsort(solved.radius, kind="stable")
+    radius = solved.radius[order]
+    loads = len(next(iter(solved.fields.values())))
+    shown = range(min(loads, _MOST_LINES))
+    with _lock, _style():
+        figure, panels = _panels(len(solved.fields))
+        for axes, (name, field) in zip(panels, solved.fields.items(), strict=True):
+            values = field[: len(shown), order]
+            for index in shown:
+                axes.plot(radius, _finite(values[index]), label=_label(solved, index))
+            axes.set_ylabel(_NAMES[name])
+            axes.set_ylim(*_limits(radius, values, cut=name in _MAY_BE_INFINITE))
+            _mark_infinities(axes, radius, values)
+            _mark_radii(axes, solved, shown)
+        panels[0].set_xlim(*_span(radius))
+        _label_radii(panels[0], solved, shown)
+        panels[-1].set_xlabel(f"radius $r$   ({_UNITS})")
+        if loads > 1:
+            title = None if len(shown) == loads else f"the first {len(shown)} of {loads} loads"
+            panels[0].legend(title=title, loc="upper right")
+        return _response(figure)
+
+
+def tangential(_document: dict[str, Any], contact: TangentialContact) -> Response:
+    """Return force over displacement up to full slip, for the first normal load."""
+    travel = travel_to_full_slip(contact)
+    forces, displacements = (
+        np.ravel(contact.tangential_force),
+        np.ravel(contact.tangential_displacement),
+    )
+    normal_forces = np.broadcast_to(np.ravel(contact.normal.normal_force), forces.shape)
+    answered = normal_forces == normal_forces[0]
+    end = max(displacements[answered].max(), -displacements[answered].min())
+    x = np.append(travel.tangential_displacement, max(end, travel.tangential_displacement[-1]))
+    y = np.append(travel.tangential_force, travel.tangential_force[-1])
+    with _lock, _style():
+        figure, (axes,) = _panels(1)
+        for sign in (1, -1) if displacements[answered].min() < 0 else (1,):
+            axes.plot(sign * x, sign * y, color="C0")
+            axes.axhline(sign * y[-1], color="0.5", linestyle=":", linewidth=0.8)
+        axes.plot(displacements[answered], forces[answered], "o", color="C1", label="answered")
+        axes.annotate(
+            r"$\mu F_N$", (0, y[-1]), xytext=(3, 3), textcoords="offset points", color="0.4"
+        )
+        axes.set_xlabel(f"tangential displacement $u_x$   ({_UNITS})")
+        axes.set_ylabel("tangential force $F_x$")
+        axes.set_title(f"$F_N$ = {normal_forces[0]:.6g}", fontsize="medium")
+        axes.legend(loc="lower right")
+        return _response(figure)
+
+
+def _style() -> AbstractContextManager[None]:
+    import matplotlib as mpl  # noqa: PLC0415 -- it takes longer to load than all else
+
+    return mpl.rc_context(_STYLE)
+
+
+def _panels(count: int) -> "tuple[Figure, list[Axes]]":
+    from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
+
+    figure = Figure(figsize=(_WIDTH, 0.9 + _PANEL * count), layout="constrained")
+    panels = figure.subplots(count, 1, sharex=True, squeeze=False)
+    return figure, list(panels[:, 0])
+
+
+def _response(figure: "Figure") -> Response:
+    text = io.BytesIO()
+    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return Response(text.getvalue(), media_type=MEDIA_TYPE)
+
+
+def _finite(values: Array) -> Array:
+    """Return the values with gaps where they are infinite."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def _label(solved: Stress, index: int) -> str:
+    """Return what was given for this load, where it is not the same for all."""
+    return ", ".join(
+        f"{_SYMBOLS[name]} = {values[index]:.4g}" for name, values in solved.varied.items()
+    )
+
+
+def _span(radius: Array) -> tuple[float, float]:
+    return float(radius[0]), float(max(radius[-1], radius[0] + abs(radius[0]) * 1e-6 + 1e-300))
+
+
+def _limits(radius: Array, values: Array, *, cut: bool) -> tuple[float, float]:
+    """Return the ends of the axis: all values, or where `cut`, all but the way to infinity."""
+    finite = np.where(np.isfinite(values), values, 0.0)
+    weights = np.broadcast_to(np.gradient(radius) if radius.size > 1 else 1.0, values.shape)
+    high, low = float(finite.max(initial=0.0)), float(finite.min(initial=0.0))
+    if cut:
+        high = _end(finite.clip(min=0).ravel(), weights.ravel())
+        low = -_end((-finite).clip(min=0).ravel(), weights.ravel())
+    margin = 0.05 * (high - low) or 1.0
+    return low - margin * (low < 0), high + margin * ((high > 0) | (low == 0))
+
+
+def _end(values: Array, weights: Array) -> float:
+    order = np.argsort(values)
+    share = np.cumsum(weights[order])
+    usual = values[order][np.searchsorted(share, (1 - _REST) * share[-1]).clip(max=order.size - 1)]
+    largest = float(values[order[-1]])
+    return largest if largest <= 2 * usual or usual == 0 else float(_HEADROOM * usual)
+
+
+def _mark_infinities(axes: "Axes", radius: Array, values: Array) -> None:
+    for r in radius[np.isinf(values).any(axis=0)]:
+        above = bool((values[:, radius == r] == np.inf).any())
+        axes.annotate(
+            "∞",
+            (r, 1.0 if above else 0.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(8, -9 if above else 3),
+            textcoords="offset points",
+        )
+
+
+def _radii(solved: Stress, index: int) -> list[tuple[float, str]]:
+    """Return the radii of one load that mean something, with their symbols."""
+    found = [(float(b), "b") for b in solved.contact.profile.breaks[:_MOST_LINES]]
+    found.append((_one(solved.contact.contact_radius, index), "a"))
+    if solved.sheared:
+        found.append((_one(solved.sheared.stick_radius, index), "c"))
+    return [(r, symbol) for r, symbol in found if r > 0]
+
+
+def _one(values: Array, index: int) -> float:
+    flat = np.ravel(values)
+    return float(flat[index if flat.size > 1 else 0])
+
+
+def _mark_radii(axes: "Axes", solved: Stress, shown: Sequence[int]) -> None:
+    for index in shown:
+        for r, symbol in _radii(solved, index):
+            color = "0.4" if symbol == "b" or len(shown) == 1 else f"C{index}"
+            axes.axvline(r, color=color, linestyle=":", linewidth=0.9, zorder=1)
+
+
+def _label_radii(axes: "Axes", solved: Stress, shown: Sequence[int]) -> None:
+    low, high = axes.get_xlim()
+    marks = sorted({mark for index in shown for mark in _radii(solved, index)})
+    groups: list[list[tuple[float, str]]] = []
+    for r, symbol in marks:
+        if not low <= r <= high:
+            continue
+        if groups and r - groups[-1][-1][0] < _CLOSE * (high - low):
+            groups[-1].append((r, symbol))
+        else:
+            groups.append([(r, symbol)])
+    for group in groups:
+        symbols = ", ".join(dict.fromkeys(f"${symbol}$" for _, symbol in group))
+        middle = (group[0][0] + group[-1][0]) / 2
+        axes.annotate(
+            symbols,
+            (middle, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="center",
+        )

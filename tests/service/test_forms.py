@@ -1,0 +1,195 @@
+"""The same answer in other forms: tables, pictures, and a refusal where there is no such form."""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+from math import inf
+from xml.etree import ElementTree as ET
+
+import httpx
+import pytest
+
+from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES, TANGENTIAL_EXAMPLES
+from tests.conftest import Client
+
+CASES = [
+    (path, name, example["value"])
+    for path, examples in (
+        ("/v1/normal", NORMAL_EXAMPLES),
+        ("/v1/tangential", TANGENTIAL_EXAMPLES),
+        ("/v1/stress", STRESS_EXAMPLES),
+    )
+    for name, example in examples.items()
+]
+EVERY_EXAMPLE = pytest.mark.parametrize(
+    ("path", "query"),
+    [case[::2] for case in CASES],
+    ids=[f"{path} {name}" for path, name, _ in CASES],
+)
+BALL = NORMAL_EXAMPLES["hertz"]["value"]
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def ask(client: Client, path: str, query: object, accept: str) -> httpx.Response:
+    return client.request("POST", path, json=query, headers={"accept": accept})
+
+
+def table(answer: httpx.Response) -> list[dict[str, str]]:
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "text/csv; charset=utf-8"
+    return list(csv.DictReader(io.StringIO(answer.text, newline="")))
+
+
+def told(value: object) -> str:
+    """Return a value of a JSON answer as the table shows it."""
+    return repr(inf) if value is None else value if isinstance(value, str) else repr(value)
+
+
+@EVERY_EXAMPLE
+def test_the_table_holds_the_digits_of_the_document(
+    client: Client, path: str, query: dict[str, object]
+) -> None:
+    rows = table(ask(client, path, query, "text/csv"))
+    document = client.post(path, query).json()
+    columns = {
+        name: values
+        for name, values in document.items()
+        if name not in {"method", "error_estimate", "warnings"}
+    }
+    if path != "/v1/stress":
+        for name, values in columns.items():
+            assert [row[name] for row in rows] == [told(value) for value in values]
+        return
+    radius = columns.pop("radius")
+    loads = range(len(next(iter(columns.values()))))
+    assert ("load" in rows[0]) == (len(loads) > 1)
+    expected = [
+        ({"load": str(load)} if len(loads) > 1 else {})
+        | {"radius": repr(r)}
+        | {name: told(field[load][at]) for name, field in columns.items()}
+        for load in loads
+        for at, r in enumerate(radius)
+    ]
+    assert rows == expected
+
+
+def test_a_table_of_fields_has_its_columns_in_the_order_asked_for(client: Client) -> None:
+    query = {**BALL, "radius": [0.0], "quantities": ["foundation_load", "pressure"]}
+    answer = ask(client, "/v1/stress", query, "text/csv")
+    assert answer.text.splitlines()[0] == "radius,foundation_load,pressure"
+
+
+def test_infinity_is_written_inf(client: Client) -> None:
+    query = {
+        "profile": {"kind": "power", "coefficient": 1.0, "exponent": 0.5},
+        "material": {"e_star": 1.0},
+        "load": {"normal_force": 0.0},
+    }
+    (row,) = table(ask(client, "/v1/normal", query, "text/csv"))
+    assert row["mean_pressure"] == "inf"
+
+
+@pytest.mark.parametrize(
+    ("accept", "media_type"),
+    [
+        ("application/json", "application/json"),
+        ("*/*", "application/json"),
+        ("", "application/json"),
+        ("application/*", "application/json"),
+        ("text/*", "text/csv"),
+        ("TEXT/CSV", "text/csv"),
+        ("text/csv;q=0.9, application/json;q=0.8", "text/csv"),
+        ("text/csv, */*;q=0.1", "text/csv"),
+        ("text/html, application/xhtml+xml, */*;q=0.8", "application/json"),
+        ("application/json;q=0, */*", "text/csv"),
+        ("text/csv;header=present", "text/csv"),
+        ("image/*", "image/svg+xml"),
+        ("image/svg+xml, text/csv;q=0.5", "image/svg+xml"),
+    ],
+)
+def test_the_form_is_the_preferred_one(client: Client, accept: str, media_type: str) -> None:
+    query = {**BALL, "radius": [0.0, 1e-5], "quantities": ["pressure"]}
+    answer = ask(client, "/v1/stress", query, accept)
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].partition(";")[0] == media_type
+
+
+def test_without_a_preference_it_is_json(client: Client) -> None:
+    request = httpx.Request("POST", "http://service/v1/normal", json=BALL)
+    assert "accept" not in request.headers
+    assert client.send(request).headers["content-type"] == "application/json"
+
+
+@pytest.mark.parametrize("accept", ["text/html", "application/xml", "image/png", "rubbish", ";;,"])
+@pytest.mark.parametrize("path", ["/v1/normal", "/v1/tangential", "/v1/stress"])
+def test_an_unknown_form_is_refused(client: Client, path: str, accept: str) -> None:
+    answer = ask(client, path, BALL, accept)
+    assert answer.status_code == 406
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert "text/csv" in answer.json()["detail"]
+
+
+def test_a_normal_contact_has_no_picture(client: Client) -> None:
+    assert ask(client, "/v1/normal", BALL, "image/svg+xml").status_code == 406
+
+
+def picture(answer: httpx.Response) -> ET.Element:
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "image/svg+xml"
+    root = ET.fromstring(answer.content)  # noqa: S314 -- our own
+    assert root.tag == f"{SVG}svg"
+    return root
+
+
+@pytest.mark.parametrize(
+    ("path", "query"),
+    [case[::2] for case in CASES if case[0] != "/v1/normal"],
+    ids=[f"{path} {name}" for path, name, _ in CASES if path != "/v1/normal"],
+)
+def test_every_example_has_a_picture(client: Client, path: str, query: dict[str, object]) -> None:
+    answer = ask(client, path, query, "image/svg+xml")
+    axes = [part.get("id", "") for part in picture(answer).iter(f"{SVG}g")]
+    panels = [name for name in axes if name.startswith("axes_")]
+    assert len(panels) == len(query.get("quantities", ["force over displacement"]))
+    # The same question, the same picture.
+    assert ask(client, path, query, "image/svg+xml").content == answer.content
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"load": {"normal_force": 0.0}, "tangential": {"tangential_force": 0.0}},
+        {"load": {"normal_force": [10.0] * 20}},
+        {"load": {"normal_force": [0.0, 10.0]}, "tangential": {"stick_radius": 0.0}},
+        {"tangential": {"tangential_displacement": [-1.0, 1.0, 0.0]}},
+        {"radius": [0.0]},
+        {"radius": [1e-5, 0.0, 1e-5]},
+        {"radius": [1e30]},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("path", ["/v1/tangential", "/v1/stress"])
+def test_what_is_hard_to_draw_has_a_picture(
+    client: Client, path: str, change: dict[str, object]
+) -> None:
+    query = {**STRESS_EXAMPLES["cattaneo_mindlin"]["value"], **change}
+    if path == "/v1/tangential":
+        query = {name: query[name] for name in query if name not in {"radius", "quantities"}}
+    picture(ask(client, path, query, "image/svg+xml"))
+
+
+def test_what_is_wrong_is_told_in_json_whatever_was_accepted(client: Client) -> None:
+    answer = ask(client, "/v1/stress", {**BALL, "quantities": []}, "image/svg+xml")
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == "application/problem+json"
+    json.loads(answer.content)
+
+
+def test_drawing_is_not_loaded_before_a_picture_is_asked_for() -> None:
+    code = (
+        "import sys; from mdr_service.app import create_app; create_app(); "
+        "sys.exit('matplotlib' in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,97 @@
+"""Friction over the wire: the core's digits, one entry per pair of loads."""
+
+import pytest
+
+from mdr_core import normal, tangential
+from tests.conftest import Client
+from tests.service.test_normal import E_STAR, NAMES, PROFILES
+
+G_STAR, FRICTION = 1.9e9, 0.4
+TANGENTIAL_NAMES = (
+    "tangential_force",
+    "tangential_displacement",
+    "stick_radius",
+    "slip_width",
+    "tangential_stiffness",
+    "regime",
+    "dissipated_energy",
+)
+
+
+def query(kind: str, load: object, **control: object) -> dict[str, object]:
+    return {
+        "profile": {"kind": kind, **PROFILES[kind][0]},
+        "material": {"e_star": E_STAR, "g_star": G_STAR},
+        "load": {"normal_force": load},
+        "friction_coefficient": FRICTION,
+        "tangential": control,
+    }
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str) -> None:
+    forces, pushes = [1e3, 1e5, 2.5e7], [0.0, -3e4, 1e7]
+    answer = client.post("/v1/tangential", query(kind, forces, tangential_force=pushes)).json()
+    contact = normal.solve(PROFILES[kind][1], E_STAR, normal_force=forces)
+    pushed = tangential.solve(contact, G_STAR, FRICTION, tangential_force=pushes)
+    for name in NAMES:
+        assert answer[name] == getattr(contact, name).tolist()
+    for name in TANGENTIAL_NAMES:
+        assert answer[name] == getattr(pushed, name).tolist()
+    assert answer["regime"][:2] == ["stick", "stick" if kind == "flat_punch" else "partial_slip"]
+    assert answer["method"] == pushed.method
+    assert answer["error_estimate"] == pushed.error_estimate
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+def test_each_control_finds_the_same_state(client: Client, kind: str) -> None:
+    by_force = client.post("/v1/tangential", query(kind, 1e5, tangential_force=3e4)).json()
+    for control in ("tangential_displacement", "stick_radius"):
+        if kind == "flat_punch" and control == "stick_radius":
+            # It sticks as a whole under every force but the last.
+            continue
+        (value,) = by_force[control]
+        again = client.post("/v1/tangential", query(kind, 1e5, **{control: value})).json()
+        assert again["tangential_force"] == pytest.approx(by_force["tangential_force"], rel=1e-8)
+        assert again[control] == [value]
+
+
+@pytest.mark.parametrize(
+    ("load", "control", "count"),
+    [(1e5, 1e4, 1), ([1e5], 1e4, 1), (1e5, [1e4, 2e4], 2), ([1e5, 2e5], 1e4, 2)],
+)
+def test_one_load_meets_many(client: Client, load: object, control: object, count: int) -> None:
+    answer = client.post("/v1/tangential", query("cone", load, tangential_force=control)).json()
+    for name in (*NAMES, *TANGENTIAL_NAMES):
+        assert len(answer[name]) == count
+
+
+def test_the_other_way_changes_the_sign_only(client: Client) -> None:
+    there, back = (
+        client.post("/v1/tangential", query("cone", 1e5, tangential_force=force)).json()
+        for force in (2e4, -2e4)
+    )
+    for name in ("tangential_force", "tangential_displacement"):
+        assert back[name] == [-there[name][0]]
+    for name in ("stick_radius", "slip_width", "tangential_stiffness", "dissipated_energy"):
+        assert back[name] == there[name]
+
+
+def test_a_displacement_past_full_slip_is_answered(client: Client) -> None:
+    answer = client.post("/v1/tangential", query("cone", 1e5, tangential_displacement=-10.0))
+    document = answer.json()
+    assert document["regime"] == ["full_slip"]
+    assert document["tangential_force"] == [-FRICTION * 1e5]
+    assert document["stick_radius"] == [0.0]
+
+
+def test_bodies_have_a_shear_modulus(client: Client) -> None:
+    steel = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+    question = query("cone", 1e5, tangential_force=1e4)
+    question["material"] = {"bodies": [steel, steel]}
+    (stiffness,), (c,) = (
+        client.post("/v1/tangential", question).json()[name]
+        for name in ("tangential_stiffness", "stick_radius")
+    )
+    shear_modulus = 210e9 / (2 * 1.3)
+    assert stiffness == pytest.approx(2 * c * 2 * shear_modulus / (2 - 0.3), rel=1e-14)
