@@ -1,17 +1,26 @@
 """Serve the least that a FastAPI service can do: `python bare_endpoint.py PORT`.
 
-It validates the body of `/v1/normal` by the same model and returns a constant, with the same
-event loop and parser as the service.
+It validates the body of `/v1/normal` or `/v1/stress` by the same model and returns constants,
+with the same event loop and parser as the service.
 """
 
 import sys
 
+import numpy as np
+import orjson
 import uvicorn
-from fastapi import FastAPI
+from fastapi import FastAPI, Response
+from stress_wire_ratio import QUERY
 
-from mdr_service.schemas.queries import NormalQuery
+from mdr_service import solve
+from mdr_service.schemas.queries import NormalQuery, StressQuery
 
 CONSTANT = {"contact_radius": 1.0}
+
+FIELDS = {
+    name: np.array(field)
+    for name, field in solve.stress(StressQuery.model_validate(QUERY)).fields.items()
+}
 
 app = FastAPI(openapi_url=None)
 
@@ -25,6 +34,13 @@ async def plain(query: NormalQuery):
 @app.post("/declared")
 async def declared(query: NormalQuery) -> dict[str, float]:
     return CONSTANT
+
+
+@app.post("/stress")
+async def stress(query: StressQuery) -> Response:
+    return Response(
+        orjson.dumps(FIELDS, option=orjson.OPT_SERIALIZE_NUMPY), media_type="application/json"
+    )
 
 
 if __name__ == "__main__":

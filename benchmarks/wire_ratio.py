@@ -36,11 +36,11 @@ def rows() -> list[measure.Row]:
     with ExitStack() as stack:
         service = [sys.executable, "-m", "mdr_service", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
-        ours, theirs = (stack.enter_context(_server(command)) for command in (service, bare))
-        load = stack.enter_context(_load_generator())
+        ours, theirs = (stack.enter_context(server(command)) for command in (service, bare))
+        load = stack.enter_context(load_generator(BODY))
         targets = [f"{ours}/v1/normal", f"{theirs}/declared", f"{theirs}/dict"]
         for target in targets:
-            _check(target)
+            check(target, BODY)
             load(target)
         rounds = [[load(target) for target in targets] for _ in range(ROUNDS)]
     return [
@@ -61,7 +61,7 @@ def _row(load: Load, other: str, rounds: list[tuple[float, float]]) -> measure.R
 
 
 @contextmanager
-def _server(command: list[str]) -> Iterator[int]:
+def server(command: list[str]) -> Iterator[int]:
     """A server's process, ready, on a port that was free."""
     with socket.socket() as probe:
         probe.bind((HOST, 0))
@@ -81,20 +81,20 @@ def _server(command: list[str]) -> Iterator[int]:
         process.wait(10)
 
 
-def _request(target: str) -> tuple[int, bytes]:
+def _request(target: str, body: str) -> tuple[int, bytes]:
     port, path = target.split("/", 1)
     head = (
         f"POST /{path} HTTP/1.1",
         f"Host: {HOST}",
         "Content-Type: application/json",
-        f"Content-Length: {len(BODY)}",
+        f"Content-Length: {len(body)}",
     )
-    return int(port), ("\r\n".join(head) + "\r\n\r\n" + BODY).encode()
+    return int(port), ("\r\n".join(head) + "\r\n\r\n" + body).encode()
 
 
-def _check(target: str) -> None:
+def check(target: str, body: str) -> None:
     """Whether the server answers at all: what it answers is for the tests."""
-    port, request = _request(target)
+    port, request = _request(target, body)
     with socket.create_connection((HOST, port)) as connection:
         connection.sendall(request)
         status = connection.recv(4096).split(b"\r\n", 1)[0]
@@ -103,14 +103,19 @@ def _check(target: str) -> None:
 
 
 @contextmanager
-def _load_generator() -> Iterator[Load]:
+def load_generator(body: str) -> Iterator[Load]:
     if shutil.which("wrk") is None:
+
+        def _asyncio_client(target: str) -> float:
+            """By a client of one's own, which costs as much itself as a small server."""
+            return asyncio.run(_drive(target, body))
+
         yield _asyncio_client
         return
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "post.lua"
         script.write_text(
-            f"wrk.method = 'POST'\nwrk.body = '{BODY}'\n"
+            f"wrk.method = 'POST'\nwrk.body = '{body}'\n"
             "wrk.headers['Content-Type'] = 'application/json'\n"
         )
 
@@ -129,20 +134,15 @@ def _load_generator() -> Iterator[Load]:
         yield _wrk
 
 
-def _asyncio_client(target: str) -> float:
-    """Requests/s by a client of one's own, which costs as much itself as a small server."""
-    return asyncio.run(_drive(target))
-
-
-async def _drive(target: str) -> float:
+async def _drive(target: str, body: str) -> float:
     start = time.perf_counter()
     end = start + ROUND_SECONDS
-    counts = await asyncio.gather(*(_ask(target, end) for _ in range(CONNECTIONS)))
+    counts = await asyncio.gather(*(_ask(target, body, end) for _ in range(CONNECTIONS)))
     return sum(counts) / (time.perf_counter() - start)
 
 
-async def _ask(target: str, end: float) -> int:
-    port, request = _request(target)
+async def _ask(target: str, body: str, end: float) -> int:
+    port, request = _request(target, body)
     reader, writer = await asyncio.open_connection(HOST, port)
     count = 0
     while time.perf_counter() < end:

@@ -1,0 +1,56 @@
+"""Requests per second of `/v1/stress` with many radii against a bare endpoint.
+
+The bare endpoint validates the same body by the same model and writes the two arrays of the
+answer, computed once, by the same writer. Servers and load are those of `wire_ratio`.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from statistics import median
+
+import measure
+import wire_ratio
+
+RADII = 10_000
+ROUNDS = 9
+# Every radius with all its digits, as a program would send it.
+QUERY = {
+    "profile": {"kind": "paraboloid", "radius": 0.01},
+    "material": {"e_star": 1.1e11, "g_star": 0.9e11},
+    "load": {"normal_force": 10.0},
+    "friction_coefficient": 0.3,
+    "tangential": {"tangential_force": 2.0},
+    "radius": [1e-4 * index / (RADII - 1) for index in range(RADII)],
+    "quantities": ["pressure", "shear_stress"],
+}
+
+
+def rows() -> list[measure.Row]:
+    """The ratio, with the rates and the load generator."""
+    body = json.dumps(QUERY)
+    with ExitStack() as stack:
+        service = [sys.executable, "-m", "mdr_service", "--port"]
+        bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
+        ours, theirs = (
+            stack.enter_context(wire_ratio.server(command)) for command in (service, bare)
+        )
+        load = stack.enter_context(wire_ratio.load_generator(body))
+        targets = (f"{ours}/v1/stress", f"{theirs}/stress")
+        for target in targets:
+            wire_ratio.check(target, body)
+            load(target)
+        rounds = [(load(targets[0]), load(targets[1])) for _ in range(ROUNDS)]
+    rates = " / ".join(f"{median(column):.0f}" for column in zip(*rounds, strict=True))
+    return [
+        measure.Row(
+            f"/v1/stress, {RADII} radii, two fields, requests/s / bare FastAPI endpoint",
+            load.__name__.removeprefix("_"),
+            *measure.spread(rounds),
+            ">= 0.85",
+            f"{rates} requests/s, {wire_ratio.CONNECTIONS} connections",
+        )
+    ]
