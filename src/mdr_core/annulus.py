@@ -7,6 +7,7 @@ annulus are integrals. Source: notes, §1 and §4.
 
 from collections.abc import Callable
 from functools import lru_cache
+from math import ceil
 from typing import Final
 
 import numpy as np
@@ -24,10 +25,13 @@ _NARROW: Final = 0.05
 _POINTS: Final = 16
 # Up to this part of full slip the width is the unknown, beyond it the stick edge itself.
 _HALF: Final = 0.5
-# Pieces of the energy's integral: over each, the steepest power changes by exp(2.4).
+# Pieces of the energy's integral shrink towards the axis until g is down to rounding; where the
+# profile is steep there are others, over each of which its power changes by exp(2.4).
+_SHRINK: Final = 0.5
+_PIECES: Final = 54
+_STEEP: Final = 3.5
 _RESOLVED: Final = 2.4
-_HALVINGS: Final = 27
-_MOMENT_POINTS: Final = 12
+_MOMENT_POINTS: Final = 16
 _MOMENT_BLOCK: Final = 65_536
 
 
@@ -98,16 +102,21 @@ def stick_from_depth(
     )
 
 
-def slip_moment(profile: Profile, coordinate: Array, width: Array) -> Array:
+def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
     """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx [length^3].
 
     It grows like the third power of the width: both factors are integrals of g' over parts of
     the annulus, formed from its values at the nodes. Source: notes, §6.
     """
-    closed = profile.slip_moment(coordinate, width)
-    if closed is not None:
+    closed = profile.slip_moment(coordinate, width, stick)
+    if closed is None:
+        return np.asarray(_moment(profile, coordinate, width))
+    missing = np.isnan(closed)
+    if not missing.any():
         return closed
-    return np.asarray(_moment(profile, coordinate, width))
+    high, span = np.broadcast_arrays(coordinate, width)
+    filled = _moment(profile, np.where(missing, high, 0.0), np.where(missing, span, 0.0))
+    return np.where(missing, filled, closed)
 
 
 def _force_slope(profile: Profile) -> _Function:
@@ -182,20 +191,29 @@ def _narrow_step(slope: _Function, high: Array, width: Array, below: Array) -> A
     Behind a break the slope is smooth in v, s = break + v^2.
     """
     low = high - width
-    beyond = np.maximum(low - below, 0.0)
+    # Never through low itself: next to a break its rounding is a large part of low - below.
+    beyond = np.maximum((high - below) - width, 0.0)
     top, bottom = np.sqrt(high - below), np.sqrt(beyond)
     inner = np.minimum(width, high - below)
     nodes, weights = gauss_legendre(_POINTS)
     with np.errstate(invalid="ignore"):
         half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
     v = bottom + np.multiply.outer(1 + nodes, half)
-    total = half * np.tensordot(weights, 2 * v * slope(below + v * v), axes=1)
+    total = half * _summed(weights, 2 * v * slope(below + v * v))
     outer = width - inner
     if np.any(outer > 0):
         s = low + np.multiply.outer(1 + nodes, outer / 2)
         values = np.where(outer > 0, slope(s), 0.0)
-        total = total + outer / 2 * np.tensordot(weights, values, axes=1)
+        total = total + outer / 2 * _summed(weights, values)
     return np.asarray(total)
+
+
+def _summed(weights: Array, values: Array) -> Array:
+    """sum w_i values_i over the first axis, term by term: the same for one load as for many."""
+    total = np.zeros(values.shape[1:])
+    for weight, value in zip(weights, values, strict=True):
+        total = total + weight * value
+    return total
 
 
 def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
@@ -204,7 +222,7 @@ def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
     high, width = np.broadcast_to(coordinate, shape), np.broadcast_to(width, shape)
     breaks = profile.coordinate_breaks
     result = np.empty(high.size)
-    step = max(_MOMENT_BLOCK // ((breaks.size + _HALVINGS) * _MOMENT_POINTS), 1)
+    step = max(_MOMENT_BLOCK // ((breaks.size + 4 * _PIECES) * _MOMENT_POINTS), 1)
     for start in range(0, high.size, step):
         part = slice(start, start + step)
         result[part] = _moment_block(profile, high.ravel()[part], width.ravel()[part])
@@ -214,15 +232,23 @@ def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
 def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     breaks = profile.coordinate_breaks
     # Ends of the pieces as distances below the contact's edge, where they have their digits.
-    ratio = np.exp(-_RESOLVED / profile.steepness)
-    halves = np.multiply.outer(1 - ratio ** np.arange(1, _HALVINGS), high)
+    powers = np.arange(1, _PIECES)
+    to_tip = np.arange(1, ceil(_PIECES / profile.tip_exponent))
+    parts = [_SHRINK**to_tip]
+    if profile.steepness > _STEEP:
+        parts.append(np.exp(-_RESOLVED / profile.steepness) ** powers)
+    shrinking = np.concatenate(parts)
+    halves = high - np.multiply.outer(shrinking, high)
+    if breaks.size == 1:
+        # Below its own break a profile may be steep as well.
+        halves = np.concatenate([halves, high - np.multiply.outer(shrinking, breaks + 0 * high)])
     at_breaks = high - breaks[:, None]
     ends = np.sort(np.clip(np.concatenate([halves, at_breaks]), 0.0, width), axis=0)
     ends = np.concatenate([np.zeros_like(high)[None], ends, width[None]])
     length, low = np.diff(ends, axis=0), high - ends[1:]
     below, _ = _break_below(profile, low + length / 2)
-    below = np.minimum(below, low)
-    top, bottom = np.sqrt(low - below + length), np.sqrt(low - below)
+    above_break = np.maximum((high - below) - ends[1:], 0.0)
+    top, bottom = np.sqrt(above_break + length), np.sqrt(above_break)
     nodes, weights = gauss_legendre(_MOMENT_POINTS)
     with np.errstate(invalid="ignore"):
         half = np.where(length > 0, length / (top + bottom), 0.0)[..., None] / 2
@@ -231,14 +257,15 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     with np.errstate(all="ignore"):
         rise = np.where(half > 0, 2 * v * half * profile.depth_slope(s), 0.0)
         run = np.where(half > 0, 2 * v * half * profile.radius_slope(s), 0.0)
-    piece = rise @ weights
+    piece = (rise * weights).sum(axis=-1)
     # Rows run from the contact's edge inwards.
     above = np.cumsum(piece, axis=0) - piece
     inside = piece.sum(axis=0) - above - piece
-    climbed = rise @ _cumulative(_MOMENT_POINTS).T
+    climbed = (rise[..., None, :] * _cumulative(_MOMENT_POINTS)).sum(axis=-1)
     to_edge = above[..., None] + (piece[..., None] - climbed)
     to_stick = inside[..., None] + climbed
-    return np.asarray(((to_edge * to_stick * run) @ weights).sum(axis=0))
+    rows = (to_edge * to_stick * run * weights).sum(axis=-1)
+    return _summed(np.ones(len(rows)), rows)
 
 
 @lru_cache(maxsize=4)

@@ -51,6 +51,9 @@ class _Slip:
     displacement: float
 
 
+# The grid goes on outside the contact up to so many times its radius.
+_BEYOND: Final = 1.5
+
 # One load at some radii, of which `highest` is the largest.
 _Row = Callable[[Array, float], Array]
 
@@ -195,6 +198,41 @@ def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
         return values
 
     return _fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+
+
+def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
+    """Return radii from 0 to half as far again as the largest contact [length], shape (points,).
+
+    They crowd towards every radius where a field is singular: the axis, the breaks, and every
+    load's stick radius and contact radius, all of which are among them.
+
+    Raises
+    ------
+    InputError : fewer points than there are such radii.
+    """
+    normal = contact.normal if isinstance(contact, TangentialContact) else contact
+    special = [np.zeros(1), np.ravel(normal.contact_radius)]
+    special += [np.ravel(np.asarray(b, dtype=float)) for b in normal.profile.breaks]
+    if isinstance(contact, TangentialContact):
+        special.append(np.ravel(contact.stick_radius))
+    end = _BEYOND * float(np.max(normal.contact_radius)) or 1.0
+    if normal.profile.kind != "flat_punch":
+        end = min(end, float(np.max(normal.profile.domain)))
+    stops = np.unique(np.concatenate(special))
+    stops = np.append(stops[stops < end], end)
+    if points < stops.size:
+        raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
+    gaps = np.diff(stops)
+    # Every gap gets one point and its share of the rest, by its length to a half.
+    spare = points - stops.size
+    share = np.sqrt(gaps) / np.sqrt(gaps).sum() * spare
+    counts = np.floor(share).astype(int)
+    counts[np.argsort(counts - share, kind="stable")[: spare - int(counts.sum())]] += 1
+    parts = [
+        low + gap * (1 - np.cos(np.pi * np.arange(count + 1) / (count + 1))) / 2
+        for low, gap, count in zip(stops[:-1], gaps, counts, strict=True)
+    ]
+    return np.append(np.concatenate(parts), end)
 
 
 def _foundation_row(load: _Load) -> _Row:

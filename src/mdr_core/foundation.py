@@ -13,9 +13,13 @@ from mdr_core.typing import Array, Flags
 _STEPS: Final = 200
 # Newton's step at which the next error is below rounding: it converges quadratically.
 _LAST_STEP: Final = 1e-10
+# So near to its goal, in log, a function is no longer on the other side of a near jump.
+_NEAR: Final = 1e-3
+# Where a bracket this narrow, relative to its place, holds no further double.
+_ADJACENT: Final = 2.0**-51
 _STRIDE: Final = 16.0
 _LEAP: Final = 30.0
-_LARGEST: Final = 1e150
+_LARGEST: Final = 1e307
 
 
 def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
@@ -130,16 +134,20 @@ def invert(
     for _ in range(_STEPS):
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
             value = function(s)
-            step = np.log(goal / value) / log_slope(s, value)
+            miss = np.log(goal / value)
+            step = miss / log_slope(s, value)
             # Where the slope all but vanishes the step says no more than the direction.
             proposed = s * np.exp(np.clip(step, -_LEAP, _LEAP))
         low = np.where(value < goal, s, low)
         high = np.where(value > goal, s, high)
         # One step more than the criterion asks: at a kink the last slope may be the other side's.
         settled = settling
+        # A short step alone may only say that the function all but jumps here.
+        short = (np.abs(step) <= _LAST_STEP) & (np.abs(miss) <= _NEAR)
         # Where the root leaves the range of doubles, infinity or zero say so to the caller.
-        last = (np.abs(step) <= _LAST_STEP) | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-        settling = bool(np.all(last | ~positive))
+        last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
+        closed = high - low <= np.where(high < np.inf, _ADJACENT * high, 0.0)
+        settling = bool(np.all(last | closed | ~positive))
         inside = (proposed > low) & (proposed < high)
         s = np.where(inside | last, proposed, _middle(low, high))
         s = np.where(s < _LARGEST, np.where(s > 1 / _LARGEST, s, 0.0), np.inf)

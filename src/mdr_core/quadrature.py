@@ -190,3 +190,12 @@ def composite_rule(points: int, count: int) -> tuple[Array, Array]:
     nodes, weights = gauss_legendre(points)
     starts = np.arange(count)[:, None]
     return ((starts + (nodes + 1) / 2) / count).ravel(), np.tile(weights / (2 * count), count)
+
+
+@lru_cache(maxsize=256)
+def graded_rule(points: int, halvings: int) -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1], cut into pieces that halve towards 0."""
+    nodes, weights = gauss_legendre(points)
+    ends = np.append(0.0, 0.5 ** np.arange(halvings, -1, -1))
+    width = np.diff(ends)[:, None]
+    return (ends[:-1, None] + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()

@@ -113,6 +113,7 @@ class TangentialContact:
         if not self.width.all():
             # Nothing slips: the edges are the same, to the last digit.
             c = np.where(self.width > 0, c, self.normal.contact_radius)
+        c = np.minimum(c, self.normal.contact_radius)
         return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
 
     @cached_property
@@ -140,9 +141,9 @@ class TangentialContact:
             slipping = np.zeros_like(self.width)
         else:
             reach = self._coordinate - profile.first_coordinate
-            moment = annulus.slip_moment(
-                profile, self._coordinate, np.where(self.full_slip, reach, self.width)
-            )
+            width = np.where(self.full_slip, reach, self.width)
+            stick = np.where(self.full_slip, profile.first_coordinate, self._stick)
+            moment = annulus.slip_moment(profile, self._coordinate, width, stick)
             slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
         return slipping + self.limiting_force * self.excess
 

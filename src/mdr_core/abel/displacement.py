@@ -7,13 +7,13 @@ int_0^a (g(a) - g(x))/sqrt(r^2 - x^2) dx = int_0^a g'(x) arcsin(x/r) dx.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, inf
+from math import ceil, inf, log, log2, sqrt
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.roots import Weight
-from mdr_core.quadrature import composite_rule
+from mdr_core.quadrature import composite_rule, graded_rule
 from mdr_core.typing import Array
 
 # Above this part of the reach the angle resolves the root at r; below it the weight is smooth in
@@ -31,7 +31,8 @@ class Branch:
     """A stretch base <= x <= stop on which weight(x, s, index) = g'(x) s/x is analytic in s.
 
     s = sqrt(x^2 - base^2); the stretch may begin only at `start`. Below `reach` times the radius
-    nothing of the integral is left; `steepness` is the highest power that g' resembles.
+    nothing of the integral is left; `steepness` is the highest power that g' resembles, `pole`
+    a radius beyond `stop` where it is infinite.
     """
 
     base: float
@@ -40,6 +41,7 @@ class Branch:
     reach: float = 1e-18
     start: float = 0.0
     steepness: float = 3.5
+    pole: float = inf
 
 
 def slope_integral(
@@ -76,7 +78,7 @@ def _branch(
     def kernel(x: Array, leg: Array) -> Array:
         return np.arctan2(x, leg) if outside else np.arctan2(leg, x)
 
-    nodes, weights = composite_rule(points, max(ceil(branch.steepness / _STEEP), 1))
+    nodes, weights = _rule(branch, points, float(high.max()))
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)
     x = np.hypot(base, s)
@@ -88,6 +90,16 @@ def _branch(
             branch, s_low[index], split[index], s_r[index], points, outside=outside
         )
     return np.asarray(total)
+
+
+def _rule(branch: Branch, points: int, highest: float) -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1], finer towards 0 where a pole lies close behind it."""
+    pieces = max(ceil(branch.steepness / _STEEP), 1)
+    if not branch.pole < inf:
+        return composite_rule(points, pieces)
+    # In the angle the pole lies at i sqrt(2 (pole/x - 1)).
+    distance = sqrt(max(2 * (branch.pole / highest - 1), 1e-15))
+    return graded_rule(points, max(ceil(-log2(distance)) + 1, 1))
 
 
 def _lower(
@@ -103,7 +115,13 @@ def _lower(
         with np.errstate(divide="ignore"):
             length = np.minimum(upper - np.log(low), -np.log(branch.reach))
     piece = _PIECE * min(1.0, _STEEP / branch.steepness)
-    nodes, weights = composite_rule(points, max(ceil(length.max() / piece), 1))
+    count = max(ceil(length.max() / piece), 1)
+    nodes, weights = composite_rule(points, count)
+    if branch.pole < inf:
+        # From the upper end on the pole is log(pole/x) away.
+        distance = max(log(branch.pole / float(np.hypot(base, high.max()))), 1e-15)
+        halvings = max(ceil(log2(float(length.max()) / distance)) + 1, 1)
+        nodes, weights = graded_rule(points, max(halvings, ceil(log2(count)) + 1))
     y = upper - nodes[:, None] * length
     s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
     x = np.hypot(base, s)

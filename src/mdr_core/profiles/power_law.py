@@ -81,7 +81,7 @@ class Cone(Profile):
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         return self.g(width + np.zeros_like(coordinate))
 
-    def slip_moment(self, coordinate: Array, width: Array) -> Array:
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         return np.square((np.pi / 2) * self.slope) * width**3 / 6 + np.zeros_like(coordinate)
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
@@ -200,7 +200,7 @@ class Paraboloid(Profile):
         gap = atan_gap(leg, np.where(c > 0, c, 1.0))
         return np.asarray((c * gap + leg2 * np.arctan2(leg, c)) / (np.pi * self.radius))
 
-    def slip_moment(self, coordinate: Array, width: Array) -> Array:
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2). Source: mdr-5, section 5.2; notes, §6."""
         a, c = coordinate, coordinate - width
         return 2 / 15 * width**3 * (a * a + 3 * a * c + c * c) / np.square(self.radius)
@@ -274,20 +274,26 @@ class Power(Profile):
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         return self.g(coordinate) * power_step(coordinate, width, stick, np.asarray(self.exponent))
 
-    def slip_moment(self, coordinate: Array, width: Array) -> Array | None:
-        """Closed where the annulus is wide enough for its terms not to cancel, see notes, §6."""
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Closed where the annulus is wide enough for its terms not to cancel, else NaN.
+
+        Source: notes, §6.
+        """
         n = np.asarray(self.exponent, dtype=float)
-        y = 1 - width / np.where(coordinate > 0, coordinate, 1.0)
-        if np.min(n * (1 - y)) < _WIDE:
-            return None
-        y = np.maximum(y, 0.0)
+        y = np.maximum(stick, 0.0) / np.where(coordinate > 0, coordinate, 1.0)
         yn = y**n
         bracket = (1 + yn) * (1 - yn * y) / (n + 1) - (1 - yn * yn * y) / (2 * n + 1)
-        return np.asarray(np.square(self.g(coordinate)) * coordinate * (bracket - yn * (1 - y)))
+        moment = np.square(self.g(coordinate)) * coordinate * (bracket - yn * (1 - y))
+        narrow = np.maximum(n, 1.0) * (1 - y) < _WIDE
+        return np.where(narrow & (width > 0), np.nan, moment)
 
     @property
     def steepness(self) -> float:
         return max(3.5, float(np.max(self.exponent)))
+
+    @property
+    def tip_exponent(self) -> float:
+        return min(1.0, float(np.min(self.exponent)))
 
     @property
     def branches(self) -> tuple[Branch, ...]:

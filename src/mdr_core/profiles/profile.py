@@ -159,6 +159,11 @@ class Profile(ABC):
         return 3.5
 
     @property
+    def tip_exponent(self) -> float:
+        """Lowest power with which g leaves the axis: how far towards it to resolve."""
+        return 1.0
+
+    @property
     def slips_at_once(self) -> bool:
         """No slip annulus exists: the contact sticks wholly until it slides."""
         return False
@@ -203,9 +208,9 @@ class Profile(ABC):
         del coordinate, width, stick
         return None
 
-    def slip_moment(self, coordinate: Array, width: Array) -> Array | None:
-        """int_c^a (g(a) - g)(g - g(c)) dx [length^3] where it is closed, else None."""
-        del coordinate, width
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
+        """int_c^a (g(a) - g)(g - g(c)) dx [length^3] where it is closed; else NaN, or None."""
+        del coordinate, width, stick
         return None
 
     @property
@@ -280,5 +285,5 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
         part = slice(start, start + step)
         w = top - np.multiply.outer(fractions[part], length)
         values = density(scale * np.sinh(w)) * np.cosh(w)
-        total += np.tensordot(weights[part], values, axes=1)
+        total += np.einsum("i,i...->...", weights[part], values)
     return np.asarray(total * scale * length)

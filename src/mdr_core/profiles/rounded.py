@@ -5,6 +5,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.abel.displacement import Branch
 from mdr_core.abel.roots import asinh_difference, between
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
@@ -45,6 +46,11 @@ class Spheroid(Profile):
     def df(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
         return np.asarray(self.height / self.radius * radius / root)
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        big = float(np.asarray(self.radius))
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x), pole=big),)
 
     def g(self, x: Array) -> Array:
         return self.depth(self._rapidity(x))

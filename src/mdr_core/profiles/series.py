@@ -137,6 +137,10 @@ class Series(Profile):
         )
 
     @property
+    def tip_exponent(self) -> float:
+        return min(1.0, self._powers[0][1])
+
+    @property
     def steepness(self) -> float:
         return max(3.5, *(n for _, n in self._powers))
 

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps
 from mdr_core.abel.stress import StressPanels, stress_panels
+from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 from mdr_core.profiles.profile import Profile
@@ -80,22 +81,79 @@ class Tabulated(Profile):
     def domain(self) -> float:
         return float(self.r[-1])
 
-    @property
-    def last_coordinate(self) -> float:
-        return self.domain
+    @cached_property
+    def flat_radius(self) -> float:
+        """Radius b up to which f = 0; the contact coordinate is sqrt(a^2 - b^2)."""
+        return float(self.r[np.flatnonzero(self.values == 0)[-1]])
 
     @property
-    def coordinate_breaks(self) -> Array:
-        return self.r[1:-1]
+    def last_coordinate(self) -> float:
+        return float(self._leg(np.asarray(self.domain)))
 
     @property
     def scale(self) -> float:
-        return self.domain / 2
+        return self.last_coordinate / 2
+
+    def _leg(self, radius: Array) -> Array:
+        b = self.flat_radius
+        return np.asarray(np.sqrt((radius - b) * (radius + b)))
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        if self.flat_radius == 0:
+            return coordinate
+        return np.minimum(np.hypot(self.flat_radius, coordinate), self.domain)
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        inside = np.asarray(contact_radius < self.flat_radius)
+        if inside.any():
+            raise InputError(
+                ("load", "contact_radius", *first_index(inside)),
+                f"the contact cannot be smaller than the flat of radius {self.flat_radius:.12g}",
+            )
+        return contact_radius if self.flat_radius == 0 else self._leg(contact_radius)
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        if self.flat_radius == 0:
+            return a - c
+        return (a - c) * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0)
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        if self.flat_radius == 0:
+            return width
+        total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
+        return width * (2 * s_a - width) / total
+
+    def radius_slope(self, coordinate: Array) -> Array:
+        return coordinate / self.contact_radius(coordinate)
 
     @property
-    def first_coordinate(self) -> float:
-        """The flat that a table may start with is in contact at zero load."""
-        return float(self.r[np.flatnonzero(self.values == 0)[-1]])
+    def coordinate_breaks(self) -> Array:
+        inner = self.r[1:-1]
+        return self._leg(inner[inner > self.flat_radius])
+
+    def _offset(self, coordinate: Array) -> tuple[Array, Array]:
+        """The flat's radius and a - b, with the digits of the coordinate."""
+        b = np.full(np.shape(coordinate), self.flat_radius)
+        with np.errstate(invalid="ignore"):
+            offset = np.square(coordinate) / (b + self.contact_radius(coordinate))
+        return b, np.where(coordinate > 0, offset, 0.0)
+
+    def depth(self, coordinate: Array) -> Array:
+        radius = self.contact_radius(coordinate)
+        return np.asarray(radius * self._slope.transform(*self._offset(coordinate)))
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        """g'(a) da/ds, where the pole of g' at the flat's edge cancels."""
+        base, offset = (np.atleast_1d(part).ravel() for part in self._offset(coordinate))
+        slope = self._slope.source.transform(base, offset)
+        s = np.atleast_1d(coordinate).ravel()
+        per_leg = s / self.contact_radius(s) if self.flat_radius else np.ones_like(s)
+        # Of the jump at b, J b/s times s/a is left.
+        at_flat = self._jumps.at == self.flat_radius
+        edge = float((self._jumps.at * self._jumps.size)[at_flat].sum())
+        rest = slope + self._jumps.contribution(base, offset)
+        total = rest * per_leg + (edge / self.contact_radius(s) if edge else 0.0)
+        return np.asarray(total.reshape(np.shape(coordinate)))
 
     @cached_property
     def _cubics(self) -> Array:
@@ -180,15 +238,15 @@ class Tabulated(Profile):
 
     def reduced_force(self, coordinate: Array) -> Array:
         """2 int_0^a r^2 f'/sqrt(a^2 - r^2) dr. Source: notes, §1."""
-        return 2 * self._slope.transform(coordinate, weighted=True)
+        return 2 * self._slope.transform(*self._offset(coordinate), weighted=True)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """d^2 a - 2 d int g dx + int g^2 dx, the integrals summed up over whole panels once."""
-        a = np.asarray(coordinate, dtype=float).ravel()
+        a = np.asarray(self.contact_radius(coordinate), dtype=float).ravel()
         panel = np.clip(np.searchsorted(self.r, a) - 1, 0, self.r.size - 2)
         first, second = self._integrals(self.r[panel], a)
         done = self._panel_sums[:, panel]
-        d = self.depth(a)
+        d = self.g(a)
         energy = d * d * a - 2 * d * (done[0] + first) + (done[1] + second)
         return np.asarray(energy.reshape(np.shape(coordinate)))
 
@@ -230,7 +288,9 @@ class Tabulated(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        value = self._stress.kernel(coordinate, radius, rtol, width, inner)
+        a = self.contact_radius(coordinate) if edge is None else edge
+        span = None if width is None else self.radius_width(coordinate, width)
+        value = self._stress.kernel(a, radius, rtol, span, inner)
         value *= modulus / np.pi
         return value
 

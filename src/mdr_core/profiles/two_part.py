@@ -2,6 +2,7 @@
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar, Final
 
 import numpy as np
@@ -16,6 +17,7 @@ from mdr_core.profiles.stable import atanh_gap
 from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 
+_OUT_OF_REACH: Final = 1e150
 # Just inside the tangent radius, where the tip's own form still holds.
 _BELOW: Final = 1 - 2.0**-53
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
@@ -53,7 +55,7 @@ class TippedCone(Profile):
                 0.0,
                 lambda x, _s, _index: self.dg(np.minimum(x, b * _BELOW)),
                 b,
-                steepness=self.steepness,
+                pole=self._pole,
             ),
             Branch(b, lambda x, s, _index: self._flank_weight(x, s)),
         )
@@ -78,6 +80,11 @@ class TippedCone(Profile):
     def _flank_analytic(self) -> Analytic:
         """Where the flank's weight is analytic in y."""
         return DEFAULT
+
+    @property
+    def _pole(self) -> float:
+        """Radius beyond the tip's end where its own g' is infinite."""
+        return inf
 
     def reduced_energy(self, coordinate: Array) -> Array:
         b = self.tangent_radius
@@ -249,6 +256,10 @@ class SphericalTipCone(TippedCone):
         return Analytic(strip=min(DEFAULT.strip, 0.9 * behind))
 
     @property
+    def _pole(self) -> float:
+        return float(np.asarray(self.tip_radius))
+
+    @property
     def steepness(self) -> float:
         """The sphere's equator lies at b sqrt(1 + t^2)/t, the nearer the steeper the cone."""
         return 3.5 * (1 + 4 * float(np.max(np.square(self.slope))))
@@ -347,38 +358,41 @@ class CappedParaboloid(Profile):
         """k = 1/R2 - 1/R1 [1/length]."""
         return (self.tip_radius - self.radius) / (self.tip_radius * self.radius)
 
+    @property
+    def _break(self) -> Parameter:
+        """b, out of reach where the radii are equal and nothing changes there."""
+        return np.where(np.asarray(self._kink) > 0, self.cap_radius, _OUT_OF_REACH)[()]
+
     def f(self, radius: Array) -> Array:
-        outer = _leg(radius, self.cap_radius)
+        outer = _leg(radius, self._break)
         return radius * radius / (2 * self.tip_radius) + self._kink * outer * outer / 2
 
     def df(self, radius: Array) -> Array:
-        return np.where(radius < self.cap_radius, radius / self.tip_radius, radius / self.radius)
+        return np.where(radius < self._break, radius / self.tip_radius, radius / self.radius)
 
     def g(self, x: Array) -> Array:
-        return x * x / self.tip_radius + self._kink * x * _leg(x, self.cap_radius)
+        return x * x / self.tip_radius + self._kink * x * _leg(x, self._break)
 
     def dg(self, x: Array) -> Array:
-        s = _leg(x, self.cap_radius)
+        s = _leg(x, self._break)
         with np.errstate(divide="ignore", invalid="ignore"):
-            outer = np.where(x < self.cap_radius, 0.0, self._kink * (s + x * x / s))
+            outer = np.where(x < self._break, 0.0, self._kink * (s + x * x / s))
         return 2 * x / self.tip_radius + np.where(np.asarray(self._kink) > 0, outer, 0.0)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        b = self.cap_radius
+        b = self._break
         return np.minimum(contact_radius, b) + _leg(contact_radius, b)
 
     @property
     def coordinate_breaks(self) -> Array:
-        return np.atleast_1d(np.asarray(self.cap_radius, dtype=float))
+        return np.atleast_1d(np.asarray(self._break, dtype=float))
 
     def radius_slope(self, coordinate: Array) -> Array:
-        beyond = self._outer(coordinate) / np.maximum(
-            self.contact_radius(coordinate), self.cap_radius
-        )
-        return np.where(coordinate < self.cap_radius, 1.0, beyond)
+        beyond = self._outer(coordinate) / np.maximum(self.contact_radius(coordinate), self._break)
+        return np.where(coordinate < self._break, 1.0, beyond)
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        b = self.cap_radius
+        b = self._break
         beyond = (a - c) * (a + c) / np.where(s_a + s_c > 2 * b, s_a + s_c - 2 * b, 1.0)
         across = (s_a - b) + (b - np.minimum(s_c, b))
         return np.where(a <= b, a - c, np.where(c >= b, beyond, across))
@@ -390,12 +404,10 @@ class CappedParaboloid(Profile):
 
     def _outer(self, coordinate: Array) -> Array:
         """s = sqrt(a^2 - b^2), zero inside the cap."""
-        return np.maximum(coordinate - self.cap_radius, 0.0)
+        return np.maximum(coordinate - self._break, 0.0)
 
     def contact_radius(self, coordinate: Array) -> Array:
-        return np.asarray(
-            np.hypot(np.minimum(coordinate, self.cap_radius), self._outer(coordinate))
-        )
+        return np.asarray(np.hypot(np.minimum(coordinate, self._break), self._outer(coordinate)))
 
     def depth(self, coordinate: Array) -> Array:
         """a^2/R1 + k a s."""
@@ -404,25 +416,26 @@ class CappedParaboloid(Profile):
 
     def depth_slope(self, coordinate: Array) -> Array:
         a, s = self.contact_radius(coordinate), self._outer(coordinate)
-        cap = 2 * np.where(coordinate < self.cap_radius, coordinate, s) / self.tip_radius
+        cap = 2 * np.where(coordinate < self._break, coordinate, s) / self.tip_radius
         with np.errstate(divide="ignore", invalid="ignore"):
             kink = self._kink * (s * s + a * a) / a
-        return cap + np.where(coordinate < self.cap_radius, 0.0, kink)
+        return cap + np.where(coordinate < self._break, 0.0, kink)
 
     def reduced_force(self, coordinate: Array) -> Array:
         """4a^3/(3 R1) + (2/3) k s (2a^2 + b^2)."""
-        a, s, b = self.contact_radius(coordinate), self._outer(coordinate), self.cap_radius
+        a, s, b = self.contact_radius(coordinate), self._outer(coordinate), self._break
         cap = 4 * a * a * a / (3 * self.tip_radius)
         return cap + (2 / 3) * self._kink * s * (2 * a * a + b * b)
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        b = self.cap_radius
+        b = self._break
 
         def density(s: Array) -> Array:
             return self.reduced_force(b + s) * self.depth_slope(b + s)
 
         cap = 8 / 15 * np.minimum(coordinate, b) ** 5 / np.square(self.tip_radius)
-        return cap + energy_integral(density, self._outer(coordinate), b)
+        outer = self._outer(coordinate)
+        return cap + energy_integral(density, outer, b) if outer.any() else cap
 
     def pressure_kernel(
         self,
@@ -434,7 +447,7 @@ class CappedParaboloid(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        b = self.cap_radius
+        b = self._break
         coordinate = np.broadcast_to(coordinate, radius.shape)
         a, s = self.contact_radius(coordinate), self._outer(coordinate)
         a = a if edge is None else edge
@@ -466,7 +479,7 @@ class CappedParaboloid(Profile):
 
     @property
     def branches(self) -> tuple[Branch, ...]:
-        b, tip, kink = float(np.asarray(self.cap_radius)), self.tip_radius, self._kink
+        b, tip, kink = float(np.asarray(self._break)), self.tip_radius, self._kink
         return (
             Branch(0.0, lambda x, _s, _index: 2 * x / tip, b),
             Branch(b, lambda x, s, _index: 2 * s / tip + kink * (x * x + s * s) / x),
@@ -474,7 +487,7 @@ class CappedParaboloid(Profile):
 
     def _annulus(self, high: Array, low: Array, width: Array, a: Array, c: Array) -> Array:
         """a - c with its digits, from the coordinates and their difference."""
-        b = self.cap_radius
+        b = self._break
         s, s_c = self._outer(high), self._outer(low)
         beyond = width * (s + s_c) / np.where(a + c > 0, a + c, 1.0)
         across = s * s / (a + b) + (b - np.minimum(low, b))
