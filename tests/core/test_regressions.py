@@ -2,6 +2,10 @@
 
 import threading
 
+import numpy as np
+import pytest
+
+from mdr_core import normal, profiles
 from mdr_core.lazy import cached_property
 
 
@@ -36,3 +40,21 @@ def test_a_long_answer_does_not_keep_another_objects_waiting() -> None:
     asked.join()
     assert answered
     assert (slow.value, slow.value, slow.computed) == (1, 1, 1)
+
+
+def test_an_inverse_goes_on_past_a_near_jump() -> None:
+    """A cap a trillion times flatter than what is behind it: the force all but jumps at b."""
+    profile = profiles.CappedParaboloid(1e-5, 1e8, 1e-5)
+    bare = profiles.TruncatedParaboloid(1e-5, 1e-5)
+    contact = normal.solve(profile, 1.0, normal_force=0.1)
+    expected = normal.solve(bare, 1.0, normal_force=0.1)
+    np.testing.assert_allclose(contact.contact_radius, expected.contact_radius, rtol=1e-11)
+    np.testing.assert_allclose(contact.indentation_depth, expected.indentation_depth, rtol=1e-11)
+
+
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+def test_an_inverse_ends_where_no_double_is_left(control: str) -> None:
+    """The contact is wider than the flat of the table by less than a double can say."""
+    table = profiles.Tabulated([0.0, 1.0, 2.0], [0.0, 0.0, 1.0], "linear")
+    contact = normal.solve(table, 1.0, **{control: [1e-70, 0.0, 1e-40]})
+    np.testing.assert_allclose(contact.contact_radius, 1.0, rtol=1e-15)
