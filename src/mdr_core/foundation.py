@@ -90,9 +90,10 @@ def _check_reach(
 
 def _refuse(outside: Flags, profile: Profile, name: str) -> None:
     if outside.any():
+        domain = np.broadcast_to(profile.domain, outside.shape)[outside][0]
         raise InputError(
             ("load", name, *first_index(outside)),
-            f"the contact would reach past radius {profile.domain!r}, where the profile ends "
+            f"the contact would reach past radius {domain}, where the profile ends "
             "or ceases to be admissible",
         )
 

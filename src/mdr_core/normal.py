@@ -16,6 +16,7 @@ from mdr_core.foundation import (
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Parameter
+from mdr_core.validity import normal_notices
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,8 @@ class NormalContact:
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
-        """`singular` and `accuracy`, where they apply."""
-        found = []
+        """What `mdr_core.validity` says, and `singular` and `accuracy` where they apply."""
+        found = list(normal_notices(self.profile, self.contact_radius))
         if not np.isfinite(np.max(self.mean_pressure)):
             found.append(
                 Notice(
@@ -127,8 +128,8 @@ def solve(
 
     Raises
     ------
-    InputError : not exactly one load, a load that is negative or not finite, a contact beyond
-        the profile's end, or the radius of a flat punch given as the load.
+    InputError : not exactly one load, a load that is negative or not finite, shapes that do not
+        agree, a contact beyond the profile's end, or the radius of a flat punch given as the load.
 
     Examples
     --------
@@ -148,7 +149,7 @@ def solve(
     named = [(name, value) for name, value in given.items() if value is not None]
     if len(named) != 1:
         raise InputError(("load",), f"exactly one of {', '.join(given)} is needed")
-    name, load = named[0][0], _checked_load(*named[0])
+    name, load = named[0][0], _over_scenes(profile, e_star, named[0][0], _checked_load(*named[0]))
     if name == "indentation_depth":
         coordinate = coordinate_from_depth(profile, load)
     elif name == "normal_force":
@@ -157,9 +158,8 @@ def solve(
         coordinate = coordinate_from_radius(profile, load)
     _require_range(name, load, coordinate)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
-    if load.shape == coordinate.shape:
-        # What was given is answered as given, to the last digit.
-        vars(contact)[name] = load
+    # What was given is answered as given, to the last digit.
+    vars(contact)[name] = load
     return contact
 
 
@@ -173,13 +173,39 @@ def require_modulus(e_star: Parameter) -> None:
 def _require_range(name: str, load: Array, coordinate: Array) -> None:
     """Refuse a load whose contact has no double to describe it."""
     low, high = extremes(coordinate)
-    if high < inf and (low > 0 or not np.any((coordinate == 0) & (load > 0))):
+    if high < inf and low > 0:
         return
-    bad = np.asarray(~(coordinate < inf) | ((coordinate == 0) & (load > 0)))
+    # A radius is at zero load, as a flat's own one may well be, or it has a double.
+    vanished = (coordinate == 0) & (load > 0) & (name != "contact_radius")
+    bad = np.asarray(~(coordinate < inf) | vanished)
+    if not bad.any():
+        return
     raise InputError(
         ("load", name, *(first_index(bad) if load.ndim else ())),
         "the contact that answers this load leaves the range of double precision",
     )
+
+
+def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
+    """The load for every scene of a sweep, shapes that do not agree refused."""
+    shapes = [
+        part.shape for part in (e_star, *_parameters(profile)) if isinstance(part, np.ndarray)
+    ]
+    if not shapes:
+        return load
+    try:
+        shape = np.broadcast_shapes(load.shape, *shapes)
+    except ValueError:
+        told = ", ".join(map(str, shapes))
+        raise InputError(
+            ("load", name),
+            f"the shape {load.shape} of the load does not agree with the parameters' {told}",
+        ) from None
+    return load if shape == load.shape else np.broadcast_to(load, shape)
+
+
+def _parameters(profile: Profile) -> list[object]:
+    return [getattr(profile, name) for name in getattr(profile, "__dataclass_fields__", ())]
 
 
 def _checked_load(name: str, value: ArrayLike) -> Array:

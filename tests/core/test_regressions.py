@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mdr_core import normal, profiles
+from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 
 
@@ -58,3 +59,41 @@ def test_an_inverse_ends_where_no_double_is_left(control: str) -> None:
     table = profiles.Tabulated([0.0, 1.0, 2.0], [0.0, 0.0, 1.0], "linear")
     contact = normal.solve(table, 1.0, **{control: [1e-70, 0.0, 1e-40]})
     np.testing.assert_allclose(contact.contact_radius, 1.0, rtol=1e-15)
+
+
+def test_one_load_on_many_scenes_is_answered_for_each() -> None:
+    radii = np.array([1.0, 2.0, 4.0])
+    contact = normal.solve(profiles.Paraboloid(radii), 1.0, contact_radius=0.5)
+    np.testing.assert_array_equal(contact.indentation_depth, 0.25 / radii)
+    np.testing.assert_array_equal(contact.contact_radius, [0.5, 0.5, 0.5])
+    contact = normal.solve(profiles.FlatPunch(2.0), radii, indentation_depth=0.5)
+    np.testing.assert_array_equal(contact.indentation_depth, [0.5, 0.5, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("profile", "e_star"),
+    [
+        (profiles.Paraboloid(np.ones(3)), 1.0),
+        (profiles.Paraboloid(1.0), np.ones(3)),
+        (profiles.Ellipsoid(np.ones(2), np.ones(3)), 1.0),
+    ],
+)
+def test_shapes_that_do_not_agree_are_refused(
+    profile: profiles.Profile, e_star: float | np.ndarray
+) -> None:
+    with pytest.raises(InputError, match="does not agree") as refused:
+        normal.solve(profile, e_star, normal_force=[1.0, 2.0])
+    assert refused.value.path == ("load", "normal_force")
+
+
+def test_a_refusal_names_one_radius_not_those_of_the_whole_sweep() -> None:
+    spheres = profiles.Sphere(np.array([3.0, 1.0, 2.0]))
+    with pytest.raises(InputError, match=r"past radius 1\.0, ") as refused:
+        normal.solve(spheres, 1.0, contact_radius=[0.5, 1.5, 0.5])
+    assert refused.value.path == ("load", "contact_radius", 1)
+
+
+def test_a_flat_just_touched_is_a_contact_without_load() -> None:
+    contact = normal.solve(profiles.RoundedPunch(1.0, 2.0), 1.0, contact_radius=[1.0, 1.5])
+    assert contact.normal_force[0] == contact.indentation_depth[0] == contact.mean_pressure[0] == 0
+    assert contact.normal_force[1] > 0
