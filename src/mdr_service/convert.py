@@ -67,9 +67,13 @@ def require_consistent(query: StressQuery) -> None:
     for index, name in enumerate(query.quantities):
         if name in SHEAR_FIELDS and not query.has_friction:
             raise InputError(("quantities", index), f"{name} needs tangential")
-    if query.loads * len(query.radius) > SETTINGS.max_numbers:
+    if ("radius" in given) == ("points" in given):
+        place = "points" if "points" in given else "radius"
+        raise InputError((place,), "exactly one of radius, points is needed")
+    if query.loads * query.radii > SETTINGS.max_numbers:
+        place = "points" if "points" in given else "radius"
         detail = f"at most {SETTINGS.max_numbers} loads times radii are answered at once"
-        raise InputError(("radius",), detail)
+        raise InputError((place,), detail)
 
 
 def profile(model: ProfileModel) -> profiles.Profile:

@@ -79,7 +79,10 @@ def stress(query: StressQuery) -> Stress:
     convert.require_consistent(query)
     sheared = tangential(query) if query.has_friction else None
     contact = sheared.normal if sheared else normal(query)
-    radius = np.array(query.radius)
+    if query.radius:
+        radius = np.array(query.radius)
+    else:
+        radius = fields.grid(sheared or contact, query.points)
     shape = (query.loads, radius.size)
     found: dict[str, Array] = {}
     for name in query.quantities:

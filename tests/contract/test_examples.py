@@ -269,4 +269,4 @@ def test_the_stresses_of_the_rounded_punch_carry_its_forces(client: Client) -> N
         (values,), r = answer[name], answer["radius"]
         rings = zip(zip(r, values, strict=True), zip(r[1:], values[1:], strict=True), strict=False)
         total = sum(pi * (q + p) * (v - u) * (u + v) / 2 for (u, p), (v, q) in rings)
-        assert total == pytest.approx(expected, rel=5e-3)
+        assert total == pytest.approx(expected, rel=1e-3)

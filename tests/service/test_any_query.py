@@ -92,7 +92,7 @@ NORMAL_FIELDS = ["pressure", "foundation_load"]
 SHEAR_FIELDS = ["shear_stress", "slip", "foundation_shear"]
 PLACES = st.lists(st.just(0.0) | ORDINARY, min_size=1, max_size=8).map(
     lambda radius: {"radius": radius}
-)
+) | (st.integers(2, 30).map(lambda points: {"points": points}))
 
 
 def quantities(names: list[str]) -> st.SearchStrategy[list[str]]:

@@ -62,6 +62,17 @@ def test_fields_of_the_pressing_alone_repeat_for_every_push(client: Client) -> N
     assert answer["slip"][0] != answer["slip"][1]
 
 
+@pytest.mark.parametrize("points", [4, 50, 1000])
+def test_a_grid_reaches_from_the_middle_past_the_edge(client: Client, points: int) -> None:
+    question = query("rounded_punch", 1e5, points=points)
+    del question["radius"]
+    answer = client.post("/v1/stress", question).json()
+    assert len(answer["radius"]) == len(answer["pressure"][0]) == points
+    assert answer["radius"] == sorted(set(answer["radius"]))
+    assert answer["radius"][0] == 0.0
+    assert answer["pressure"][0][-1] == 0.0
+
+
 @pytest.mark.parametrize(
     ("kind", "load", "radius", "nulls"),
     [
@@ -92,7 +103,9 @@ def test_many_radii_are_answered_as_few_are(client: Client) -> None:
 
 def test_loads_times_radii_are_limited(client: Client) -> None:
     loads = [1.0] * 20
-    radii = [0.5] * (SETTINGS.max_numbers // len(loads))
-    answer = client.post("/v1/stress", query("paraboloid", loads, radius=[*radii, 0.5]))
+    points = SETTINGS.max_numbers // len(loads)
+    question = query("paraboloid", loads, points=points + 1)
+    del question["radius"]
+    answer = client.post("/v1/stress", question)
     assert answer.status_code == 422
-    assert [error["pointer"] for error in answer.json()["errors"]] == ["/radius"]
+    assert [error["pointer"] for error in answer.json()["errors"]] == ["/points"]

@@ -190,6 +190,7 @@ def _left_out(description: str) -> Any:
 
 def _describe_stress(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
+    schema["oneOf"] = [{"required": ["radius"]}, {"required": ["points"]}]
     together = ("friction_coefficient", "tangential")
     schema["dependentRequired"] = {one: [other] for one, other in permutations(together)}
 
@@ -208,9 +209,17 @@ class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
     radius: list[Size] = quantity(
         "length",
         "Radii r at which the fields are answered, in any order",
+        default=None,
         min_length=1,
         max_length=SETTINGS.max_radii,
         fail_fast=True,
+    )
+    points: int = quantity(
+        "1",
+        "How many radii to choose, from 0 to 1.5 a, close together where the fields change fast",
+        default=None,
+        ge=2,
+        le=SETTINGS.max_radii,
     )
     quantities: Annotated[list[FieldName], AfterValidator(_once_each)] = Field(
         description=(
@@ -232,8 +241,13 @@ class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
         return "tangential" in self.model_fields_set
 
     @property
+    def radii(self) -> int:
+        """How many radii it is about, also where both or neither way to say so was taken."""
+        return len(self.radius or ()) + (self.points or 0)
+
+    @property
     def size(self) -> int:
-        return super().size + self.loads * len(self.radius)
+        return super().size + self.loads * self.radii
 
 
 # After these fields (or their items) pydantic names the branch of a union in the location of an
