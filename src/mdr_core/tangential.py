@@ -13,6 +13,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.validity import friction_notices
 
 _NAMES: Final = ("tangential_force", "tangential_displacement", "stick_radius")
 # Rounding of the steps over the annulus, in units of the profile's own.
@@ -159,8 +160,9 @@ class TangentialContact:
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
-        """Those of the normal contact."""
-        return self.normal.warnings
+        """Those of the normal contact, and `friction`."""
+        moduli = self.normal.e_star, self.g_star
+        return (*self.normal.warnings, *friction_notices(self.friction_coefficient, *moduli))
 
 
 def solve(

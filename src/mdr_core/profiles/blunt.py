@@ -48,6 +48,10 @@ class FlatPunch(Profile):
         return self.f(x)
 
     @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (float(np.min(self.radius)),)
+
+    @property
     def slips_at_once(self) -> bool:
         return True
 
@@ -245,6 +249,10 @@ class TruncatedCone(Blunt):
         require_positive("flat_radius", self.flat_radius)
         require_positive("slope", self.slope)
 
+    @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (float(np.min(self.flat_radius)),)
+
     def f(self, radius: Array) -> Array:
         return self.slope * np.maximum(radius - self.flat_radius, 0.0)
 
@@ -283,6 +291,10 @@ class TruncatedParaboloid(Blunt):
     def __post_init__(self) -> None:
         require_positive("flat_radius", self.flat_radius)
         require_positive("radius", self.radius)
+
+    @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (float(np.min(self.flat_radius)),)
 
     def f(self, radius: Array) -> Array:
         return self._leg(radius) ** 2 / (2 * self.radius)

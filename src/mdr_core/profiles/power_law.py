@@ -37,6 +37,10 @@ class Cone(Profile):
     def __post_init__(self) -> None:
         require_positive("slope", self.slope)
 
+    @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (0.0,)
+
     def f(self, radius: Array) -> Array:
         return self.slope * radius
 
@@ -168,12 +172,16 @@ class Paraboloid(Profile):
     ) -> tuple[Array, Array]:
         """c/a = (1 - rho)^(1/3). Source: mdr-5, Eq. (5.16)."""
         k = np.asarray(np.cbrt(rest))
-        divisor = np.asarray(k + 1)
-        divisor *= k
-        divisor += 1
-        width = np.asarray(ratio / divisor)
+        # 1 - k = (1 - k^3)/(1 + k + k^2), in as few arrays as the millions of a sweep allow.
+        width = np.asarray(k + 1)
+        width *= k
+        width += 1
+        np.divide(ratio, width, out=width)
+        if coordinate.shape != width.shape:
+            return coordinate * k, coordinate * width
         width *= coordinate
-        return coordinate * k, width
+        k *= coordinate
+        return k, width
 
     def stick_from_depth_ratio(
         self, coordinate: Array, ratio: Array, rest: Array
@@ -286,6 +294,10 @@ class Power(Profile):
         moment = np.square(self.g(coordinate)) * coordinate * (bracket - yn * (1 - y))
         narrow = np.maximum(n, 1.0) * (1 - y) < _WIDE
         return np.where(narrow & (width > 0), np.nan, moment)
+
+    @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (0.0,) if np.min(self.exponent) <= 1 else ()
 
     @property
     def steepness(self) -> float:

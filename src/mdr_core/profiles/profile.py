@@ -154,6 +154,11 @@ class Profile(ABC):
         return _NO_BREAKS
 
     @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        """Radii where every contact that reaches them has an infinite pressure [length]."""
+        return ()
+
+    @property
     def steepness(self) -> float:
         """Highest power that g resembles over a stretch of the contact: how fine to resolve it."""
         return 3.5

@@ -141,6 +141,10 @@ class Series(Profile):
         return min(1.0, self._powers[0][1])
 
     @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (0.0,) if self._powers[0][1] <= 1 else ()
+
+    @property
     def steepness(self) -> float:
         return max(3.5, *(n for _, n in self._powers))
 

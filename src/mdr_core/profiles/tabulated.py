@@ -27,6 +27,8 @@ _NOISE: Final = 256 * _EPS
 _RINGING: Final = 1e-8
 # Places in each panel where the sign of g' is looked at.
 _LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
+# A slope on the axis below this, relative to the steepest, is the interpolation's.
+_TIP: Final = 1e-6
 _ENERGY_POINTS: Final = 10
 
 
@@ -85,6 +87,13 @@ class Tabulated(Profile):
     def flat_radius(self) -> float:
         """Radius b up to which f = 0; the contact coordinate is sqrt(a^2 - b^2)."""
         return float(self.r[np.flatnonzero(self.values == 0)[-1]])
+
+    @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        """The tip of a table that starts as a cone, and every kink."""
+        slopes = self._slope.coefficients[0]
+        tip = (0.0,) if slopes[0] > _TIP * slopes.max() else ()
+        return (*tip, *self._jumps.at.tolist())
 
     @property
     def last_coordinate(self) -> float:

@@ -363,6 +363,10 @@ class CappedParaboloid(Profile):
         """b, out of reach where the radii are equal and nothing changes there."""
         return np.where(np.asarray(self._kink) > 0, self.cap_radius, _OUT_OF_REACH)[()]
 
+    @property
+    def infinite_pressure_radii(self) -> tuple[float, ...]:
+        return (float(np.min(self._break)),)
+
     def f(self, radius: Array) -> Array:
         outer = _leg(radius, self._break)
         return radius * radius / (2 * self.tip_radius) + self._kink * outer * outer / 2

@@ -1,0 +1,167 @@
+"""Where an answer leaves what the model holds for: notices with stable codes.
+
+The codes: `half_space`, `table_end`, `plastic`, `friction`, `yield`, `yield_unknown`; `singular`
+and `accuracy` come with the contact, `elastic_similarity` with the material.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from math import atan
+from typing import Final
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from mdr_core.errors import Notice
+from mdr_core.profiles import Paraboloid, Profile
+from mdr_core.profiles.rounded import Spheroid
+from mdr_core.typing import Array, Flags, Parameter
+
+# The half-space is flat and the slopes are small up to about here; a judgement, see notes, §8.
+_STEEPEST: Final = 0.3
+# Part of a table's length from which its end is near.
+_NEAR_END: Final = 0.95
+# From here on the small transverse slip of compressible bodies is felt; a judgement.
+_LARGE_FRICTION: Final = 1.0
+_INCOMPRESSIBLE: Final = 1.5
+# Poisson's ratio taken where the bodies are unknown, that of most metals.
+_USUAL_RATIO: Final = 0.3
+
+
+def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...]:
+    """Return what has to be said of a normal contact.
+
+    `half_space`: the profile is steeper than 0.3 at the contact's edge. `table_end`: the contact
+    comes near the last radius of a table. `plastic`: the pressure is infinite somewhere, so that
+    no real material stays elastic there.
+
+    Source: notes, §8.
+    """
+    largest = float(np.max(contact_radius))
+    found = []
+    steepest = _steepest(profile, contact_radius)
+    if steepest > _STEEPEST:
+        found.append(
+            Notice(
+                "half_space",
+                f"the profile's slope reaches {steepest:.2g} in the contact: beyond about "
+                f"{_STEEPEST} bodies are no flat half-spaces, and the errors are of its square",
+            )
+        )
+    if profile.kind == "tabulated" and largest > _NEAR_END * float(profile.domain):
+        found.append(
+            Notice(
+                "table_end",
+                f"the contact reaches {largest / float(profile.domain):.3f} of the table's last "
+                "radius: what the body does beyond may matter",
+            )
+        )
+    radii = [b for b in profile.infinite_pressure_radii if b <= largest]
+    if radii:
+        places = ", ".join(f"{b:.12g}" for b in radii)
+        found.append(
+            Notice(
+                "plastic",
+                f"the elastic pressure is infinite at radius {places}: a real material is "
+                "plastic there from the first load on",
+            )
+        )
+    return tuple(found)
+
+
+def _steepest(profile: Profile, contact_radius: Array) -> float:
+    if profile.slips_at_once:
+        return 0.0
+    edge = np.asarray(contact_radius)
+    slope = profile.df(np.where(edge > 0, edge, np.max(edge)))
+    return float(np.max(slope)) if np.max(edge) > 0 else 0.0
+
+
+def friction_notices(
+    friction_coefficient: Parameter, e_star: Parameter, g_star: Parameter
+) -> tuple[Notice, ...]:
+    """Return `friction` where mu >= 1 meets compressible bodies, E*/G* < 3/2.
+
+    There the transverse slip that the model leaves out is felt. Source: notes, §8.
+    """
+    compressible = np.asarray(e_star) < _INCOMPRESSIBLE * (1 - 1e-9) * np.asarray(g_star)
+    if not np.any(compressible & (np.asarray(friction_coefficient) >= _LARGE_FRICTION)):
+        return ()
+    return (
+        Notice(
+            "friction",
+            "with a friction coefficient of 1 or more and compressible bodies the small slip "
+            "across the load, which the model leaves out, is felt",
+        ),
+    )
+
+
+def yield_notices(
+    profile: Profile,
+    e_star: Parameter,
+    contact_radius: Array,
+    yield_strength: float,
+    *,
+    poissons_ratios: Sequence[float] = (),
+    friction_coefficient: Parameter = 0.0,
+    full_slip: Flags | None = None,
+) -> tuple[Notice, ...]:
+    """Return `yield` where Tresca's criterion is met, from the onset at max shear = Y/2.
+
+    Under a body round at the tip the largest shear stress lies on the axis, c(nu) p_0 with
+    c = max of [3/2/(1 + s^2) - (1 + nu)(1 - s arctan(1/s))]/2 over s = z/a: 0.310 for nu = 0.3.
+    In full sliding the surface carries mu p_0 as well. `yield_unknown` says that for this shape
+    the place of the largest shear stress is not known in closed form.
+
+    Source: johnson, Eqs. (3.45), (4.4), (7.15); notes, §8.
+    """
+    if profile.infinite_pressure_radii:
+        return (Notice("yield", "the pressure is infinite: plastic from the first load on"),)
+    if not isinstance(profile, Paraboloid | Spheroid):
+        return (
+            Notice(
+                "yield_unknown",
+                f"the onset of yield is not assessed for a {profile.kind}: its largest shear "
+                "stress need not lie on the axis",
+            ),
+        )
+    a = np.asarray(contact_radius, dtype=float)
+    at_axis = profile.pressure_kernel(
+        np.atleast_1d(profile.coordinate_from_radius(a)), np.zeros(a.size), 1e-6
+    )
+    peak = np.asarray(e_star) * at_axis.reshape(a.shape)
+    factor = max(largest_shear(nu) for nu in (poissons_ratios or (_USUAL_RATIO,)))
+    found = []
+    if np.any(2 * factor * peak >= yield_strength):
+        found.append(
+            Notice(
+                "yield",
+                f"the peak pressure {float(np.max(peak)):.4g} exceeds the onset of yield, "
+                f"{yield_strength / (2 * factor):.4g}: the material is plastic under the surface",
+            )
+        )
+    sliding = full_slip is not None and full_slip & (
+        2 * np.asarray(friction_coefficient) * peak >= yield_strength
+    )
+    if np.any(sliding):
+        found.append(
+            Notice("yield", "in full sliding the shear stress exceeds yield at the surface")
+        )
+    return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def largest_shear(poissons_ratio: float) -> float:
+    """Largest shear stress on the axis under Hertz' pressure, over its peak [1].
+
+    Source: johnson, Eq. (3.45).
+
+    >>> round(largest_shear(0.3), 3)
+    0.31
+    """
+
+    def minus_shear(s: float) -> float:
+        radial = (1 + poissons_ratio) * (1 - s * atan(1 / s))
+        return -(1.5 / (1 + s * s) - radial) / 2
+
+    return -float(minimize_scalar(minus_shear, bounds=(1e-3, 2.0), method="bounded").fun)
