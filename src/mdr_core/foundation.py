@@ -136,7 +136,9 @@ def invert(
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
             value = function(s)
             miss = np.log(goal / value)
-            step = miss / log_slope(s, value)
+            slope = log_slope(s, value)
+            # A slope beyond the range of doubles says nothing but the direction.
+            step = np.where(slope < np.inf, miss / slope, miss)
             # Where the slope all but vanishes the step says no more than the direction.
             proposed = s * np.exp(np.clip(step, -_LEAP, _LEAP))
         low = np.where(value < goal, s, low)

@@ -97,3 +97,9 @@ def test_a_flat_just_touched_is_a_contact_without_load() -> None:
     contact = normal.solve(profiles.RoundedPunch(1.0, 2.0), 1.0, contact_radius=[1.0, 1.5])
     assert contact.normal_force[0] == contact.indentation_depth[0] == contact.mean_pressure[0] == 0
     assert contact.normal_force[1] > 0
+
+
+def test_a_slope_beyond_the_range_of_doubles_is_no_convergence() -> None:
+    steep = profiles.Series((profiles.PowerTerm(1e275, 0.5),))
+    with pytest.raises(InputError, match="leaves the range"):
+        normal.solve(steep, 1.0, indentation_depth=1.0)
