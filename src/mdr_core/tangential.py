@@ -111,10 +111,12 @@ class TangentialContact:
             a = np.broadcast_to(self.normal.contact_radius, self.width.shape)
             return np.where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self._stick)
-        if not self.width.all():
+        if c is not self._stick:
+            # The radius of a rounded coordinate may lie beyond the edge by its rounding.
+            c = np.minimum(c, self.normal.contact_radius)
+        if not self.width.min(initial=1.0) > 0:
             # Nothing slips: the edges are the same, to the last digit.
             c = np.where(self.width > 0, c, self.normal.contact_radius)
-        c = np.minimum(c, self.normal.contact_radius)
         return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
 
     @cached_property
