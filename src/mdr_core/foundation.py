@@ -137,8 +137,9 @@ def invert(
             value = function(s)
             miss = np.log(goal / value)
             slope = log_slope(s, value)
-            # A slope beyond the range of doubles says nothing but the direction.
-            step = np.where(slope < np.inf, miss / slope, miss)
+            # A slope that leaves the range of doubles says nothing but the direction.
+            known = (slope > 0) & (slope < np.inf)
+            step = np.where(known, miss / slope, miss)
             # Where the slope all but vanishes the step says no more than the direction.
             proposed = s * np.exp(np.clip(step, -_LEAP, _LEAP))
         low = np.where(value < goal, s, low)
@@ -146,7 +147,8 @@ def invert(
         # One step more than the criterion asks: at a kink the last slope may be the other side's.
         settled = settling
         # A short step alone may only say that the function all but jumps here.
-        short = (np.abs(step) <= _LAST_STEP) & (np.abs(miss) <= _NEAR)
+        short = np.abs(step) <= np.where(known, _LAST_STEP, _ADJACENT)
+        short &= np.abs(miss) <= _NEAR
         # Where the root leaves the range of doubles, infinity or zero say so to the caller.
         last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
         closed = high - low <= np.where(high < np.inf, _ADJACENT * high, 0.0)

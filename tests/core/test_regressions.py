@@ -103,3 +103,16 @@ def test_a_slope_beyond_the_range_of_doubles_is_no_convergence() -> None:
     steep = profiles.Series((profiles.PowerTerm(1e275, 0.5),))
     with pytest.raises(InputError, match="leaves the range"):
         normal.solve(steep, 1.0, indentation_depth=1.0)
+
+
+def test_an_inverse_whose_slope_underflows_ends() -> None:
+    steep = profiles.Series((profiles.PowerTerm(4.85875600312509e217, 0.5599399155054878),))
+    contact = normal.solve(steep, 1.0, normal_force=1.6924623842848814e-80)
+    np.testing.assert_allclose(contact.contact_radius, 2.1101954888591984e-191, rtol=1e-13)
+
+
+def test_an_energy_beyond_the_range_of_doubles_is_infinite() -> None:
+    terms = profiles.PowerTerm(5e245, 2.0), profiles.PowerTerm(-9e128, 5.5)
+    with np.errstate(all="ignore"):
+        contact = normal.solve(profiles.Series(terms), 1.0, contact_radius=0.05)
+        assert contact.elastic_energy == np.inf

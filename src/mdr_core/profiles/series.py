@@ -112,7 +112,7 @@ class Series(Profile):
             for d_j, m in depths:
                 factor = n * m * (n + m + 2) / ((n + 1) * (m + 1) * (n + m + 1))
                 total += factor * d_i * d_j
-        return total * coordinate
+        return _within_range(total) * coordinate
 
     @property
     def scale(self) -> Parameter:
@@ -171,9 +171,13 @@ class Series(Profile):
 
 
 def _total(parts: Iterable[Array]) -> Array:
-    """The sum of positive total; where its terms overflow against each other, infinity."""
+    """The sum of the terms, of which the total is positive."""
     with np.errstate(over="ignore", invalid="ignore"):
-        total = np.asarray(sum(parts))
+        return _within_range(np.asarray(sum(parts)))
+
+
+def _within_range(total: Array) -> Array:
+    """The positive total; where its terms overflow against each other, infinity."""
     return np.where(np.isnan(total), inf, total)
 
 
