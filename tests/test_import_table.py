@@ -28,7 +28,13 @@ TRANSFORMS = {"mdr_core.quadrature", "mdr_core.abel"}
 CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_core.foundation"}
 # What the wire may name of the core: its public face, never the way it calculates.
 RESULTS = {"mdr_core.normal", "mdr_core.tangential"}
-PUBLIC = {"mdr_core.errors", "mdr_core.materials", "mdr_core.profiles", "mdr_core.fields"} | RESULTS
+PUBLIC = RESULTS | {
+    "mdr_core.errors",
+    "mdr_core.materials",
+    "mdr_core.profiles",
+    "mdr_core.fields",
+    "mdr_core.validity",
+}
 SCHEMAS = {"mdr_service.settings", "mdr_service.schemas"}
 WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
 
@@ -44,8 +50,13 @@ TABLE = (
     Row("mdr_core.profiles", CORE | TRANSFORMS, NUMBERS),
     Row("mdr_core.foundation", CONTACT - {"mdr_core.foundation"}, NUMBERS),
     Row("mdr_core.annulus", CONTACT, NUMBERS),
-    Row("mdr_core.normal", CONTACT, NUMBERS),
-    Row("mdr_core.tangential", CONTACT | {"mdr_core.annulus", "mdr_core.normal"}, NUMBERS),
+    Row("mdr_core.validity", CONTACT, NUMBERS),
+    Row("mdr_core.normal", CONTACT | {"mdr_core.validity"}, NUMBERS),
+    Row(
+        "mdr_core.tangential",
+        CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.validity"},
+        NUMBERS,
+    ),
     Row(
         "mdr_core.fields",
         CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.tangential"},

@@ -15,6 +15,7 @@ from mdr_service.schemas.quantities import SMALLEST_LOAD, Strict
 from mdr_service.schemas.queries import (
     SHEAR_FIELDS,
     Bodies,
+    Body,
     Load,
     Material,
     NormalQuery,
@@ -28,11 +29,7 @@ _Arguments = Callable[[Any], dict[str, Any]]
 
 
 def normal_arguments(query: NormalQuery) -> dict[str, Any]:
-    """Return the arguments of `mdr_core.normal.solve`.
-
-    The warnings of the material are left out: they speak of the coupling with tangential load,
-    and a contact without friction has none.
-    """
+    """Return the arguments of `mdr_core.normal.solve`."""
     return {
         "profile": profile(query.profile),
         "e_star": material(query.material).e_star,
@@ -95,6 +92,13 @@ def material(model: Material) -> materials.Material:
             ]
         )
     return materials.Material(model.e_star, model.g_star)
+
+
+def poissons_ratios(model: Material) -> list[float]:
+    """Return those of the bodies that are not rigid, none where the bodies are unknown."""
+    if not isinstance(model, Bodies):
+        return []
+    return [body.poissons_ratio for body in model.bodies if isinstance(body, Body)]
 
 
 def controls(load: Load) -> dict[str, float | Array]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
+from mdr_service import solve
 from mdr_service.convert import Array
 from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
 from mdr_service.solve import Stress
@@ -44,10 +45,10 @@ _NAMED: Final = 5
 def normal(query: NormalQuery, contact: NormalContact) -> dict[str, Any]:
     """Return the document of a normal contact."""
     answers = {name: _numbers(getattr(contact, name)) for name in _NORMAL_ANSWERS}
-    return _checked(query, answers, contact) | _about(contact, contact.warnings)
+    return _checked(query, answers, contact) | _about(contact, solve.notices(query, contact))
 
 
-def tangential(query: TangentialQuery, contact: TangentialContact) -> dict[str, Any]:
+def tangential(query: TangentialQuery | StressQuery, contact: TangentialContact) -> dict[str, Any]:
     """Return the document of a contact with friction."""
     found = {name: getattr(contact.normal, name) for name in _NORMAL_ANSWERS} | {
         name: getattr(contact, name) for name in _TANGENTIAL_ANSWERS
@@ -55,21 +56,28 @@ def tangential(query: TangentialQuery, contact: TangentialContact) -> dict[str, 
     shape = (query.loads,)
     answers = {name: _numbers(np.broadcast_to(value, shape)) for name, value in found.items()}
     regime = {"regime": np.broadcast_to(contact.regime, shape).tolist()}
-    return _checked(query, answers, contact) | regime | _about(contact, contact.warnings)
+    return (
+        _checked(query, answers, contact) | regime | _about(contact, solve.notices(query, contact))
+    )
 
 
 def stress(query: StressQuery, solved: Stress) -> dict[str, Any]:
     """Return the document of the fields that were asked for."""
     document = {"radius": solved.radius, **solved.fields}
-    result = solved.sheared or solved.contact
+    found = solve.notices(query, solved.sheared or solved.contact)
     # What is singular in the answers of a normal query is not asked for here.
-    warnings = [notice for notice in result.warnings if notice.code != "singular"]
+    warnings = [notice for notice in found if notice.code != "singular"]
     singular = {
         name: np.flatnonzero(np.isinf(field).any(axis=0))
         for name, field in solved.fields.items()
         if not np.isfinite(field).all()
     }
     if singular:
+        # The fields of a contact that overflows may well be no numbers.
+        if solved.sheared:
+            tangential(query, solved.sheared)
+        else:
+            normal(query, solved.contact)
         _check_fields(query, solved, singular)
         warnings += [_singular(name, solved.radius[at]) for name, at in singular.items()]
     return document | _about(solved, warnings)

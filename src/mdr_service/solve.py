@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from mdr_core import fields
+from mdr_core import fields, validity
 from mdr_core import normal as normal_contact
 from mdr_core import tangential as tangential_contact
+from mdr_core.errors import Notice
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service import convert
@@ -95,6 +96,36 @@ def stress(query: StressQuery) -> Stress:
     given = [query.load, query.tangential] if sheared else [query.load]
     varied = {each.control: np.array(each.value) for each in given if each.count > 1}
     return Stress(contact, sheared, radius, found, varied)
+
+
+def notices(query: NormalQuery, contact: NormalContact | TangentialContact) -> list[Notice]:
+    """Return what is to be said of a contact, of its material, and of yield if that is asked.
+
+    What the material says is about the coupling with a tangential load: without one there is
+    nothing to say.
+    """
+    found = [*contact.warnings]
+    pressed: NormalContact
+    friction: dict[str, Any] = {}
+    if isinstance(contact, TangentialContact):
+        found += convert.material(query.material).warnings
+        pressed = contact.normal
+        friction = {
+            "friction_coefficient": contact.friction_coefficient,
+            "full_slip": contact.full_slip,
+        }
+    else:
+        pressed = contact
+    if "yield_strength" in query.material.model_fields_set:
+        found += validity.yield_notices(
+            pressed.profile,
+            pressed.e_star,
+            pressed.contact_radius,
+            query.material.yield_strength,
+            poissons_ratios=convert.poissons_ratios(query.material),
+            **friction,
+        )
+    return found
 
 
 def travel_to_full_slip(contact: TangentialContact) -> TangentialContact:

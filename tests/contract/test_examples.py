@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import acos, acosh, asin, atanh, inf, pi, sqrt
+from typing import Any
 
 import pytest
 
@@ -206,6 +207,13 @@ STRESS_TEXTBOOK = {
     "sneddon": sneddon_fields,
     "boussinesq": boussinesq_fields,
 }
+# A tip or an edge that no real material bears, and a sphere pressed to half its radius.
+WARNINGS = {
+    "cone": {"plastic"},
+    "flat_punch": {"plastic"},
+    "truncated_paraboloid": {"plastic"},
+    "sphere": {"half_space"},
+}
 CASES = [
     pytest.param(path, examples[name]["value"], textbook, id=f"{path} {name}")
     for path, examples, textbooks in (
@@ -241,7 +249,7 @@ def same(found: object, expected: object) -> None:
 
 @pytest.mark.parametrize(("path", "query", "textbook"), CASES)
 def test_example_gives_the_textbook_number(
-    client: Client, path: str, query: object, textbook: Callable[[], dict[str, object]]
+    client: Client, path: str, query: dict[str, Any], textbook: Callable[[], dict[str, object]]
 ) -> None:
     answer = client.post(path, query)
     assert answer.status_code == 200
@@ -249,7 +257,8 @@ def test_example_gives_the_textbook_number(
     for quantity, expected in textbook().items():
         same(document[quantity], expected)
     codes = {warning["code"] for warning in document["warnings"]}
-    assert codes == ({"singular"} if "null" in answer.text else set())
+    kind = query["profile"]["kind"]
+    assert codes == WARNINGS.get(kind, set()) | ({"singular"} if "null" in answer.text else set())
 
 
 def test_the_stresses_of_the_rounded_punch_carry_its_forces(client: Client) -> None:

@@ -90,9 +90,19 @@ FRICTION = {
 PUSHED = st.fixed_dictionaries(PRESSED | FRICTION)
 NORMAL_FIELDS = ["pressure", "foundation_load"]
 SHEAR_FIELDS = ["shear_stress", "slip", "foundation_shear"]
-PLACES = st.lists(st.just(0.0) | ORDINARY, min_size=1, max_size=8).map(
-    lambda radius: {"radius": radius}
-) | (st.integers(2, 30).map(lambda points: {"points": points}))
+ORDINARY_LOADS = st.just(0.0) | ORDINARY
+PLACES = st.lists(ORDINARY_LOADS, min_size=1, max_size=8).map(lambda radius: {"radius": radius}) | (
+    st.integers(2, 30).map(lambda points: {"points": points})
+)
+ORDINARILY_PRESSED = PRESSED | {
+    "profile": simple(),
+    "load": st.dictionaries(
+        CONTROLS,
+        ORDINARY_LOADS | st.lists(ORDINARY_LOADS, min_size=1, max_size=4),
+        min_size=1,
+        max_size=1,
+    ),
+}
 
 
 def quantities(names: list[str]) -> st.SearchStrategy[list[str]]:
@@ -101,9 +111,9 @@ def quantities(names: list[str]) -> st.SearchStrategy[list[str]]:
 
 STRESSES = st.builds(
     lambda query, places: query | places,
-    st.fixed_dictionaries(PRESSED | {"quantities": quantities(NORMAL_FIELDS)})
+    st.fixed_dictionaries(ORDINARILY_PRESSED | {"quantities": quantities(NORMAL_FIELDS)})
     | st.fixed_dictionaries(
-        PRESSED | FRICTION | {"quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS)}
+        ORDINARILY_PRESSED | FRICTION | {"quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS)}
     ),
     PLACES,
 )

@@ -95,3 +95,29 @@ def test_bodies_have_a_shear_modulus(client: Client) -> None:
     )
     shear_modulus = 210e9 / (2 * 1.3)
     assert stiffness == pytest.approx(2 * c * 2 * shear_modulus / (2 - 0.3), rel=1e-14)
+
+
+STEEL = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+RUBBER = {"youngs_modulus": 5e6, "poissons_ratio": 0.4}
+
+
+@pytest.mark.parametrize(
+    ("path", "material", "codes"),
+    [
+        ("normal", {"bodies": ["rigid", RUBBER]}, set()),
+        ("tangential", {"bodies": ["rigid", RUBBER]}, {"elastic_similarity"}),
+        ("tangential", {"bodies": [STEEL, STEEL]}, set()),
+        ("normal", {"bodies": [STEEL, STEEL], "yield_strength": 1e6}, {"yield"}),
+        ("tangential", {"bodies": [STEEL, STEEL], "yield_strength": 1e6}, {"yield"}),
+        ("tangential", {"bodies": [STEEL, STEEL], "yield_strength": 1e12}, set()),
+        ("normal", {"e_star": 1e9, "yield_strength": 1e4}, {"yield"}),
+    ],
+)
+def test_the_limits_of_the_model_are_told(
+    client: Client, path: str, material: object, codes: set[str]
+) -> None:
+    question = query("paraboloid", 1e3, tangential_force=1.0) | {"material": material}
+    if path == "normal":
+        del question["friction_coefficient"], question["tangential"]
+    answer = client.post(f"/v1/{path}", question)
+    assert {warning["code"] for warning in answer.json()["warnings"]} == codes

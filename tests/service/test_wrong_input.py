@@ -160,6 +160,11 @@ def fields(
 FRICTION = f', "friction_coefficient": 0.3, "tangential": {PUSH}, "radius": [0]'
 POINTED_ELSEWHERE = {
     # friction
+    "a yield strength of nothing": (
+        "normal",
+        query(material='{"e_star": 1e9, "yield_strength": 0}'),
+        "/material/yield_strength",
+    ),
     "no shear modulus": ("tangential", pushed(material=MODULUS), "/material/g_star"),
     "a negative shear modulus": (
         "tangential",

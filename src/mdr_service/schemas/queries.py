@@ -36,7 +36,16 @@ BodyOrRigid = Annotated[
 ]
 
 
-class Bodies(Strict):
+class Elastic(Strict):
+    """What every way to describe a material may say."""
+
+    # May be left out, but not null; hence a plain float with a default that is none.
+    yield_strength: float = positive(
+        "pressure", "Yield strength Y; with it a warning says where Tresca's is met", default=None
+    )
+
+
+class Bodies(Elastic):
     """The material by its two bodies, one of which may be rigid."""
 
     bodies: list[BodyOrRigid] = quantity(
@@ -44,11 +53,10 @@ class Bodies(Strict):
     )
 
 
-class Moduli(Strict):
+class Moduli(Elastic):
     """The material by the effective moduli of the contact."""
 
     e_star: float = positive("pressure", "Effective modulus E* = 1/Σ(1 − νᵢ²)/Eᵢ")
-    # May be left out, but not null; hence a plain float with a default that is none.
     g_star: float = positive(
         "pressure", "Effective shear modulus G*, needed only with friction", default=None
     )
