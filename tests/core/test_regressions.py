@@ -116,3 +116,29 @@ def test_an_energy_beyond_the_range_of_doubles_is_infinite() -> None:
     with np.errstate(all="ignore"):
         contact = normal.solve(profiles.Series(terms), 1.0, contact_radius=0.05)
         assert contact.elastic_energy == np.inf
+
+
+def test_a_smooth_tip_of_a_table_bears_no_negative_load() -> None:
+    r = np.array([0.0, 4.349008035645129, 12.794348419728783, 21.239688803812435])
+    f = np.array([0.0, 2.898909693608899e23, 2.508941949940395e24, 6.914337350227033e24])
+    contact = normal.solve(profiles.Tabulated(r, f), 1.0, contact_radius=[1e-90, 1e-60, 1e-20])
+    assert np.all(contact.indentation_depth > 0)
+    assert np.all(contact.normal_force > 0)
+
+
+def test_the_energy_of_a_steep_spherical_tip() -> None:
+    """From U = int F dd, summed by mpmath at 80 digits."""
+    profile = profiles.SphericalTipCone(36.851049199772795, 1.2186817316243246)
+    contact = normal.solve(profile, 1.0, contact_radius=1.3934346624194924)
+    np.testing.assert_allclose(contact.elastic_energy, 923.66399577036218, rtol=1e-13)
+
+
+def test_a_cap_far_flatter_than_its_flank_admits_its_rounding() -> None:
+    """From the closed forms at 80 digits."""
+    profile = profiles.CappedParaboloid(
+        0.016127794746985693, 141.23123085463746, 4.859735417524895e-07
+    )
+    depth = 0.00011668003116514185
+    contact = normal.solve(profile, 8119623425.669712, indentation_depth=depth)
+    miss = abs(contact.normal_force / 30398.095686797696 - 1)
+    assert miss <= contact.error_estimate

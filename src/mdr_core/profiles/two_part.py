@@ -20,6 +20,7 @@ from mdr_core.typing import Array, Parameter
 _OUT_OF_REACH: Final = 1e150
 # Just inside the tangent radius, where the tip's own form still holds.
 _BELOW: Final = 1 - 2.0**-53
+_EPS: Final = float(np.finfo(float).eps)
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
 
@@ -82,6 +83,11 @@ class TippedCone(Profile):
         return DEFAULT
 
     @property
+    def _energy_scale(self) -> Parameter:
+        """Distance in s of the flank's nearest singularity."""
+        return self.tangent_radius
+
+    @property
     def _pole(self) -> float:
         """Radius beyond the tip's end where its own g' is infinite."""
         return inf
@@ -94,7 +100,7 @@ class TippedCone(Profile):
             return self.reduced_force(x) * self._flank_weight(x, s)
 
         tip = self._tip_energy(np.minimum(coordinate, b))
-        return tip + energy_integral(density, _leg(coordinate, b), b)
+        return tip + energy_integral(density, _leg(coordinate, b), self._energy_scale)
 
     def pressure_kernel(
         self,
@@ -264,6 +270,15 @@ class SphericalTipCone(TippedCone):
         """The sphere's equator lies at b sqrt(1 + t^2)/t, the nearer the steeper the cone."""
         return 3.5 * (1 + 4 * float(np.max(np.square(self.slope))))
 
+    @property
+    def _energy_scale(self) -> Parameter:
+        return np.minimum(self.tangent_radius, self._height)
+
+    @property
+    def rounding(self) -> float:  # type: ignore[override]
+        # A steep cone touches its sphere near the equator, where a has few digits of R - a.
+        return float(3e-14 + 4 * _EPS * np.square(np.max(self.slope)))
+
     def _tau(self, x: Array, s: Array) -> Array:
         """tanh(L) = b^2 (R h + x s)/((R^2 + s^2)(x h + s R))."""
         b, big, h = self.tangent_radius, self.tip_radius, self._height
@@ -366,6 +381,11 @@ class CappedParaboloid(Profile):
     @property
     def infinite_pressure_radii(self) -> tuple[float, ...]:
         return (float(np.min(self._break)),)
+
+    @property
+    def rounding(self) -> float:  # type: ignore[override]
+        # The coordinate is rounded to eps b, however little s the flank needs to bear the load.
+        return float(3e-14 + _EPS * np.max(self.tip_radius / np.asarray(self.radius)))
 
     def f(self, radius: Array) -> Array:
         outer = _leg(radius, self._break)
