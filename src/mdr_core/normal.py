@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,10 @@ from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Parameter
 from mdr_core.validity import normal_notices
+
+# Contacts that a double holds, and of which the square does not overflow.
+_SMALLEST: Final = 1e-300
+_LARGEST: Final = 1e140
 
 
 @dataclass(frozen=True)
@@ -173,11 +178,11 @@ def require_modulus(e_star: Parameter) -> None:
 def _require_range(name: str, load: Array, coordinate: Array) -> None:
     """Refuse a load whose contact has no double to describe it."""
     low, high = extremes(coordinate)
-    if high < inf and low > 0:
+    if high < _LARGEST and low > _SMALLEST:
         return
     # A radius is at zero load, as a flat's own one may well be, or it has a double.
-    vanished = (coordinate == 0) & (load > 0) & (name != "contact_radius")
-    bad = np.asarray(~(coordinate < inf) | vanished)
+    vanished = (coordinate < _SMALLEST) & (load > 0) & (name != "contact_radius")
+    bad = np.asarray(~(coordinate < _LARGEST) | vanished)
     if not bad.any():
         return
     raise InputError(
