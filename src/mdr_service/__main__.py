@@ -5,12 +5,15 @@ import json
 import signal
 import sys
 from types import FrameType
+from typing import Final
 
 import uvicorn
 from fastapi import FastAPI
 
 from mdr_service.app import create_app
 from mdr_service.settings import SETTINGS
+
+_LAST_PORT: Final = 65535
 
 
 def main() -> None:
@@ -27,9 +30,17 @@ def main() -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mdr-service", description=__doc__)
     parser.add_argument("--host", default="127.0.0.1", help="address to listen at (%(default)s)")
-    parser.add_argument("--port", default=8000, type=int, help="port (%(default)s)")
+    parser.add_argument("--port", default=8000, type=_port, help="port (%(default)s)")
     parser.add_argument("--openapi", action="store_true", help="print the OpenAPI document")
     return parser
+
+
+def _port(text: str) -> int:
+    number = int(text)
+    # The system would serve at the remainder by 65536, and nobody know.
+    if not 0 <= number <= _LAST_PORT:
+        raise ValueError
+    return number
 
 
 def _serve(app: FastAPI, host: str, port: int) -> None:
@@ -37,7 +48,8 @@ def _serve(app: FastAPI, host: str, port: int) -> None:
     # failure, so that one ends in exit status 0.
     signal.signal(signal.SIGTERM, _leave)
     signal.signal(signal.SIGINT, _leave)
-    sys.stdout.write(f"MDR: the documentation is at http://{host}:{port}/docs\n")
+    place = f"[{host}]" if ":" in host else host
+    sys.stdout.write(f"MDR: the documentation is at http://{place}:{port}/docs\n")
     sys.stdout.flush()
     uvicorn.run(
         app,

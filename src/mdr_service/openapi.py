@@ -1,10 +1,12 @@
 """The OpenAPI document: the request models, the answers, and every failure."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from types import MappingProxyType
 from typing import Any, Final
 
 from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 from starlette.routing import BaseRoute
@@ -82,11 +84,21 @@ def document(version: str, routes: Sequence[BaseRoute]) -> dict[str, Any]:
 
     Bodies are read and written by hand, for speed, so that their models are added here.
     """
-    described = get_openapi(title="MDR", version=version, description=_DESCRIPTION, routes=routes)
+    shown = [_shown(route) for route in routes]
+    described = get_openapi(title="MDR", version=version, description=_DESCRIPTION, routes=shown)
     _, definitions = models_json_schema(
         [(model, "validation") for model in (*_QUERIES, *_ANSWERS)], ref_template=_REF
     )
     described["components"] = {"schemas": definitions["$defs"]}
+    return described
+
+
+def _shown(route: BaseRoute) -> BaseRoute:
+    """Return the route as it is described: HEAD goes with GET and says nothing of its own."""
+    if not isinstance(route, APIRoute) or not route.methods:
+        return route
+    described = copy(route)
+    described.methods = route.methods - {"HEAD"}
     return described
 
 

@@ -34,6 +34,9 @@ class DirectRoute(APIRoute):
     def __init__(self, path: str, endpoint: Callable[..., Any], **options: Any) -> None:
         super().__init__(path, endpoint, **options)
         self.app = request_response(endpoint)
+        # What may be read may be asked about; the server leaves the body out.
+        if self.methods and "GET" in self.methods:
+            self.methods = self.methods | {"HEAD"}
 
 
 router = APIRouter(route_class=DirectRoute)

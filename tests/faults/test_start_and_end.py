@@ -46,6 +46,13 @@ def test_a_half_sent_request_does_not_keep_it_from_ending() -> None:
     assert process.returncode == 0
 
 
+def test_a_port_that_is_none_is_refused() -> None:
+    told = subprocess.run(service(99_999), capture_output=True, text=True, check=False)
+    assert told.returncode == 2
+    assert "--port" in told.stderr
+    assert not told.stdout
+
+
 def test_a_senseless_limit_is_told_in_a_sentence() -> None:
     told = subprocess.run(
         service(free_port()),

@@ -412,3 +412,10 @@ def test_a_wrong_address_is_a_problem_too(
     assert answer.status_code == status
     assert ("allow" in answer.headers) == (status == 405)
     problem(answer)
+
+
+@pytest.mark.parametrize("path", ["/", "/health", "/docs", "/openapi.json", "/v1/profiles"])
+def test_what_may_be_read_may_be_asked_about(client: Client, path: str) -> None:
+    answer, asked = client.request("GET", path), client.request("HEAD", path)
+    assert asked.status_code == answer.status_code
+    assert asked.headers["content-type" if answer.content else "location"]
