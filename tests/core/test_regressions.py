@@ -118,9 +118,20 @@ def test_an_energy_beyond_the_range_of_doubles_is_infinite() -> None:
         assert contact.elastic_energy == np.inf
 
 
-def test_a_smooth_tip_of_a_table_bears_no_negative_load() -> None:
-    r = np.array([0.0, 4.349008035645129, 12.794348419728783, 21.239688803812435])
-    f = np.array([0.0, 2.898909693608899e23, 2.508941949940395e24, 6.914337350227033e24])
+@pytest.mark.parametrize(
+    ("r", "f"),
+    [
+        (
+            [0.0, 4.349008035645129, 12.794348419728783, 21.239688803812435],
+            [0.0, 2.898909693608899e23, 2.508941949940395e24, 6.914337350227033e24],
+        ),
+        (
+            [0.0, 619408.8728553505, 6323081.964333784, 6360559.956224398, 12064233.04770283],
+            [0.0, 1163.0436519809396, 121198.93225145369, 122639.92387535935, 441205.184147737],
+        ),
+    ],
+)
+def test_a_smooth_tip_of_a_table_bears_no_negative_load(r: list[float], f: list[float]) -> None:
     contact = normal.solve(profiles.Tabulated(r, f), 1.0, contact_radius=[1e-90, 1e-60, 1e-20])
     assert np.all(contact.indentation_depth > 0)
     assert np.all(contact.normal_force > 0)

@@ -317,6 +317,7 @@ def _interpolate(r: Array, f: Array, interpolation: Interpolation) -> Array:
         # A tip that falls by an interpolation's error is meant to be smooth. Left alone, it
         # would push the smallest loads below zero.
         spline = CubicSpline(r, f, bc_type=((1, np.zeros(())), "not-a-knot"))
+        spline.c[2, 0] = 0.0
     return np.flip(np.asarray(spline.c), axis=0)
 
 
