@@ -13,6 +13,8 @@ from mdr_core.typing import Array, Flags
 _STEPS: Final = 200
 # Newton's step at which the next error is below rounding: it converges quadratically.
 _LAST_STEP: Final = 1e-10
+# The same for steps without a slope, which come nearer only by a factor.
+_BLIND_STEP: Final = 1e-14
 # So near to its goal, in log, a function is no longer on the other side of a near jump.
 _NEAR: Final = 1e-3
 # Where a bracket this narrow, relative to its place, holds no further double.
@@ -147,7 +149,7 @@ def invert(
         # One step more than the criterion asks: at a kink the last slope may be the other side's.
         settled = settling
         # A short step alone may only say that the function all but jumps here.
-        short = np.abs(step) <= np.where(known, _LAST_STEP, _ADJACENT)
+        short = np.abs(step) <= np.where(known, _LAST_STEP, _BLIND_STEP)
         short &= np.abs(miss) <= _NEAR
         # Where the root leaves the range of doubles, infinity or zero say so to the caller.
         last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))

@@ -1,7 +1,7 @@
 """Normal contact: of depth, force and radius, one is given and the others follow."""
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from typing import Final
 
 import numpy as np
@@ -17,7 +17,7 @@ from mdr_core.foundation import (
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Parameter
-from mdr_core.validity import normal_notices
+from mdr_core.validity import normal_notices, top
 
 # Contacts that a double holds, and of which the square does not overflow.
 _SMALLEST: Final = 1e-300
@@ -88,7 +88,7 @@ class NormalContact:
     def warnings(self) -> tuple[Notice, ...]:
         """What `mdr_core.validity` says, and `singular` and `accuracy` where they apply."""
         found = list(normal_notices(self.profile, self.contact_radius))
-        if not np.isfinite(np.max(self.mean_pressure)):
+        if not isfinite(top(self.mean_pressure)):
             found.append(
                 Notice(
                     "singular",

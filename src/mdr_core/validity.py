@@ -37,9 +37,9 @@ def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...
 
     Source: notes, §8.
     """
-    largest = float(np.max(contact_radius))
+    largest = top(contact_radius)
     found = []
-    steepest = _steepest(profile, contact_radius)
+    steepest = _steepest(profile, contact_radius, largest)
     if steepest > _STEEPEST:
         found.append(
             Notice(
@@ -56,8 +56,8 @@ def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...
                 "radius: what the body does beyond may matter",
             )
         )
-    radii = [b for b in profile.infinite_pressure_radii if b <= largest]
-    if radii:
+    singular = profile.infinite_pressure_radii
+    if singular and (radii := [b for b in singular if b <= largest]):
         places = ", ".join(f"{b:.12g}" for b in radii)
         found.append(
             Notice(
@@ -69,12 +69,17 @@ def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...
     return tuple(found)
 
 
-def _steepest(profile: Profile, contact_radius: Array) -> float:
-    if profile.slips_at_once:
+def _steepest(profile: Profile, contact_radius: Array, largest: float) -> float:
+    if profile.slips_at_once or not largest > 0:
         return 0.0
-    edge = np.asarray(contact_radius)
-    slope = profile.df(np.where(edge > 0, edge, np.max(edge)))
-    return float(np.max(slope)) if np.max(edge) > 0 else 0.0
+    # No slope is asked for where nothing touches.
+    touching = contact_radius if contact_radius.all() else np.maximum(contact_radius, largest)
+    return top(profile.df(touching))
+
+
+def top(values: Array) -> float:
+    """Largest value; of a single one, without the cost of a reduction."""
+    return float(values) if values.ndim == 0 else float(values.max())
 
 
 def friction_notices(
