@@ -105,10 +105,19 @@ def test_a_slope_beyond_the_range_of_doubles_is_no_convergence() -> None:
         normal.solve(steep, 1.0, indentation_depth=1.0)
 
 
-def test_an_inverse_whose_slope_underflows_ends() -> None:
-    steep = profiles.Series((profiles.PowerTerm(4.85875600312509e217, 0.5599399155054878),))
-    coordinate = foundation.coordinate_from_force(steep, np.array([1.6924623842848814e-80]))
-    np.testing.assert_allclose(coordinate, 2.1101954888591984e-191, rtol=1e-13)
+@pytest.mark.parametrize(
+    ("coefficient", "exponent", "reduced_force"),
+    [
+        (4.85875600312509e217, 0.5599399155054878, 1.6924623842848814e-80),
+        (3.515210976354242e291, 0.8210086861952499, 4.421912653e-14),
+    ],
+)
+def test_an_inverse_whose_slope_underflows_ends(
+    coefficient: float, exponent: float, reduced_force: float
+) -> None:
+    steep = profiles.Series((profiles.PowerTerm(coefficient, exponent),))
+    coordinate = foundation.coordinate_from_force(steep, np.array([reduced_force]))
+    np.testing.assert_allclose(steep.reduced_force(coordinate), reduced_force, rtol=1e-13)
 
 
 def test_an_energy_beyond_the_range_of_doubles_is_infinite() -> None:
