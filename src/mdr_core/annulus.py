@@ -169,12 +169,13 @@ def _step(
     limit = _NARROW * high if profile.coordinate_breaks.size < 2 else (high - below[1]) / 2
     narrow = width <= limit
     if narrow.all():
-        return _narrow_step(slope, high, width, below[0])
+        # An empty annulus may lie on a tip where the slope is infinite.
+        return np.where(width > 0, _narrow_step(slope, high, width, below[0]), 0.0)
     wide = function(high) - function(np.maximum(low, 0.0))
     if not narrow.any():
         return wide
     part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below[0])
-    return np.where(narrow, part, wide)
+    return np.where(narrow, np.where(width > 0, part, 0.0), wide)
 
 
 def _break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
@@ -199,7 +200,8 @@ def _narrow_step(slope: _Function, high: Array, width: Array, below: Array) -> A
     with np.errstate(invalid="ignore"):
         half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
     v = bottom + np.multiply.outer(1 + nodes, half)
-    total = half * _summed(weights, 2 * v * slope(below + v * v))
+    with np.errstate(invalid="ignore"):
+        total = half * _summed(weights, 2 * v * slope(below + v * v))
     outer = width - inner
     if np.any(outer > 0):
         s = low + np.multiply.outer(1 + nodes, outer / 2)

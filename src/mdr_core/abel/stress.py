@@ -150,7 +150,7 @@ class StressPanels:
         result = one_sided(
             weight,
             base,
-            np.where(on_axis, _AXIS * stop, r),
+            np.where(on_axis, _AXIS * high, r),
             high,
             width=span,
             edge=edge,
