@@ -129,6 +129,8 @@ def integrate_plain(
 
     `length` is asked for by itself: as a difference of ends it would lose the digits of a
     short interval.
+
+    Source: notes, §5; trefethen, Thm 19.3.
     """
     result = np.empty_like(lower)
     for index, points in _groups(length / 2, rtol, analytic):

@@ -87,6 +87,14 @@ def back(
     -------
     f(r), shape (m,), and a bound on its error relative to (2/pi) int |g|/sqrt(r^2 - x^2) dx: the
     summed differences of two rules, of which the better one's value is given.
+
+    Examples
+    --------
+    Eq. (5.75) takes g = x^2/R back to the paraboloid f = r^2/(2R), here R = 2.
+
+    >>> f, error = back(lambda x: x**2 / 2.0, np.array([1.0, 2.0]))
+    >>> [float(f"{value:.6g}") for value in f]
+    [0.25, 1.0]
     """
     end = float(min(upper, r.max(initial=0.0)))
     if breaks is None:

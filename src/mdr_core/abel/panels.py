@@ -90,6 +90,14 @@ def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> P
     Raises
     ------
     AccuracyError : more than 4000 panels would be needed: the function is noise.
+
+    Examples
+    --------
+    Eq. (5.25): the factor of g for f = r^3 is 3 pi/4.
+
+    >>> panels = resolve(lambda r: 3 * r**2, 1.0)
+    >>> float(f"{forward(panels, np.array([1.0]))[0]:.6g}")
+    2.35619
     """
     inner = sorted({float(b) for b in breaks if 0 < b < upper})
     ends = np.array([0.0, *inner, upper])
@@ -137,6 +145,8 @@ def find_breaks(function: Function, upper: float) -> list[float]:
 
     Bisection closes in on each, as far as it is felt: runs of narrow panels mark one place, the
     narrowest of them where it is.
+
+    Source: notes, §5.
 
     Raises
     ------
@@ -236,7 +246,20 @@ def _split(intervals: Array) -> Array:
 def forward(slope: Panels, x: Array) -> Array:
     """Return g(x) = x int_0^x F(r)/sqrt(x^2 - r^2) dr from the panels of F = f'.
 
-    Source: mdr-5, Eq. (5.74). x of shape (m,), 0 <= x <= the last edge [length].
+    Source: mdr-5, Eq. (5.74).
+
+    Parameters
+    ----------
+    slope : from `resolve`.
+    x : places, 0 <= x <= the last edge [length], shape (m,).
+
+    Examples
+    --------
+    Eq. (5.5): g = x^2/R of the paraboloid f = r^2/(2R), here R = 2.
+
+    >>> slope = resolve(lambda r: r / 2.0, 3.0)
+    >>> [float(f"{g:.6g}") for g in forward(slope, np.array([0.0, 1.0, 3.0]))]
+    [0.0, 0.5, 4.5]
     """
     return x * _angle_sums(slope, x, np.zeros_like(x))
 
@@ -268,7 +291,7 @@ class Jumps:
 
 
 def slope_source(slope: Panels) -> Panels:
-    """Panels of (r F)' from those of F: what g'(x) is the transform of."""
+    """Panels of (r F)' from those of F: what g'(x) is the transform of. Source: notes, §1."""
     half = np.diff(slope.edges) / 2
     middle = slope.edges[:-1] + half
     derivative = chebyshev.chebder(slope.coefficients, axis=1) / half[:, None]
@@ -292,7 +315,7 @@ def forward_slope(source: Panels, base: Array, offset: Array) -> Array:
 
 
 def jumps_at(slope: Panels, breaks: Sequence[float]) -> Jumps:
-    """Jumps of the resolved function at its declared breaks and at those found."""
+    """Jumps of the resolved function at its declared breaks and those found. Source: notes, §1."""
     left, right = slope.at_ends()
     found = np.searchsorted(slope.edges, np.unique([*breaks, *slope.found]))
     inner = [int(i) for i in found if 0 < i < len(left)]

@@ -30,7 +30,7 @@ Weight = Callable[[Array, Array, Indices], Array]
 
 
 def asinh_difference(high: Array, low: Array, square_difference: Array) -> Array:
-    """arcsinh(high) - arcsinh(low), given high^2 - low^2 with its digits."""
+    """arcsinh(high) - arcsinh(low), given high^2 - low^2 with its digits. Source: notes, §4."""
     denominator = high * np.hypot(1.0, low) + low * np.hypot(1.0, high)
     with np.errstate(invalid="ignore"):
         ratio = square_difference / denominator
@@ -69,6 +69,16 @@ def one_sided(
     odd : F is an odd function of s, which halves the work for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
     analytic : where F s/x is analytic in y, if not in the whole strip, and how it grows.
+
+    Examples
+    --------
+    The arccosh(a/b) of Eq. (5.53), as the integral of F = x/s at the axis; b = 1, a = 2.
+
+    >>> upper = np.array([np.sqrt(3.0)])
+    >>> axis = np.zeros(1)
+    >>> value = one_sided(lambda x, s, _: x / x, 1.0, axis, upper, odd=True, rtol=1e-12)
+    >>> float(f"{value[0]:.6g}")
+    1.31696
     """
     problem = _OneSided(weight, upper, width, edge, inner, odd, rtol, analytic)
     on_break = (r == b) & (r > 0)
@@ -200,6 +210,8 @@ def between(
     h is analytic in the strip, and even where `even` says so: there an integral from zero
     takes half the nodes. `square_difference` = top^2 - bottom^2, with its digits, is needed
     with `bottom`; both are left out for integrals from zero.
+
+    Source: notes, §5.
     """
     upper = np.arcsinh(top)
     whole = even if bottom is None else even & (bottom == 0)

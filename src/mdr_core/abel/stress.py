@@ -173,9 +173,26 @@ def stress_panels(
 
     `slope(base, offset)` is G(base + offset) without the pole of the jump at `base`.
 
+    Source: notes, §5.
+
+    Parameters
+    ----------
+    edges : the ends of the smooth pieces, ascending [length], shape (k + 1,).
+    jumps : of f', at some of the edges.
+
     Raises
     ------
     AccuracyError : G is not piecewise smooth.
+
+    Examples
+    --------
+    Eq. (5.38): the integral is (2/R) sqrt(a^2 - r^2) for the paraboloid, g' = 2 x/R, here R = 1.
+
+    >>> none = Jumps(np.empty(0), np.empty(0))
+    >>> panels = stress_panels(lambda base, offset: 2 * (base + offset), np.array([0, 2.0]), none)
+    >>> value = panels.kernel(np.array([1.0]), np.array([0.0, 0.6]), 1e-12)
+    >>> [float(f"{each:.6g}") for each in value]
+    [2.0, 1.6]
     """
     base = edges[:-1]
     last = _leg(edges[1:], base)

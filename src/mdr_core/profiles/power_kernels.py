@@ -1,4 +1,7 @@
-"""Powers of the radius and their stress integrals, at every scale and down to the tip."""
+"""Powers of the radius and their stress integrals, at every scale and down to the tip.
+
+Source: notes, §4 and §5.
+"""
 
 from typing import Final
 
