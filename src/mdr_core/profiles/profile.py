@@ -129,12 +129,10 @@ class Profile(ABC):
 
     def coordinate_from_depth(self, depth: Array) -> Array | None:
         """Inverse of `depth` where it is closed, else None."""
-        del depth
         return None
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array | None:
         """Inverse of `reduced_force` where it is closed, else None."""
-        del reduced_force
         return None
 
     @property
@@ -175,12 +173,10 @@ class Profile(ABC):
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """s_a - s_c of two contact radii a >= c, with the digits of a - c."""
-        del s_a, s_c
         return a - c
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         """a - c, from the difference of the contact coordinates."""
-        del s_a
         return width
 
     def stick_from_force_ratio(
@@ -190,14 +186,12 @@ class Profile(ABC):
 
         Both in the contact coordinate. Source: mdr-5, Eqs. (5.16), (5.31), (5.49).
         """
-        del coordinate, ratio, rest
         return None
 
     def stick_from_depth_ratio(
         self, coordinate: Array, ratio: Array, rest: Array
     ) -> tuple[Array, Array] | None:
         """The same at u_x/u_x,max = ratio. Source: mdr-5, Eqs. (5.12), (5.29), (5.47)."""
-        del coordinate, ratio, rest
         return None
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
@@ -205,17 +199,14 @@ class Profile(ABC):
 
         `stick` = coordinate - width, with the digits that the difference may not have.
         """
-        del coordinate, width, stick
         return None
 
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
         """d(a) - d(c) where it is closed without cancellation, else None."""
-        del coordinate, width, stick
         return None
 
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
         """int_c^a (g(a) - g)(g - g(c)) dx [length^3] where it is closed; else NaN, or None."""
-        del coordinate, width, stick
         return None
 
     @property
@@ -241,7 +232,6 @@ class Profile(ABC):
 
         Source: mdr-5, Eq. (5.75), with the foundation's displacement d - g.
         """
-        del depth
         value = slope_integral(self.branches, np.zeros_like(r), a, r, rtol, outside=True)
         return 2 / np.pi * value
 
