@@ -128,7 +128,7 @@ def invert(
     Newton's method in log(s) and log(function), which all profiles make nearly straight;
     `log_slope(s, function(s))` is its derivative there. [low, high] brackets the root, the signs
     seen narrow it, and a step that leaves it is replaced by its middle. Where the target is
-    zero the answer is `low`.
+    zero the answer is `low`; where the function leaves the range of doubles it is NaN.
     """
     positive = target > 0
     goal = np.where(positive, target, 1.0)
@@ -160,6 +160,10 @@ def invert(
         s = np.where(s < _LARGEST, np.where(s > 1 / _LARGEST, s, 0.0), np.inf)
         if settled:
             return np.where(positive, np.maximum(s, nothing), nothing)
+    open_ended = positive & ~(last | closed)
+    if np.all(known[open_ended] == 0):
+        # Value or slope left the range of doubles on the way: no number answers that.
+        return np.where(open_ended, np.nan, s)
     raise DefectError(f"the inverse of a {name} did not converge")
 
 

@@ -88,14 +88,14 @@ FRICTION = {
     "tangential": PUSHES,
 }
 PUSHED = st.fixed_dictionaries(PRESSED | FRICTION)
-NORMAL_FIELDS = ["pressure", "foundation_load"]
+NORMAL_FIELDS = ["pressure", "normal_displacement", "foundation_load"]
 SHEAR_FIELDS = ["shear_stress", "slip", "foundation_shear"]
 ORDINARY_LOADS = st.just(0.0) | ORDINARY
 PLACES = st.lists(ORDINARY_LOADS, min_size=1, max_size=8).map(lambda radius: {"radius": radius}) | (
     st.integers(2, 30).map(lambda points: {"points": points})
 )
 ORDINARILY_PRESSED = PRESSED | {
-    "profile": simple(),
+    "profile": PROFILES,
     "load": st.dictionaries(
         CONTROLS,
         ORDINARY_LOADS | st.lists(ORDINARY_LOADS, min_size=1, max_size=4),

@@ -20,6 +20,8 @@ from mdr_core.typing import Array
 # the logarithm of its distance from the break.
 _UPPER: Final = 0.5
 _PIECE: Final = 2.0
+# Radii below exp(-690) have no digits.
+_LOG_RANGE: Final = 690.0
 # Power of the radius that one piece resolves.
 _STEEP: Final = 8.0
 # Nodes by the tolerance: pieces have a half length of one in a strip of pi/2.
@@ -114,6 +116,7 @@ def _lower(
         upper = np.log(high)
         with np.errstate(divide="ignore"):
             length = np.minimum(upper - np.log(low), -np.log(branch.reach))
+        length = np.minimum(length, upper + _LOG_RANGE)
     piece = _PIECE * min(1.0, _STEEP / branch.steepness)
     count = max(ceil(length.max() / piece), 1)
     nodes, weights = composite_rule(points, count)
