@@ -26,8 +26,6 @@ _POINTS: Final = (12, 24, 48)
 _PIECE_POINTS: Final = 24
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
-# Rounding of the sums, relative to the integral of |h|.
-ROUNDING: Final = 4e-15
 
 
 @dataclass(frozen=True)
