@@ -10,7 +10,12 @@ from mdr_core.typing import Array, Flags
 
 def extremes(values: ArrayLike) -> tuple[float, float]:
     """Smallest and largest value, NaN if any is NaN; (NaN, NaN) of nothing."""
+    if isinstance(values, float):
+        # One number needs no reduction; NumPy's own doubles are floats as well.
+        return values, values
     array = np.asarray(values, dtype=float)
+    if array.ndim == 0:
+        return float(array), float(array)
     if array.size == 0:
         return float("nan"), float("nan")
     return float(array.min()), float(array.max())

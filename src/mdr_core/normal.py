@@ -58,8 +58,8 @@ class NormalContact:
     @cached_property
     def mean_pressure(self) -> Array:
         """F_N / (pi a^2) [pressure]; at zero load its limit, infinite on a needle's tip."""
-        area = np.pi * np.square(self.contact_radius)
-        if np.min(area) > 0:
+        area = np.pi * (self.contact_radius * self.contact_radius)
+        if extremes(area)[0] > 0:
             return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
         return np.where(area > 0, self.normal_force / np.where(area > 0, area, 1.0), limit)
