@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 from mdr_core.typing import Array, Flags
 
 
-def extremes(values: ArrayLike) -> tuple[float, float]:
+def extremes(values: float | ArrayLike) -> tuple[float, float]:
     """Smallest and largest value, NaN if any is NaN; (NaN, NaN) of nothing."""
-    if isinstance(values, float):
+    if isinstance(values, int | float):
         # One number needs no reduction; NumPy's own doubles are floats as well.
-        return values, values
+        return float(values), float(values)
     array = np.asarray(values, dtype=float)
     if array.ndim == 0:
         return float(array), float(array)
