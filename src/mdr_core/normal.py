@@ -210,7 +210,7 @@ def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) ->
 
 
 def _parameters(profile: Profile) -> list[object]:
-    return [getattr(profile, name) for name in getattr(profile, "__dataclass_fields__", ())]
+    return [getattr(profile, name) for name in getattr(profile, "__match_args__", ())]
 
 
 def _checked_load(name: str, value: ArrayLike) -> Array:
