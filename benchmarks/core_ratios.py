@@ -26,7 +26,7 @@ import mpmath
 import numpy as np
 from scipy.integrate import quad_vec
 
-from mdr_core import fields
+from mdr_core import fields, tangential
 from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import Paraboloid, RoundedPunch
 
@@ -219,7 +219,66 @@ def hertz_scenes(state: str) -> list[measure.Row]:
     ]
 
 
-MEASUREMENTS = {run.__name__: run for run in (paraboloid_pressure, punch_pressure, hertz_scenes)}
+def punch_traction(state: str) -> list[measure.Row]:
+    """tau(r) of the rounded punch with b/a = 0.95, c halfway, at 1000 radii, to 1e-12."""
+    a, b, e_star, g_star = 1e-3, 0.95e-3, 1.1e11, 0.9e11
+    r = np.linspace(0.0, a, 1000, endpoint=False)
+    contact = solve(RoundedPunch(b, 0.02), e_star, contact_radius=a, rtol=1e-12)
+    sideways = tangential.solve(contact, g_star, 0.3, stick_radius=(a + b) / 2)
+
+    def ours() -> Array:
+        return fields.shear_stress(sideways, r, rtol=1e-12)
+
+    def hertz() -> Array:
+        return 2 * e_star / (np.pi * 0.02) * np.sqrt(a * a - r * r)
+
+    rounds = measure.interleaved(ours, hertz, 2.0)
+    name = "tau(r), rounded punch b/a = 0.95, 1000 radii / bare Hertz"
+    return [measure.row(name, state, rounds, "<= 90")]
+
+
+def mindlin_scenes(state: str) -> list[measure.Row]:
+    """A million scenes of Cattaneo and Mindlin in one call."""
+    random = np.random.default_rng(5)
+    R, e_star, force = (
+        10 ** random.uniform(low, high, 1_000_000) for low, high in ((-3, 0), (9, 12), (-3, 3))
+    )
+    friction, g_star = 0.3, 1e11
+    push = friction * force * random.uniform(0.01, 0.99, force.size)
+
+    def ours() -> tuple[Array, ...]:
+        contact = solve(Paraboloid(R), e_star, normal_force=force)
+        one = tangential.solve(contact, g_star, friction, tangential_force=push)
+        return contact.contact_radius, one.stick_radius, one.tangential_displacement
+
+    def bare() -> tuple[Array, ...]:
+        a = np.cbrt(0.75 * R * force / e_star)
+        c = a * np.cbrt(1 - push / (friction * force))
+        return a, c, friction * e_star / g_star * (a * a - c * c) / R
+
+    pairs = zip(ours(), bare(), strict=True)
+    difference = max(float(np.abs(mine / other - 1).max()) for mine, other in pairs)
+    return [
+        measure.row(
+            "1e6 Mindlin scenes: a, c, displacement / bare NumPy",
+            state,
+            measure.interleaved(ours, bare, 3.0),
+            "<= 1.6",
+            f"both agree to {difference:.0e}",
+        )
+    ]
+
+
+MEASUREMENTS = {
+    run.__name__: run
+    for run in (
+        paraboloid_pressure,
+        punch_pressure,
+        hertz_scenes,
+        punch_traction,
+        mindlin_scenes,
+    )
+}
 
 
 def rows() -> list[measure.Row]:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.checks import extremes, first_index
+from mdr_core.checks import extremes, first_index, largest
 from mdr_core.errors import InputError, Notice
 from mdr_core.foundation import (
     coordinate_from_depth,
@@ -217,7 +217,9 @@ def _checked_load(name: str, value: ArrayLike) -> Array:
     load = np.asarray(value, dtype=float)
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
-    low, high = extremes(load)
+    # Of many loads one pass says that all are good; only if it does not, which are bad.
+    good = largest(load) < inf if load.ndim and load.flags.c_contiguous else False
+    low, high = (0.0, 0.0) if good else extremes(load)
     if not (low >= 0 and high < inf):
         bad = np.asarray(~((load >= 0) & (load < inf)))
         raise InputError(("load", name, *first_index(bad)), "must be finite and not negative")
