@@ -84,12 +84,11 @@ def one_sided(
     on_break = (r == b) & (r > 0)
     if not on_break.any():
         return _two_roots(problem, b, r)
-    result = np.empty_like(r)
-    for chosen, rule in ((on_break, _coincident_roots), (~on_break, _two_roots)):
-        index = np.flatnonzero(chosen)
-        if index.size:
-            at = np.broadcast_to(b, r.shape)[index]
-            result[index] = rule(problem.picked(index, r.shape), at, r[index])
+    # The few points on the break have a rule of their own; elsewhere stands in for them meanwhile.
+    result = _two_roots(problem, b, np.where(on_break, np.asarray(b) / 2, r))
+    index = np.flatnonzero(on_break)
+    at = np.broadcast_to(b, r.shape)[index]
+    result[index] = _coincident_roots(problem.picked(index, r.shape), at, r[index])
     return result
 
 
