@@ -1,0 +1,252 @@
+"""Exact answers for histories of depth and displacement, by following single springs in mpmath.
+
+The spring that touches at the depth w goes through the whole history on its own. In each leg it is
+outside, comes into contact, stays or leaves, and sticks or slips forward or backward: its *branch*.
+While the branches of all legs are the same, its loads are linear in w, and every condition that
+decides a branch is a linear inequality in w. So springs with the same branches are an interval of
+depths: two springs with equal branches have nothing else between them. Bisection therefore finds
+all intervals with certainty. On each the tangential load is linear, and the energies are quadratic
+polynomials of w = g(x), whose integrals over x need int dx = x, int g dx = x g - N/2 and
+int g^2 dx alone, at the ends of the intervals.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mpmath import mp, mpf
+
+from tests.oracles import slip_reference as slip
+from tests.oracles.reference import integral
+from tests.oracles.shapes import FlatPunch
+from tests.oracles.slip_reference import (
+    RULE_DIGITS,
+    WORK_DIGITS,
+    Body,
+    Material,
+    Setting,
+    ShapeBody,
+    body_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    Path = Sequence[tuple[float, float]]
+
+#: Ends of intervals are found to so many digits of the largest depth.
+FRONT_DIGITS = 48
+#: How far a quadratic may miss a fourth point, per its size.
+LINEAR = mpf(10) ** -40
+#: More intervals than any path here makes.
+MOST = 1000
+
+Branches = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Life:
+    """What one spring of depth w went through: its load and cumulative loss after each leg."""
+
+    load: tuple[mpf, ...]
+    lost: tuple[mpf, ...]
+    branches: Branches
+
+
+def follow(w: mpf, path: Path, material: Material) -> Life:
+    """One spring from (0, 0) through straight legs to the points of `path`."""
+    limit, g_star = mpf(material.mu) * mpf(material.e_star), mpf(material.g_star)
+    q = lost = d = u = mpf(0)
+    loads, losses, branches = [], [], []
+    for point in path:
+        new_d, new_u = mpf(point[0]), mpf(point[1])
+        q, one, branch = _leg(q, w, (d, u), (new_d, new_u), (limit, g_star))
+        lost += one
+        d, u = new_d, new_u
+        loads.append(q)
+        losses.append(lost)
+        branches.append(branch)
+    return Life(tuple(loads), tuple(losses), tuple(branches))
+
+
+def _leg(
+    q: mpf, w: mpf, begin: tuple[mpf, mpf], end: tuple[mpf, mpf], constants: tuple[mpf, mpf]
+) -> tuple[mpf, mpf, int]:
+    (d, u), (new_d, new_u) = begin, end
+    limit, g_star = constants
+    if max(d, new_d) <= w:
+        return mpf(0), mpf(0), 0
+    first, last, kind = max(d - w, mpf(0)), max(new_d - w, mpf(0)), 1
+    span = mpf(1)
+    if d <= w:
+        span, kind = (new_d - w) / (new_d - d), 4
+    elif new_d <= w:
+        span, kind = (d - w) / (d - new_d), 7
+    trial = q + g_star * (new_u - u) * span
+    if abs(trial) <= limit * last:
+        return trial, mpf(0), kind
+    sign = 1 if trial > 0 else -1
+    excess, room = abs(trial) - limit * last, limit * first - sign * q
+    # It begins to slip where the growing load meets the changing limit, then slips to the end.
+    onset = limit * (first + (last - first) * room / (room + excess))
+    return sign * limit * last, excess / g_star * (onset + limit * last) / 2, kind + (sign % 3)
+
+
+def fronts(path: Path, material: Material) -> list[mpf]:
+    """Ends of the intervals of equal branches, from 0 to the largest depth."""
+    top = max(mpf(d) for d, _ in path)
+    floor = top * mpf(10) ** -FRONT_DIGITS
+
+    @functools.cache
+    def branches(w: mpf) -> Branches:
+        return follow(w, path, material).branches
+
+    found = [mpf(0)]
+    waiting = [(floor, top - floor)]
+    while waiting:
+        low, high = waiting.pop()
+        if branches(low) == branches(high):
+            continue
+        if high - low <= floor:
+            found.append((low + high) / 2)
+            continue
+        middle = (low + high) / 2
+        waiting += [(middle, high), (low, middle)]
+        if len(found) > MOST:
+            raise ArithmeticError("a branch is decided by rounding")
+    return [*found, top]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The sums over the foundation at the end of a leg; the loss is that since the start."""
+
+    normal_force: mpf
+    tangential_force: mpf
+    tangential_energy: mpf
+    dissipated_energy: mpf
+
+
+@dataclass(frozen=True)
+class _Moments:
+    """int_0^x of 1, g and g^2."""
+
+    zeroth: mpf
+    first: mpf
+    second: mpf
+
+
+def overlap(at: Setting, c: mpf) -> mpf:
+    """int_c^a (g(a) - g) (g - g(c)) dx, for a table by a rule that knows its own error."""
+    body = at.body
+    if isinstance(body, ShapeBody):
+        return slip.overlap(at, c)
+    low, total = body.g(c), mpf(0)
+    for panel in body.panels(c, at.a):
+        start = panel.s(panel.low)
+        width = panel.s(panel.high) - start
+
+        def density(part: mpf, panel: slip.Panel = panel, start: mpf = start,
+                    width: mpf = width) -> mpf:  # fmt: skip
+            with mp.workdps(WORK_DIGITS):
+                s = start + width * part
+                image = panel.image(s)
+                return width * (at.depth - image) * (image - low) * panel.ratio(s)
+
+        with mp.workdps(RULE_DIGITS):
+            total += integral(density, [mpf(0), mpf(1)])
+    return total
+
+
+def _moments(body: Body, w: mpf) -> _Moments:
+    edge = body.b if body.blunt else mpf(0)
+    if w == 0:
+        return _Moments(edge, mpf(0), mpf(0))
+    x = body.radius("indentation_depth", w)
+    g, n = body.g(x), body.force(x)
+    at = Setting(body, x, g, n, mpf(1), mpf(1), mpf(1), mpf(1), mpf(1))
+    first = x * g - n / 2
+    return _Moments(x, first, g * first - overlap(at, edge))
+
+
+def _quadratic(points: Sequence[tuple[mpf, mpf]]) -> tuple[mpf, mpf, mpf]:
+    """Coefficients of 1, w, w^2 through three points, proved on a fourth."""
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points
+    first = (y1 - y0) / (x1 - x0)
+    second = ((y2 - y0) / (x2 - x0) - first) / (x2 - x1)
+    size = max(abs(y) for _, y in points)
+    guess = y0 + (x3 - x0) * (first + second * (x3 - x1))
+    if abs(guess - y3) > LINEAR * size:
+        raise ArithmeticError("the springs of an interval do not share one polynomial")
+    return y0 - first * x0 + second * x0 * x1, first - second * (x0 + x1), second
+
+
+def _parts(lives: Sequence[Life], leg: int) -> tuple[list[mpf], list[mpf], list[mpf]]:
+    loads = [life.load[leg] for life in lives]
+    return loads, [q * q for q in loads], [life.lost[leg] for life in lives]
+
+
+def history(profile: Mapping[str, Any], path: Path, material: Material) -> list[Sample]:
+    """Exact sums after each leg of a path of (depth, displacement) from (0, 0)."""
+    with mp.workdps(WORK_DIGITS):
+        body = body_of(profile)
+        if isinstance(body, ShapeBody) and isinstance(body.shape, FlatPunch):
+            return _punch(body, path, material)
+        return _sums(body, path, material)
+
+
+def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
+    e_star, g_star = mpf(material.e_star), mpf(material.g_star)
+    totals = [[mpf(0)] * 3 for _ in path]
+    borders = fronts(path, material)
+    # Between intervals lies a gap as narrow as the fronts are known.
+    margin = borders[-1] * mpf(10) ** (1 - FRONT_DIGITS)
+    moments = [_moments(body, w) for w in borders]
+    for number, (low, high) in enumerate(itertools.pairwise(borders)):
+        if high - low < 100 * margin:
+            continue
+        below, above = moments[number], moments[number + 1]
+        steps = (
+            above.zeroth - below.zeroth,
+            above.first - below.first,
+            above.second - below.second,
+        )
+        inside = [low + margin, (low + high) / 2, high - margin, low + (high - low) / 3]
+        lives = [follow(w, path, material) for w in inside]
+        for leg, total in enumerate(totals):
+            for index, values in enumerate(_parts(lives, leg)):
+                parts = _quadratic(list(zip(inside, values, strict=True)))
+                total[index] += 2 * mp.fdot(parts, steps)
+    if body.blunt:
+        # The springs under the flat are all the first one.
+        life = follow(mpf(0), path, material)
+        for leg, total in enumerate(totals):
+            for index, (value,) in enumerate(_parts([life], leg)):
+                total[index] += 2 * body.b * value
+    bearing = [_bearing(body, mpf(d)) for d, _ in path]
+    return [
+        Sample(e_star * n, force, squares / (2 * g_star), lost)
+        for n, (force, squares, lost) in zip(bearing, totals, strict=True)
+    ]
+
+
+def _bearing(body: Body, depth: mpf) -> mpf:
+    return body.force(body.radius("indentation_depth", depth)) if depth > 0 else mpf(0)
+
+
+def _punch(body: Body, path: Path, material: Material) -> list[Sample]:
+    """All springs of a flat punch are one."""
+    width = 2 * body.b
+    life = follow(mpf(0), path, material)
+    return [
+        Sample(
+            width * mpf(material.e_star) * max(mpf(d), mpf(0)),
+            width * q,
+            width * q**2 / (2 * mpf(material.g_star)),
+            width * lost,
+        )
+        for (d, _), q, lost in zip(path, life.load, life.lost, strict=True)
+    ]

@@ -1,0 +1,315 @@
+"""Springs, the exact history and the closed forms of a cycle prove each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from tests.oracles import slip_reference as slip
+from tests.oracles import springs
+from tests.oracles.history_reference import Sample, history, overlap
+from tests.oracles.scenes import FAMILIES
+from tests.oracles.shapes import KINDS, shape_of
+from tests.oracles.slip_reference import Material
+from tests.oracles.tables import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Path = Sequence[tuple[float, float]]
+
+MATERIAL = Material(3.7, 2.9, 0.37)
+#: Exact by construction, up to the quadratures of int g^2 dx.
+PROOF = mpf(10) ** -35
+PROFILES: dict[str, dict[str, Any]] = {
+    "paraboloid": {"kind": "paraboloid", "radius": 1.3},
+    "cone": {"kind": "cone", "slope": 0.3},
+    "power0.7": {"kind": "power", "coefficient": 0.7, "exponent": 0.7},
+    "rounded-punch": {"kind": "rounded_punch", "flat_radius": 0.6, "rounding_radius": 2.0},
+    "truncated-cone": {"kind": "truncated_cone", "flat_radius": 0.6, "slope": 0.3},
+    "sphere": {"kind": "sphere", "radius": 1.5},
+    "rounded-cone": {"kind": "rounded_cone", "slope": 0.3, "tip_radius": 1.7},
+    "cubic-table": {
+        "kind": "tabulated",
+        "r": [0.0, 0.3, 0.7, 1.1, 2.0],
+        "f": [0.0, 0.02, 0.1, 0.25, 0.8],
+        "interpolation": "cubic",
+        "breaks": [],
+    },
+    "linear-table": {
+        "kind": "tabulated",
+        "r": [0.0, 0.3, 0.7, 1.1, 2.0],
+        "f": [0.0, 0.02, 0.1, 0.25, 0.9],
+        "interpolation": "linear",
+        "breaks": [],
+    },
+    "flat-punch": {"kind": "flat_punch", "radius": 0.5},
+}
+DEPTH = 0.25
+LOSS = "dissipated_energy"
+everywhere = pytest.mark.parametrize("name", PROFILES)
+few = pytest.mark.parametrize("name", ["paraboloid", "truncated-cone", "sphere", "flat-punch"])
+
+
+def shift(depth: float) -> float:
+    """mu E*/G* d, which slides the whole contact (Eq. 5.17)."""
+    return MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * depth
+
+
+def random_path(seed: int, legs: int) -> Path:
+    """Gaps among the depths, and some legs that are purely normal or purely tangential."""
+    random = np.random.default_rng(seed)
+    path, d, u = [], 0.0, 0.0
+    for kind in random.integers(0, 5, legs):
+        d = d if kind == 0 else float(DEPTH * random.uniform(-0.1, 1.0))
+        u = u if kind == 1 else float(shift(DEPTH) * random.uniform(-1.2, 1.2))
+        path.append((d, u))
+    return path
+
+
+def columns(found: Sequence[Sample]) -> dict[str, Array]:
+    names = ("normal_force", "tangential_force", "tangential_energy", "dissipated_energy")
+    return {name: np.array([float(getattr(one, name)) for one in found]) for name in names}
+
+
+def run(name: str, path: Path, count: int = 4000, **options: Any) -> springs.Samples:
+    top = max(d for d, _ in path)
+    steps = zip(*path, strict=True)
+    return springs.simulate(springs.bed(PROFILES[name], top, count), MATERIAL, *steps, **options)
+
+
+def error(found: springs.Samples, exact: dict[str, Array]) -> float:
+    """The largest of all four, each in units of its own largest."""
+    return max(
+        float(np.max(np.abs(getattr(found, name) - values)) / np.max(np.abs(values)))
+        for name, values in exact.items()
+    )
+
+
+def same(left: mpf, right: mpf) -> bool:
+    return bool(abs(left - right) <= PROOF * abs(right))
+
+
+def test_springs_have_the_image_of_every_kind() -> None:
+    proved = set()
+    for family in FAMILIES:
+        profile = family.make(1.0)
+        if profile["kind"] in proved | {"flat_punch"} or profile.get("exponent", 2.0) > 10:
+            continue
+        proved.add(profile["kind"])
+        with mp.workdps(40):
+            shape = shape_of(profile)
+            b = float(shape.b)
+            radii = [0.3, 0.9, 1.1] if b == 0 else [0.4 * b, 0.9 * b, 1.3 * b, 5 * b]
+            for r in radii:
+                low = b if r > b else 0.0
+                x, s = np.array([r]), np.array([np.sqrt((r - low) * (r + low))])
+                expected = float(shape.g(mpf(r)))
+                if expected == 0 or r >= shape.limit:
+                    continue
+                found = springs.image(profile, x, s, low)
+                assert found[0] == pytest.approx(expected, rel=1e-13), (profile, r)
+    assert proved == set(KINDS) - {"flat_punch"}
+
+
+@pytest.mark.parametrize("name", ["cubic-table", "linear-table"])
+def test_springs_have_the_image_of_a_table(name: str) -> None:
+    with mp.workdps(60):
+        table = Table(PROFILES[name])
+        x = np.array([0.1, 0.3, 0.5, 0.9, 1.3, 1.9])
+        expected = [float(table.g(mpf(one))) for one in x.tolist()]
+    assert springs.image(PROFILES[name], x, x, 0.0) == pytest.approx(expected, rel=1e-13)
+
+
+@everywhere
+def test_springs_converge_to_the_exact_history(name: str) -> None:
+    path = random_path(5, 7)
+    exact = columns(history(PROFILES[name], path, MATERIAL))
+    errors = [error(run(name, path, count), exact) for count in (500, 5000, 50000)]
+    if name == "flat-punch":
+        assert max(errors) < 1e-14
+        return
+    # The square of ten, with room for where the kinks happen to lie between springs.
+    assert errors[1] < errors[0] / 25
+    assert errors[2] < errors[1] / 25
+    assert errors[2] < 3e-9
+
+
+@everywhere
+def test_springs_need_no_substeps(name: str) -> None:
+    path = random_path(6, 20)
+    one, many = (run(name, path, substeps=count) for count in (1, 37))
+    for column in ("tangential_force", "dissipated_energy", "tangential_energy", "work"):
+        first, second = getattr(one, column), getattr(many, column)
+        assert second == pytest.approx(first, rel=1e-12, abs=1e-12 * np.max(np.abs(first))), column
+
+
+@everywhere
+def test_each_spring_keeps_its_energy_balance(name: str) -> None:
+    """Work and loss are computed apart from each other."""
+    found = run(name, random_path(7, 40))
+    balance = found.tangential_energy + found.dissipated_energy
+    assert balance == pytest.approx(found.work, rel=1e-13)
+    assert np.all(np.diff(found.dissipated_energy) >= 0)
+
+
+@pytest.mark.parametrize("name", [name for name in PROFILES if name != "flat-punch"])
+@pytest.mark.parametrize("rho", [0.07, 0.8])
+def test_first_loading_is_partial_slip(name: str, rho: float) -> None:
+    """Eqs. (5.19), (5.20), and the loss as the integral over the annulus."""
+    with mp.workdps(slip.WORK_DIGITS):
+        at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
+    known = slip.solve(at, "tangential_displacement", rho * shift(DEPTH)).values
+    found = history(PROFILES[name], [(DEPTH, 0.0), (DEPTH, rho * shift(DEPTH))], MATERIAL)[-1]
+    with mp.workdps(slip.WORK_DIGITS):
+        assert same(found.tangential_force, known["tangential_force"])
+        factor = 2 * (at.mu * at.e_star) ** 2 / at.g_star
+        assert same(found.dissipated_energy, factor * overlap(at, known["stick_radius"]))
+        if "table" not in name:
+            assert same(found.dissipated_energy, known[LOSS])
+
+
+def cycle(name: str, amplitude: float) -> tuple[mpf, mpf]:
+    """Loss per cycle of u between -amplitude and amplitude, and the largest force."""
+    path = [(DEPTH, u) for u in (0.0, amplitude, -amplitude, amplitude)]
+    found = history(PROFILES[name], path, MATERIAL)
+    with mp.workdps(slip.WORK_DIGITS):
+        return found[3].dissipated_energy - found[1].dissipated_energy, found[1].tangential_force
+
+
+@pytest.mark.parametrize("rho", [1e-6, 0.3, 1 - 1e-9])
+def test_cycle_of_a_power_law_is_known(rho: float) -> None:
+    """Mindlin and Deresiewicz for the paraboloid, and the other closed forms."""
+    amplitude = rho * shift(DEPTH)
+    with mp.workdps(slip.WORK_DIGITS):
+        e_star, g_star, mu = mpf(MATERIAL.e_star), mpf(MATERIAL.g_star), mpf(MATERIAL.mu)
+        front = mu**2 * e_star**2 / g_star
+        rest = mpf(DEPTH) - mpf(amplitude) * g_star / (mu * e_star)
+        big, t = mpf(PROFILES["paraboloid"]["radius"]), mpf(PROFILES["cone"]["slope"])
+        a, c = mp.sqrt(big * mpf(DEPTH)), mp.sqrt(big * rest)
+        factored = 16 * front / (15 * big**2) * (a - c) ** 3 * (a**2 + 3 * a * c + c**2)
+        lost, force = cycle("paraboloid", amplitude)
+        assert same(lost, factored)
+        normal = 4 * e_star * a**3 / (3 * big)
+        part = force / (mu * normal)
+        bracket = 1 - (1 - part) ** (mpf(5) / 3) - 5 * part / 6 * (1 + (1 - part) ** (mpf(2) / 3))
+        assert same(lost, 18 * mu**2 * normal**2 / (5 * a * g_star) * bracket)
+        a, c = (2 * depth / (mp.pi * t) for depth in (mpf(DEPTH), rest))
+        assert same(cycle("cone", amplitude)[0], mp.pi**2 * front * t**2 / 3 * (a - c) ** 3)
+
+
+@few
+def test_cycle_is_four_first_loadings(name: str) -> None:
+    if name == "flat-punch":
+        return
+    for rho in (1e-6, 0.4):
+        amplitude = rho * shift(DEPTH)
+        with mp.workdps(slip.WORK_DIGITS):
+            at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
+            known = 4 * slip.solve(at, "tangential_displacement", amplitude).values[LOSS]
+            # A small loss is a third difference of quadratures that have 42 digits.
+            assert abs(cycle(name, amplitude)[0] - known) < PROOF / mpf(rho) ** 3 * known
+
+
+@few
+def test_gross_slip_adds_friction_times_the_way(name: str) -> None:
+    """W = 4 mu F_N u0 - (8 mu^2 E*^2/G*) int (d - g)^2 dx, the integral from the normal energy."""
+    amplitude = 1.7 * shift(DEPTH)
+    lost, force = cycle(name, amplitude)
+    with mp.workdps(slip.WORK_DIGITS):
+        at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
+        assert same(force, at.mu * at.e_star * at.n)
+        edge = at.body.b if at.body.blunt else mpf(0)
+        missing = mpf(0) if at.flat_punch else overlap(at, edge)
+        # int (d - g)^2 = d int (d - g) - int (d - g) g.
+        square = at.depth * at.n / 2 - missing
+        loop = 4 * force * mpf(amplitude) - 8 * (at.mu * at.e_star) ** 2 / at.g_star * square
+        assert same(lost, loop)
+
+
+def test_cycle_is_the_area_of_its_curve() -> None:
+    """W = 8 int Phi du - 4 F0 u0 on the sphere, by quadrature of Eqs. (5.19), (5.20)."""
+    amplitude = 0.6 * shift(DEPTH)
+    with mp.workdps(slip.WORK_DIGITS):
+        at = slip.setting(PROFILES["sphere"], "indentation_depth", DEPTH, MATERIAL)
+        c = slip.stick_radius(at, "tangential_displacement", mpf(amplitude))
+        lost, force = cycle("sphere", amplitude)
+        with mp.workdps(50):
+
+            def density(x: mpf) -> mpf:
+                virgin = at.mu * at.e_star * (at.n - at.body.force(x))
+                return virgin * at.shift * at.body.dg(x)
+
+            area = mp.quad(density, [c, at.a])
+        assert mp.almosteq(lost, 8 * area - 4 * force * mpf(amplitude), mpf(10) ** -30)
+
+
+def virgin(at: slip.Setting, u: mpf) -> mpf:
+    c = slip.stick_radius(at, "tangential_displacement", u)
+    return at.mu * at.e_star * (at.n - at.body.force(c))
+
+
+def test_unloading_is_the_first_curve_twice_as_large() -> None:
+    with mp.workdps(slip.WORK_DIGITS):
+        at = slip.setting(PROFILES["sphere"], "indentation_depth", DEPTH, MATERIAL)
+        top, back = 0.8 * shift(DEPTH), 0.3 * shift(DEPTH)
+        found = history(PROFILES["sphere"], [(DEPTH, 0.0), (DEPTH, top), (DEPTH, back)], MATERIAL)
+        assert same(found[1].tangential_force, virgin(at, mpf(top)))
+        fall = 2 * virgin(at, (mpf(top) - mpf(back)) / 2)
+        assert same(found[2].tangential_force, found[1].tangential_force - fall)
+
+
+@few
+@pytest.mark.parametrize("direction", [1, -1])
+def test_oblique_loading_sticks_and_leaves_its_share_of_friction(name: str, direction: int) -> None:
+    """Slope beta < mu from the first touch on, then Cattaneo and Mindlin with mu -+ beta."""
+    beta = 0.5 * MATERIAL.mu
+    u = beta * MATERIAL.e_star / MATERIAL.g_star * DEPTH
+    more = direction * 0.2 * shift(DEPTH)
+    found = history(PROFILES[name], [(DEPTH, u), (DEPTH, u + more)], MATERIAL)
+    with mp.workdps(slip.WORK_DIGITS):
+        assert found[0].dissipated_energy == 0
+        slope = mpf(u) / mpf(DEPTH) * mpf(MATERIAL.g_star) / mpf(MATERIAL.e_star)
+        assert same(found[0].tangential_force, slope * found[0].normal_force)
+        left = mpf(MATERIAL.mu) - direction * slope
+        at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
+        at = slip.Setting(
+            at.body, at.a, at.depth, at.n, at.e_star, at.g_star, left, at.load_rate, at.load
+        )
+        moved = abs(mpf(u + more) - mpf(u))
+        step = 2 * at.g_star * at.a * moved if at.flat_punch else virgin(at, moved)
+        expected = found[0].tangential_force + direction * step
+        assert same(found[1].tangential_force, expected)
+
+
+@few
+def test_normal_load_at_constant_displacement(name: str) -> None:
+    """Raised, nothing slips; lowered, the force is the first curve's of the lower load."""
+    u = 0.3 * shift(DEPTH)
+    found = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u), (DEPTH, u)], MATERIAL)
+    with mp.workdps(slip.WORK_DIGITS):
+        assert same(found[2].tangential_force, found[1].tangential_force)
+        assert found[2].dissipated_energy == found[1].dissipated_energy
+    found = history(PROFILES[name], [(DEPTH, 0.0), (DEPTH, u), (DEPTH / 2, u)], MATERIAL)
+    direct = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u)], MATERIAL)
+    with mp.workdps(slip.WORK_DIGITS):
+        assert same(found[2].tangential_force, direct[1].tangential_force)
+
+
+@few
+def test_a_lost_contact_forgets(name: str) -> None:
+    """It touches again where it is, half way of this leg."""
+    u = 0.4 * shift(DEPTH)
+    found = history(PROFILES[name], [(DEPTH, u), (-DEPTH, 2 * u), (DEPTH, 3 * u)], MATERIAL)
+    fresh = history(PROFILES[name], [(DEPTH, 3 * u - 2.5 * u)], MATERIAL)
+    with mp.workdps(slip.WORK_DIGITS):
+        assert found[1].tangential_force == found[1].tangential_energy == 0
+        # The doubles 3 u and 2.5 u are rounded.
+        exact = fresh[0].tangential_force
+        assert abs(found[2].tangential_force - exact) < mpf(10) ** -15 * exact
