@@ -1,0 +1,149 @@
+"""From the memory's polyline to what the foundation carries.
+
+Along the polyline the anchor grows by k dw, where w is the depth at which a spring touches. With
+I(w) = F_N/E* of the contact of depth w, and En(w) = int_0^w I dw,
+
+    F_x/(mu E*) = sum k (I_i - I_i-1),    I = 2 int a dw,
+
+for every profile: the tangential force needs the shape of the bodies at the vertices only. Where
+forces are controlled the levels are I itself, and the anchors follow from the slopes the other
+way: the slope of F_x/mu in F_N is the same k. Source: notes, §10.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core import annulus
+from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
+from mdr_core.history.memory import Tree, total
+from mdr_core.lazy import cached_property
+from mdr_core.profiles import Profile
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array
+
+# Up to this part of its level a span is narrow, and steps over it are integrals.
+NARROW: Final = 0.05
+# Over so narrow a span all is smooth, away from breaks: this rule reaches rounding.
+_POINTS: Final = 8
+
+
+@dataclass(frozen=True)
+class Branches:
+    """The vertices of a walk, with the contacts whose edge lies at each."""
+
+    profile: Profile
+    tree: Tree
+    by_force: bool
+    """Levels are I = F_N/E* [length^2], not depths."""
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinate of each vertex."""
+        level = self.tree.level
+        find = coordinate_from_force if self.by_force else coordinate_from_depth
+        return find(self.profile, level)
+
+    @cached_property
+    def depth(self) -> Array:
+        """w of each vertex [length]."""
+        return self.profile.depth(self.coordinate) if self.by_force else self.tree.level
+
+    @cached_property
+    def force(self) -> Array:
+        """I(w) of each vertex [length^2]."""
+        return self.tree.level if self.by_force else self.profile.reduced_force(self.coordinate)
+
+    @cached_property
+    def depth_step(self) -> Array:
+        """w above the parent's [length]."""
+        return self._other_step(self.depth) if self.by_force else self.tree.span
+
+    @cached_property
+    def force_step(self) -> Array:
+        """I above the parent's [length^2]."""
+        return self.tree.span if self.by_force else self._other_step(self.force)
+
+    @cached_property
+    def shear(self) -> Array:
+        """F_x/(mu E*) of each vertex as a load point [length^2]."""
+        return total(self.tree, self.tree.slope * self.force_step)
+
+    @cached_property
+    def anchor(self) -> Array:
+        """Anchor of each vertex above that of the axis [length]."""
+        return total(self.tree, self.tree.slope * self.depth_step)
+
+    @cached_property
+    def square(self) -> Array:
+        """int_0^x (anchor of the vertex - anchor)^2 dx up to each vertex [length^3].
+
+        It grows by 2 M dv + k^2 int (I - I_p) dw over a piece, M = F_x/(2 mu E*) at its lower end.
+        """
+        below = np.maximum(self.tree.parent, 0)
+        slope, span = self.tree.slope, self.depth_step
+        grown = self.shear[below] * slope * span + slope * slope * self._lens(below)
+        return total(self.tree, np.where(self.tree.parent >= 0, grown, 0.0))
+
+    def _lens(self, below: "np.ndarray[tuple[int], np.dtype[np.intp]]") -> Array:
+        """int (I - I_parent) dw over each piece [length^3]."""
+        energy, depth_step = self.profile.reduced_energy(self.coordinate), self.depth_step
+        lens = energy - energy[below] - self.force[below] * depth_step
+        narrow = np.flatnonzero(depth_step < NARROW * self.depth)
+        if narrow.size:
+            lens[narrow] = lens_integral(self.profile, self.depth[narrow], depth_step[narrow])
+        return lens
+
+    def _other_step(self, values: Array) -> Array:
+        """Step of what is not the level from each vertex' parent; zero where there is none."""
+        profile, tree = self.profile, self.tree
+        span, below = tree.span, np.maximum(tree.parent, 0)
+        if profile.slips_at_once:
+            # Depth and force are proportional.
+            return np.asarray(values / np.where(tree.level > 0, tree.level, 1.0) * span)
+        step = np.where(tree.parent >= 0, values - values[below], 0.0)
+        narrow = np.flatnonzero((span < NARROW * tree.level) & (tree.parent >= 0))
+        if narrow.size:
+            top, edge = tree.level[narrow], tree.level[below[narrow]]
+            shares = span[narrow] / top, edge / top
+            step[narrow] = self._narrow_step(self.coordinate[narrow], *shares)
+        return step
+
+    def _narrow_step(self, coordinate: Array, ratio: Array, rest: Array) -> Array:
+        ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
+        step = annulus.depth_step if self.by_force else annulus.force_step
+        stick, width = ends(self.profile, coordinate, ratio, rest)
+        return step(self.profile, coordinate, width, stick)
+
+
+def radius_at_depth(profile: Profile, depth: Array) -> Array:
+    """x(w), the inverse of g [length]."""
+    return profile.contact_radius(coordinate_from_depth(profile, depth))
+
+
+def radius_at_force(profile: Profile, reduced_force: Array) -> Array:
+    """Contact radius under a force [length]."""
+    return profile.contact_radius(coordinate_from_force(profile, reduced_force))
+
+
+def radius_slope_at_depth(profile: Profile, depth: Array) -> Array:
+    """dx/dw = 1/g' [1]."""
+    s = coordinate_from_depth(profile, depth)
+    return profile.radius_slope(s) / profile.depth_slope(s)
+
+
+def lens_integral(profile: Profile, depth: Array, span: Array) -> Array:
+    """int (I(w) - I(depth - span)) dw = int 2 x (depth - w) dw over a narrow span [length^3]."""
+    low = depth - span
+    weighted = mean(lambda t, w: (1 - t) * radius_at_depth(profile, w), low, span)
+    return 2 * span * span * weighted
+
+
+def mean(function: Callable[[Array, Array], Array], low: Array, span: Array) -> Array:
+    """Mean of function(t, low + t span) over 0 < t < 1; nodes go along the last axis."""
+    nodes, weights = gauss_legendre(_POINTS)
+    t = (1 + nodes) / 2
+    values = function(t, low[..., None] + span[..., None] * t)
+    return np.asarray((values * (weights / 2)).sum(axis=-1))

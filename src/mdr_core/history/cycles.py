@@ -1,0 +1,113 @@
+"""Cycles between two tangential loads, under a constant or an oscillating normal load."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdr_core.errors import InputError
+from mdr_core.history.solution import History, solve
+from mdr_core.lazy import cached_property
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+
+@dataclass(frozen=True)
+class Cycles:
+    """A history of equal cycles, and what each of them does."""
+
+    history: History
+    count: int
+
+    @cached_property
+    def energy_per_cycle(self) -> Array:
+        """Energy lost to friction in each cycle, the area of its loop [force length]."""
+        return np.asarray(self._legs(self.history.dissipation).sum(axis=1))
+
+    @cached_property
+    def secant_stiffness(self) -> Array:
+        """(F_max - F_min)/(u_max - u_min) of each loop [force/length]; infinite if u is held."""
+        force = self._turns(self.history.tangential_force)
+        shift = self._turns(self.history.tangential_displacement)
+        return np.asarray(np.ptp(force, axis=1) / np.ptp(shift, axis=1))
+
+    def _legs(self, values: Array) -> Array:
+        """What belongs to each cycle, as rows: from the upper turning point back to it."""
+        return values[2 * self.history.path.per_step :].reshape(self.count, -1)
+
+    def _turns(self, values: Array) -> Array:
+        """Values at the turning points of each cycle."""
+        return self._legs(values)[:, self.history.path.per_step - 1 :: self.history.path.per_step]
+
+
+def cycles(
+    profile: Profile,
+    e_star: float,
+    g_star: float,
+    friction_coefficient: float,
+    *,
+    indentation_depth: float | None = None,
+    normal_force: float | None = None,
+    normal_amplitude: float = 0.0,
+    tangential_displacement: float | None = None,
+    tangential_force: float | None = None,
+    count: int = 1,
+    samples_per_step: int = 1,
+    rtol: float = 1e-10,
+) -> Cycles:
+    """Return cycles of tangential load, the normal load constant or in phase with it.
+
+    From the mean normal load to the upper turning point (mean + normal amplitude, + amplitude),
+    then `count` times to the lower one (mean - normal amplitude, - amplitude) and back.
+
+    Source: mdr-5, Eqs. (5.19), (5.20), (5.71); physics of the loop: notes, §10.
+
+    Parameters
+    ----------
+    profile, e_star, g_star, friction_coefficient : as of `solve`.
+    indentation_depth, normal_force : exactly one, the mean [length], [force].
+    normal_amplitude : of the same quantity, >= 0, at most the mean.
+    tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
+    count : number of cycles.
+
+    Raises
+    ------
+    InputError : as of `solve`, and a normal amplitude outside 0 to the mean.
+
+    Examples
+    --------
+    Mindlin and Deresiewicz' loop with F_x = mu F_N/2 on a sphere.
+
+    >>> from mdr_core.profiles import Paraboloid
+    >>> loop = cycles(Paraboloid(1.0), 1.0, 1.0, 0.1, normal_force=4 / 3,
+    ...               tangential_force=0.2 / 3)
+    >>> rho = 0.5
+    >>> factor = 1 - (1 - rho) ** (5 / 3) - 5 / 6 * rho * (1 + (1 - rho) ** (2 / 3))
+    >>> bool(abs(loop.energy_per_cycle[0] / (18 / 5 * (4 / 30) ** 2 * factor) - 1) < 1e-12)
+    True
+    """
+    mean = indentation_depth if normal_force is None else normal_force
+    if mean is not None and not 0 <= normal_amplitude <= mean:
+        raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
+    if count < 1:
+        raise InputError(("history", "count"), "must be at least 1")
+    swing = np.append([0.0, 1.0], np.tile([-1.0, 1.0], count))
+
+    def around(value: float | None) -> Array | None:
+        return None if value is None else value + normal_amplitude * swing
+
+    def turning(value: float | None) -> Array | None:
+        return None if value is None else value * swing
+
+    history = solve(
+        profile,
+        e_star,
+        g_star,
+        friction_coefficient,
+        indentation_depth=around(indentation_depth),
+        normal_force=around(normal_force),
+        tangential_displacement=turning(tangential_displacement),
+        tangential_force=turning(tangential_force),
+        samples_per_step=samples_per_step,
+        rtol=rtol,
+    )
+    return Cycles(history, count)

@@ -1,0 +1,341 @@
+"""The answers along a history: forces, displacements, energies and regimes at every sample."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core import normal
+from mdr_core.errors import InputError, Notice
+from mdr_core.history import dissipation, memory, path
+from mdr_core.history.branches import Branches
+from mdr_core.history.memory import Chain, Tree
+from mdr_core.history.path import Path, Steps
+from mdr_core.history.state import State, unloaded
+from mdr_core.lazy import cached_property
+from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Indices
+from mdr_core.validity import friction_notices
+
+# Steps walked at once: bounds the memory, and keeps what is computed of them in cache.
+_BLOCK: Final = 16_384
+# Pieces of a curved stretch, at first and at most, and how many steps they may be in all.
+_FEWEST: Final = 16
+_MOST: Final = 16_384
+_MOST_STEPS: Final = 2_000_000
+# Rounding of the sums over the branches, in units of the profile's own.
+_SUMS: Final = 40.0
+
+
+@dataclass(frozen=True)
+class History:
+    """A history of loads, at every sample; each answer is computed when it is first asked for."""
+
+    path: Path
+    start: State
+    """The unloaded contact."""
+    contact: NormalContact
+    """Normal contact of every sample; gaps as zero load."""
+    steps: Steps
+    rtol: float
+    deviation: float
+    """How far shorter steps on the curved stretches still move the answers, relative."""
+
+    @property
+    def step(self) -> Indices:
+        """Index of the given point that each sample leads to."""
+        return self.path.step
+
+    @cached_property
+    def indentation_depth(self) -> Array:
+        """d [length]; negative in a gap."""
+        if self.path.normal_name == "indentation_depth":
+            return self.path.normal
+        return self.contact.indentation_depth
+
+    @cached_property
+    def normal_force(self) -> Array:
+        """F_N [force]."""
+        return self.contact.normal_force
+
+    @cached_property
+    def contact_radius(self) -> Array:
+        """a [length]; zero in a gap."""
+        return np.where(self._separated, 0.0, self.contact.contact_radius)
+
+    @cached_property
+    def elastic_energy(self) -> Array:
+        """Stored by the normal load, int F_N dd [force length]."""
+        return self.contact.elastic_energy
+
+    @property
+    def _separated(self) -> "np.ndarray[Any, np.dtype[np.bool_]]":
+        if self.path.normal_name == "indentation_depth":
+            return self.path.normal < 0
+        return np.zeros(self.path.normal.shape, dtype=bool)
+
+    @cached_property
+    def tangential_force(self) -> Array:
+        """F_x = mu E* sum k (I_i - I_i-1) over the branches [force]. Source: notes, §10."""
+        if self.path.by_force:
+            return self.path.tangential
+        return self._force_scale * self._at_samples(lambda part: part.shear)
+
+    @cached_property
+    def tangential_displacement(self) -> Array:
+        """u_x [length]; where force is controlled it is that of the axis, plus the branches."""
+        if not self.path.by_force:
+            return self.path.tangential
+        return self.start.compliance * self._at_samples(lambda part: part.anchor)
+
+    @cached_property
+    def tangential_energy(self) -> Array:
+        """Stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
+        scale = self._force_scale * self.start.compliance
+        return scale * self._at_samples(lambda part: part.square)
+
+    @cached_property
+    def dissipation(self) -> Array:
+        """Energy lost to friction on the way to each sample from the one before [force length]."""
+        lost = np.zeros(self.steps.level.shape)
+        for part, chain in self._blocks():
+            found = memory.slips(chain, *self._walked(part))
+            each = dissipation.per_piece(self.start.profile, found, by_force=self.path.by_force)
+            np.add.at(lost, found.step + part.start, each)
+        before = np.append(-1, self.steps.last[:-1]) + 1
+        scale = self._force_scale * self.start.compliance
+        return scale * np.add.reduceat(lost, before)
+
+    @cached_property
+    def dissipated_energy(self) -> Array:
+        """Energy lost to friction since the start [force length]."""
+        return np.cumsum(self.dissipation)
+
+    @cached_property
+    def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
+        """Regime: "no_contact", "stick", "partial_slip" or "full_slip".
+
+        By what is at its limit at the sample: nothing, the outermost springs, or all.
+        """
+        names = np.array(["no_contact", "stick", "partial_slip", "full_slip"])
+        codes = np.zeros(self.path.normal.shape, dtype=np.intp)
+        for samples, tree, top in self._tops():
+            below = tree.parent[np.maximum(top, 0)]
+            slipping = (tree.forward_step[top] == 0) | (tree.backward_step[top] == 0)
+            full = slipping & (tree.parent[np.maximum(below, 0)] < 0)
+            partial = 1 if self.start.profile.slips_at_once else 2
+            code = np.where(full, 3, np.where(slipping, partial, 1))
+            codes[samples] = np.where(top >= 0, code, 0)
+        return names[codes]
+
+    @cached_property
+    def state(self) -> State:
+        """What the contact remembers at the end."""
+        chain = self.start.chain
+        for part, begin in self._blocks():
+            chain = memory.walk(begin, *self._walked(part)).end
+        if self.path.by_force and len(chain.forward) > 1:
+            chain = self._in_depths(chain)
+        elif self.path.by_force:
+            chain = memory.gap(min(float(self.indentation_depth[-1]), 0.0), 0.0)
+        return replace(self.start, chain=chain)
+
+    @property
+    def slip_fronts(self) -> Array:
+        """Radii inside the contact where the branch of q_x changes at the end [length]."""
+        return self.state.slip_fronts
+
+    @property
+    def method(self) -> str:
+        """The dearest route among the answers."""
+        return self.contact.profile.tangential_method
+
+    @property
+    def error_estimate(self) -> float:
+        """Bound on the error of each answer, relative to its largest value on the way."""
+        return _SUMS * self.contact.error_estimate + self.deviation
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """Those of the normal contacts, `friction`, and `accuracy` where rtol is missed."""
+        start = self.start
+        found = [notice for notice in self.contact.warnings if notice.code != "accuracy"]
+        found += friction_notices(start.friction_coefficient, start.e_star, start.g_star)
+        if self.error_estimate > self.rtol:
+            found.append(
+                Notice(
+                    "accuracy",
+                    f"rtol = {self.rtol:.1e} is not reached on this way: see error_estimate",
+                )
+            )
+        return tuple(found)
+
+    @property
+    def _force_scale(self) -> float:
+        return self.start.friction_coefficient * self.start.e_star
+
+    def _walked(self, part: slice) -> tuple[Array, Array, Indices]:
+        return self.steps.level[part], self.steps.shift[part], self.steps.leg[part]
+
+    def _blocks(self) -> Iterator[tuple[slice, Chain]]:
+        """Blocks of steps, each with the memory at its start."""
+        chain = self.start.chain
+        for begin in range(0, self.steps.level.size, _BLOCK):
+            part = slice(begin, begin + _BLOCK)
+            yield part, chain
+            if part.stop < self.steps.level.size:
+                chain = memory.walk(chain, *self._walked(part)).end
+
+    def _tops(self) -> Iterator[tuple[slice, Tree, Indices]]:
+        """For each block the samples in it, the vertices, and each sample's load point."""
+        last, chain = self.steps.last, self.start.chain
+        for begin in range(0, self.steps.level.size, _BLOCK):
+            part = slice(begin, begin + _BLOCK)
+            tree = memory.walk(chain, *self._walked(part))
+            chain = tree.end
+            samples = slice(*np.searchsorted(last, [part.start, part.stop]))
+            yield samples, tree, tree.top[last[samples] - part.start]
+
+    def _at_samples(self, answer: Callable[[Branches], Array]) -> Array:
+        """An answer of the load points at the samples; zero where nothing touches."""
+        result = np.zeros(self.path.normal.shape)
+        for samples, tree, top in self._tops():
+            part = Branches(self.start.profile, tree, self.path.by_force)
+            result[samples] = np.where(top >= 0, answer(part)[top], 0.0)
+        return result
+
+    def _in_depths(self, chain: Chain) -> Chain:
+        """A polyline over forces as the one over depths, with the digits of its pieces."""
+        part = Branches(self.start.profile, memory.as_tree(chain), by_force=True)
+        span, slope = part.depth_step, part.tree.slope
+        sums = []
+        for step in (span * (1 + slope), span * (1 - slope)):
+            high = np.cumsum(step)
+            sums.append(np.stack([high, np.zeros_like(high)], axis=1))
+        return Chain(*sums)
+
+
+def solve(
+    profile: Profile,
+    e_star: float,
+    g_star: float,
+    friction_coefficient: float,
+    *,
+    indentation_depth: ArrayLike | None = None,
+    normal_force: ArrayLike | None = None,
+    tangential_displacement: ArrayLike | None = None,
+    tangential_force: ArrayLike | None = None,
+    samples_per_step: int = 1,
+    rtol: float = 1e-10,
+) -> History:
+    """Return a history of normal and tangential load, which starts from bodies that just touch.
+
+    The load goes straight, in the controlled quantities, from zero to the first point and on from
+    point to point. Depths with displacements and normal with tangential forces are followed
+    exactly. A depth below zero is a gap: the contact is lost, and its return finds no memory. If
+    depth and tangential force or normal force and displacement are controlled, steps in which
+    both change are curved, and are followed to the relative accuracy `rtol`.
+
+    Source: mdr-5, Eqs. (5.4)-(5.9), (5.19)-(5.23), (5.71); notes, §10.
+
+    Parameters
+    ----------
+    profile : any kind, one scene.
+    e_star, g_star : effective moduli [pressure], > 0.
+    friction_coefficient : mu > 0 [1].
+    indentation_depth, normal_force : exactly one, the points [length], [force], shape (n,).
+    tangential_displacement, tangential_force : exactly one, of either sign, shape (n,). Of the
+        two rows one may hold a single value, which then holds at all points.
+    samples_per_step : how many samples, evenly, from each point to the next.
+    rtol : relative accuracy asked for, 1e-13 to 1e-3.
+
+    Returns
+    -------
+    The answers at n x samples_per_step samples.
+
+    Raises
+    ------
+    InputError : not exactly one of each pair, points that are not finite, a negative normal force,
+        a depth past the profile's end, or |F_x| > mu F_N at any place on the way.
+
+    Examples
+    --------
+    Unloading a tangential force to zero leaves a displacement, Eq. (5.16) and Masing's rule.
+
+    >>> from mdr_core.profiles import Paraboloid
+    >>> way = solve(Paraboloid(0.01), 1.1e11, 0.9e11, 0.3,
+    ...             normal_force=10.0, tangential_force=[0.0, 2.0, 0.0])
+    >>> u = way.tangential_displacement
+    >>> rho = 2.0 / 3.0
+    >>> residual = (1 - (1 - rho) ** (2 / 3)) - 2 * (1 - (1 - rho / 2) ** (2 / 3))
+    >>> bool(abs(u[2] / u[1] - residual / (1 - (1 - rho) ** (2 / 3))) < 1e-13)
+    True
+    """
+    start = unloaded(profile, e_star, g_star, friction_coefficient)
+    pressed = {"indentation_depth": indentation_depth, "normal_force": normal_force}
+    pushed = {
+        "tangential_displacement": tangential_displacement,
+        "tangential_force": tangential_force,
+    }
+    way = path.build(_one("normal", pressed), _one("tangential", pushed), samples_per_step)
+    contact = _contacts(start, way, rtol)
+    scale = friction_coefficient * e_star / (1.0 if way.by_force else g_star)
+
+    def follow(pieces: int) -> History:
+        walked = path.steps(way, profile, e_star, scale, pieces)
+        return History(way, start, contact, walked, rtol, 0.0)
+
+    return _refine(way, follow, rtol) if way.curved.any() else follow(1)
+
+
+def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]:
+    named = [(name, value) for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        raise InputError(("history", axis), f"exactly one of {', '.join(given)} is needed")
+    return named[0]
+
+
+def _contacts(start: State, way: Path, rtol: float) -> NormalContact:
+    """Normal contacts at all samples; a load past the profile's end names its point."""
+    name = way.normal_name
+    loads = {name: np.maximum(way.normal, 0.0)}
+    try:
+        return normal.solve(start.profile, start.e_star, **loads, rtol=rtol)
+    except InputError as error:
+        if error.path[:1] != ("load",):
+            raise
+        at = () if len(error.path) < 3 else (int(way.step[int(error.path[2])]),)
+        raise InputError(("history", "normal", name, *at), error.detail) from None
+
+
+def _refine(way: Path, follow: Callable[[int], History], rtol: float) -> History:
+    """Halve the steps on curved stretches until they move the answers less than rtol.
+
+    Chords leave an error that falls with the square of their length: what the last halving moved
+    is three times what is left.
+    """
+    most = min(_MOST, max(_MOST_STEPS // int(way.curved.sum()), _FEWEST))
+    pieces, found = _FEWEST, follow(_FEWEST)
+    moved = np.inf
+    while pieces < most and moved > rtol:
+        pieces *= 2
+        finer = follow(pieces)
+        moved = max(_distance(*pair) for pair in zip(_moving(found), _moving(finer), strict=True))
+        found = finer
+    return replace(found, deviation=moved)
+
+
+def _moving(history: History) -> tuple[Array, Array]:
+    """The answers that the length of the steps moves."""
+    followed = (
+        history.tangential_displacement if history.path.by_force else (history.tangential_force)
+    )
+    return followed, history.dissipated_energy
+
+
+def _distance(rough: Array, fine: Array) -> float:
+    scale = float(np.abs(fine).max())
+    return float(np.abs(fine - rough).max()) / scale if scale > 0 else 0.0

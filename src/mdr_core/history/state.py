@@ -1,0 +1,146 @@
+"""What a contact remembers: the anchors of its springs, and one straight step on from there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdr_core.checks import extremes
+from mdr_core.errors import InputError
+from mdr_core.foundation import coordinate_from_depth
+from mdr_core.history import memory
+from mdr_core.history.branches import Branches
+from mdr_core.history.memory import Chain
+from mdr_core.lazy import cached_property
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+
+@dataclass(frozen=True)
+class State:
+    """A contact after any history, as the polyline of its springs' anchors.
+
+    A spring is named by the depth w at which it touches. Its anchor U - q_x/(mu E*), with
+    U = G* u_x/(mu E*), stays while it sticks. The polyline of (w, anchor) is all there is to
+    know, for every profile. Source: notes, §10.
+    """
+
+    profile: Profile
+    e_star: float
+    g_star: float
+    friction_coefficient: float
+    chain: Chain
+
+    @property
+    def compliance(self) -> float:
+        """mu E*/G* [1]: turns anchors into displacements."""
+        return self.friction_coefficient * self.e_star / self.g_star
+
+    @property
+    def indentation_depth(self) -> float:
+        """d [length]; negative in a gap."""
+        return self.chain.point[0]
+
+    @property
+    def tangential_displacement(self) -> float:
+        """u_x [length]."""
+        return self.compliance * self.chain.point[1]
+
+    @cached_property
+    def _branches(self) -> Branches:
+        return Branches(self.profile, memory.as_tree(self.chain), by_force=False)
+
+    @property
+    def touches(self) -> bool:
+        """Some spring is in contact."""
+        return len(self.chain.forward) > 1
+
+    @property
+    def depth(self) -> Array:
+        """Depths w of the breakpoints, from 0 to d [length]; empty in a gap."""
+        return self._branches.depth if self.touches else np.zeros(0)
+
+    @property
+    def load(self) -> Array:
+        """q_x of the springs at the breakpoints [force/length]; linear in w between them."""
+        if not self.touches:
+            return np.zeros(0)
+        above = np.cumsum((self._branches.tree.slope * self._branches.tree.span)[:0:-1])
+        return self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
+
+    @cached_property
+    def slope(self) -> Array:
+        """Slope of the anchors in w on each piece from the axis outwards, from -1 to 1."""
+        return self._branches.tree.slope[1:]
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinates of the breakpoints."""
+        return self._branches.coordinate if self.touches else np.zeros(0)
+
+    @property
+    def contact_radius(self) -> float:
+        """a [length]."""
+        return float(self.profile.contact_radius(self.coordinate[-1])) if self.touches else 0.0
+
+    @property
+    def slip_fronts(self) -> Array:
+        """Radii inside the contact where the branch of q_x changes, ascending [length]."""
+        if self.profile.slips_at_once:
+            return np.zeros(0)
+        return self.profile.contact_radius(self.coordinate[1:-1])
+
+    @property
+    def tangential_force(self) -> float:
+        """F_x = mu E* sum k (I_i - I_i-1) [force]. Source: notes, §10."""
+        shear = float(self._branches.shear[-1]) if self.touches else 0.0
+        return self.friction_coefficient * self.e_star * shear
+
+
+def unloaded(profile: Profile, e_star: float, g_star: float, friction_coefficient: float) -> State:
+    """Return the state of bodies that have not touched yet, at zero depth and displacement.
+
+    Raises
+    ------
+    InputError : a modulus or a friction coefficient that is not positive and finite.
+    """
+    for path, value in (
+        (("material", "e_star"), e_star),
+        (("material", "g_star"), g_star),
+        (("friction_coefficient",), friction_coefficient),
+    ):
+        low, high = extremes(value)
+        if not (low > 0 and high < np.inf):
+            raise InputError(path, "must be positive and finite")
+    return State(profile, e_star, g_star, friction_coefficient, memory.gap(0.0, 0.0))
+
+
+def advance(state: State, indentation_depth: float, tangential_displacement: float) -> State:
+    """Return the state after one straight step in depth and displacement, exactly.
+
+    Springs that stick keep their anchors, springs that touch on the way take the displacement of
+    that moment, springs that would carry more than mu q slip. A depth <= 0 ends the contact; its
+    return finds no memory.
+
+    Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
+
+    Raises
+    ------
+    InputError : numbers that are not finite, or a depth past the profile's end.
+
+    Examples
+    --------
+    Eq. (5.15): half of the displacement at full slip, on a cone, is F_x = 3/4 mu F_N.
+
+    >>> from mdr_core.profiles import Cone
+    >>> state = advance(unloaded(Cone(0.1), 1.0, 1.0, 0.5), 2.0, 0.0)
+    >>> state = advance(state, 2.0, 0.5)
+    >>> normal_force = (2.0 / 0.1) ** 2 * 0.1 * 2 / np.pi
+    >>> round(state.tangential_force / (0.5 * normal_force), 12)
+    0.75
+    """
+    depth, shift = np.array([indentation_depth]), np.array([tangential_displacement])
+    if not (np.isfinite(depth[0]) and np.isfinite(shift[0])):
+        raise InputError(("history",), "must be finite")
+    coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
+    tree = memory.walk(state.chain, depth, shift / state.compliance, np.zeros(1, dtype=np.intp))
+    return State(state.profile, state.e_star, state.g_star, state.friction_coefficient, tree.end)
