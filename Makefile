@@ -5,6 +5,8 @@ PORT ?= 8000
 PYTHON ?= python3.11
 
 BIN := .venv/bin
+# What is compiled is compiled again when it changes.
+COMPILED := src/mdr_core/history/walk.py src/mdr_core/history/walk.pxd
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
@@ -43,14 +45,14 @@ lock:
 	$(LOCK) --all-extras --output-file requirements-dev.lock
 
 clean:
-	rm -rf .venv build dist src/*.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf .venv build dist src/*.egg-info src/mdr_core/history/*.so .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 .venv/bin/python:
 	$(PYTHON) -m venv .venv
 
 # The project goes in without build isolation: its build tool is in the lock like all else.
-.venv/runtime: requirements.lock pyproject.toml | .venv/bin/python
+.venv/runtime: requirements.lock pyproject.toml setup.py $(COMPILED) | .venv/bin/python
 	$(PIP) install --require-hashes --requirement requirements.lock
 	$(PIP) install --no-deps --no-build-isolation --editable .
 	touch $@

@@ -167,7 +167,7 @@ def _walk(
         piece_step,
         counts,
         *chain.point,
-        record=record,
+        record,
     )
     used, made = int(counts[0]), int(counts[1])
     last = int(top[-1])

@@ -35,8 +35,7 @@ def run(
     counts: Indices,
     start_level: float,
     start_shift: float,
-    *,
-    record: bool,
+    record: bool,  # noqa: FBT001
 ) -> None:
     """Walk all steps, from the vertices already there; `counts` says how many, and is updated."""
     at = counts[VERTICES] - 1 if start_level > 0 else -1
