@@ -67,6 +67,7 @@ TABLE = (
         CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.validity"},
         NUMBERS,
     ),
+    Row("mdr_core.wear", CONTACT | RESULTS | {"mdr_core.annulus", "mdr_core.fields"}, NUMBERS),
     Row("mdr_core", set(), set()),
     Row("mdr_service.settings", set(), {"pydantic"}),
     Row("mdr_service.schemas", {"mdr_service.settings"}, {"pydantic", "pydantic_core"}),

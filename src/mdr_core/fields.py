@@ -219,7 +219,17 @@ def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
     if normal.profile.kind != "flat_punch":
         end = min(end, float(np.max(normal.profile.domain)))
     stops = np.unique(np.concatenate(special))
-    stops = np.append(stops[stops < end], end)
+    return graded(np.append(stops[stops < end], end), points)
+
+
+def graded(stops: Array, points: int) -> Array:
+    """Return `points` radii from the first stop to the last, crowding towards each of them.
+
+    Raises
+    ------
+    InputError : fewer points than stops.
+    """
+    end = stops[-1]
     if points < stops.size:
         raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
     gaps = np.diff(stops)

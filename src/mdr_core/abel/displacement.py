@@ -5,7 +5,7 @@ int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx = int_c^r g'(x) arccos(x/r) dx, and out
 int_0^a (g(a) - g(x))/sqrt(r^2 - x^2) dx = int_0^a g'(x) arcsin(x/r) dx.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, inf, log, log2, sqrt
 from typing import Final
@@ -14,7 +14,7 @@ import numpy as np
 
 from mdr_core.abel.roots import Weight
 from mdr_core.quadrature import composite_rule, graded_rule
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 # Above this part of the reach the angle resolves the root at r; below it the weight is smooth in
 # the logarithm of its distance from the break.
@@ -46,6 +46,31 @@ class Branch:
     pole: float = inf
 
 
+# K(x, leg), leg = sqrt(r^2 - x^2): what the slope is weighted with.
+Kernel = Callable[[Array, Array], Array]
+
+
+def arccosine(x: Array, leg: Array) -> Array:
+    """arccos(x/r)."""
+    return np.asarray(np.arctan2(leg, x))
+
+
+def arcsine(x: Array, leg: Array) -> Array:
+    """arcsin(x/r)."""
+    return np.asarray(np.arctan2(x, leg))
+
+
+@dataclass(frozen=True)
+class _Ends:
+    """Where a stretch starts and ends: its s there, sqrt(r^2 - x^2) there, and s at r itself."""
+
+    s_low: Array
+    s_high: Array
+    s_r: Array
+    leg_low: Array
+    leg_high: Array
+
+
 def slope_integral(
     branches: Sequence[Branch], low: Array, high: Array, r: Array, rtol: float, *, outside: bool
 ) -> Array:
@@ -54,43 +79,90 @@ def slope_integral(
     Source: mdr-5, Eqs. (5.41), (5.75), integrated by parts; notes, §7. All of shape (m,).
     """
     points = next(count for limit, count in _POINTS if rtol >= limit)
+    kernel = arcsine if outside else arccosine
     total = np.zeros_like(r)
     for branch in branches:
         start = np.maximum(low, max(branch.base, branch.start))
         end = np.minimum(high, branch.stop)
         index = np.flatnonzero(end > start)
         if index.size:
-            ends = start[index], end[index], r[index]
-            total[index] += _branch(branch, *ends, points, outside=outside)
+            start, end, far = start[index], end[index], r[index]
+            s_low, s_high, s_r = (_leg(x, branch.base) for x in (start, end, far))
+            leg_low, leg_high = (np.sqrt((far - x) * (far + x)) for x in (start, end))
+            ends = _Ends(s_low, s_high, s_r, leg_low, leg_high)
+            total[index] += _branch(branch, ends, kernel, points, float(end.max()))
     return total
 
 
-def _branch(
-    branch: Branch, low: Array, high: Array, r: Array, points: int, *, outside: bool
+def annulus_integral(
+    branches: Sequence[Branch],
+    low: Array,
+    width: Array,
+    below: Callable[[float], Array],
+    kernel: Kernel,
+    rtol: float,
 ) -> Array:
-    base = branch.base
-    s_low, s_high, s_r = (_leg(x, base) for x in (low, high, r))
+    """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, however narrow that is.
+
+    `below(x)` = low - x, with the digits that the difference of two radii may not have.
+    Source: notes, §7. All of shape (m,).
+    """
+    points = next(count for limit, count in _POINTS if rtol >= limit)
+    r, total = low + width, np.zeros_like(low)
+    for branch in branches:
+        begin = max(branch.base, branch.start)
+        inside = below(begin) + width > 0
+        if branch.stop < inf:
+            inside &= below(branch.stop) < 0
+        index = np.flatnonzero(inside)
+        if index.size:
+            ends = _annulus_ends(branch, low, width, below, index)
+            highest = min(float(r[index].max()), branch.stop)
+            total[index] += _branch(branch, ends, kernel, points, highest)
+    return total
+
+
+def _annulus_ends(
+    branch: Branch, low: Array, width: Array, below: Callable[[float], Array], index: Indices
+) -> _Ends:
+    """The part of a branch between low and r = low + width, every leg from its own width."""
+    base, begin, stop = branch.base, max(branch.base, branch.start), branch.stop
+    c, w = low[index], width[index]
+    r = c + w
+
+    def leg(gap: Array, at: float | Array) -> Array:
+        """sqrt(r^2 - at^2) from gap = r - at."""
+        return np.asarray(np.sqrt(np.maximum(gap, 0.0) * (r + at)))
+
+    above_base, above_begin = below(base)[index], below(begin)[index]
+    s_r = leg(above_base + w, base)
+    later = above_begin < 0
+    at_begin = sqrt((begin - base) * (begin + base))
+    s_low = np.where(later, at_begin, np.sqrt(np.maximum(above_base, 0.0) * (c + base)))
+    leg_low = np.where(later, leg(above_begin + w, begin), leg(w, c))
+    if not stop < inf:
+        return _Ends(s_low, s_r, s_r, leg_low, np.zeros_like(s_r))
+    past = below(stop)[index] + w
+    s_high = np.where(past > 0, sqrt((stop - base) * (stop + base)), s_r)
+    return _Ends(s_low, s_high, s_r, leg_low, leg(past, stop))
+
+
+def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: float) -> Array:
+    base, s_r, s_low, s_high = branch.base, ends.s_r, ends.s_low, ends.s_high
     split = np.minimum(np.maximum(_UPPER * s_r, s_low), s_high)
     # Angles from the point itself, s = s_r cos(alpha): the narrow end is the exact one.
-    top = np.arctan2(np.sqrt((r - high) * (r + high)), s_high)
-    leg_low = np.sqrt((r - low) * (r + low))
-    leg_split = np.where(split > s_low, np.sqrt((s_r - split) * (s_r + split)), leg_low)
+    top = np.arctan2(ends.leg_high, s_high)
+    leg_split = np.where(split > s_low, np.sqrt((s_r - split) * (s_r + split)), ends.leg_low)
     span = np.where(split < s_high, np.arctan2(leg_split, split) - top, 0.0)
-
-    def kernel(x: Array, leg: Array) -> Array:
-        return np.arctan2(x, leg) if outside else np.arctan2(leg, x)
-
-    nodes, weights = _rule(branch, points, float(high.max()))
+    nodes, weights = _rule(branch, points, highest)
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)
     x = np.hypot(base, s)
-    everything = np.arange(r.size)
+    everything = np.arange(s_r.size)
     total = span * (weights @ (branch.weight(x, s, everything) * kernel(x, leg) * leg))
     index = np.flatnonzero(split > s_low)
     if index.size:
-        total[index] += _lower(
-            branch, s_low[index], split[index], s_r[index], points, outside=outside
-        )
+        total[index] += _lower(branch, s_low[index], split[index], s_r[index], kernel, points)
     return np.asarray(total)
 
 
@@ -105,7 +177,7 @@ def _rule(branch: Branch, points: int, highest: float) -> tuple[Array, Array]:
 
 
 def _lower(
-    branch: Branch, low: Array, high: Array, s_r: Array, points: int, *, outside: bool
+    branch: Branch, low: Array, high: Array, s_r: Array, kernel: Kernel, points: int
 ) -> Array:
     """From s = low to high <= s_r/2, in y = arcsinh(s/base), or log(s) on the axis."""
     base = branch.base
@@ -129,8 +201,7 @@ def _lower(
     s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
     x = np.hypot(base, s)
     leg = np.sqrt((s_r - s) * (s_r + s))
-    kernel = np.arctan2(x, leg) if outside else np.arctan2(leg, x)
-    values = branch.weight(x, s, np.arange(s_r.size)) * kernel * run
+    values = branch.weight(x, s, np.arange(s_r.size)) * kernel(x, leg) * run
     return np.asarray(length * (weights @ values))
 
 

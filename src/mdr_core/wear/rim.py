@@ -1,0 +1,150 @@
+"""The rim c < r < c + w outside the stick zone, with the digits of its width w.
+
+What wears is a matter of the rim alone: of how much higher the profile's image g stands there
+than at the stick edge. Near incipient slip the rim is narrow, so its width is the unknown and
+every integral is taken over the width, never between two radii. Source: notes, §9.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core.abel.displacement import Kernel, annulus_integral, arccosine
+from mdr_core.foundation import invert
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Indices
+
+# Rims handled at once: bounds the memory, whatever their number.
+_BLOCK: Final = 4096
+_RTOL: Final = 1e-13
+# A pole of g' is approached up to here: beyond, its distance has no digits.
+_BEFORE_POLE: Final = 1e-12
+_THRESHOLD: Final = 1.0
+# 1/((2k + 2)(2k + 3)), from the last term of the series used to the first.
+_SINE: Final = tuple(1 / ((2 * k + 2) * (2 * k + 3)) for k in range(9, 0, -1))
+
+
+@dataclass(frozen=True)
+class Rim:
+    """What surrounds the stick zones of some contacts with one profile; arrays of shape (m,)."""
+
+    profile: Profile
+    stick: Array
+    """c, the inner edge [length]."""
+    above: Array
+    """c less the radius of the profile's flat, or c itself where there is none, with its digits."""
+
+    @property
+    def flat(self) -> float:
+        """Radius of the profile's flat, zero for none."""
+        return float(self.profile.contact_radius(np.asarray(self.profile.first_coordinate)))
+
+    @property
+    def room(self) -> Array:
+        """Width at which the profile ends."""
+        end = float(self.profile.domain)
+        poles = [branch.pole for branch in self.profile.branches]
+        return np.asarray(min(end, min(poles) * (1 - _BEFORE_POLE)) - self.stick)
+
+    def at(self, radius: Array) -> Array:
+        """Width of the rim that ends at a radius >= c."""
+        return np.asarray((radius - self.flat) - self.above)
+
+    def chosen(self, which: Indices) -> "Rim":
+        """Some of the rims."""
+        return Rim(self.profile, self.stick[which], self.above[which])
+
+    def slip_kernel(self, width: Array, rtol: float = _RTOL) -> Array:
+        """S(c; c + w) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
+
+        Source: mdr-5, Eq. (5.41).
+        """
+        return 2 / np.pi * self._integral(width, arccosine, rtol)
+
+    def mean_rise(self, width: Array) -> Array:
+        """Mean of g(r cos(theta)) - g(c) over the angles 0 to arccos(c/r), r = c + w [length].
+
+        Where it equals d - g(c), the worn depth vanishes: the rim is worn up to there, Eq. (5.88).
+        It grows with the width wherever g does. Source: notes, §9.
+        """
+        return self._integral(width, arccosine) / self.angle(width)
+
+    def angle(self, width: Array) -> Array:
+        """arccos(c/r) [1]."""
+        return np.asarray(np.arctan2(np.sqrt(width * (2 * self.stick + width)), self.stick))
+
+    def worn_volume(self, width: Array, step: Array) -> Array:
+        """2 pi int_c^r (worn depth) r dr = 4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx [length^3].
+
+        `step` = d - g(c). Both terms are of the rim alone, and at the worn rim's own width the
+        derivative vanishes: that width's rounding is not felt. Source: notes, §9.
+        """
+        flat_rim = _segment(self.stick, np.sqrt(width * (2 * self.stick + width)))
+        return np.asarray(4 * (step * flat_rim - self._integral(width, _segment)))
+
+    def width_where_worn(self, step: Array, start: Array) -> Array:
+        """The width at which `mean_rise` equals the step; NaN where it has no double.
+
+        Source: mdr-5, Eq. (5.88), for any profile.
+        """
+
+        def log_slope(width: Array, value: Array) -> Array:
+            angle, r = self.angle(width), self.stick + width
+            rate = self.stick / (r * np.sqrt(width * (2 * self.stick + width)))
+            return np.asarray(
+                width * (self._integral(width, _rate) / (value * angle) - rate / angle)
+            )
+
+        return invert(
+            self.mean_rise,
+            log_slope,
+            step,
+            start,
+            np.zeros_like(step),
+            self.room,
+            f"{self.profile.kind}'s worn rim",
+        )
+
+    def _integral(self, width: Array, kernel: Kernel, rtol: float = _RTOL) -> Array:
+        """int_c^r g'(x) K dx."""
+        if self.profile.slips_at_once:
+            return np.zeros_like(width)
+        branches, result = self.profile.branches, np.empty_like(width)
+        for start in range(0, width.size, _BLOCK):
+            part = slice(start, start + _BLOCK)
+            low = self.stick[part]
+            result[part] = annulus_integral(
+                branches, low, width[part], self._below(part), kernel, rtol
+            )
+        return result
+
+    def _below(self, part: slice) -> Callable[[float], Array]:
+        """c - x, where c is nearest to the flat by the digits of its distance from it."""
+        flat = self.flat
+        return lambda x: self.above[part] if x == flat else self.stick[part] - x
+
+
+def _rate(x: Array, leg: Array) -> Array:
+    """d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2))."""
+    return np.asarray(x / (leg * np.hypot(x, leg)))
+
+
+def _segment(x: Array, leg: Array) -> Array:
+    """int_x^r sqrt(r^2 - t^2) dt = (r^2/4) (2 theta - sin(2 theta)), theta = arccos(x/r)."""
+    r2 = x * x + leg * leg
+    return np.asarray(r2 / 4 * sine_gap(2 * np.arctan2(leg, x)))
+
+
+def sine_gap(t: Array) -> Array:
+    """t - sin(t) for 0 <= t <= pi [1]: t^3/6 for small t.
+
+    >>> float(f"{sine_gap(np.array(1e-3)):.6g}")
+    1.66667e-10
+    """
+    small = np.minimum(t, _THRESHOLD)
+    t2, series = small * small, np.ones_like(small)
+    for factor in _SINE:
+        series = 1 - t2 * factor * series
+    return np.asarray(np.where(t < _THRESHOLD, small * t2 / 6 * series, t - np.sin(t)))
