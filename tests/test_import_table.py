@@ -48,23 +48,27 @@ TABLE = (
     Row("mdr_core.quadrature", CORE, NUMBERS),
     Row("mdr_core.abel", CORE | {"mdr_core.quadrature"}, NUMBERS),
     Row("mdr_core.profiles", CORE | TRANSFORMS, NUMBERS),
+    Row("mdr_core.sweeps", CORE | {"mdr_core.profiles"}, NUMBERS),
     Row("mdr_core.foundation", CONTACT - {"mdr_core.foundation"}, NUMBERS),
     Row("mdr_core.annulus", CONTACT, NUMBERS),
     Row("mdr_core.validity", CONTACT, NUMBERS),
-    Row("mdr_core.normal", CONTACT | {"mdr_core.validity"}, NUMBERS),
+    Row("mdr_core.normal", CONTACT | {"mdr_core.sweeps", "mdr_core.validity"}, NUMBERS),
     Row(
         "mdr_core.tangential",
-        CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.validity"},
-        NUMBERS,
-    ),
-    Row(
-        "mdr_core.fields",
-        CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.tangential"},
+        CONTACT
+        | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sweeps", "mdr_core.validity"},
         NUMBERS,
     ),
     Row(
         "mdr_core.history",
         CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.validity"},
+        NUMBERS,
+    ),
+    Row(
+        "mdr_core.fields",
+        CONTACT
+        | {"mdr_core.annulus", "mdr_core.history", "mdr_core.normal"}
+        | {"mdr_core.tangential"},
         NUMBERS,
     ),
     Row("mdr_core.wear", CONTACT | RESULTS | {"mdr_core.annulus", "mdr_core.fields"}, NUMBERS),

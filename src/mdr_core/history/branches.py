@@ -96,26 +96,39 @@ class Branches:
             lens[narrow] = lens_integral(self.profile, self.depth[narrow], depth_step[narrow])
         return lens
 
+    @cached_property
+    def _edges(self) -> tuple[Array, Array]:
+        """Contact coordinate of each vertex' parent, and its distance, each with its digits."""
+        tree, below = self.tree, np.maximum(self.tree.parent, 0)
+        edge = np.minimum(self.coordinate[below], self.coordinate)
+        width = self.coordinate - edge
+        narrow = np.flatnonzero((tree.span < NARROW * tree.level) & (tree.parent >= 0))
+        if narrow.size:
+            top, low = tree.level[narrow], tree.level[below[narrow]]
+            ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
+            edge[narrow], width[narrow] = ends(
+                self.profile, self.coordinate[narrow], tree.span[narrow] / top, low / top
+            )
+        return edge, width
+
+    @property
+    def width(self) -> Array:
+        """Contact coordinate of each vertex above its parent's, with its own digits."""
+        return self._edges[1]
+
     def _other_step(self, values: Array) -> Array:
         """Step of what is not the level from each vertex' parent; zero where there is none."""
         profile, tree = self.profile, self.tree
-        span, below = tree.span, np.maximum(tree.parent, 0)
         if profile.slips_at_once:
             # Depth and force are proportional.
-            return np.asarray(values / np.where(tree.level > 0, tree.level, 1.0) * span)
-        step = np.where(tree.parent >= 0, values - values[below], 0.0)
-        narrow = np.flatnonzero((span < NARROW * tree.level) & (tree.parent >= 0))
+            return np.asarray(values / np.where(tree.level > 0, tree.level, 1.0) * tree.span)
+        step = np.where(tree.parent >= 0, values - values[np.maximum(tree.parent, 0)], 0.0)
+        narrow = np.flatnonzero((tree.span < NARROW * tree.level) & (tree.parent >= 0))
         if narrow.size:
-            top, edge = tree.level[narrow], tree.level[below[narrow]]
-            shares = span[narrow] / top, edge / top
-            step[narrow] = self._narrow_step(self.coordinate[narrow], *shares)
+            between = annulus.depth_step if self.by_force else annulus.force_step
+            edge, width = (part[narrow] for part in self._edges)
+            step[narrow] = between(profile, self.coordinate[narrow], width, edge)
         return step
-
-    def _narrow_step(self, coordinate: Array, ratio: Array, rest: Array) -> Array:
-        ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
-        step = annulus.depth_step if self.by_force else annulus.force_step
-        stick, width = ends(self.profile, coordinate, ratio, rest)
-        return step(self.profile, coordinate, width, stick)
 
 
 def radius_at_depth(profile: Profile, depth: Array) -> Array:

@@ -123,6 +123,24 @@ def gap(level: float, shift: float) -> Chain:
     return Chain(*np.stack([ends, lost], axis=2))
 
 
+def stacked(forward_step: Array, backward_step: Array) -> Chain:
+    """Return the polyline from the axis whose pieces have the given steps, to their last digit."""
+    return Chain(_sums(forward_step), _sums(backward_step))
+
+
+def _sums(steps: Array) -> Array:
+    """Running sums as rows of (high, low), by Knuth's two-sum."""
+    rows = np.zeros((steps.size, 2))
+    high = low = 0.0
+    for i, step in enumerate(steps.tolist()):
+        total = high + step
+        part = total - high
+        low += (high - (total - part)) + (step - part)
+        high = total
+        rows[i] = high, low
+    return rows
+
+
 def as_tree(chain: Chain) -> Tree:
     """Return the polyline as a tree that never branched."""
     count = len(chain.forward)

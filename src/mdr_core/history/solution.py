@@ -211,11 +211,7 @@ class History:
         """A polyline over forces as the one over depths, with the digits of its pieces."""
         part = Branches(self.start.profile, memory.as_tree(chain), by_force=True)
         span, slope = part.depth_step, part.tree.slope
-        sums = []
-        for step in (span * (1 + slope), span * (1 - slope)):
-            high = np.cumsum(step)
-            sums.append(np.stack([high, np.zeros_like(high)], axis=1))
-        return Chain(*sums)
+        return memory.stacked(span * (1 + slope), span * (1 - slope))
 
 
 def solve(

@@ -77,6 +77,11 @@ class State:
         """Contact coordinates of the breakpoints."""
         return self._branches.coordinate if self.touches else np.zeros(0)
 
+    @cached_property
+    def width(self) -> Array:
+        """Widths of the pieces in the contact coordinate, with the digits of their steps."""
+        return self._branches.width[1:]
+
     @property
     def contact_radius(self) -> float:
         """a [length]."""

@@ -4,42 +4,26 @@ Every function answers [load][radius], or [radius] where all loads were single n
 is called is computed.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import annulus
-from mdr_core.checks import largest
-from mdr_core.errors import InputError
+from mdr_core.fields.rows import Load, Row, fill, foundation_row, graded, kernel, loads, slip_kernel
 from mdr_core.normal import NormalContact
-from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
-# Radii handled at once: bounds the memory, whatever their number.
-_BLOCK: Final = 131_072
-
-
-@dataclass(frozen=True)
-class _Load:
-    """One load's contact, as plain numbers; `edge` is a where it is what was given."""
-
-    profile: Profile
-    e_star: float
-    coordinate: float
-    a: float
-    edge: Array | None
+# The grid goes on outside the contact up to so many times its radius.
+BEYOND: Final = 1.5
 
 
 @dataclass(frozen=True)
 class _Slip:
     """One load's partial slip, as plain numbers."""
 
-    normal: _Load
+    normal: Load
     friction: float
     compliance: float
     g_star: float
@@ -49,13 +33,6 @@ class _Slip:
     full: bool
     excess: float
     displacement: float
-
-
-# The grid goes on outside the contact up to so many times its radius.
-_BEYOND: Final = 1.5
-
-# One load at some radii, of which `highest` is the largest.
-_Row = Callable[[Array, float], Array]
 
 
 def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -90,10 +67,10 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     [0.095493, 0.0763944, 0.0]
     """
 
-    def row(load: _Load) -> _Row:
-        return lambda r, highest: _kernel(load, r, highest, None, load.e_star, rtol)
+    def row(load: Load) -> Row:
+        return lambda r, highest: kernel(load, r, highest, None, load.e_star, rtol)
 
-    return _fill(contact.contact_radius.shape, [row(load) for load in _loads(contact)], radius)
+    return fill(contact.contact_radius.shape, [row(load) for load in loads(contact)], radius)
 
 
 def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -106,14 +83,14 @@ def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float =
     `pressure`.
     """
 
-    def row(slip: _Slip) -> _Row:
+    def row(slip: _Slip) -> Row:
         load, modulus = slip.normal, slip.sign * slip.friction * slip.normal.e_star
         if slip.width == 0 and not slip.full:
             return lambda r, _highest: np.zeros(r.shape)
         slip_annulus = None if slip.full else (slip.width, slip.c)
-        return lambda r, highest: _kernel(load, r, highest, slip_annulus, modulus, rtol)
+        return lambda r, highest: kernel(load, r, highest, slip_annulus, modulus, rtol)
 
-    return _fill(contact.width.shape, [row(slip) for slip in _slips(contact)], radius)
+    return fill(contact.width.shape, [row(slip) for slip in _slips(contact)], radius)
 
 
 def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -126,21 +103,21 @@ def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     Source: mdr-5, Eqs. (5.39)-(5.45). Parameters, returns and errors as of `pressure`.
     """
 
-    def row(part: _Slip) -> _Row:
+    def row(part: _Slip) -> Row:
         scale = part.sign * part.compliance
         profile, c, a = part.normal.profile, (0.0 if part.full else part.c), part.normal.a
 
         def values(r: Array, _highest: float) -> Array:
             result = np.zeros(r.shape)
             inside = (r > c) & (r <= a)
-            result[inside] = -scale * _slip_kernel(profile, c, r[inside], rtol)
+            result[inside] = -scale * slip_kernel(profile, c, r[inside], rtol)
             if part.excess:
                 result[r <= a] -= part.sign * part.excess
             return result
 
         return values
 
-    return _fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+    return fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
 
 
 def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -152,7 +129,7 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
     """
     depths = np.atleast_1d(contact.indentation_depth)
 
-    def row(load: _Load, depth: float) -> _Row:
+    def row(load: Load, depth: float) -> Row:
         def values(r: Array, _highest: float) -> Array:
             inside = r <= load.a
             result = np.empty(r.shape)
@@ -166,8 +143,8 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
 
         return values
 
-    rows = [row(load, float(d)) for load, d in zip(_loads(contact), depths, strict=True)]
-    return _fill(contact.contact_radius.shape, rows, radius)
+    rows = [row(load, float(d)) for load, d in zip(loads(contact), depths, strict=True)]
+    return fill(contact.contact_radius.shape, rows, radius)
 
 
 def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
@@ -176,8 +153,8 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
     Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23). Parameters, returns and errors
     as of `pressure`.
     """
-    rows = [_foundation_row(load) for load in _loads(contact)]
-    return _fill(contact.contact_radius.shape, rows, radius)
+    rows = [foundation_row(load) for load in loads(contact)]
+    return fill(contact.contact_radius.shape, rows, radius)
 
 
 def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
@@ -187,8 +164,8 @@ def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
     Parameters, returns and errors as of `pressure`.
     """
 
-    def row(part: _Slip) -> _Row:
-        load = _foundation_row(part.normal)
+    def row(part: _Slip) -> Row:
+        load = foundation_row(part.normal)
 
         def values(r: Array, highest: float) -> Array:
             sliding = part.sign * part.friction * load(r, highest)
@@ -197,7 +174,7 @@ def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
 
         return values
 
-    return _fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+    return fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
 
 
 def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
@@ -215,116 +192,16 @@ def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
     special += [np.ravel(np.asarray(b, dtype=float)) for b in normal.profile.breaks]
     if isinstance(contact, TangentialContact):
         special.append(np.ravel(contact.stick_radius))
-    end = _BEYOND * float(np.max(normal.contact_radius)) or 1.0
+    end = BEYOND * float(np.max(normal.contact_radius)) or 1.0
     if normal.profile.kind != "flat_punch":
         end = min(end, float(np.max(normal.profile.domain)))
     stops = np.unique(np.concatenate(special))
     return graded(np.append(stops[stops < end], end), points)
 
 
-def graded(stops: Array, points: int) -> Array:
-    """Return `points` radii from the first stop to the last, crowding towards each of them.
-
-    Raises
-    ------
-    InputError : fewer points than stops.
-    """
-    end = stops[-1]
-    if points < stops.size:
-        raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
-    gaps = np.diff(stops)
-    # Every gap gets one point and its share of the rest, by its length to a half.
-    spare = points - stops.size
-    share = np.sqrt(gaps) / np.sqrt(gaps).sum() * spare
-    counts = np.floor(share).astype(int)
-    counts[np.argsort(counts - share, kind="stable")[: spare - int(counts.sum())]] += 1
-    parts = [
-        low + gap * (1 - np.cos(np.pi * np.arange(count + 1) / (count + 1))) / 2
-        for low, gap, count in zip(stops[:-1], gaps, counts, strict=True)
-    ]
-    return np.append(np.concatenate(parts), end)
-
-
-def _foundation_row(load: _Load) -> _Row:
-    """q(x) as the step from x to a: near the edge a difference of depths has no digits."""
-    profile = load.profile
-
-    def values(r: Array, _highest: float) -> Array:
-        result = np.zeros(r.shape)
-        inside = r < load.a
-        if profile.slips_at_once:
-            result[r <= load.a] = load.e_star * load.coordinate
-        elif inside.any():
-            least = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
-            x, a = np.maximum(r[inside], least), np.array([load.a])
-            top = np.array([load.coordinate])
-            at = profile.coordinate_from_radius(x)
-            width = profile.coordinate_width(a, x, top, at)
-            result[inside] = load.e_star * annulus.depth_step(profile, top, width, at)
-        return result
-
-    return values
-
-
-def _kernel(
-    load: _Load,
-    r: Array,
-    highest: float,
-    slip_annulus: tuple[float, float] | None,
-    modulus: float,
-    rtol: float,
-) -> Array:
-    """The stress kernel at all radii, zero outside the contact.
-
-    `slip_annulus` is its width in the contact coordinate and c; None for c = 0.
-    """
-    at = np.array([load.coordinate])
-    span, inner = (None, None) if slip_annulus is None else map(_single, slip_annulus)
-    inside = slice(None) if highest < load.a else np.asarray(r < load.a)
-    chosen = r[inside]
-    values = np.zeros(0)
-    if chosen.size:
-        values = load.profile.pressure_kernel(
-            at, chosen, rtol, span, edge=load.edge, modulus=modulus, inner=inner
-        )
-        if chosen.size == r.size:
-            return values
-    result = np.zeros(r.shape)
-    result[inside] = values
-    if load.profile.slips_at_once:
-        # The rim of a flat punch carries an infinite stress.
-        result[r == load.a] = np.copysign(inf, modulus) if load.coordinate > 0 else 0.0
-    return result
-
-
-def _single(value: float) -> Array:
-    return np.array([value])
-
-
-def _slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
-    if profile.slips_at_once:
-        return np.zeros(r.shape)
-    return profile.slip_kernel(np.full(r.shape, c), r, rtol)
-
-
-def _loads(contact: NormalContact) -> list[_Load]:
-    edges = np.atleast_1d(contact.contact_radius)
-    exact = contact.control == "contact_radius"
-    return [
-        _Load(
-            contact.profile,
-            float(contact.e_star),
-            float(coordinate),
-            float(a),
-            np.array([a]) if exact else None,
-        )
-        for a, coordinate in zip(edges, np.atleast_1d(contact.coordinate), strict=True)
-    ]
-
-
 def _slips(contact: TangentialContact) -> list[_Slip]:
     shape = contact.width.shape
-    loads = _loads(contact.normal)
+    pressed = loads(contact.normal)
     parts = (
         contact.friction_coefficient,
         contact.compliance,
@@ -338,41 +215,10 @@ def _slips(contact: TangentialContact) -> list[_Slip]:
     )
     columns = [np.atleast_1d(np.broadcast_to(part, shape)).tolist() for part in parts]
     rows: list[Any] = list(zip(*columns, strict=True))
-    spread = loads if len(loads) == len(rows) else loads * len(rows)
+    spread = pressed if len(pressed) == len(rows) else pressed * len(rows)
     at_once = contact.normal.profile.slips_at_once
     return [
         # Where nothing slips before all does, the kernel takes the load itself as its width.
         replace(part, width=part.width * part.normal.coordinate) if at_once else part
         for part in (_Slip(load, *row) for load, row in zip(spread, rows, strict=True))
     ]
-
-
-def _fill(shape: tuple[int, ...], rows: list[_Row], radius: ArrayLike) -> Array:
-    """Evaluate every load's row, block by block of the radii, all of them checked."""
-    r = np.ascontiguousarray(np.atleast_1d(np.asarray(radius, dtype=float)))
-    if r.size == 0:
-        raise InputError(("radius",), "at least one radius is needed")
-    if len(rows) == 1 and r.size <= _BLOCK:
-        return rows[0](r, _checked_largest(r, 0)).reshape(shape + r.shape)
-    out = np.empty((len(rows), r.size))
-    for start in range(0, r.size, _BLOCK):
-        part = slice(start, start + _BLOCK)
-        block = r[part]
-        highest = _checked_largest(block, start)
-        for target, row in zip(out, rows, strict=True):
-            target[part] = row(block, highest)
-    return out.reshape(shape + r.shape)
-
-
-def _checked_largest(block: Array, start: int) -> float:
-    """Largest radius of the block, all of them checked."""
-    highest = largest(block)
-    if not highest < inf:
-        bad = ~((block >= 0) & (block < inf))
-        if not bad.any():
-            # Only a negative zero, which counts as zero.
-            return float(block.max())
-        raise InputError(
-            ("radius", start + int(np.flatnonzero(bad)[0])), "must be finite and not negative"
-        )
-    return highest
