@@ -4,17 +4,23 @@ Whatever lies inside it never slips and keeps its first shape, so the zone's rad
 d - g(c) at its edge describe the whole limit. Source: notes, §9.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from mdr_core import annulus, tangential
+from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.foundation import invert
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags, Parameter
+
+# Places at which a zone that may not be the only one is looked for, and halvings about the best.
+_LOOKS: Final = 65
+_HALVINGS: Final = 40
 
 
 @dataclass(frozen=True)
@@ -101,26 +107,114 @@ def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
     return _from(sideways, step, endless=endless, moved=(moved, radius, reach))
 
 
+def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+    """The depth and F_x are held: the largest c with 2 mu E* c (d - g(c)) = F_x.
+
+    Wear at a held depth takes load off, so F_N(c) = F_N - F_x/mu falls: the stick zone shrinks,
+    over what was never worn, until all that is left of the load is its own. Source: notes, §9.
+
+    Raises
+    ------
+    InputError : a force that no such zone carries: the wear ends in full slip, without a limit.
+    """
+    contact, profile = sideways.normal, sideways.normal.profile
+    share = _carried(sideways, amplitude, np.ones(()))
+    share = np.broadcast_to(share, sideways.width.shape)
+    if profile.slips_at_once:
+        _refuse_overload(sideways, amplitude, sideways.full_slip, sideways.limiting_force)
+        return _from(sideways, np.zeros_like(share))
+    top = np.broadcast_to(contact.coordinate, share.shape)
+
+    def carried(width: Array) -> Array:
+        """c (d - g(c)), c at `width` below the first contact's edge."""
+        edge = np.maximum(top - width, profile.first_coordinate)
+        return np.asarray(
+            profile.contact_radius(edge) * annulus.depth_step(profile, top, width, edge)
+        )
+
+    def slope(width: Array) -> Array:
+        edge = np.maximum(top - width, profile.first_coordinate)
+        step = annulus.depth_step(profile, top, width, edge)
+        shrinks = profile.radius_slope(edge) * step
+        return np.asarray(profile.contact_radius(edge) * profile.depth_slope(edge) - shrinks)
+
+    reach = top - profile.first_coordinate
+    target = np.where(reach > 0, share, 0.0)
+    low, high, most = _first_crossing(carried, slope, reach, target)
+    largest = 2 * sideways.friction_coefficient * contact.e_star * most
+    _refuse_overload(sideways, amplitude, most < target, largest)
+    width = invert(
+        carried,
+        lambda width, value: np.asarray(width * slope(width) / value),
+        target,
+        np.where(target > 0, (low + high) / 2, 1.0),
+        low,
+        np.where(target > 0, high, 2.0),
+        f"{profile.kind}'s stick edge at a held depth",
+    )
+    edge = top - width
+    radius = np.where(width > 0, profile.contact_radius(edge), contact.contact_radius)
+    moved = edge, radius, profile.radius_width(top, width)
+    return _from(sideways, _carried(sideways, amplitude, radius), moved=moved)
+
+
+def _first_crossing(
+    function: Callable[[Array], Array],
+    slope: Callable[[Array], Array],
+    reach: Array,
+    target: Array,
+) -> tuple[Array, Array, Array]:
+    """The first stretch of [0, reach] at whose end the function has risen to the target.
+
+    With the largest value seen: where that is below the target there is no such stretch. A
+    profile with a kink lets the function rise, fall and rise again.
+    """
+    places = np.multiply.outer(np.linspace(0.0, 1.0, _LOOKS), reach)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        values = np.array([function(place) for place in places])
+        peak = np.argmax(values, axis=0)[None]
+        left = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
+        right = np.take_along_axis(places, np.minimum(peak + 1, _LOOKS - 1), axis=0)[0]
+        for _ in range(_HALVINGS):
+            middle = (left + right) / 2
+            rising = slope(middle) > 0
+            left, right = np.where(rising, middle, left), np.where(rising, right, middle)
+        at_peak = function(left)
+    reached = values >= target
+    found = reached.any(axis=0)
+    index = np.argmax(reached, axis=0)[None]
+    before = np.take_along_axis(places, np.maximum(index - 1, 0), axis=0)[0]
+    at = np.take_along_axis(places, index, axis=0)[0]
+    start = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
+    most = np.maximum(at_peak, values.max(axis=0))
+    return np.where(found, before, start), np.where(found, at, left), most
+
+
+def _refuse_overload(
+    sideways: TangentialContact, force: Array, beyond: Flags, largest: Array
+) -> None:
+    if not np.any(beyond):
+        return
+    beyond, most = np.broadcast_arrays(beyond, largest)
+    raise InputError(
+        ("oscillation", "tangential_force", *(first_index(beyond) if force.ndim else ())),
+        "wear at this depth takes off so much load that everything slips in the end: a stick zone "
+        f"remains under amplitudes below {float(most[beyond][0]):.12g} only",
+    )
+
+
 # What is held and what oscillates, to the exact statement about it.
 BY_CONTROL: Final = {
     ("indentation_depth", "tangential_displacement"): by_depth_and_displacement,
+    ("indentation_depth", "tangential_force"): by_depth_and_force,
     ("normal_force", "tangential_force"): by_forces,
     ("normal_force", "tangential_displacement"): by_force_and_displacement,
 }
 
 
 def find(sideways: TangentialContact, name: str, size: Array) -> LimitingStick:
-    """Return the stick zone in the limit of one pair of held quantities.
-
-    Raises
-    ------
-    InputError : a pair of which there is no limit.
-    """
-    pair = sideways.normal.control, name
-    if pair not in BY_CONTROL:
-        pairs = ", ".join(" with ".join(known) for known in BY_CONTROL)
-        raise InputError(("oscillation", name), f"with a held {pair[0]} there is no limit: {pairs}")
-    return BY_CONTROL[pair](sideways, size)
+    """Return the stick zone in the limit, by what is held and what oscillates."""
+    return BY_CONTROL[sideways.normal.control, name](sideways, size)
 
 
 def first_slip(
