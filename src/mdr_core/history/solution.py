@@ -41,8 +41,12 @@ class History:
     """Normal contact of every sample; gaps as zero load."""
     steps: Steps
     rtol: float
-    deviation: float
-    """How far shorter steps on the curved stretches still move the answers, relative."""
+    coarser: "History | None" = None
+    """The same with steps twice as long on the curved stretches, where there are any."""
+    deviation: float = 0.0
+    """How far the last halving of those steps moved the answers, relative."""
+    chord: float = 0.0
+    """How far it moved what is remembered, relative."""
 
     @property
     def step(self) -> Indices:
@@ -80,34 +84,23 @@ class History:
     @cached_property
     def tangential_force(self) -> Array:
         """F_x = mu E* sum k (I_i - I_i-1) over the branches [force]. Source: notes, §10."""
-        if self.path.by_force:
-            return self.path.tangential
-        return self._force_scale * self._at_samples(lambda part: part.shear)
+        return self.path.tangential if self.path.by_force else self._refined("_force")
 
     @cached_property
     def tangential_displacement(self) -> Array:
-        """u_x [length]; where force is controlled it is that of the axis, plus the branches."""
-        if not self.path.by_force:
-            return self.path.tangential
-        return self.start.compliance * self._at_samples(lambda part: part.anchor)
+        """u_x = mu (E*/G*) sum k (w_i - w_i-1), from the axis on [length]."""
+        return self._refined("_displacement") if self.path.by_force else self.path.tangential
 
     @cached_property
     def tangential_energy(self) -> Array:
         """Stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        scale = self._force_scale * self.start.compliance
-        return scale * self._at_samples(lambda part: part.square)
+        return self._refined("_energy")
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy lost to friction on the way to each sample from the one before [force length]."""
-        lost = np.zeros(self.steps.level.shape)
-        for part, chain in self._blocks():
-            found = memory.slips(chain, *self._walked(part))
-            each = dissipation.per_piece(self.start.profile, found, by_force=self.path.by_force)
-            np.add.at(lost, found.step + part.start, each)
-        before = np.append(-1, self.steps.last[:-1]) + 1
-        scale = self._force_scale * self.start.compliance
-        return scale * np.add.reduceat(lost, before)
+        # An extrapolation may fall below zero where nothing is lost, a loss may not.
+        return np.maximum(self._refined("_dissipation"), 0.0)
 
     @cached_property
     def dissipated_energy(self) -> Array:
@@ -159,6 +152,11 @@ class History:
         return _SUMS * self.contact.error_estimate + self.deviation
 
     @property
+    def state_error_estimate(self) -> float:
+        """The same for what is remembered at the end, which is not extrapolated."""
+        return _SUMS * self.contact.error_estimate + self.chord
+
+    @property
     def warnings(self) -> tuple[Notice, ...]:
         """Those of the normal contacts, `friction`, and `accuracy` where rtol is missed."""
         start = self.start
@@ -206,6 +204,35 @@ class History:
             part = Branches(self.start.profile, tree, self.path.by_force)
             result[samples] = np.where(top >= 0, answer(part)[top], 0.0)
         return result
+
+    def _refined(self, name: str) -> Array:
+        """An answer without the leading order of what the chords of curved stretches cost."""
+        fine: Array = getattr(self, name)
+        return fine if self.coarser is None else _extrapolated(getattr(self.coarser, name), fine)
+
+    @cached_property
+    def _force(self) -> Array:
+        return self._force_scale * self._at_samples(lambda part: part.shear)
+
+    @cached_property
+    def _displacement(self) -> Array:
+        return self.start.compliance * self._at_samples(lambda part: part.anchor)
+
+    @cached_property
+    def _energy(self) -> Array:
+        scale = self._force_scale * self.start.compliance
+        return scale * self._at_samples(lambda part: part.square)
+
+    @cached_property
+    def _dissipation(self) -> Array:
+        lost = np.zeros(self.steps.level.shape)
+        for part, chain in self._blocks():
+            found = memory.slips(chain, *self._walked(part))
+            each = dissipation.per_piece(self.start.profile, found, by_force=self.path.by_force)
+            np.add.at(lost, found.step + part.start, each)
+        before = np.append(-1, self.steps.last[:-1]) + 1
+        scale = self._force_scale * self.start.compliance
+        return np.asarray(scale * np.add.reduceat(lost, before))
 
     def _in_depths(self, chain: Chain) -> Chain:
         """A polyline over forces as the one over depths, with the digits of its pieces."""
@@ -282,7 +309,7 @@ def solve(
 
     def follow(pieces: int) -> History:
         walked = path.steps(way, profile, e_star, scale, pieces)
-        return History(way, start, contact, walked, rtol, 0.0)
+        return History(way, start, contact, walked, rtol)
 
     return _refine(way, follow, rtol) if way.curved.any() else follow(1)
 
@@ -310,26 +337,41 @@ def _contacts(start: State, way: Path, rtol: float) -> NormalContact:
 def _refine(way: Path, follow: Callable[[int], History], rtol: float) -> History:
     """Halve the steps on curved stretches until they move the answers less than rtol.
 
-    Chords leave an error that falls with the square of their length: what the last halving moved
-    is three times what is left.
+    Chords leave an error that falls with the square of their length, which two lengths tell; what
+    is left beyond it falls at least as fast, so that the last change exceeds it.
     """
-    most = min(_MOST, max(_MOST_STEPS // int(way.curved.sum()), _FEWEST))
-    pieces, found = _FEWEST, follow(_FEWEST)
+    most = min(_MOST, max(_MOST_STEPS // int(way.curved.sum()), 4 * _FEWEST))
+    pieces, rough, found = 2 * _FEWEST, follow(_FEWEST), follow(2 * _FEWEST)
+    found = replace(found, coarser=rough)
     moved = np.inf
     while pieces < most and moved > rtol:
         pieces *= 2
-        finer = follow(pieces)
+        finer = replace(follow(pieces), coarser=replace(found, coarser=None))
         moved = max(_distance(*pair) for pair in zip(_moving(found), _moving(finer), strict=True))
         found = finer
-    return replace(found, deviation=moved)
-
-
-def _moving(history: History) -> tuple[Array, Array]:
-    """The answers that the length of the steps moves."""
-    followed = (
-        history.tangential_displacement if history.path.by_force else (history.tangential_force)
+    coarse = found.coarser
+    chord = (
+        0.0
+        if coarse is None
+        else max(_distance(getattr(coarse, name), getattr(found, name)) for name in _by_chords(way))
     )
-    return followed, history.dissipated_energy
+    kept = {name: vars(found)[name] for name in _by_chords(way)}
+    final = replace(found, deviation=moved, chord=chord)
+    vars(final).update(kept)
+    return final
+
+
+def _extrapolated(rough: Array, fine: Array) -> Array:
+    return np.asarray(fine + (fine - rough) / 3)
+
+
+def _by_chords(way: Path) -> tuple[str, str]:
+    """The answers that the length of the steps moves, before extrapolation."""
+    return "_displacement" if way.by_force else "_force", "_dissipation"
+
+
+def _moving(history: History) -> tuple[Array, ...]:
+    return tuple(history._refined(name) for name in _by_chords(history.path))  # noqa: SLF001
 
 
 def _distance(rough: Array, fine: Array) -> float:
