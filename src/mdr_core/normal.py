@@ -16,12 +16,18 @@ from mdr_core.foundation import (
 )
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
+from mdr_core.sweeps import BLOCK, in_blocks, parameters
 from mdr_core.typing import Array, Parameter
 from mdr_core.validity import normal_notices, top
 
 # Contacts that a double holds, and of which the square does not overflow.
 _SMALLEST: Final = 1e-300
 _LARGEST: Final = 1e140
+_FROM: Final = {
+    "indentation_depth": coordinate_from_depth,
+    "normal_force": coordinate_from_force,
+    "contact_radius": coordinate_from_radius,
+}
 
 
 @dataclass(frozen=True)
@@ -145,26 +151,24 @@ def solve(
     >>> [float(f"{a:.6g}") for a in contact.contact_radius]
     [9.0856e-05, 0.000181712]
     """
-    require_modulus(e_star)
-    given = {
-        "indentation_depth": indentation_depth,
-        "normal_force": normal_force,
-        "contact_radius": contact_radius,
-    }
-    named = [(name, value) for name, value in given.items() if value is not None]
+    loads = (indentation_depth, normal_force, contact_radius)
+    named = [(name, load) for name, load in zip(_FROM, loads, strict=True) if load is not None]
     if len(named) != 1:
-        raise InputError(("load",), f"exactly one of {', '.join(given)} is needed")
-    name, load = named[0][0], _over_scenes(profile, e_star, named[0][0], _checked_load(*named[0]))
-    if name == "indentation_depth":
-        coordinate = coordinate_from_depth(profile, load)
-    elif name == "normal_force":
-        coordinate = coordinate_from_force(profile, load / e_star)
-    else:
-        coordinate = coordinate_from_radius(profile, load)
-    _require_range(name, load, coordinate)
+        raise InputError(("load",), f"exactly one of {', '.join(_FROM)} is needed")
+    name, load = named[0][0], np.asarray(named[0][1], dtype=float)
+    if load.size == 0:
+        raise InputError(("load", name), "at least one load is needed")
+    spread = _over_scenes(profile, e_star, name, load)
+    coordinate = _sweep(profile, e_star, name, spread) if spread.size > BLOCK else None
+    if coordinate is None:
+        require_modulus(e_star)
+        _require_load(name, load)
+        coordinate = _FROM[name](profile, _amount(e_star, name, spread))
+        if not _in_range(coordinate):
+            _require_range(name, spread, coordinate)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     # What was given is answered as given, to the last digit.
-    vars(contact)[name] = load
+    vars(contact)[name] = spread
     return contact
 
 
@@ -175,11 +179,52 @@ def require_modulus(e_star: Parameter) -> None:
         raise InputError(("material", "e_star"), "must be positive and finite")
 
 
+def _require_load(name: str, load: Array) -> None:
+    """Raise InputError unless the load is finite and not negative."""
+    # Of many loads one pass says that all are good; only if it does not, which are bad.
+    good = largest(load) < inf if load.ndim and load.flags.c_contiguous else False
+    low, high = (0.0, 0.0) if good else extremes(load)
+    if not (low >= 0 and high < inf):
+        bad = np.asarray(~((load >= 0) & (load < inf)))
+        raise InputError(("load", name, *first_index(bad)), "must be finite and not negative")
+
+
+def _sweep(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array | None:
+    """The coordinate of many scenes; None if one is refused, which no block can name."""
+
+    def block(part: Profile, moduli: Parameter, loads: Array) -> tuple[Array]:
+        # The division waits for the memory anyway: after it the checks find all in the cache.
+        amount = _amount(moduli, name, loads)
+        _require_load(name, loads)
+        coordinate = _FROM[name](part, amount)
+        ordinary = _in_range(coordinate)
+        # Under a force an ordinary contact vouches for the modulus: none answers F_N/E* <= 0.
+        if not (ordinary and name == "normal_force"):
+            require_modulus(moduli)
+        if not ordinary:
+            _require_range(name, loads, coordinate)
+        return (coordinate,)
+
+    try:
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            (coordinate,) = in_blocks(block, profile, (e_star, load))
+    except (InputError, FloatingPointError):
+        return None
+    return coordinate
+
+
+def _amount(e_star: Parameter, name: str, load: Array) -> Array:
+    """What determines the contact: the depth, the radius, or F_N/E*."""
+    return load / e_star if name == "normal_force" else load
+
+
+def _in_range(coordinate: Array) -> bool:
+    low, high = extremes(coordinate)
+    return high < _LARGEST and low > _SMALLEST
+
+
 def _require_range(name: str, load: Array, coordinate: Array) -> None:
     """Refuse a load whose contact has no double to describe it."""
-    low, high = extremes(coordinate)
-    if high < _LARGEST and low > _SMALLEST:
-        return
     # A radius is at zero load, as a flat's own one may well be, or it has a double.
     vanished = (coordinate < _SMALLEST) & (load > 0) & (name != "contact_radius")
     bad = np.asarray(~(coordinate < _LARGEST) | vanished)
@@ -194,7 +239,9 @@ def _require_range(name: str, load: Array, coordinate: Array) -> None:
 def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
     """The load for every scene of a sweep, shapes that do not agree refused."""
     shapes = [
-        part.shape for part in (e_star, *_parameters(profile)) if isinstance(part, np.ndarray)
+        part.shape
+        for part in (e_star, *parameters(profile).values())
+        if isinstance(part, np.ndarray)
     ]
     if not shapes:
         return load
@@ -207,20 +254,3 @@ def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) ->
             f"the shape {load.shape} of the load does not agree with the parameters' {told}",
         ) from None
     return load if shape == load.shape else np.broadcast_to(load, shape)
-
-
-def _parameters(profile: Profile) -> list[object]:
-    return [getattr(profile, name) for name in getattr(profile, "__match_args__", ())]
-
-
-def _checked_load(name: str, value: ArrayLike) -> Array:
-    load = np.asarray(value, dtype=float)
-    if load.size == 0:
-        raise InputError(("load", name), "at least one load is needed")
-    # Of many loads one pass says that all are good; only if it does not, which are bad.
-    good = largest(load) < inf if load.ndim and load.flags.c_contiguous else False
-    low, high = (0.0, 0.0) if good else extremes(load)
-    if not (low >= 0 and high < inf):
-        bad = np.asarray(~((load >= 0) & (load < inf)))
-        raise InputError(("load", name, *first_index(bad)), "must be finite and not negative")
-    return load
