@@ -12,14 +12,13 @@ from mdr_core.checks import extremes, first_index
 from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Indices, Parameter
-from mdr_core.wear import stick
+from mdr_core.typing import Array, Parameter
+from mdr_core.wear import shape, stick
 from mdr_core.wear.rim import Rim
 
 _NAMES: Final = ("tangential_displacement", "tangential_force")
-# Pairs of loads and radii handled at once: bounds the memory, whatever their number.
-_BLOCK: Final = 8192
 # Rounding of the integrals over the rim, in units of the profile's own.
 _RIMS: Final = 10.0
 # The grid goes on outside the worn rim up to so many times its radius.
@@ -193,31 +192,8 @@ class LimitingWear:
         Never negative, zero in the stick zone and outside the rim. Source: mdr-5, Eqs. (5.75),
         (5.82); notes, §9. Shape and errors as of `limiting_profile`.
         """
-        r = self._radii(radius)
-        outer, inner = np.ravel(self.wear_radius), np.ravel(self.stuck.radius)
-        at_once = self._normal.profile.slips_at_once
-        below = r <= outer[:, None] if at_once else r < outer[:, None]
-        worn = below & ((r > inner[:, None]) | (inner == 0)[:, None]) & (outer > 0)[:, None]
-        worn &= (np.ravel(self.stuck.step) > 0)[:, None]
-        result = np.zeros(worn.shape)
-        load, place = np.nonzero(worn)
-        for start in range(0, load.size, _BLOCK):
-            which, at = load[start : start + _BLOCK], place[start : start + _BLOCK]
-            result[which, at] = self._worn(which, r[at])
-        result[np.ravel(self.stuck.endless)] = inf
-        return result.reshape(self.wear_radius.shape + r.shape)
-
-    def _worn(self, load: Indices, r: Array) -> Array:
-        """The worn depth of some pairs of a load and a radius in its rim."""
-        rim, profile, rtol = self.rim.chosen(load), self._normal.profile, self._normal.rtol
-        width, step = rim.at(r), np.ravel(self.stuck.step)[load]
-        if "slip" in profile.closed_forms:
-            lag = profile.slip_kernel(rim.stick, r, rtol)
-        else:
-            lag = rim.slip_kernel(width, rtol)
-        gained = np.where(r > 0, 2 / np.pi * rim.angle(width), 1.0) * step
-        # At the rim's outer edge the two are equal but for rounding.
-        return np.asarray(np.maximum(gained - lag, 0.0))
+        r, rtol = self._radii(radius), self._normal.rtol
+        return shape.worn_depth(self.stuck, self.rim, self.wear_radius, r, rtol)
 
     def pressure(self, radius: ArrayLike) -> Array:
         """Return the pressure in the limit, (loads, m), or (m,) for a single load [pressure].
@@ -231,27 +207,9 @@ class LimitingWear:
         ------
         InputError : a radius that is negative or not finite.
         """
-        r = _checked_radii(radius)
-        shape = self.stuck.step.shape
-        e_star = np.ravel(np.broadcast_to(self._normal.e_star, shape))
-        c, step, edge = (np.ravel(part) for part in self._edges)
-        result = np.zeros((c.size, r.size))
-        load, place = np.nonzero(r < c[:, None])
-        for start in range(0, load.size, _BLOCK):
-            which, at = load[start : start + _BLOCK], r[place[start : start + _BLOCK]]
-            inner = self._normal.profile.pressure_kernel(edge[which], at, self._normal.rtol)
-            rim = step[which] / (np.pi * np.sqrt((c[which] - at) * (c[which] + at)))
-            result[which, place[start : start + _BLOCK]] = e_star[which] * (inner + rim)
-        at_once = self._normal.profile.slips_at_once
-        singular = (step > 0) | (at_once & (edge > 0))
-        result[(r == c[:, None]) & (singular & (c > 0))[:, None]] = inf
-        return result.reshape(shape + r.shape)
-
-    @property
-    def _edges(self) -> tuple[Array, Array, Array]:
-        """c, the step and the coordinate of what still bears load."""
-        gone = self.stuck.lost | self.stuck.endless
-        return np.where(gone, 0.0, self.stuck.radius), self.stuck.step, self.stuck.coordinate
+        contact, r = self._normal, shape.checked_radii(radius)
+        e_star = np.asarray(contact.e_star)
+        return shape.pressure(contact.profile, self.stuck, e_star, r, contact.rtol)
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest worn rim [length], (points,).
@@ -273,11 +231,7 @@ class LimitingWear:
         return fields.graded(np.append(stops[stops < last], last), points)
 
     def _radii(self, radius: ArrayLike) -> Array:
-        r = _checked_radii(radius)
-        beyond = r > float(self._normal.profile.domain)
-        if beyond.any():
-            raise InputError(("radius", *first_index(beyond)), "the profile ends before")
-        return r
+        return shape.checked_radii(radius, float(self._normal.profile.domain))
 
     @property
     def method(self) -> str:
@@ -361,6 +315,8 @@ def solve(
             ("load", "contact_radius"),
             "a contact radius cannot be held while it wears: give the depth or the normal force",
         )
+    if any(np.ndim(part) for part in _parameters(contact.profile)):
+        raise InputError(("profile",), "the rim of one profile at a time: no arrays of parameters")
     amplitudes = (tangential_displacement, tangential_force)
     named = [(n, value) for n, value in zip(_NAMES, amplitudes, strict=True) if value is not None]
     if len(named) != 1:
@@ -371,6 +327,11 @@ def solve(
     result = LimitingWear(first, name, stick.find(first, name, size))
     _require_room(result)
     return result
+
+
+def _parameters(profile: Profile) -> list[Any]:
+    values = [getattr(profile, name) for name in getattr(profile, "__match_args__", ())]
+    return [value for value in values if isinstance(value, np.ndarray)]
 
 
 def _require_amplitude(name: str, size: Array) -> None:
@@ -394,12 +355,3 @@ def _require_room(wear: LimitingWear) -> None:
             f"the worn rim would reach past radius {float(profile.domain):.12g}, where the "
             "profile ends: the limit of a larger body, or of a smaller load, exists",
         )
-
-
-def _checked_radii(radius: ArrayLike) -> Array:
-    r = np.atleast_1d(np.asarray(radius, dtype=float))
-    low, high = extremes(r)
-    if not (low >= 0 and high < inf):
-        index = first_index(~((r >= 0) & (r < inf))) if r.size else ()
-        raise InputError(("radius", *index), "must be finite and not negative")
-    return r
