@@ -22,7 +22,7 @@ from mdr_core.history.memory import Tree, total
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 # Up to this part of its level a span is narrow, and steps over it are integrals.
 NARROW: Final = 0.05
@@ -82,13 +82,13 @@ class Branches:
 
         It grows by 2 M dv + k^2 int (I - I_p) dw over a piece, M = F_x/(2 mu E*) at its lower end.
         """
-        below = np.maximum(self.tree.parent, 0)
-        slope, span = self.tree.slope, self.depth_step
-        grown = self.shear[below] * slope * span + slope * slope * self._lens(below)
-        return total(self.tree, np.where(self.tree.parent >= 0, grown, 0.0))
+        slope, below = self.tree.slope, self.shear[self.tree.parent]
+        return total(self.tree, slope * (below * self.depth_step + slope * self._lens))
 
-    def _lens(self, below: "np.ndarray[tuple[int], np.dtype[np.intp]]") -> Array:
+    @cached_property
+    def _lens(self) -> Array:
         """int (I - I_parent) dw over each piece [length^3]."""
+        below = self.tree.parent
         energy, depth_step = self.profile.reduced_energy(self.coordinate), self.depth_step
         lens = energy - energy[below] - self.force[below] * depth_step
         narrow = np.flatnonzero(depth_step < NARROW * self.depth)
@@ -97,14 +97,18 @@ class Branches:
         return lens
 
     @cached_property
+    def _narrow(self) -> Indices:
+        """Vertices so near their parent that a difference would lose digits."""
+        return np.flatnonzero(self.tree.span < NARROW * self.tree.level)
+
+    @cached_property
     def _edges(self) -> tuple[Array, Array]:
         """Contact coordinate of each vertex' parent, and its distance, each with its digits."""
-        tree, below = self.tree, np.maximum(self.tree.parent, 0)
-        edge = np.minimum(self.coordinate[below], self.coordinate)
+        tree, narrow = self.tree, self._narrow
+        edge = self.coordinate[tree.parent]
         width = self.coordinate - edge
-        narrow = np.flatnonzero((tree.span < NARROW * tree.level) & (tree.parent >= 0))
         if narrow.size:
-            top, low = tree.level[narrow], tree.level[below[narrow]]
+            top, low = tree.level[narrow], tree.level[tree.parent[narrow]]
             ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
             edge[narrow], width[narrow] = ends(
                 self.profile, self.coordinate[narrow], tree.span[narrow] / top, low / top
@@ -117,13 +121,12 @@ class Branches:
         return self._edges[1]
 
     def _other_step(self, values: Array) -> Array:
-        """Step of what is not the level from each vertex' parent; zero where there is none."""
-        profile, tree = self.profile, self.tree
+        """Step of what is not the level from each vertex' parent."""
+        profile, tree, narrow = self.profile, self.tree, self._narrow
         if profile.slips_at_once:
             # Depth and force are proportional.
             return np.asarray(values / np.where(tree.level > 0, tree.level, 1.0) * tree.span)
-        step = np.where(tree.parent >= 0, values - values[np.maximum(tree.parent, 0)], 0.0)
-        narrow = np.flatnonzero((tree.span < NARROW * tree.level) & (tree.parent >= 0))
+        step = values - values[tree.parent]
         if narrow.size:
             between = annulus.depth_step if self.by_force else annulus.force_step
             edge, width = (part[narrow] for part in self._edges)

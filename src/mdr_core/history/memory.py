@@ -15,11 +15,13 @@ No name of mechanics is needed here: levels are depths where displacements are c
 normal forces where forces are. Source: notes, §10.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from mdr_core.history import walk as walking
+from mdr_core.lazy import cached_property
 from mdr_core.typing import Array, Flags, Indices
 
 # A step adds at most a touching point, a new bottom, a corner and the load point.
@@ -45,10 +47,12 @@ class Chain(NamedTuple):
         return float(level / 2), float(shift / 2)
 
 
-class Tree(NamedTuple):
+@dataclass(frozen=True)
+class Tree:
     """All vertices that a walk has made; each knows the one below it."""
 
     parent: Indices
+    """-1 on the axis: what stands there has no piece below, and a slope of zero."""
     forward: Array
     """level + anchor, as rows of (high, low)."""
     backward: Array
@@ -59,22 +63,26 @@ class Tree(NamedTuple):
     """Load point at the end of each step; -1 in a gap."""
     end: Chain
 
-    @property
+    @cached_property
     def level(self) -> Array:
         """Level of each vertex, >= 0."""
-        high = self.forward[:, 0] + self.backward[:, 0]
-        return np.maximum(high + (self.forward[:, 1] + self.backward[:, 1]), 0.0) / 2
+        return np.maximum(self.forward[:, 0] + self.backward[:, 0], 0.0) / 2
 
-    @property
+    @cached_property
+    def length(self) -> Array:
+        """Twice the level of each vertex above its parent's, with its own digits."""
+        return self.forward_step + self.backward_step
+
+    @cached_property
     def span(self) -> Array:
         """Level of each vertex above its parent's, with its own digits."""
-        return (self.forward_step + self.backward_step) / 2
+        return self.length / 2
 
-    @property
+    @cached_property
     def slope(self) -> Array:
         """Slope of the anchor in the level below each vertex, from -1 to 1."""
-        length = self.forward_step + self.backward_step
-        return (self.forward_step - self.backward_step) / np.where(length > 0, length, 1.0)
+        length = np.where(self.length > 0, self.length, 1.0)
+        return (self.forward_step - self.backward_step) / length
 
 
 class Pieces(NamedTuple):
@@ -162,24 +170,25 @@ def _walk(
 ) -> tuple[Tree, Pieces]:
     held = len(chain.forward)
     room = held + _VERTICES * level.size
-    # Rows as `walk` names them.
-    vertices = np.zeros((6, room))
+    # Rows as `walk` names them; what it makes it fills.
+    vertices = np.empty((6, room))
     vertices[0:2, :held], vertices[2:4, :held] = chain.forward.T, chain.backward.T
+    vertices[4:6, 0] = 0.0
     vertices[4, 1:held] = np.diff(chain.forward, axis=0).sum(axis=1)
     vertices[5, 1:held] = np.diff(chain.backward, axis=0).sum(axis=1)
-    parent = np.full(room, -1, dtype=np.intp)
-    parent[:held] = np.arange(held) - 1
+    links = np.empty((2, room), dtype=np.intp)
+    links[0, :held] = np.arange(held) - 1
+    links[1, :held] = -1
     top = np.empty(level.size, dtype=np.intp)
-    pieces = np.zeros((5, 2 * held + _PIECES * level.size if record else 0))
-    piece_step = np.zeros(pieces.shape[1], dtype=np.intp)
+    pieces = np.empty((5, 2 * held + _PIECES * level.size if record else 0))
+    piece_step = np.empty(pieces.shape[1], dtype=np.intp)
     counts = np.array([held, 0], dtype=np.intp)
     walking.run(
         np.ascontiguousarray(level),
         np.ascontiguousarray(shift),
         np.ascontiguousarray(leg),
         vertices,
-        parent,
-        np.full(room, -1, dtype=np.intp),
+        links,
         top,
         pieces,
         piece_step,
@@ -188,10 +197,10 @@ def _walk(
         record,
     )
     used, made = int(counts[0]), int(counts[1])
-    last = int(top[-1])
+    last, parent = int(top[-1]), links[0, :used]
     end = gap(float(level[-1]), float(shift[-1])) if last < 0 else _live(vertices, parent, last)
     tree = Tree(
-        parent[:used],
+        parent,
         vertices[:2, :used].T,
         vertices[2:4, :used].T,
         vertices[4, :used],

@@ -21,7 +21,7 @@ from mdr_core.typing import Array, Indices
 from mdr_core.validity import friction_notices
 
 # Steps walked at once: bounds the memory, and keeps what is computed of them in cache.
-_BLOCK: Final = 16_384
+_BLOCK: Final = 8_192
 # Pieces of a curved stretch, at first and at most, and how many steps they may be in all.
 _FEWEST: Final = 16
 _MOST: Final = 16_384
@@ -116,9 +116,9 @@ class History:
         names = np.array(["no_contact", "stick", "partial_slip", "full_slip"])
         codes = np.zeros(self.path.normal.shape, dtype=np.intp)
         for samples, tree, top in self._tops():
-            below = tree.parent[np.maximum(top, 0)]
+            below = tree.parent[top]
             slipping = (tree.forward_step[top] == 0) | (tree.backward_step[top] == 0)
-            full = slipping & (tree.parent[np.maximum(below, 0)] < 0)
+            full = slipping & (tree.parent[below] < 0)
             partial = 1 if self.start.profile.slips_at_once else 2
             code = np.where(full, 3, np.where(slipping, partial, 1))
             codes[samples] = np.where(top >= 0, code, 0)

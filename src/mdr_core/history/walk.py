@@ -11,6 +11,9 @@ FORWARD = 0
 BACKWARD = 2
 FORWARD_STEP = 4
 BACKWARD_STEP = 5
+# Rows of the links: the vertex below, and the leg of a straight piece.
+PARENT = 0
+LEG = 1
 # Rows of the pieces.
 LEVEL = 0
 SPAN = 1
@@ -27,8 +30,7 @@ def run(
     shift: Array,
     leg: Indices,
     vertices: Array,
-    parent: Indices,
-    vertex_leg: Indices,
+    links: Indices,
     top: Indices,
     pieces: Array,
     piece_step: Indices,
@@ -48,17 +50,17 @@ def run(
             if at < 0:
                 # Contact begins where the straight way crosses level zero.
                 touch = y0 + (y1 - y0) * (-x0 / (x1 - x0))
-                at = _push(vertices, parent, vertex_leg, counts, -1, -1)
+                at = _push(vertices, links, counts, -1, -1)
                 _place(vertices, at, touch, 0.0, -touch, 0.0)
             at = _step(
-                vertices, parent, vertex_leg, pieces, piece_step, counts, at,
+                vertices, links, pieces, piece_step, counts, at,
                 x1, y1, i, leg[i], record,
             )  # fmt: skip
         elif at >= 0:
             leave = y0 + (y1 - y0) * (x0 / (x0 - x1))
             if record:
                 _step(
-                    vertices, parent, vertex_leg, pieces, piece_step, counts, at,
+                    vertices, links, pieces, piece_step, counts, at,
                     0.0, leave, i, leg[i], record,
                 )  # fmt: skip
             at = -1
@@ -76,8 +78,7 @@ def accumulate(parent: Indices, increment: Array, total: Array) -> None:
 
 def _step(
     vertices: Array,
-    parent: Indices,
-    vertex_leg: Indices,
+    links: Indices,
     pieces: Array,
     piece_step: Indices,
     counts: Indices,
@@ -100,40 +101,38 @@ def _step(
         if rise == 0 and fall == 0:
             return at
         below = at
-        if vertex_leg[at] == leg and parent[at] >= 0:
+        if links[LEG, at] == leg and links[PARENT, at] >= 0:
             # The same straight line goes on.
-            below = parent[at]
+            below = links[PARENT, at]
         return _extend(
-            vertices, parent, vertex_leg, counts, below,
+            vertices, links, counts, below,
             forward, forward_low, backward, backward_low, leg,
         )  # fmt: skip
     start = at
-    upper = _last_above(vertices, parent, at, forward, forward_low, backward, backward_low)
-    at = parent[upper]
+    upper = _last_above(vertices, links, at, forward, forward_low, backward, backward_low)
+    at = links[PARENT, upper]
     if at >= 0:
         at = _corner(
-            vertices, parent, vertex_leg, counts, at, upper,
+            vertices, links, counts, at, upper,
             forward, forward_low, backward, backward_low,
         )  # fmt: skip
     if record:
-        _record(vertices, parent, pieces, piece_step, counts, start, at, rise, fall, x, step)
+        _record(vertices, links, pieces, piece_step, counts, start, at, rise, fall, x, step)
     if at < 0:
         # Everything slips, the axis included, back to where the load point leaves it.
-        at = _push(vertices, parent, vertex_leg, counts, -1, -1)
+        at = _push(vertices, links, counts, -1, -1)
         if _above(vertices, FORWARD, upper, forward, forward_low) > 0:
             _place(vertices, at, forward, forward_low, -forward, -forward_low)
         else:
             _place(vertices, at, -backward, -backward_low, backward, backward_low)
         if not x > 0:
             return at
-    return _extend(
-        vertices, parent, vertex_leg, counts, at, forward, forward_low, backward, backward_low, -1
-    )
+    return _extend(vertices, links, counts, at, forward, forward_low, backward, backward_low, -1)
 
 
 def _last_above(
     vertices: Array,
-    parent: Indices,
+    links: Indices,
     at: int,
     forward: float,
     forward_low: float,
@@ -147,14 +146,13 @@ def _last_above(
         or _above(vertices, BACKWARD, below, backward, backward_low) > 0
     ):
         at = below
-        below = parent[below]
+        below = links[PARENT, below]
     return at
 
 
 def _corner(
     vertices: Array,
-    parent: Indices,
-    vertex_leg: Indices,
+    links: Indices,
     counts: Indices,
     lower: int,
     upper: int,
@@ -176,7 +174,7 @@ def _corner(
     )
     if (keep_forward if by_forward else keep_backward) <= 0:
         return lower
-    new = _push(vertices, parent, vertex_leg, counts, lower, -1)
+    new = _push(vertices, links, counts, lower, -1)
     if by_forward:
         _cut(vertices, new, lower, upper, FORWARD, keep_forward, over_forward)
         vertices[FORWARD, new] = forward
@@ -215,7 +213,7 @@ def _cut(
 
 def _record(
     vertices: Array,
-    parent: Indices,
+    links: Indices,
     pieces: Array,
     piece_step: Indices,
     counts: Indices,
@@ -232,9 +230,9 @@ def _record(
     share (start - vertex)/(start - load point) of the way, in whichever sum comes first.
     """
     upper = start
-    while upper != end and parent[upper] >= 0:
-        lower = parent[upper]
-        if end >= 0 and lower == parent[end] and end != lower:
+    while upper != end and links[PARENT, upper] >= 0:
+        lower = links[PARENT, upper]
+        if end >= 0 and lower == links[PARENT, end] and end != lower:
             # The last piece is cut at the corner.
             lower = end
         _record_piece(vertices, pieces, piece_step, counts, start, lower, upper, rise, fall, step)
@@ -376,8 +374,7 @@ def _record_slide(
 
 def _extend(
     vertices: Array,
-    parent: Indices,
-    vertex_leg: Indices,
+    links: Indices,
     counts: Indices,
     below: int,
     forward: float,
@@ -389,29 +386,27 @@ def _extend(
     """Push the load point; one piece stands for two that slip the same way."""
     forward_step = -_above(vertices, FORWARD, below, forward, forward_low)
     backward_step = -_above(vertices, BACKWARD, below, backward, backward_low)
-    if parent[below] >= 0 and (
+    if links[PARENT, below] >= 0 and (
         (backward_step == 0 and vertices[BACKWARD_STEP, below] == 0)
         or (forward_step == 0 and vertices[FORWARD_STEP, below] == 0)
     ):
-        below = parent[below]
+        below = links[PARENT, below]
         forward_step = -_above(vertices, FORWARD, below, forward, forward_low)
         backward_step = -_above(vertices, BACKWARD, below, backward, backward_low)
     if forward_step <= 0 and backward_step <= 0:
         return below
-    new = _push(vertices, parent, vertex_leg, counts, below, leg)
+    new = _push(vertices, links, counts, below, leg)
     _place(vertices, new, forward, forward_low, backward, backward_low)
     vertices[FORWARD_STEP, new] = max(forward_step, 0.0)
     vertices[BACKWARD_STEP, new] = max(backward_step, 0.0)
     return new
 
 
-def _push(
-    vertices: Array, parent: Indices, vertex_leg: Indices, counts: Indices, below: int, leg: int
-) -> int:
+def _push(vertices: Array, links: Indices, counts: Indices, below: int, leg: int) -> int:
     new: int = counts[VERTICES]
     counts[VERTICES] = new + 1
-    parent[new] = below
-    vertex_leg[new] = leg
+    links[PARENT, new] = below
+    links[LEG, new] = leg
     vertices[FORWARD_STEP, new] = 0.0
     vertices[BACKWARD_STEP, new] = 0.0
     return new
