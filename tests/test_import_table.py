@@ -54,9 +54,15 @@ TABLE = (
     Row("mdr_core.validity", CONTACT, NUMBERS),
     Row("mdr_core.normal", CONTACT | {"mdr_core.sweeps", "mdr_core.validity"}, NUMBERS),
     Row(
+        "mdr_core.partial_slip",
+        CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sweeps"},
+        NUMBERS,
+    ),
+    Row(
         "mdr_core.tangential",
         CONTACT
-        | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sweeps", "mdr_core.validity"},
+        | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.partial_slip"}
+        | {"mdr_core.sweeps", "mdr_core.validity"},
         NUMBERS,
     ),
     Row(

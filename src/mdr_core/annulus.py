@@ -13,12 +13,16 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import legendre
 
-from mdr_core.foundation import coordinate_from_depth, coordinate_from_force, invert
+from mdr_core.foundation import (
+    Function,
+    coordinate_from_depth,
+    coordinate_from_force,
+    force_slope,
+    invert,
+)
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array
-
-_Function = Callable[[Array], Array]
 
 # Up to this part of the contact an annulus is narrow; beyond, a difference keeps its digits.
 _NARROW: Final = 0.05
@@ -52,7 +56,7 @@ def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) 
     if closed is not None:
         return closed
     ends = coordinate, width, stick
-    return _step(profile, profile.reduced_force, _force_slope(profile), ends)
+    return _step(profile, profile.reduced_force, force_slope(profile), ends)
 
 
 def stick_from_force(
@@ -65,18 +69,13 @@ def stick_from_force(
     closed = profile.stick_from_force_ratio(coordinate, ratio, rest)
     if closed is not None:
         return closed
-    total = profile.reduced_force(coordinate)
-
-    def step(width: Array) -> Array:
-        return force_step(profile, coordinate, width, coordinate - width)
-
     return _stick(
         profile,
-        coordinate,
-        step,
-        _force_slope(profile),
-        lambda part: coordinate_from_force(profile, part),
-        (total, ratio, rest),
+        (coordinate, ratio, rest),
+        profile.reduced_force,
+        force_slope(profile),
+        force_step,
+        coordinate_from_force,
     )
 
 
@@ -87,18 +86,13 @@ def stick_from_depth(
     closed = profile.stick_from_depth_ratio(coordinate, ratio, rest)
     if closed is not None:
         return closed
-    total = profile.depth(coordinate)
-
-    def step(width: Array) -> Array:
-        return depth_step(profile, coordinate, width, coordinate - width)
-
     return _stick(
         profile,
-        coordinate,
-        step,
+        (coordinate, ratio, rest),
+        profile.depth,
         profile.depth_slope,
-        lambda part: coordinate_from_depth(profile, part),
-        (total, ratio, rest),
+        depth_step,
+        coordinate_from_depth,
     )
 
 
@@ -119,21 +113,21 @@ def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array)
     return np.where(missing, filled, closed)
 
 
-def _force_slope(profile: Profile) -> _Function:
-    """d(F/E*)/ds = 2 a d'(s)."""
-    return lambda s: 2 * profile.contact_radius(s) * profile.depth_slope(s)
-
-
 def _stick(
     profile: Profile,
-    coordinate: Array,
-    step: _Function,
-    slope: _Function,
-    inverse: _Function,
-    amounts: tuple[Array, Array, Array],
+    given: tuple[Array, Array, Array],
+    function: Function,
+    slope: Function,
+    step: Callable[[Profile, Array, Array, Array], Array],
+    inverse: Callable[[Profile, Array], Array],
 ) -> tuple[Array, Array]:
-    """Solve step(width) = ratio total by the width while slip begins, by the edge later on."""
-    total, ratio, rest = amounts
+    """Solve for the stick edge c, where function(a) - function(c) = ratio function(a).
+
+    `given` are a, ratio and 1 - ratio. While slip begins the width is the unknown of the
+    `step`; later on it is the edge, by the `inverse` of the function.
+    """
+    coordinate, ratio, rest = given
+    total = function(coordinate)
     shape = np.broadcast_shapes(coordinate.shape, total.shape, ratio.shape)
     coordinate, total = np.broadcast_to(coordinate, shape), np.broadcast_to(total, shape)
     early = np.broadcast_to(ratio < _HALF, shape)
@@ -141,27 +135,26 @@ def _stick(
     reach = coordinate - profile.first_coordinate
     with np.errstate(divide="ignore", invalid="ignore"):
         start = np.where(target > 0, np.minimum(target / slope(coordinate), reach / 2), reach / 2)
-    start = np.where(start > 0, start, 1.0)
 
     def log_slope(width: Array, value: Array) -> Array:
         return width * slope(coordinate - width) / value
 
     width = invert(
-        step,
+        lambda width: step(profile, coordinate, width, coordinate - width),
         log_slope,
         target,
-        start,
+        np.where(start > 0, start, 1.0),
         np.zeros(shape),
         np.where(reach > 0, reach, 2.0),
         f"{profile.kind}'s slip annulus",
     )
-    late = inverse(np.where(early, 0.0, rest * total))
+    late = inverse(profile, np.where(early, 0.0, rest * total))
     edge = np.where(early, coordinate - width, late)
     return edge, np.where(early, width, coordinate - late)
 
 
 def _step(
-    profile: Profile, function: _Function, slope: _Function, ends: tuple[Array, Array, Array]
+    profile: Profile, function: Function, slope: Function, ends: tuple[Array, Array, Array]
 ) -> Array:
     """function(high) - function(low), by the integral of its slope where they are close."""
     high, width, low = np.broadcast_arrays(*ends)
@@ -186,7 +179,7 @@ def _break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
     return breaks[index], breaks[index - 1]
 
 
-def _narrow_step(slope: _Function, high: Array, width: Array, below: Array) -> Array:
+def _narrow_step(slope: Function, high: Array, width: Array, below: Array) -> Array:
     """int slope ds over [high - width, high], split at the break `below` if that is inside.
 
     Behind a break the slope is smooth in v, s = break + v^2.

@@ -10,6 +10,8 @@ from mdr_core.errors import DefectError, InputError
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
 
+Function = Callable[[Array], Array]
+
 _STEPS: Final = 200
 # Newton's step at which the next error is below rounding: it converges quadratically.
 _LAST_STEP: Final = 1e-10
@@ -36,12 +38,8 @@ def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
     closed = profile.coordinate_from_depth(indentation_depth)
     if closed is not None:
         return closed
-    _check_reach(profile, indentation_depth, profile.depth, "indentation_depth")
-
-    def log_slope(s: Array, value: Array) -> Array:
-        return s * profile.depth_slope(s) / value
-
-    return _invert(profile, profile.depth, log_slope, indentation_depth)
+    name = "indentation_depth"
+    return _inverse(profile, profile.depth, profile.depth_slope, indentation_depth, name)
 
 
 def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
@@ -56,12 +54,16 @@ def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
     closed = profile.coordinate_from_reduced_force(reduced_force)
     if closed is not None:
         return closed
-    _check_reach(profile, reduced_force, profile.reduced_force, "normal_force")
+    slope = force_slope(profile)
+    return _inverse(profile, profile.reduced_force, slope, reduced_force, "normal_force")
 
-    def log_slope(s: Array, value: Array) -> Array:
-        return 2 * s * profile.contact_radius(s) * profile.depth_slope(s) / value
 
-    return _invert(profile, profile.reduced_force, log_slope, reduced_force)
+def force_slope(profile: Profile) -> Function:
+    """Return d(F_N/E*)/ds = 2 a d'(s) as a function of the contact coordinate s.
+
+    Source: notes, §1.
+    """
+    return lambda s: 2 * profile.contact_radius(s) * profile.depth_slope(s)
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
@@ -81,15 +83,6 @@ def _within(profile: Profile, contact_radius: Array, name: str) -> Array:
     return contact_radius
 
 
-def _check_reach(
-    profile: Profile, target: Array, function: Callable[[Array], Array], name: str
-) -> None:
-    """Refuse targets that lie beyond the profile's end."""
-    end = profile.last_coordinate
-    if end is not None:
-        _refuse(np.asarray(target > function(np.asarray(end))), profile, name)
-
-
 def _refuse(outside: Flags, profile: Profile, name: str) -> None:
     if outside.any():
         domain = np.broadcast_to(profile.domain, outside.shape)[outside][0]
@@ -100,22 +93,25 @@ def _refuse(outside: Flags, profile: Profile, name: str) -> None:
         )
 
 
-def _invert(
-    profile: Profile,
-    function: Callable[[Array], Array],
-    log_slope: Callable[[Array, Array], Array],
-    target: Array,
+def _inverse(
+    profile: Profile, function: Function, slope: Function, target: Array, name: str
 ) -> Array:
     """Solve function(s) = target for a contact coordinate s, from the profile's own scale."""
     end, shape = profile.last_coordinate, np.broadcast_shapes(target.shape, np.shape(profile.scale))
+    if end is not None:
+        _refuse(np.asarray(target > function(np.asarray(end))), profile, name)
     low = np.full(shape, profile.first_coordinate)
     high = np.full(shape, np.inf if end is None else end)
     start = np.minimum(np.broadcast_to(profile.scale, shape), high)
+
+    def log_slope(s: Array, value: Array) -> Array:
+        return s * slope(s) / value
+
     return invert(function, log_slope, target, start, low, high, profile.kind)
 
 
 def invert(
-    function: Callable[[Array], Array],
+    function: Function,
     log_slope: Callable[[Array, Array], Array],
     target: Array,
     start: Array,

@@ -1,21 +1,22 @@
 """Partial slip under one monotonic tangential load: which part sticks, and how far it moves."""
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, prod
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import annulus
-from mdr_core.checks import extremes, first_index
+from mdr_core.checks import extremes
 from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
+from mdr_core.partial_slip import CONTROLS, state, state_of_sweep
+from mdr_core.sweeps import BLOCK
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validity import friction_notices
 
-_NAMES: Final = ("tangential_force", "tangential_displacement", "stick_radius")
 # Rounding of the steps over the annulus, in units of the profile's own.
 _STEPS: Final = 40.0
 
@@ -216,127 +217,28 @@ def solve(
         if not (low > 0 and high < inf):
             raise InputError(path, "must be positive and finite")
     loads = (tangential_force, tangential_displacement, stick_radius)
-    named = [(name, load) for name, load in zip(_NAMES, loads, strict=True) if load is not None]
+    named = [(name, load) for name, load in zip(CONTROLS, loads, strict=True) if load is not None]
     if len(named) != 1:
-        raise InputError(("tangential",), f"exactly one of {', '.join(_NAMES)} is needed")
+        raise InputError(("tangential",), f"exactly one of {', '.join(CONTROLS)} is needed")
     name, given = named[0][0], np.asarray(named[0][1], dtype=float)
-    sign, size = _sign_and_size(name, given)
-    stick = _BY_CONTROL[name](contact, g_star, friction_coefficient, size)
-    shape = np.broadcast_shapes(size.shape, stick.width.shape, np.shape(g_star))
+    parameters = (g_star, friction_coefficient)
+    shape = np.broadcast_shapes(
+        given.shape, contact.coordinate.shape, *(np.shape(one) for one in parameters)
+    )
+    sweeps = prod(shape) > BLOCK
+    found = state_of_sweep(contact, *parameters, name, given) if sweeps else None
+    if found is None:
+        found = state(contact, *parameters, name, given)
     result = TangentialContact(
         contact,
-        g_star,
-        friction_coefficient,
-        stick.edge,
-        np.broadcast_to(stick.width, shape),
-        sign,
-        stick.full,
-        stick.excess,
+        *parameters,
+        found.edge,
+        np.broadcast_to(found.width, shape),
+        found.sign,
+        found.full,
+        found.excess,
     )
     if given.shape == shape:
         # What was given is answered as given, to the last digit.
         vars(result)[name] = given
     return result
-
-
-@dataclass(frozen=True)
-class _Stick:
-    """Stick edge and annulus in the contact coordinate, and what lies beyond full slip."""
-
-    edge: Array
-    width: Array
-    full: Flags
-    excess: Array
-
-
-def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
-    """Direction and amount of the load, all of it checked; the sign 1 stands for all."""
-    low, high = extremes(given)
-    if not (low > -inf and high < inf):
-        detail = "must be finite" if given.size else "at least one load is needed"
-        index = first_index(~np.isfinite(given)) if given.size else ()
-        raise InputError(("tangential", name, *index), detail)
-    if low >= 0 or name == "stick_radius":
-        return np.asarray(1.0), given
-    return np.sign(given), np.abs(given)
-
-
-def _by_force(
-    contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
-) -> _Stick:
-    del g_star
-    limit = np.asarray(friction * contact.normal_force)
-    left = np.asarray(limit - size)
-    if left.min() < 0:
-        raise InputError(
-            ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
-            "no equilibrium: the force exceeds friction_coefficient x normal_force",
-        )
-    ratio, rest = _ratios(size, left, limit)
-    if contact.profile.slips_at_once:
-        edge, width = contact.coordinate, ratio
-    else:
-        edge, width = annulus.stick_from_force(contact.profile, contact.coordinate, ratio, rest)
-    return _Stick(edge, width, _full(rest, limit), _NOTHING)
-
-
-def _by_displacement(
-    contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
-) -> _Stick:
-    limit = np.asarray(friction * contact.e_star / g_star * contact.indentation_depth)
-    left = np.asarray(limit - size)
-    ratio, rest = _ratios(np.minimum(size, limit), np.maximum(left, 0.0), limit)
-    if contact.profile.slips_at_once:
-        edge, width = contact.coordinate, ratio
-    else:
-        edge, width = annulus.stick_from_depth(contact.profile, contact.coordinate, ratio, rest)
-    # Without a normal load any displacement slides.
-    full = _full(rest, limit) | ((limit == 0) & (size > 0))
-    return _Stick(edge, width, full, np.maximum(-left, 0.0))
-
-
-def _ratios(size: Array, left: Array, limit: Array) -> tuple[Array, Array]:
-    """size/limit and left/limit, each with its own digits; 0 and 1 where both are zero."""
-    if limit.min() > 0:
-        left /= limit
-        return size / limit, left
-    safe = np.where(limit > 0, limit, 1.0)
-    return size / safe, np.where(limit > 0, left / safe, 1.0)
-
-
-def _full(rest: Array, limit: Array) -> Flags:
-    """Where nothing is left of the limit; a single false for nowhere."""
-    return _NOWHERE if rest.min() > 0 else np.asarray((rest <= 0) & (limit > 0))
-
-
-def _by_stick_radius(
-    contact: NormalContact, g_star: Parameter, friction: Parameter, radius: Array
-) -> _Stick:
-    del g_star, friction
-    profile, a = contact.profile, np.asarray(contact.contact_radius)
-    least = profile.contact_radius(np.asarray(profile.first_coordinate))
-    all_slips = np.asarray((radius == 0) & (a > 0))
-    bad = np.asarray((radius > a) | (radius < 0) | ((radius > 0) & (radius < least)))
-    detail = "must lie between the flat's radius, or 0, and the contact radius"
-    if profile.slips_at_once:
-        bad = bad | (radius > 0)
-        detail = "a flat punch sticks wholly under any force below full slip: give the force"
-    if bad.any():
-        index = first_index(bad) if radius.ndim else ()
-        raise InputError(("tangential", "stick_radius", *index), detail)
-    if profile.slips_at_once:
-        shape = np.broadcast_shapes(radius.shape, a.shape)
-        return _Stick(contact.coordinate, np.ones(shape), all_slips, _NOTHING)
-    c = np.maximum(radius, least)
-    edge = profile.coordinate_from_radius(c)
-    width = profile.coordinate_width(a, c, contact.coordinate, edge)
-    return _Stick(edge, width, all_slips, _NOTHING)
-
-
-_NOTHING: Final = np.asarray(0.0)
-_NOWHERE: Final = np.zeros((), dtype=bool)
-_BY_CONTROL: Final = {
-    "tangential_force": _by_force,
-    "tangential_displacement": _by_displacement,
-    "stick_radius": _by_stick_radius,
-}
