@@ -153,7 +153,9 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: f
     # Angles from the point itself, s = s_r cos(alpha): the narrow end is the exact one.
     top = np.arctan2(ends.leg_high, s_high)
     leg_split = np.where(split > s_low, np.sqrt((s_r - split) * (s_r + split)), ends.leg_low)
-    span = np.where(split < s_high, np.arctan2(leg_split, split) - top, 0.0)
+    # On a stretch too narrow for s itself the legs still tell its ends apart.
+    upper = (split < s_high) | (split <= s_low)
+    span = np.where(upper, np.arctan2(leg_split, split) - top, 0.0)
     nodes, weights = _rule(branch, points, highest)
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)

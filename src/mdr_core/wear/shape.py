@@ -32,10 +32,13 @@ def worn_depth(stuck: LimitingStick, rim: Rim, outer: Array, r: Array, rtol: flo
     def values(load: Indices, at: Array) -> Array:
         rims = rim.chosen(load)
         width = rims.at(at)
-        if "slip" in profile.closed_forms:
-            lag = profile.slip_kernel(rims.stick, at, rtol)
-        else:
-            lag = rims.slip_kernel(width, rtol)
+        # S(0; r) is the profile itself.
+        lag = np.where(profile.slips_at_once, 0.0, profile.f(at))
+        some = np.flatnonzero(rims.stick > 0)
+        if some.size and "slip" in profile.closed_forms:
+            lag[some] = profile.slip_kernel(rims.stick[some], at[some], rtol)
+        elif some.size:
+            lag[some] = rims.chosen(some).slip_kernel(width[some], rtol)
         share = np.where(at > 0, 2 / np.pi * rims.angle(width), 1.0)
         # At the rim's outer edge the two are equal but for rounding.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
