@@ -1,0 +1,283 @@
+"""Where nothing wears, where everything does, and what has no limit: each answered as it is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import normal
+from mdr_core.errors import InputError
+from mdr_core.fields import pressure
+from mdr_core.profiles import (
+    Cone,
+    Ellipsoid,
+    FlatPunch,
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedPunch,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+)
+from mdr_core.wear import limit
+
+R = 1.3
+
+
+def worn(profile: Profile, load: dict[str, Any], amplitude: dict[str, Any]) -> limit.LimitingWear:
+    return limit.solve(normal.solve(profile, 1.0, **load), 0.8, 0.5, **amplitude)
+
+
+def codes(wear: limit.LimitingWear) -> set[str]:
+    return {notice.code for notice in wear.warnings}
+
+
+ANSWERS = (
+    "stick_radius",
+    "wear_width",
+    "wear_radius",
+    "indentation_depth",
+    "normal_force",
+    "tangential_displacement",
+    "tangential_force",
+    "worn_volume",
+)
+
+
+def values(wear: limit.LimitingWear) -> dict[str, Any]:
+    found = {name: getattr(wear, name) for name in ANSWERS}
+    assert not any(np.isnan(value).any() for value in found.values())
+    return found
+
+
+@pytest.mark.parametrize("load", [{"indentation_depth": 0.3}, {"normal_force": 0.3}])
+@pytest.mark.parametrize("name", ["tangential_displacement", "tangential_force"])
+@pytest.mark.parametrize("profile", [Paraboloid(R), RoundedPunch(0.5, 1.7), FlatPunch(0.7)])
+def test_without_slip_nothing_wears(profile: Profile, load: dict[str, Any], name: str) -> None:
+    # A flat punch sticks wholly up to full slip.
+    sizes = [0.0, 1e-3] if profile.kind == "flat_punch" else [0.0, 0.0]
+    wear = worn(profile, load, {name: sizes})
+    first, found = wear.first.normal, values(wear)
+    assert list(wear.regime) == ["stick", "stick"]
+    assert codes(wear) - codes_of(first) == {"no_wear"}
+    for edge in ("stick_radius", "wear_radius"):
+        assert list(found[edge]) == [float(first.contact_radius)] * 2
+    assert list(found["worn_volume"]) == [0.0, 0.0]
+    assert list(found["normal_force"]) == pytest.approx([float(first.normal_force)] * 2, rel=1e-14)
+    assert list(found[name]) == sizes
+    r = [0.0, 0.3, 0.69]
+    assert (wear.worn_depth(r) == 0).all()
+    assert (wear.limiting_profile(r) == wear.initial_profile(r)).all()
+    assert wear.pressure([0.1])[0] == pytest.approx(pressure(first, [0.1]), rel=1e-12)
+
+
+def codes_of(contact: normal.NormalContact) -> set[str]:
+    return {notice.code for notice in contact.warnings}
+
+
+def test_a_held_depth_in_full_slip_wears_until_nothing_touches() -> None:
+    """f = d up to where the first shape has that height: r^2 = 2 R d, and V = pi R d^2."""
+    d = 0.3
+    wear = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_displacement": [0.1, 0.5]})
+    found = values(wear)
+    assert list(wear.regime) == ["partial_slip", "full_slip"]
+    assert {"contact_lost", "singular"} <= codes(wear)
+    assert found["stick_radius"][1] == 0
+    assert found["wear_radius"][1] == pytest.approx((2 * R * d) ** 0.5, rel=1e-15)
+    assert found["worn_volume"][1] == pytest.approx(np.pi * R * d * d, rel=1e-14)
+    assert (found["normal_force"][1], found["tangential_force"][1]) == (0.0, 0.0)
+    assert (found["indentation_depth"][1], found["tangential_displacement"][1]) == (d, 0.5)
+    r = np.array([0.0, 1e-9, 0.5, 0.8])
+    assert wear.limiting_profile(r)[1] == pytest.approx([d] * 4, rel=1e-15)
+    assert (wear.pressure(r)[1] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("profile", "radius", "volume"),
+    [
+        (Cone(0.4), 0.75, np.pi * 0.3 * 0.75**2 / 3),
+        (TruncatedCone(0.5, 0.4), 1.25, np.pi * 0.3 * (1.25**2 + 1.25 * 0.5 + 0.25) / 3),
+        (FlatPunch(0.7), 0.7, np.pi * 0.3 * 0.49),
+    ],
+)
+def test_other_shapes_in_full_slip(profile: Profile, radius: float, volume: float) -> None:
+    wear = worn(profile, {"indentation_depth": 0.3}, {"tangential_displacement": 9.0})
+    assert float(wear.wear_radius) == pytest.approx(radius, rel=1e-14)
+    assert float(wear.worn_volume) == pytest.approx(volume, rel=1e-13)
+    r = np.array([0.0, 0.2, 0.69])
+    assert wear.limiting_profile(r) == pytest.approx([0.3] * 3, rel=1e-14)
+    values(wear)
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(R), RoundedPunch(0.5, 1.7), FlatPunch(0.7)])
+def test_a_held_force_in_full_slip_wears_without_end(profile: Profile) -> None:
+    for amplitude in ({"tangential_force": [0.1, 0.15]}, {"tangential_displacement": [0.01, 9.0]}):
+        wear = worn(profile, {"normal_force": 0.3}, amplitude)
+        found = values(wear)
+        assert wear.regime[1] == "full_slip"
+        assert "endless_wear" in codes(wear)
+        for name in ("wear_radius", "indentation_depth", "worn_volume"):
+            assert np.isposinf(found[name][1])
+            assert np.isfinite(found[name][0])
+        assert (found["stick_radius"][1], found["normal_force"][1]) == (0.0, 0.3)
+        assert found["tangential_force"][1] == pytest.approx(0.15, rel=1e-15)
+        r = [0.0, 0.3]
+        assert np.isposinf(wear.limiting_profile(r)[1]).all()
+        assert (wear.pressure(r)[1] == 0).all()
+        assert np.isfinite(wear.grid(30)).all()
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(R), Cone(0.4), RoundedPunch(0.5, 1.7)])
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+def test_without_a_load_nothing_wears(profile: Profile, control: str) -> None:
+    wear = worn(profile, {control: [0.0, 0.2]}, {"tangential_displacement": 0.01})
+    found = values(wear)
+    assert wear.regime[0] == "stick"
+    assert (found["worn_volume"][0], found["normal_force"][0]) == (0.0, 0.0)
+    assert found["worn_volume"][1] > 0
+
+
+def test_the_limit_of_a_held_depth_and_force_is_the_largest_stick_zone() -> None:
+    """c (d - g(c)) of a truncated cone rises, falls and rises again towards its flat.
+
+    Of three stick zones that carry the force, wear comes to the outermost first.
+    """
+    profile, d = TruncatedCone(0.2, 0.35), 1.0
+    c = np.linspace(0.2000001, 1.9, 4001)
+    carried = c * (d - profile.g(c))
+    size = (carried[0] + carried[:400].min()) / 2
+    assert np.count_nonzero(np.diff(np.sign(carried - size))) == 3
+    wear = worn(profile, {"indentation_depth": d}, {"tangential_force": size})
+    outermost = c[np.flatnonzero(carried >= size)[-1]]
+    assert float(wear.stick_radius) == pytest.approx(outermost, rel=1e-3)
+    edge = np.atleast_1d(wear.stick_radius)
+    share = edge * (d - profile.g(edge))
+    assert share == pytest.approx(size, rel=1e-13)
+
+
+def test_a_force_that_the_worn_contact_cannot_carry() -> None:
+    """Partial slip at first; but c (d - g(c)) is at most (2/3) d a/sqrt(3) for a paraboloid."""
+    d, a = 0.3, (R * 0.3) ** 0.5
+    most = 2 * 0.5 * 2 / 3 * d * a / 3**0.5
+    good = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_force": most * (1 - 1e-9)})
+    assert float(good.stick_radius) == pytest.approx(a / 3**0.5, rel=1e-4)
+    with pytest.raises(InputError) as failure:
+        worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_force": [0.01, most * 1.001]})
+    assert failure.value.path == ("oscillation", "tangential_force", 1)
+    assert f"{most:.6g}"[:6] in failure.value.detail
+
+
+TABLE = Tabulated([0.0, 0.5, 0.9, 1.3], [0.0, 0.1, 0.35, 0.8])
+
+
+@pytest.mark.parametrize(
+    ("profile", "depth"), [(Sphere(1.0), 1.2), (Ellipsoid(1.0, 0.2), 0.3), (TABLE, 1.1)]
+)
+def test_a_rim_past_the_profile_s_end_is_refused(profile: Profile, depth: float) -> None:
+    largest = 0.5 / 0.8 * depth
+    amplitudes = {"tangential_displacement": [largest * 1e-3, largest * 0.99]}
+    with pytest.raises(InputError) as failure:
+        worn(profile, {"indentation_depth": depth}, amplitudes)
+    assert failure.value.path == ("load", "indentation_depth", 1)
+    assert "profile ends" in failure.value.detail
+
+
+@pytest.mark.parametrize(
+    ("load", "amplitude", "path"),
+    [
+        ({"contact_radius": 0.3}, {"tangential_force": 0.1}, ("load", "contact_radius")),
+        ({"normal_force": 0.3}, {}, ("oscillation",)),
+        (
+            {"normal_force": 0.3},
+            {"tangential_force": 0.1, "tangential_displacement": 0.1},
+            ("oscillation",),
+        ),
+        (
+            {"normal_force": 0.3},
+            {"tangential_force": [0.1, -0.1]},
+            ("oscillation", "tangential_force", 1),
+        ),
+        (
+            {"normal_force": 0.3},
+            {"tangential_displacement": [np.nan]},
+            ("oscillation", "tangential_displacement", 0),
+        ),
+        (
+            {"normal_force": 0.3},
+            {"tangential_displacement": []},
+            ("oscillation", "tangential_displacement"),
+        ),
+        (
+            {"normal_force": 0.3},
+            {"tangential_force": [0.1, 0.16]},
+            ("oscillation", "tangential_force", 1),
+        ),
+    ],
+)
+def test_refusals_name_what_is_wrong(
+    load: dict[str, Any], amplitude: dict[str, Any], path: tuple[Any, ...]
+) -> None:
+    with pytest.raises(InputError) as failure:
+        worn(Paraboloid(R), load, amplitude)
+    assert failure.value.path == path
+
+
+def test_arrays_of_profiles_and_bad_radii_are_refused() -> None:
+    with pytest.raises(InputError, match="profile"):
+        worn(
+            Paraboloid(np.array([1.0, 2.0])),
+            {"normal_force": 0.3},
+            {"tangential_force": 0.1},
+        )
+    wear = worn(Sphere(1.0), {"indentation_depth": 0.3}, {"tangential_displacement": 0.05})
+    for method in (wear.worn_depth, wear.limiting_profile, wear.initial_profile, wear.pressure):
+        for bad in ([0.1, -0.1], [0.1, np.nan], [0.1, np.inf]):
+            with pytest.raises(InputError) as failure:
+                method(bad)
+            assert failure.value.path == ("radius", 1)
+    with pytest.raises(InputError, match="the profile ends at radius 1"):
+        wear.limiting_profile([0.5, 1.5])
+
+
+def test_the_grid_holds_every_edge() -> None:
+    wear = worn(
+        RoundedPunch(0.5, 1.7),
+        {"indentation_depth": 0.2},
+        {"tangential_displacement": [0.01, 0.05]},
+    )
+    radii = wear.grid(60)
+    assert radii.shape == (60,)
+    assert (np.diff(radii) > 0).all()
+    edges = [0.0, 0.5, float(wear.first.normal.contact_radius)]
+    edges += [*wear.stick_radius.tolist(), *wear.wear_radius.tolist()]
+    assert set(edges) <= set(radii.tolist())
+    with pytest.raises(InputError, match="at least"):
+        wear.grid(5)
+
+
+def test_steep_and_needle_like_powers() -> None:
+    for exponent in (0.05, 0.2, 60.0, 200.0):
+        profile = Power(1.0, exponent)
+        depth = float(profile.g(np.array([0.7]))[0])
+        largest = 0.5 / 0.8 * depth
+        sizes = largest * np.array([1e-9, 0.1, 0.5, 0.9])
+        wear = worn(profile, {"indentation_depth": depth}, {"tangential_displacement": sizes})
+        values(wear)
+        assert (np.diff(wear.wear_radius) >= 0).all()
+        assert (wear.worn_volume > 0).all()
+
+
+def test_loads_broadcast_with_moduli() -> None:
+    contact = normal.solve(Paraboloid(R), np.array([1.0, 2.0]), normal_force=[0.3, 0.6])
+    wear = limit.solve(
+        contact, np.array([0.8, 1.6]), np.array([0.5, 0.5]), tangential_force=[0.05, 0.1]
+    )
+    assert wear.stick_radius[0] == pytest.approx(wear.stick_radius[1], rel=1e-14)
+    assert wear.pressure([0.1])[0] == pytest.approx(wear.pressure([0.1])[1] / 2, rel=1e-14)
+    square = normal.solve(Paraboloid(R), 1.0, normal_force=[[0.3], [0.6]])
+    both = limit.solve(square, 0.8, 0.5, tangential_force=[[0.05, 0.1]])
+    assert both.wear_radius.shape == (2, 2)
+    assert both.worn_depth([0.1, 0.2, 0.3]).shape == (2, 2, 3)
