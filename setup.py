@@ -3,13 +3,20 @@
 from Cython.Build import cythonize
 from setuptools import Extension, setup
 
+GROW = [
+    part
+    for limit in ("large-function-growth", "inline-unit-growth", "large-stack-frame-growth")
+    for part in ("--param", f"{limit}=100000")
+]
+
 setup(
     ext_modules=cythonize(
         Extension(
             "mdr_core.history.walk",
             ["src/mdr_core/history/walk.py"],
-            # Without fused multiply-add the digits are those of the uncompiled text.
-            extra_compile_args=["-O3", "-ffp-contract=off"],
+            # Without fused multiply-add the digits are those of the uncompiled text; inlined, the
+            # arrays' descriptions are not copied from function to function.
+            extra_compile_args=["-O3", "-ffp-contract=off", "-finline-limit=20000", *GROW],
         ),
         build_dir="build",
         compiler_directives={

@@ -101,24 +101,21 @@ class Branches:
         """Vertices so near their parent that a difference would lose digits."""
         return np.flatnonzero(self.tree.span < NARROW * self.tree.level)
 
-    @cached_property
-    def _edges(self) -> tuple[Array, Array]:
-        """Contact coordinate of each vertex' parent, and its distance, each with its digits."""
-        tree, narrow = self.tree, self._narrow
-        edge = self.coordinate[tree.parent]
-        width = self.coordinate - edge
-        if narrow.size:
-            top, low = tree.level[narrow], tree.level[tree.parent[narrow]]
-            ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
-            edge[narrow], width[narrow] = ends(
-                self.profile, self.coordinate[narrow], tree.span[narrow] / top, low / top
-            )
-        return edge, width
-
     @property
     def width(self) -> Array:
         """Contact coordinate of each vertex above its parent's, with its own digits."""
-        return self._edges[1]
+        width = self.coordinate - self.coordinate[self.tree.parent]
+        if self._narrow.size:
+            width[self._narrow] = self._narrow_edges[1]
+        return width
+
+    @cached_property
+    def _narrow_edges(self) -> tuple[Array, Array]:
+        """Contact coordinate of the parents of narrow pieces, and its distance."""
+        tree, narrow = self.tree, self._narrow
+        top, low = tree.level[narrow], tree.level[tree.parent[narrow]]
+        ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
+        return ends(self.profile, self.coordinate[narrow], tree.span[narrow] / top, low / top)
 
     def _other_step(self, values: Array) -> Array:
         """Step of what is not the level from each vertex' parent."""
@@ -129,7 +126,7 @@ class Branches:
         step = values - values[tree.parent]
         if narrow.size:
             between = annulus.depth_step if self.by_force else annulus.force_step
-            edge, width = (part[narrow] for part in self._edges)
+            edge, width = self._narrow_edges
             step[narrow] = between(profile, self.coordinate[narrow], width, edge)
         return step
 

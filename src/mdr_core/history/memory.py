@@ -52,7 +52,7 @@ class Tree:
     """All vertices that a walk has made; each knows the one below it."""
 
     parent: Indices
-    """-1 on the axis: what stands there has no piece below, and a slope of zero."""
+    """-1 on the axis, where both steps are one: there is no piece below, and its slope is zero."""
     forward: Array
     """level + anchor, as rows of (high, low)."""
     backward: Array
@@ -81,8 +81,7 @@ class Tree:
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor in the level below each vertex, from -1 to 1."""
-        length = np.where(self.length > 0, self.length, 1.0)
-        return (self.forward_step - self.backward_step) / length
+        return (self.forward_step - self.backward_step) / self.length
 
 
 class Pieces(NamedTuple):
@@ -153,7 +152,7 @@ def as_tree(chain: Chain) -> Tree:
     """Return the polyline as a tree that never branched."""
     count = len(chain.forward)
     steps = [np.diff(part, axis=0).sum(axis=1) for part in chain]
-    first = np.zeros(1)
+    first = np.ones(1)
     return Tree(
         np.arange(count, dtype=np.intp) - 1,
         chain.forward,
@@ -173,7 +172,7 @@ def _walk(
     # Rows as `walk` names them; what it makes it fills.
     vertices = np.empty((6, room))
     vertices[0:2, :held], vertices[2:4, :held] = chain.forward.T, chain.backward.T
-    vertices[4:6, 0] = 0.0
+    vertices[4:6, 0] = 1.0
     vertices[4, 1:held] = np.diff(chain.forward, axis=0).sum(axis=1)
     vertices[5, 1:held] = np.diff(chain.backward, axis=0).sum(axis=1)
     links = np.empty((2, room), dtype=np.intp)

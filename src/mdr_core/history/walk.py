@@ -407,8 +407,8 @@ def _push(vertices: Array, links: Indices, counts: Indices, below: int, leg: int
     counts[VERTICES] = new + 1
     links[PARENT, new] = below
     links[LEG, new] = leg
-    vertices[FORWARD_STEP, new] = 0.0
-    vertices[BACKWARD_STEP, new] = 0.0
+    vertices[FORWARD_STEP, new] = 1.0
+    vertices[BACKWARD_STEP, new] = 1.0
     return new
 
 
