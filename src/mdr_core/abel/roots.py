@@ -29,6 +29,15 @@ from mdr_core.typing import Array, Flags, Indices, Parameter
 Weight = Callable[[Array, Array, Indices], Array]
 
 
+def leg(x: Array, b: Parameter) -> Array:
+    """sqrt(x^2 - b^2), zero for x < b, with the digits of x - b.
+
+    >>> leg(np.array([0.5, 5.0]), 3.0).tolist()
+    [0.0, 4.0]
+    """
+    return np.asarray(np.sqrt(np.maximum(x - b, 0.0) * (x + b)))
+
+
 def asinh_difference(high: Array, low: Array, square_difference: Array) -> Array:
     """arcsinh(high) - arcsinh(low), given high^2 - low^2 with its digits. Source: notes, §4."""
     denominator = high * np.hypot(1.0, low) + low * np.hypot(1.0, high)
