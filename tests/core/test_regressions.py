@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 
-from mdr_core import foundation, normal, profiles
+from mdr_core import foundation, normal, profiles, tangential
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 
@@ -153,12 +153,32 @@ def test_the_energy_of_a_steep_spherical_tip() -> None:
     np.testing.assert_allclose(contact.elastic_energy, 923.66399577036218, rtol=1e-13)
 
 
-def test_a_cap_far_flatter_than_its_flank_admits_its_rounding() -> None:
+def test_a_cap_far_flatter_than_its_flank_keeps_its_digits() -> None:
     """From the closed forms at 80 digits."""
     profile = profiles.CappedParaboloid(
         0.016127794746985693, 141.23123085463746, 4.859735417524895e-07
     )
     depth = 0.00011668003116514185
     contact = normal.solve(profile, 8119623425.669712, indentation_depth=depth)
-    miss = abs(contact.normal_force / 30398.095686797696 - 1)
-    assert miss <= contact.error_estimate
+    np.testing.assert_allclose(contact.normal_force, 30398.095686797696, rtol=1e-14)
+
+
+def test_a_contact_wider_than_the_cap_by_less_than_its_rounding_slips_back_inside() -> None:
+    """The radius is the cap's own to the last digit, the contact coordinate is not."""
+    profile = profiles.CappedParaboloid(
+        2.1010641645242467e-09, 1.7830536818613786e-06, 3.8937973377132814e-13
+    )
+    contact = normal.solve(profile, 1.0, indentation_depth=2.475995259375248e-12)
+    assert contact.contact_radius == profile.cap_radius
+    stick = 2.101064151496657e-09
+    sideways = tangential.solve(contact, 0.8, 0.3, stick_radius=stick)
+    np.testing.assert_allclose(sideways.slip_width, profile.cap_radius - stick, rtol=1e-6)
+
+
+def test_a_force_that_just_reaches_the_cap_s_rim() -> None:
+    """Where the kink is small the force hardly grows behind it, but the radius is there."""
+    profile = profiles.CappedParaboloid(
+        0.25083630309819094, 0.07425340857930318, 0.0742534051155459
+    )
+    contact = normal.solve(profile, 1.0, normal_force=0.2833958695399503)
+    np.testing.assert_allclose(contact.contact_radius, profile.cap_radius, rtol=1e-15)

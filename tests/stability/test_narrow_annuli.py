@@ -74,7 +74,18 @@ class Annulus:
         if self.kind == "capped_paraboloid":
             b = self.body.b
             return mp.sqrt(b**2 + (coordinate - b) ** 2) if coordinate > b else coordinate
+        if self.kind == "spherical_tip_cone":
+            return self._spherical_tip(coordinate)
         return coordinate
+
+    def _spherical_tip(self, v: mpf) -> mpf:
+        b, h, big = self.body.b, self.body.h, self.body.big
+        start = mp.asinh(self.body.t)
+        if v <= start:
+            return big * mp.tanh(v)
+        power = 2 * max(start, mpf(1))
+        square = 2 * start * b * h**2 / (power * big) * ((v / start) ** power - 1)
+        return mp.sqrt(b**2 + square)
 
     def slope(self, x: mpf) -> mpf:
         return self.body.dg(x)

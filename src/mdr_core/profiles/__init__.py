@@ -8,12 +8,14 @@ from mdr_core.profiles.blunt import (
     TruncatedCone,
     TruncatedParaboloid,
 )
+from mdr_core.profiles.capped_paraboloid import CappedParaboloid
 from mdr_core.profiles.power_law import Cone, Paraboloid, Power
 from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.rounded import Ellipsoid, Hyperboloid, Sphere
+from mdr_core.profiles.rounded_cone import RoundedCone
 from mdr_core.profiles.series import PowerTerm, Series
+from mdr_core.profiles.spherical_tip_cone import SphericalTipCone
 from mdr_core.profiles.tabulated import Tabulated
-from mdr_core.profiles.two_part import CappedParaboloid, RoundedCone, SphericalTipCone
 
 _CLASSES: Final[tuple[type[Profile], ...]] = (
     FlatPunch,
