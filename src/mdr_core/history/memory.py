@@ -137,9 +137,9 @@ def stacked(forward_step: Array, backward_step: Array) -> Chain:
 
 def _sums(steps: Array) -> Array:
     """Running sums as rows of (high, low), by Knuth's two-sum."""
-    rows = np.zeros((steps.size, 2))
+    rows = np.zeros((steps.size + 1, 2))
     high = low = 0.0
-    for i, step in enumerate(steps.tolist()):
+    for i, step in enumerate(steps.tolist(), start=1):
         total = high + step
         part = total - high
         low += (high - (total - part)) + (step - part)

@@ -237,7 +237,7 @@ class History:
     def _in_depths(self, chain: Chain) -> Chain:
         """A polyline over forces as the one over depths, with the digits of its pieces."""
         part = Branches(self.start.profile, memory.as_tree(chain), by_force=True)
-        span, slope = part.depth_step, part.tree.slope
+        span, slope = part.depth_step[1:], part.tree.slope[1:]
         return memory.stacked(span * (1 + slope), span * (1 - slope))
 
 

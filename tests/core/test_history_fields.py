@@ -1,0 +1,138 @@
+"""Stresses and slip at the end of a history: superpositions of Eqs. (5.18), (5.38) and (5.40)."""
+
+import itertools
+
+import mpmath
+import numpy as np
+import pytest
+
+from mdr_core import fields, history, normal, tangential
+from mdr_core.history import State
+from mdr_core.profiles import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedCone,
+    RoundedPunch,
+    Sphere,
+    TruncatedCone,
+)
+
+E, G, MU = 1.3, 0.9, 0.4
+PROFILES = (
+    Paraboloid(1.0),
+    Cone(0.3),
+    RoundedPunch(0.4, 1.0),
+    Sphere(3.0),
+    Power(0.7, 0.7),
+    Power(2.0, 4.0),
+    RoundedCone(0.3, 1.0),
+    TruncatedCone(0.3, 0.4),
+)
+SWING = {"normal_force": [1.0, 1.0, 1.5, 0.8], "tangential_force": [0.0, 0.3, -0.2, 0.1]}
+
+
+def by_kind(profile: Profile) -> str:
+    return profile.kind
+
+
+def shaken(profile: Profile) -> State:
+    return history.solve(profile, E, G, MU, **SWING).state
+
+
+def hertz(a: float, r: np.ndarray) -> np.ndarray:
+    """Pressure of the unit paraboloid over E*, Eq. (5.38)."""
+    return 2 / np.pi * np.sqrt(np.maximum(a * a - r * r, 0.0))
+
+
+def test_reversal_superposes_two_of_cattaneo_and_mindlin() -> None:
+    # physics of Eq. (5.18) with the Masing rule: tau = tau(c) - 2 tau(c2).
+    first, back = 0.3, 0.05
+    state = history.solve(
+        Paraboloid(1.0), E, G, MU, normal_force=1.0, tangential_force=[0.0, first, back]
+    ).state
+    a = (3 / (4 * E)) ** (1 / 3)
+    c = a * (1 - first / MU) ** (1 / 3)
+    c2 = a * (1 - (first - back) / (2 * MU)) ** (1 / 3)
+    np.testing.assert_allclose(state.slip_fronts, [c, c2], rtol=1e-14)
+    r = np.linspace(0, 0.99 * a, 37)
+    expected = MU * E * (hertz(a, r) - hertz(c, r) - 2 * (hertz(a, r) - hertz(c2, r)))
+    found = fields.shear_stress(state, r)
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13 * MU * E * a)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
+def test_shear_stress_carries_the_tangential_force(profile: Profile) -> None:
+    state = shaken(profile)
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    stops = [0.0, *map(float, profile.breaks), *state.slip_fronts, state.contact_radius]
+    stops = sorted({stop for stop in stops if stop <= state.contact_radius})
+    total = 0.0
+    for low, high in itertools.pairwise(stops):
+        angle = (nodes + 1) * np.pi / 2
+        r = (low + high) / 2 - (high - low) / 2 * np.cos(angle)
+        ring = 2 * np.pi * r * np.pi / 2 * (high - low) / 2 * np.sin(angle)
+        total += float((weights * ring * fields.shear_stress(state, r)).sum())
+    assert total == pytest.approx(SWING["tangential_force"][-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
+def test_slip_is_the_transform_of_the_foundation(profile: Profile) -> None:
+    # Eq. (5.40): s = (2/pi) int_0^r s_1D/sqrt(r^2 - x^2) dx, s_1D = q_x/G* less that of the axis.
+    state = shaken(profile)
+    carried = float(fields.foundation_shear(state, [0.0])[0])
+    breaks = [*map(float, profile.breaks), *state.slip_fronts]
+    for share in (0.35, 0.9, 1.0):
+        r = share * state.contact_radius
+        angles = sorted({float(np.arcsin(x / r)) for x in breaks if x < r} | {0.0, np.pi / 2})
+
+        def density(angle: mpmath.mpf, r: float = r) -> float:
+            x = min(r * float(mpmath.sin(angle)), r)
+            return (float(fields.foundation_shear(state, [x])[0]) - carried) / G
+
+        expected = 2 / np.pi * float(mpmath.quad(density, angles, maxdegree=6))
+        found = float(fields.slip(state, [r])[0])
+        assert found == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
+@pytest.mark.parametrize("ratio", [1e-9, 0.01, 0.6])
+def test_one_load_is_the_shortest_history(profile: Profile, ratio: float) -> None:
+    contact = normal.solve(profile, E, normal_force=1.0)
+    once = tangential.solve(contact, G, MU, tangential_force=ratio * MU)
+    way = history.solve(profile, E, G, MU, normal_force=1.0, tangential_force=[0.0, ratio * MU])
+    a = float(contact.contact_radius)
+    r = np.array([0.0, 0.2, 0.5, 0.77, 0.9]) * a
+    for field in (fields.shear_stress, fields.foundation_shear):
+        np.testing.assert_allclose(field(way.state, r), field(once, r), rtol=1e-11)
+    slip = fields.slip(once, r)
+    np.testing.assert_allclose(fields.slip(way.state, r), slip, rtol=1e-10, atol=1e-300)
+
+
+def test_a_flat_punch_carries_one_traction() -> None:
+    state = shaken(FlatPunch(0.5))
+    r = np.array([0.0, 0.3, 0.49])
+    expected = 0.1 / (2 * np.pi * 0.5 * np.sqrt(0.25 - r * r))
+    np.testing.assert_allclose(fields.shear_stress(state, r), expected, rtol=1e-13)
+    assert np.all(fields.slip(state, r) == 0)
+    assert np.isposinf(fields.shear_stress(state, [0.5])[0])
+    assert state.slip_fronts.size == 0
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
+def test_a_lost_contact_carries_nothing(profile: Profile) -> None:
+    state = history.solve(
+        profile, E, G, MU, indentation_depth=[0.1, -0.1], tangential_displacement=[0.0, 0.05]
+    ).state
+    r = np.array([0.0, 0.1, 1.0])
+    for field in (fields.shear_stress, fields.foundation_shear, fields.slip):
+        assert np.all(field(state, r) == 0)
+
+
+def test_grid_has_every_front() -> None:
+    state = shaken(RoundedPunch(0.4, 1.0))
+    grid = fields.grid(state, 60)
+    assert grid.size == 60
+    assert {0.0, 0.4, state.contact_radius, *state.slip_fronts} <= set(grid)
