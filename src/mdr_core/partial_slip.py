@@ -134,11 +134,14 @@ def _somewhere_full(
 def _partial(
     inverse: _Inverse, contact: NormalContact, size: Array, left: Array, limit: Array
 ) -> tuple[Array, Array]:
-    """Stick edge and annulus under size = limit - left, each with its own digits; limit > 0."""
-    ratio = size / limit
+    """Stick edge and annulus under size = limit - left, each with its own digits; limit > 0.
+
+    Consumes `left` and `limit`: what is written to memory of its own has to leave the cache.
+    """
+    left /= limit
+    ratio = np.divide(size, limit, out=limit if limit.shape == left.shape else None)
     if contact.profile.slips_at_once:
         return contact.coordinate, ratio
-    left /= limit
     return inverse(contact.profile, contact.coordinate, ratio, left)
 
 

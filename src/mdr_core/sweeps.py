@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from mdr_core.profiles import Profile
-from mdr_core.typing import Parameter
+from mdr_core.typing import Array, Parameter
 
 # A handful of doubles of each scene is at hand at once: about a megabyte.
 BLOCK: Final = 49_152
@@ -23,6 +23,16 @@ def parameters(profile: Profile) -> dict[str, Any]:
     """The parameters by name of a profile that is no more than they are, else none."""
     names: tuple[str, ...] = getattr(profile, "__match_args__", ())
     return {name: getattr(profile, name) for name in names}
+
+
+def scene_by_scene(
+    size: int, answer: Callable[..., Array], profile: Profile, values: Sequence[Parameter]
+) -> Array:
+    """Return answer(profile, *values), in blocks if it is of more than a few scenes."""
+    if size <= BLOCK:
+        return answer(profile, *values)
+    (found,) = in_blocks(lambda *parts: (answer(*parts),), profile, values)
+    return found
 
 
 def in_blocks(

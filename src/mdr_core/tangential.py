@@ -1,5 +1,6 @@
 """Partial slip under one monotonic tangential load: which part sticks, and how far it moves."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, prod
 from typing import Any, Final
@@ -13,7 +14,8 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
 from mdr_core.partial_slip import CONTROLS, state, state_of_sweep
-from mdr_core.sweeps import BLOCK
+from mdr_core.profiles import Profile
+from mdr_core.sweeps import BLOCK, scene_by_scene
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validity import friction_notices
 
@@ -67,8 +69,7 @@ class TangentialContact:
         if profile.slips_at_once:
             partial = self.limiting_force * self.width
         else:
-            step = annulus.force_step(profile, self._coordinate, self.width, self._stick)
-            partial = self.friction_coefficient * self.normal.e_star * step
+            partial = self._over_annulus(_partial_force)
         if self.full_slip.any():
             partial = np.where(self.full_slip, self.limiting_force, partial)
         return self._signed(partial)
@@ -81,11 +82,22 @@ class TangentialContact:
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
             partial = self._largest_stick * self.width
         else:
-            step = annulus.depth_step(profile, self._coordinate, self.width, self._stick)
-            partial = np.asarray(self.compliance * step)
+            partial = self._over_annulus(_partial_displacement)
         if self.full_slip.any():
             partial = np.where(self.full_slip, self._largest_stick, partial) + self.excess
         return self._signed(partial)
+
+    def _over_annulus(self, answer: Callable[..., Array]) -> Array:
+        """What comes from the annulus, of the friction, the moduli and its ends."""
+        values = (
+            self.friction_coefficient,
+            self.normal.e_star,
+            self.g_star,
+            self._coordinate,
+            self.width,
+            self._stick,
+        )
+        return scene_by_scene(self.width.size, answer, self.normal.profile, values)
 
     def _signed(self, size: Array) -> Array:
         return size if self.sign.ndim == 0 and self.sign > 0 else self.sign * size
@@ -113,11 +125,10 @@ class TangentialContact:
             return np.where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self._stick)
         if c is not self._stick:
-            # The radius of a rounded coordinate may lie beyond the edge by its rounding.
-            c = np.minimum(c, self.normal.contact_radius)
-        if not self.width.min(initial=1.0) > 0:
-            # Nothing slips: the edges are the same, to the last digit.
-            c = np.where(self.width > 0, c, self.normal.contact_radius)
+            # The radius of a rounded coordinate may lie beyond the edge by its rounding; where
+            # nothing slips the edges are the same, to the last digit.
+            a = self.normal.contact_radius
+            c = np.where(self.width > 0, np.minimum(c, a), a)
         return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
 
     @cached_property
@@ -166,6 +177,18 @@ class TangentialContact:
         """Those of the normal contact, and `friction`."""
         moduli = self.normal.e_star, self.g_star
         return (*self.normal.warnings, *friction_notices(self.friction_coefficient, *moduli))
+
+
+def _partial_force(
+    profile: Profile, friction: Parameter, e_star: Parameter, _g_star: Parameter, *ends: Array
+) -> Array:
+    return np.asarray(friction * e_star * annulus.force_step(profile, *ends))
+
+
+def _partial_displacement(
+    profile: Profile, friction: Parameter, e_star: Parameter, g_star: Parameter, *ends: Array
+) -> Array:
+    return np.asarray(friction * e_star / g_star * annulus.depth_step(profile, *ends))
 
 
 def solve(
