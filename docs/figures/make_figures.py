@@ -15,6 +15,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Power, Profile, RoundedPunch
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
+from mdr_core.wear import limit
 
 FOLDER: Final = Path(__file__).parent
 # Every axis is a ratio, so any numbers will do.
@@ -152,6 +153,25 @@ def shear_stress_of_the_rounded_punch(axes: Axes) -> None:
     axes.set_ylabel(r"$\tau/(\mu p_m)$")
 
 
+def limiting_profiles_of_wear(axes: Axes) -> None:
+    """Figure 5.12: the limiting profiles for nine stick radii, Eqs. (5.87), (5.88)."""
+    contact = normal.solve(Paraboloid(10.0), E_STAR, indentation_depth=EDGE**2 / 10.0)
+    depth, sticking = contact.indentation_depth, np.arange(1, 10) / 10
+    # Eq. (5.84), solved for the displacement.
+    displacement = FRICTION * E_STAR / G_STAR * depth * (1 - sticking**2)
+    worn = limit.solve(contact, G_STAR, FRICTION, tangential_displacement=displacement)
+    colors = mpl.colormaps["viridis"](0.9 * (1 - sticking))
+    for index, (stick, color) in enumerate(zip(sticking, colors, strict=True)):
+        stops = (worn.stick_radius[index], worn.wear_radius[index], 1.5 * EDGE)
+        radius = _dense(stops)
+        x = np.concatenate([-radius[::-1], radius])
+        height = worn.limiting_profile(np.abs(x))[index] / depth
+        axes.plot(x, height, color=color, label=f"$c/a = {stick:g}$")
+    axes.set_xlabel("$r/a$")
+    axes.set_ylabel(r"$f_\infty/d$")
+    axes.legend(loc="upper center", ncols=3)
+
+
 FIGURES: Final[dict[str, Callable[[Axes], None]]] = {
     "5_2": stick_radius_of_powers,
     "5_3": displacement_of_powers,
@@ -160,6 +180,7 @@ FIGURES: Final[dict[str, Callable[[Axes], None]]] = {
     "5_7": stick_radius_of_the_rounded_punch,
     "5_8": pressure_of_the_rounded_punch,
     "5_9": shear_stress_of_the_rounded_punch,
+    "5_12": limiting_profiles_of_wear,
 }
 
 
@@ -175,7 +196,7 @@ def main() -> None:
 
 def _dense(edges: tuple[float, ...]) -> Array:
     """Return radii up to the edge, closer to the places where the stresses bend."""
-    places = np.unique([0.0, *edges, EDGE])
+    places = np.unique([0.0, *edges, *(() if max(edges) > EDGE else (EDGE,))])
     shares = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS // 4))) / 2
     parts = [low + (high - low) * shares for low, high in pairwise(places)]
     return np.unique(np.concatenate(parts))
