@@ -29,8 +29,8 @@ class Trail:
     worn: Array
 
     def until(self, state: State) -> "Trail":
-        """The part that a moment has behind it."""
-        before = self.radius < state.stick
+        """The part that a moment has behind it: at a resting edge w_c goes on rising."""
+        before = self.radius <= state.stick
         return Trail(
             np.append(self.radius[before], state.stick),
             np.append(self.worn[before], _passed(state)),

@@ -20,8 +20,11 @@ from mdr_core.wear.annulus_maps import AnnulusMaps
 
 # Where y = (sigma - S_0)/s at the inner nodes ends in the state, and what follows it.
 _EDGES = 4
-# Beyond this part of itself the volume's rate is taken as it is: near the end both are noise.
+# Beyond this part of itself the volume's rate is taken as it is.
 _LARGEST_MISS = 0.2
+# A cycle's work, over b_0/a, from which on it and the volume's rate are noise, and the wear that is
+# left no longer counts.
+_FAINT = 1e-4
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class Outside:
-    """C(r) = sigma - S_0 - h beyond the contact, on Chebyshev points of [start, stop] in r.
+    """C(r) = sigma - S_0 - h beyond the contact, on Chebyshev points in 1/r, start < r < stop.
 
     Where the stick edge has moved, what the passed springs keep of their wear, w_c, tilts the
     surface outside it by C = -(2/pi) int arccos(c/r) dw_c.
@@ -57,12 +60,16 @@ class Outside:
 
     start: float
     stop: float
-    count: int = 14
+    count: int = 16
 
     @cached_property
     def radii(self) -> Array:
         """Where C is kept."""
-        return self.start + (self.stop - self.start) * (1 + chebyshev.chebpts1(self.count)) / 2
+        return 1 / (1 / self.stop + self._range * (1 + chebyshev.chebpts1(self.count)) / 2)
+
+    @property
+    def _range(self) -> float:
+        return 1 / self.start - 1 / self.stop
 
     @cached_property
     def _inverse(self) -> Array:
@@ -73,10 +80,10 @@ class Outside:
     def at(self, values: Array, radius: float) -> tuple[float, float]:
         """C and its slope at a radius."""
         series = self._inverse @ values
-        scale = 2 / (self.stop - self.start)
-        place = (radius - self.start) * scale - 1
+        scale = 2 / self._range
+        place = (1 / radius - 1 / self.stop) * scale - 1
         slope = chebyshev.chebval(place, chebyshev.chebder(series))
-        return float(chebyshev.chebval(place, series)), float(slope * scale)
+        return float(chebyshev.chebval(place, series)), float(-slope * scale / radius**2)
 
 
 @dataclass(frozen=True)
@@ -128,7 +135,10 @@ class State:
     def unworn(self) -> Array:
         """(g_0(x) - g_0(c))/x."""
         shape = self.system.shape
-        return (shape.rise(self.x) - shape.rise(np.array([self.stick]))) / self.x
+        rise = shape.rise(self.x)
+        if self.system.control.stick_moves:
+            rise = rise - shape.rise(np.array([self.stick]))
+        return rise / self.x
 
     @cached_property
     def worn(self) -> Array:
@@ -214,7 +224,9 @@ class System:
             if self.outside
             else np.empty(0)
         )
-        clock = _clock(state.power, columns.volume(change, edge, stick, passed))
+        clock = _clock(
+            state.power, columns.volume(change, edge, stick, passed), _FAINT / float(state.x[-1])
+        )
         moves = np.concatenate([change[:-1], (edge, stick, rise, 0.0), kept])
         moves *= clock
         moves[self.maps.zeta.size + 2] = state.power
@@ -231,7 +243,7 @@ class System:
         return float(state.pressure[0] * state.slip[0] - 4 / np.pi * rise / state.stick)
 
 
-def _clock(power: float, volume: float) -> float:
+def _clock(power: float, volume: float, faint: float) -> float:
     """What all rates are multiplied by, so that the volume follows the friction work.
 
     The rates are one factor, the wear, times functions of the state. What the nodes do not
@@ -239,7 +251,7 @@ def _clock(power: float, volume: float) -> float:
     """
     if not abs(2 * power - volume) < _LARGEST_MISS * abs(volume):
         return 1.0
-    return 2 * power / volume
+    return 1.0 + (2 * power / volume - 1.0) * power / (power + faint)
 
 
 class _Columns:

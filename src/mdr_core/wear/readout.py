@@ -74,13 +74,15 @@ def stick_pressure(state: State, trail: Trail, radius: Array) -> Array:
 
 
 def _trail_stress(trail: Trail, radius: Array) -> Array:
-    """Sum of dw/dx int dx/sqrt(x^2 - r^2) over the trail's pieces above each radius."""
+    """Int dw_c(x)/sqrt(x^2 - r^2) over the trail's pieces above each radius."""
     at = radius[:, None]
     ends = np.maximum(trail.radius, at)
     logs = np.log(ends + np.sqrt((ends - at) * (ends + at)))
-    width = np.diff(trail.radius)
-    slope = np.where(width > 0, np.diff(trail.worn) / np.where(width > 0, width, 1.0), 0.0)
-    return np.asarray(np.diff(logs, axis=1) @ slope)
+    width, step = np.diff(trail.radius), np.diff(trail.worn)
+    wide = width > 0
+    total = np.diff(logs, axis=1) @ np.where(wide, step / np.where(wide, width, 1.0), 0.0)
+    # Where the edge rested w_c rose at one place, and stands there as a step.
+    return np.asarray(total + step[~wide].sum() / _leg(trail.radius[-1:], radius))
 
 
 def _leg(r: Array, c: float | Array) -> Array:

@@ -12,7 +12,7 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import annulus_maps
 from mdr_core.wear.rates import Control, Outside, Shape, System
 
-# The contact grows by half the annulus' width in its limit, by more where the depth rises.
+# Widths by which the contact may grow at c = a; it carries the force on less where c is small.
 _GROWTH: Final = 4.0
 # Polynomials in variables between the radius and its square, by halves: few maps serve all.
 _SMALLEST_SPREAD: Final = -6.0
@@ -74,7 +74,7 @@ class Scene:
         if not self.control.stick_moves:
             return None
         a = float(self.contact.contact_radius)
-        stop = a + _GROWTH * float(self.sideways.slip_width)
+        stop = a + _GROWTH * float(self.sideways.slip_width) * (a / self.stick) ** 2
         return Outside(a / self.length_unit, stop / self.length_unit)
 
     @property

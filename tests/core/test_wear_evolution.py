@@ -1,0 +1,415 @@
+"""Wear over the cycles: its laws, its limit, and an explicit scheme that shares no code with it."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import pairwise
+from math import pi
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+
+from mdr_core import fields, normal, tangential
+from mdr_core.errors import InputError
+from mdr_core.profiles import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedPunch,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+)
+from mdr_core.wear import evolution, limit
+from tests.oracles.wear_explicit import Held, Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+E_STAR, G_STAR, MU, WEAR = 1.3, 0.9, 0.4, 2e-4
+PROFILES: dict[str, Profile] = {
+    "paraboloid": Paraboloid(1.0),
+    "cone": Cone(0.7),
+    "rounded_punch": RoundedPunch(0.4, 1.0),
+    "sphere": Sphere(2.5),
+}
+MORE: dict[str, Profile] = {
+    "power": Power(2.6, 0.8),
+    "truncated_cone": TruncatedCone(0.4, 0.7),
+    "tabulated": Tabulated(
+        tuple(np.linspace(0, 3, 31).tolist()), tuple((np.linspace(0, 3, 31) ** 2 / 2).tolist())
+    ),
+}
+MIXED = "force and displacement"
+CONTROLS = ("depth and displacement", "forces", MIXED)
+ALL_CYCLES = (0.0, 1.0, 1e2, 1e3, 1e4, 1e6, 1e9, 1e12)
+# The other kinds take the same way under each control: one is enough.
+PAIRS = [(kind, control) for kind in PROFILES for control in CONTROLS]
+PAIRS += zip(MORE, CONTROLS[::-1], strict=True)
+
+
+@cache
+def worn(
+    kind: str,
+    control: str,
+    part: float = 0.45,
+    cycles: tuple[float, ...] = ALL_CYCLES,
+    **given: Any,
+) -> evolution.WearEvolution:
+    """The profile at a = 1, its amplitude a part of full slip."""
+    shape = (PROFILES | MORE)[kind]
+    contact = normal.solve(shape, E_STAR, contact_radius=1.0)
+    if control == "depth and displacement":
+        held = normal.solve(shape, E_STAR, indentation_depth=float(contact.indentation_depth))
+    else:
+        held = normal.solve(shape, E_STAR, normal_force=float(contact.normal_force))
+    moved = part * MU * E_STAR / G_STAR * float(contact.indentation_depth)
+    load: dict[str, float] = {"tangential_displacement": moved}
+    if control == "forces":
+        load = {"tangential_force": part * MU * float(contact.normal_force)}
+    return evolution.solve(held, G_STAR, MU, wear_coefficient=WEAR, cycles=cycles, **load, **given)
+
+
+def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
+    """2 pi int h r dr by a rule of its own, split where h has its corners."""
+    ends = [
+        float(found.stick_radius[0]),
+        float(found.stick_radius[cycle]),
+        float(found.contact_radius[cycle]),
+    ]
+    nodes, weights = leggauss(80)
+    total = 0.0
+    for low, high in pairwise(ends):
+        # Substituted for the roots at both ends.
+        angle = pi / 4 * (1 + nodes)
+        r = low + (high - low) * np.sin(angle) ** 2
+        step = (high - low) * np.sin(2 * angle) * pi / 4
+        total += float((weights * step * 2 * pi * r * found.worn_depth(r)[cycle]).sum())
+    return total
+
+
+@pytest.mark.parametrize("resolution", [24, 64])
+@pytest.mark.parametrize("control", CONTROLS)
+@pytest.mark.parametrize("kind", PROFILES)
+def test_first_cycles_wear_what_the_friction_work_takes(
+    kind: str, control: str, resolution: int
+) -> None:
+    """Against the work of a cycle from the closed forms of partial slip."""
+    found = worn(kind, control, cycles=(0.0,))
+    step = 1e-6 * found.scene.cycle_unit
+    early = worn(kind, control, cycles=(step,), resolution=resolution)
+    work = 4 * float(found.scene.sideways.dissipated_energy)
+    expected = pytest.approx(WEAR * work * step, rel=1e-4 if resolution == 24 else 1e-6)
+    assert early.worn_volume[0] == expected
+
+
+@pytest.mark.parametrize(("kind", "control"), PAIRS)
+def test_volume_follows_the_work_to_the_end(kind: str, control: str) -> None:
+    found = worn(kind, control)
+    lost = WEAR * found.dissipated_energy
+    # The stick edge that comes to rest within the nodes' spacing leaves a step behind.
+    bound = 2e-4 if control == CONTROLS[2] else 2e-5
+    assert found.worn_volume == pytest.approx(lost, rel=bound, abs=1e-12)
+    for cycle in (2, 4, 7):
+        assert ring_integral(found, cycle) == pytest.approx(found.worn_volume[cycle], rel=1e-3)
+
+
+def limiting(found: evolution.WearEvolution) -> limit.LimitingWear:
+    sideways = found.scene.sideways
+    held = found.scene.control.displacement
+    name = "tangential_displacement" if held else "tangential_force"
+    return limit.solve(found.scene.contact, G_STAR, MU, **{name: float(getattr(sideways, name))})
+
+
+def distance(found: evolution.WearEvolution) -> float:
+    """Largest distance of the last profile from the limiting one, in units of the depth."""
+    r = np.linspace(0.0, 1.5 * float(found.contact_radius[-1]), 400)
+    r = r[r < 0.99 * float(np.asarray(found.scene.contact.profile.domain))]
+    exact = np.asarray(limiting(found).worn_depth(r))
+    gap = np.abs(found.worn_depth(r)[-1] - exact).max()
+    return float(gap / found.indentation_depth[-1])
+
+
+@pytest.mark.parametrize("part", [0.02, 0.45, 0.85])
+@pytest.mark.parametrize("control", CONTROLS[:2])
+@pytest.mark.parametrize("kind", PROFILES)
+def test_the_end_is_the_limiting_profile(kind: str, control: str, part: float) -> None:
+    found = worn(kind, control, part)
+    assert distance(found) <= 1e-4
+    exact = limiting(found)
+    assert found.contact_radius[-1] == pytest.approx(float(exact.wear_radius), rel=1e-4)
+    assert found.indentation_depth[-1] == pytest.approx(float(exact.indentation_depth), rel=1e-4)
+    assert found.normal_force[-1] == pytest.approx(float(exact.normal_force), rel=1e-4)
+    assert found.worn_volume[-1] == pytest.approx(float(exact.worn_volume), rel=1e-3)
+    assert "limit_reached" in {notice.code for notice in found.warnings}
+
+
+@pytest.mark.parametrize("control", CONTROLS[:2])
+def test_the_distance_from_the_limit_falls_with_the_resolution(control: str) -> None:
+    found = [distance(worn("cone", control, 0.9, resolution=n, rtol=1e-8)) for n in (8, 16, 32)]
+    for coarse, fine in pairwise(found):
+        assert fine < max(coarse / 4, 2e-7)
+
+
+@pytest.mark.parametrize("control", CONTROLS[:2])
+def test_the_limit_wears_no_more(control: str) -> None:
+    """Its pressure outside the stick zone is nothing, and so is the wear of every cycle beyond."""
+    found = worn("paraboloid", control)
+    r = np.linspace(float(found.stick_radius[-1]), float(found.contact_radius[-1]), 50)[1:]
+    pressure = found.pressure(r)
+    assert pressure[-1].max() <= 1e-5 * pressure[0].max()
+    assert found.worn_volume[-1] == found.worn_volume[-2]
+
+
+@pytest.mark.parametrize(("kind", "control"), PAIRS)
+def test_wear_only_takes_away(kind: str, control: str) -> None:
+    cycles = (0.0, *np.geomspace(1.0, 1e7, 22).tolist())
+    found = worn(kind, control, cycles=cycles)
+    c, a = float(found.stick_radius[0]), float(found.contact_radius[-1])
+    r = c + (a - c) * np.linspace(-0.5, 1.2, 300)
+    depth = found.worn_depth(r[r > 0])
+    assert np.all(np.diff(depth, axis=0) >= 0)
+    assert np.all(depth >= 0)
+    assert np.all(depth[:, r[r > 0] < c] == 0)
+    assert np.all(found.pressure(r[r > 0]) >= 0)
+    noise = 1e-5
+    for name in ("worn_volume", "contact_radius", "stick_radius", "indentation_depth"):
+        answer = getattr(found, name)
+        assert np.all(np.diff(answer) >= -noise * answer[-1]), name
+    if control == CONTROLS[0]:
+        assert np.all(np.diff(found.normal_force) <= noise * found.normal_force[0])
+    else:
+        assert np.all(found.normal_force == found.normal_force[0])
+
+
+@pytest.mark.parametrize("control", CONTROLS[:2])
+def test_nothing_ripples_at_the_stick_edge(control: str) -> None:
+    """The worn depth climbs from the stick edge to one summit and falls to the contact's edge."""
+    cycles = tuple(np.geomspace(10.0, 1e5, 25).tolist())
+    found = worn("paraboloid", control, cycles=cycles)
+    for row, c, a in zip(
+        found.worn_depth(0.3 + np.linspace(0.0, 1.4, 2000)),
+        found.stick_radius,
+        found.contact_radius,
+        strict=True,
+    ):
+        r = 0.3 + np.linspace(0.0, 1.4, 2000)
+        steps = np.diff(row[(r > c) & (r < a)])
+        summit = int(np.argmax(steps < 0))
+        assert np.all(steps[:summit] >= 0)
+        assert np.all(steps[summit:] <= 1e-7 * row.max())
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_pressure_carries_the_force(control: str) -> None:
+    found = worn("paraboloid", control, resolution=48)
+    nodes, weights = leggauss(120)
+    for cycle in (0, 2, 3):
+        c, a = float(found.stick_radius[cycle]), float(found.contact_radius[cycle])
+        carried = 0.0
+        for low, high in ((0.0, c), (c, a)):
+            angle = pi / 4 * (1 + nodes)
+            r = low + (high - low) * np.sin(angle) ** 2
+            step = (high - low) * np.sin(2 * angle) * pi / 4
+            carried += float((weights * step * 2 * pi * r * found.pressure(r)[cycle]).sum())
+        assert carried == pytest.approx(found.normal_force[cycle], rel=2e-3 if cycle else 1e-6)
+
+
+def test_before_the_first_cycle_all_is_as_it_was() -> None:
+    found = worn("paraboloid", CONTROLS[0])
+    r = np.array([0.0, 0.3, 0.74, 0.8, 0.95, 1.3])
+    assert found.pressure(r)[0] == pytest.approx(
+        fields.pressure(found.scene.contact, r), rel=1e-9, abs=1e-12
+    )
+    assert np.array_equal(found.profile(r)[0], found.scene.contact.profile.f(r))
+    assert found.contact_radius[0] == pytest.approx(1.0, rel=1e-14)
+
+
+EXPLICIT_GRID = 360
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_explicit_cycles_find_the_same(control: str) -> None:
+    """Against the plain scheme, whose own error is of its spacing, 1.8 a/360."""
+    found = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
+    r = np.arange(EXPLICIT_GRID) * (1.8 / EXPLICIT_GRID)
+    scene = Scene(r, r * r / 2, E_STAR, G_STAR, MU, WEAR)
+    sideways, contact = found.scene.sideways, found.scene.contact
+    force, moved = float(contact.normal_force), float(sideways.tangential_displacement)
+    held = {
+        CONTROLS[0]: Held(depth=float(contact.indentation_depth), displacement=moved),
+        CONTROLS[1]: Held(normal_force=force, tangential_force=float(sideways.tangential_force)),
+        CONTROLS[2]: Held(normal_force=force, displacement=moved),
+    }[control]
+    states = scene.run(held, found.cycles.tolist())
+    depth = found.worn_depth(r)
+    for cycle, state in enumerate(states):
+        gap = np.abs(state.profile - r * r / 2 - depth[cycle]).max()
+        assert gap <= 8e-3 * found.indentation_depth[cycle]
+        assert state.worn_volume == pytest.approx(found.worn_volume[cycle], rel=1.5e-2)
+        assert state.depth == pytest.approx(found.indentation_depth[cycle], rel=4e-3)
+        assert state.contact_radius == pytest.approx(found.contact_radius[cycle], rel=6e-3)
+        assert state.stick_radius == pytest.approx(found.stick_radius[cycle], rel=6e-3)
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+@pytest.mark.parametrize("kind", ["paraboloid", "cone"])
+def test_the_estimate_does_not_understate(kind: str, control: str) -> None:
+    cycles = (10.0, 100.0, 1000.0, 3000.0, 1e4, 1e5)
+    truth = worn(kind, control, 0.5, cycles=cycles, resolution=56, rtol=1e-7)
+    c, a = float(truth.stick_radius[0]), float(truth.contact_radius[-1])
+    r = c + (a - c) * np.linspace(0.0, 1.0, 200)
+    for resolution in (8, 14, 24):
+        found = worn(kind, control, 0.5, cycles=cycles, resolution=resolution)
+        gap = np.abs(found.worn_depth(r) - truth.worn_depth(r)).max(axis=1)
+        errors = {"worn_depth": (gap / truth.indentation_depth).max()}
+        for name in ("worn_volume", "indentation_depth", "normal_force", "contact_radius"):
+            errors[name] = np.abs(getattr(found, name) / getattr(truth, name) - 1).max()
+        assert max(errors.values()) <= found.error_estimate, (resolution, errors)
+
+
+def test_a_thousand_million_cycles_take_no_longer() -> None:
+    times = []
+    for last in (1e4, 1e9):
+        start = perf_counter()
+        worn.__wrapped__("paraboloid", CONTROLS[1], cycles=(last,))
+        times.append(perf_counter() - start)
+    assert times[1] <= 5 * times[0]
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_change_of_units_rescales_the_answers(control: str) -> None:
+    old = worn("paraboloid", control)
+    length, modulus = 1e-6, 1e11
+    force = modulus * length**2
+    contact = old.scene.contact
+    load = (
+        {"indentation_depth": float(contact.indentation_depth) * length}
+        if control == CONTROLS[0]
+        else {"normal_force": float(contact.normal_force) * force}
+    )
+    sideways = old.scene.sideways
+    moved: dict[str, float] = {
+        "tangential_displacement": float(sideways.tangential_displacement) * length
+    }
+    if control == CONTROLS[1]:
+        moved = {"tangential_force": float(sideways.tangential_force) * force}
+    new = evolution.solve(
+        normal.solve(Paraboloid(length), E_STAR * modulus, **load),
+        G_STAR * modulus,
+        MU,
+        wear_coefficient=WEAR / modulus,
+        cycles=ALL_CYCLES,
+        **moved,
+    )
+    for name, unit in (
+        ("worn_volume", length**3),
+        ("indentation_depth", length),
+        ("contact_radius", length),
+        ("stick_radius", length),
+        ("normal_force", force),
+        ("dissipated_energy", force * length),
+    ):
+        # Rounding lets the integrator choose other steps.
+        assert getattr(new, name) == pytest.approx(getattr(old, name) * unit, rel=1e-5, abs=0)
+
+
+def test_twice_the_wear_takes_half_the_cycles() -> None:
+    contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
+    slow, fast = (
+        evolution.solve(
+            contact,
+            G_STAR,
+            MU,
+            wear_coefficient=factor * WEAR,
+            cycles=np.array([100.0, 1000.0]) / factor,
+            tangential_displacement=0.2,
+        )
+        for factor in (1.0, 2.0)
+    )
+    assert fast.worn_volume == pytest.approx(slow.worn_volume, rel=1e-9)
+
+
+def test_what_does_not_slip_does_not_wear() -> None:
+    punch = normal.solve(FlatPunch(1.0), E_STAR, normal_force=1.0)
+    ball = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
+    for contact, amplitude in ((punch, 0.1), (ball, 0.0)):
+        found = evolution.solve(
+            contact, G_STAR, MU, wear_coefficient=1.0, cycles=[0, 1e6],
+            tangential_displacement=amplitude,
+        )  # fmt: skip
+        r = np.array([0.0, 0.5, 0.9, 1.5])
+        assert not found.worn_depth(r).any()
+        assert not found.worn_volume.any()
+        assert not found.dissipated_energy.any()
+        assert np.all(found.stick_radius == 1.0)
+        assert np.all(found.contact_radius == 1.0)
+        assert np.all(found.normal_force == float(contact.normal_force))
+        assert np.array_equal(found.pressure(r)[1], fields.pressure(contact, r))
+        assert found.error_estimate < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("changed", "path"),
+    [
+        ({"tangential_displacement": 10.0}, ("tangential", "tangential_displacement")),
+        ({"tangential_force": 0.1}, ("tangential",)),
+        ({"cycles": [2.0, 1.0]}, ("cycles", 1)),
+        ({"cycles": [-1.0]}, ("cycles", 0)),
+        ({"cycles": []}, ("cycles",)),
+        ({"cycles": [0.0, float("nan")]}, ("cycles", 1)),
+        ({"wear_coefficient": 0.0}, ("wear_coefficient",)),
+        ({"resolution": 4}, ("resolution",)),
+        ({"rtol": 0.0}, ("rtol",)),
+        ({"g_star": [1.0, 2.0]}, ("g_star",)),
+    ],
+)
+def test_what_has_no_answer_is_refused(
+    changed: dict[str, Any], path: tuple[str | int, ...]
+) -> None:
+    contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
+    query = {
+        "g_star": G_STAR,
+        "friction_coefficient": MU,
+        "wear_coefficient": 1e-3,
+        "cycles": [1.0],
+        "tangential_displacement": 0.1,
+    }
+    with pytest.raises(InputError) as caught:
+        evolution.solve(contact, **(query | changed))
+    assert caught.value.path == path
+
+
+def test_a_force_amplitude_needs_a_held_force() -> None:
+    contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
+    with pytest.raises(InputError, match="with the depth held"):
+        evolution.solve(
+            contact, G_STAR, MU, wear_coefficient=1.0, cycles=[1.0], tangential_force=0.1
+        )
+
+
+def test_a_contact_that_outgrows_the_profile_is_refused_at_its_cycle() -> None:
+    table = Tabulated((0.0, 0.4, 0.8, 1.05), (0.0, 0.08, 0.32, 0.55125))
+    contact = normal.solve(table, E_STAR, contact_radius=1.0)
+    held = normal.solve(table, E_STAR, indentation_depth=float(contact.indentation_depth))
+    amplitude = 0.3 * float(tangential.solve(held, G_STAR, MU, stick_radius=0.0).limiting_force)
+    moved = 0.8 * MU * E_STAR / G_STAR * float(held.indentation_depth)
+    assert amplitude > 0
+    with pytest.raises(InputError) as caught:
+        evolution.solve(
+            held, G_STAR, MU, wear_coefficient=WEAR, cycles=[0.0, 1.0, 1e6],
+            tangential_displacement=moved,
+        )  # fmt: skip
+    assert caught.value.path == ("cycles", 2)
+
+
+def test_the_cost_is_known_beforehand() -> None:
+    small, large = evolution.evaluations(8, 3), evolution.evaluations(96, 3)
+    assert 1000 < small < large < 1_000_000
