@@ -13,12 +13,18 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import core_ratios
 import stress_wire_ratio
+import wear_ratio
 import wire_ratio
 
 
 def main() -> None:
     header = ("what", "state", "ratio", "half lie in", "target", "medians and accuracy")
-    found = [*core_ratios.rows(), *wire_ratio.rows(), *stress_wire_ratio.rows()]
+    found = [
+        *core_ratios.rows(),
+        *wear_ratio.rows(),
+        *wire_ratio.rows(),
+        *stress_wire_ratio.rows(),
+    ]
     lines = [
         (
             row.name,

@@ -83,8 +83,14 @@ class Scene:
         """g on the grid."""
         return np.append(0.0, self._forward @ (np.diff(f) / self.dr))
 
-    def run(self, held: Held, cycles: list[float], safety: float = 0.4) -> list[State]:
-        """The scene at each of the ascending numbers of cycles."""
+    def run(
+        self,
+        held: Held,
+        cycles: list[float],
+        safety: float = 0.4,
+        longest: float = float("inf"),
+    ) -> list[State]:
+        """The scene at each of the ascending numbers of cycles, `longest` cycles to a step."""
         f, count, dissipated, states = self.f0.copy(), 0.0, 0.0, []
         for target in cycles:
             while True:
@@ -95,7 +101,7 @@ class Scene:
                 rate = self.wear * self.friction * state.pressure * 4 * slip
                 bound = 4 * self.dr / (np.pi * self.e_star)
                 per_cycle = self.wear * self.friction * 4 * float(slip.max())
-                step = target - count
+                step = min(target - count, longest)
                 if per_cycle > 0:
                     step = min(step, safety * bound / per_cycle)
                 f = f + step * rate

@@ -66,7 +66,7 @@ def annulus_maps(nodes: int, spread: float = 1.0) -> AnnulusMaps:
     functions are polynomials in w, z = w (q + (1 - q) w): for q = `spread` = 1 in z, for
     q = 2 c/(a + c) in the radius, which is what they are smooth in where the stick zone is small.
 
-    Source: mdr-5, Eqs. (5.41), (5.74), (5.79); notes, §10.
+    Source: mdr-5, Eqs. (5.41), (5.74), (5.79); notes, §11.
 
     Examples
     --------

@@ -60,7 +60,7 @@ def course(system: System, stick: float, cycles: Array, rtol: float, stop: float
     The annulus relaxes to a state without pressure in a few units of scaled cycles; once all
     pressure is below `rtol` the wear that is left is too, whatever the number of cycles.
 
-    Source: notes, §10.
+    Source: notes, §11.
     """
     vector = system.start(stick)
     run = _Run(system, vector, rtol, stop)

@@ -258,7 +258,7 @@ def solve(
     cycle at each place, so that dV/dN = K W. The normal load that was given is held, the force
     or else the depth, and so is the amplitude.
 
-    Source: mdr-5, Problem 6; li-2014, the law; notes, §10.
+    Source: mdr-5, Problem 6; dimaki, the law; notes, §11.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ D_0 = d_0 - g_0(c_0) across it; the cycles in units of b_0/(kappa E* D_0), kappa
 
 A slipping point has |s| = mu (E*/G*) sigma, sigma = (2/pi) int_c^r (g - g(c))/sqrt(r^2 - x^2) dx,
 and wears by dh/dN = kappa p sigma. While the stick edge rests sigma = S_0 + h: the slip grows by
-just what is worn off. Source: notes, §10.
+just what is worn off. Source: notes, §11.
 """
 
 from collections.abc import Callable

@@ -15,7 +15,7 @@ def worn_depth(state: State, trail: Trail, radius: Array) -> Array:
     """h(r): what the annulus has lost, and what shows of the springs that the edge has passed.
 
     h = (sigma - S_0) H(r - c) + (2/pi) int_c0^min(r,c) arccos(x/r) dw_c(x).
-    Source: mdr-5, Eq. (5.75), integrated by parts; notes, §10.
+    Source: mdr-5, Eq. (5.75), integrated by parts; notes, §11.
     """
     result = np.zeros(radius.shape)
     a = float(state.x[-1])
@@ -33,7 +33,7 @@ def worn_depth(state: State, trail: Trail, radius: Array) -> Array:
 
 
 def worn_volume(state: State, trail: Trail) -> float:
-    """2 pi int h r dr. Source: notes, §10."""
+    """2 pi int h r dr. Source: notes, §11."""
     b, a = state.end, float(state.x[-1])
     total = b**3 * float(state.system.maps.volume @ state.worn)
     at, step = trail.steps
