@@ -27,7 +27,7 @@ from mdr_core.typing import Array, Indices
 # Up to this part of its level a span is narrow, and steps over it are integrals.
 NARROW: Final = 0.05
 # Over so narrow a span all is smooth, away from breaks: this rule reaches rounding.
-_POINTS: Final = 8
+_POINTS: Final = 10
 
 
 @dataclass(frozen=True)
@@ -149,14 +149,60 @@ def radius_slope_at_depth(profile: Profile, depth: Array) -> Array:
 
 def lens_integral(profile: Profile, depth: Array, span: Array) -> Array:
     """int (I(w) - I(depth - span)) dw = int 2 x (depth - w) dw over a narrow span [length^3]."""
-    low = depth - span
-    weighted = mean(lambda t, w: (1 - t) * radius_at_depth(profile, w), low, span)
-    return 2 * span * span * weighted
+    breaks = profile.depth(profile.coordinate_breaks)
+    return integral(
+        lambda left, w: 2 * left * radius_at_depth(profile, w), depth - span, span, breaks
+    )
 
 
-def mean(function: Callable[[Array, Array], Array], low: Array, span: Array) -> Array:
-    """Mean of function(t, low + t span) over 0 < t < 1; nodes go along the last axis."""
+def integral(
+    function: Callable[[Array, Array], Array], low: Array, span: Array, breaks: Array
+) -> Array:
+    """int function(high - w, w) dw over narrow spans [low, high], cut at the first break inside."""
+    if not breaks.size:
+        return span * mean(lambda t, w: function(span[..., None] * (1 - t), w), low, span)
+    below = np.clip(next_break(breaks, low) - low, 0.0, span)
+    beyond = span - below
+
+    def until(t: Array, w: Array) -> Array:
+        return function(span[..., None] - below[..., None] * t, w)
+
+    def after(t: Array, w: Array) -> Array:
+        return function(beyond[..., None] * (1 - t), w)
+
+    first = below * mean(until, low, below, last_break(breaks, low))
+    return first + beyond * mean(after, low + below, beyond, low + below)
+
+
+def next_break(breaks: Array, level: Array) -> Array:
+    """The first of some ascending breaks above each level, infinity if there is none."""
+    return np.append(breaks, np.inf)[np.searchsorted(breaks, level, side="right")]
+
+
+def last_break(breaks: Array, level: Array) -> Array:
+    """The last of some ascending breaks at or below each level, zero if there is none."""
+    return np.append(0.0, breaks)[np.searchsorted(breaks, level, side="right")]
+
+
+def mean(
+    function: Callable[[Array, Array], Array], low: Array, span: Array, base: Array | None = None
+) -> Array:
+    """Mean of function(t, low + t span) over 0 < t < 1; nodes go along the last axis.
+
+    `base` <= low is a break, behind which functions are smooth in the root of the distance.
+    """
     nodes, weights = gauss_legendre(_POINTS)
-    t = (1 + nodes) / 2
-    values = function(t, low[..., None] + span[..., None] * t)
-    return np.asarray((values * (weights / 2)).sum(axis=-1))
+    t, weights = (1 + nodes) / 2, weights / 2
+    if base is None:
+        values = function(t, low[..., None] + span[..., None] * t)
+        return np.asarray((values * weights).sum(axis=-1))
+    start = np.sqrt(np.maximum(low - base, 0.0))
+    sum_of_roots = start + np.sqrt(np.maximum(low - base, 0.0) + span)
+    # Of an empty span any value is the mean.
+    step = span / np.where(sum_of_roots > 0, sum_of_roots, 1.0)
+    climbed = step[..., None] * t
+    root = start[..., None] + climbed
+    share = climbed * (root + start[..., None]) / np.where(span > 0, span, 1.0)[..., None]
+    density = 2 * root * (step / np.where(span > 0, span, 1.0))[..., None]
+    values = function(share, base[..., None] + root * root)
+    return np.asarray((values * density * weights).sum(axis=-1))

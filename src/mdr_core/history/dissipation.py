@@ -11,26 +11,36 @@ closed in w, I and En = int I dw. Where front and edge are near each other that 
 no digits, and positive integrals take its place. Source: notes, §10.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from math import ceil, log
 from typing import Final
 
 import numpy as np
 
 from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
 from mdr_core.history.branches import (
-    NARROW,
+    integral,
     mean,
     radius_at_force,
     radius_slope_at_depth,
 )
 from mdr_core.history.memory import Pieces
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 # Below this relative difference a mean is taken from values between, not from a quotient.
 _CLOSE: Final = 1e-4
 # Pieces evaluated at once where each takes a square of nodes.
 _BLOCK: Final = 512
+# Up to this part of the level a gap is near: the closed form loses its third power.
+_NEAR: Final = 0.25
+# A piece that comes nearer to the axis than so many gaps has digits enough for the closed form.
+_GAPS: Final = 4.0
+
+_FOURFOLD: Final = 4.0
+
+# Level at the lower end, span, gap at the upper end, gap at the lower end.
+_Rows = tuple[Array, Array, Array, Array]
 
 
 def per_piece(profile: Profile, pieces: Pieces, *, by_force: bool) -> Array:
@@ -44,29 +54,106 @@ def per_piece(profile: Profile, pieces: Pieces, *, by_force: bool) -> Array:
     if profile.slips_at_once:
         return result
     partial = np.flatnonzero(~pieces.everything & (pieces.span > 0))
-    level, span, slip, upper, lower = (
-        rows[partial]
-        for rows in (
-            pieces.level,
-            pieces.span,
-            pieces.slip,
-            pieces.upper_gap,
-            pieces.lower_gap,
-        )
-    )
+    rows = pieces.level, pieces.span, pieces.upper_gap, pieces.lower_gap
+    level, span, upper, lower = (row[partial] for row in rows)
     reach = np.maximum(level + lower, level + span + upper)
-    narrow = np.maximum(upper, lower) + span < NARROW * reach
-    wide_front = _force_front if by_force else _depth_front
-    narrow_front = _narrow_force_front if by_force else _narrow_depth_front
-    for chosen, front in ((~narrow, wide_front), (narrow, narrow_front)):
-        index = np.flatnonzero(chosen)
-        for start in range(0, index.size, _BLOCK):
-            part = index[start : start + _BLOCK]
-            parts = level[part], span[part], upper[part], lower[part]
-            # A difference of rounded numbers may fall below zero, a loss may not.
-            area = np.maximum(front(profile, *parts), 0.0)
-            result[partial[part]] = slip[part] / span[part] * area
+    close = np.maximum(upper, lower) < _NEAR * reach
+    area = np.zeros(partial.size)
+    for index in _blocks(np.flatnonzero(~close)):
+        area[index] = _closed(
+            profile, (level[index], span[index], upper[index], lower[index]), by_force
+        )
+    near = np.flatnonzero(close)
+    if near.size:
+        whole = level[near], span[near], upper[near], lower[near]
+        area[near] = _of_near_pieces(profile, whole, by_force)
+    result[partial] = pieces.slip[partial] / pieces.span[partial] * area
     return result
+
+
+def _blocks(index: Indices) -> Iterator[Indices]:
+    return (index[start : start + _BLOCK] for start in range(0, index.size, _BLOCK))
+
+
+def _closed(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+    front = _force_front if by_force else _depth_front
+    # A difference of rounded numbers may fall below zero, a loss may not.
+    return np.maximum(front(profile, *rows), 0.0)
+
+
+def _of_near_pieces(profile: Profile, whole: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+    """Pieces whose front stays near the edge, cut until each part has its digits."""
+    breaks = profile.coordinate_breaks
+    breaks = profile.reduced_force(breaks) if by_force else profile.depth(breaks)
+    owner, (level, span, upper, lower) = _cut(whole, breaks)
+    gap = np.maximum(upper, lower)
+    area = np.zeros(owner.size)
+    # Next to the axis the gap is no small part of the level.
+    wide = level < (_GAPS - 1) * gap
+    narrow_front = _narrow_force_front if by_force else _narrow_depth_front
+    for index in _blocks(np.flatnonzero(wide)):
+        rows = level[index], span[index], upper[index], lower[index]
+        area[index] = _closed(profile, rows, by_force)
+    for index in _blocks(np.flatnonzero(~wide)):
+        rows = level[index], span[index], upper[index], lower[index]
+        area[index] = narrow_front(profile, breaks, *rows)
+    return np.bincount(owner, area, minlength=whole[0].size).astype(float, copy=False)
+
+
+def _cut(whole: _Rows, breaks: Array) -> tuple[Indices, _Rows]:
+    """Parts of pieces, and whose they are: halved towards the axis, and cut at every break.
+
+    A break is met by the front and, before it, by the edge: it cuts a piece twice.
+    """
+    level, span, upper, lower = whole
+    gap = np.maximum(upper, lower)
+    owners, shares = [np.arange(level.size)] * 2, [np.zeros(level.size), np.ones(level.size)]
+    end = level + span
+    while True:
+        end = end / 2
+        inside = np.flatnonzero((end > level) & (end > _GAPS / 2 * gap))
+        if not inside.size:
+            break
+        owners.append(inside)
+        shares.append((end[inside] - level[inside]) / span[inside])
+    # Only a row of breaks on or just above the piece matters.
+    first = np.searchsorted(breaks, level)
+    last = np.searchsorted(breaks, level + span + gap)
+    for i in np.flatnonzero(last > first).tolist():
+        at = breaks[first[i] : last[i]] - level[i]
+        # The edge is at the break where level + share span + gap(share) is.
+        climb = span[i] + upper[i] - lower[i]
+        ahead = (at - lower[i]) / climb if climb != 0 else at[:0]
+        # Behind it all changes over the gap first, then over the distance.
+        steps = _FOURFOLD ** np.arange(_after(gap[i], span[i]))
+        behind = np.add.outer(at, gap[i] * steps).ravel()
+        cuts = np.concatenate([at / span[i], ahead, behind / span[i]])
+        cuts = cuts[(cuts > 0) & (cuts < 1)]
+        owners.append(np.full(cuts.size, i))
+        shares.append(cuts)
+    return _parts(whole, np.concatenate(owners), np.concatenate(shares))
+
+
+def _after(gap: float, span: float) -> int:
+    """How many fourfold steps lead from the gap to the span."""
+    return max(ceil(log(span / gap) / log(_FOURFOLD)), 0) if gap > 0 else 0
+
+
+def _parts(whole: _Rows, owner: Indices, share: Array) -> tuple[Indices, _Rows]:
+    """The parts between the shares of each piece."""
+    level, span, upper, lower = whole
+    order = np.lexsort((share, owner))
+    owner, share = owner[order], share[order]
+    same = owner[1:] == owner[:-1]
+    low, high, owner = share[:-1][same], share[1:][same], owner[:-1][same]
+    climb = upper[owner] - lower[owner]
+    rows = (
+        level[owner] + low * span[owner],
+        (high - low) * span[owner],
+        lower[owner] + high * climb,
+        lower[owner] + low * climb,
+    )
+    return owner, rows
 
 
 def _depth_front(profile: Profile, level: Array, span: Array, upper: Array, lower: Array) -> Array:
@@ -95,31 +182,34 @@ def _force_front(profile: Profile, level: Array, span: Array, upper: Array, lowe
 
 
 def _narrow_depth_front(
-    profile: Profile, level: Array, span: Array, upper: Array, lower: Array
+    profile: Profile, breaks: Array, level: Array, span: Array, upper: Array, lower: Array
 ) -> Array:
     def overlap(t: Array, w: Array) -> Array:
         gap = lower[:, None] + (upper - lower)[:, None] * t
-        return _overlap(profile, w, gap)
+        return _overlap(profile, breaks, w, gap)
 
-    return span * mean(overlap, level, span)
+    return span * mean(overlap, level, span, level if breaks.size else None)
 
 
 def _narrow_force_front(
-    profile: Profile, level: Array, span: Array, upper: Array, lower: Array
+    profile: Profile, breaks: Array, level: Array, span: Array, upper: Array, lower: Array
 ) -> Array:
+    depths = profile.depth(coordinate_from_force(profile, breaks))
+
     def overlap(t: Array, force: Array) -> Array:
         gap = lower[:, None] + (upper - lower)[:, None] * t
         # dw = dI/(2 x): the gap in depth with the digits of that in force.
-        deeper = gap * mean(lambda _, at: 0.5 / radius_at_force(profile, at), force, gap)
+        deeper = integral(lambda _, at: 0.5 / radius_at_force(profile, at), force, gap, breaks)
         s = coordinate_from_force(profile, force)
-        return _overlap(profile, profile.depth(s), deeper) / (2 * profile.contact_radius(s))
+        overlapping = _overlap(profile, depths, profile.depth(s), deeper)
+        return overlapping / (2 * profile.contact_radius(s))
 
-    return span * mean(overlap, level, span)
+    return span * mean(overlap, level, span, level if breaks.size else None)
 
 
-def _overlap(profile: Profile, w: Array, gap: Array) -> Array:
+def _overlap(profile: Profile, breaks: Array, w: Array, gap: Array) -> Array:
     """R = 2 int_w^d (d - w') dx [length^2], over a narrow gap."""
-    return 2 * gap * gap * mean(lambda t, at: (1 - t) * radius_slope_at_depth(profile, at), w, gap)
+    return integral(lambda left, at: 2 * left * radius_slope_at_depth(profile, at), w, gap, breaks)
 
 
 def _mean_force(profile: Profile, low: Array, high: Array) -> Array:
