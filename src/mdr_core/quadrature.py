@@ -9,6 +9,7 @@ its length and the asked tolerance need, and is evaluated once.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from math import ceil, exp, floor, inf, log, log10, pi, sqrt
 from typing import Final
 
@@ -21,9 +22,11 @@ from mdr_core.typing import Array, Indices
 Integrand = Callable[[Array, Indices], Array]
 
 # Number of nodes of the rules on offer, as points of the full rule on [-H, H].
-_POINTS: Final = (12, 24, 48)
+_POINTS: Final = (8, 12, 24, 48)
 # Longest piece of an integral that is cut: the cheapest nodes per unit length.
 _PIECE_POINTS: Final = 24
+# Evaluations at so many nodes take as long as what one more call takes by itself.
+_CALL: Final = 2000
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
 
@@ -141,15 +144,22 @@ def integrate_plain(
 
 
 def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Indices, int]]:
-    """Indices of the integrals that share a rule, with its points; 0 where none suffices."""
+    """Indices of the integrals that share a rule, with its points; 0 where none suffices.
+
+    A few integrals join those of the next finer rule: no call is worth making for them.
+    """
     choice = np.searchsorted(_limits(_decade(rtol), analytic), half_length)
-    if choice.size and choice.min() == choice.max() < len(_POINTS):
-        return [(np.arange(choice.size), _POINTS[choice[0]])]
-    return [
-        (np.flatnonzero(choice == number), points)
-        for number, points in enumerate((*_POINTS, 0))
-        if (choice == number).any()
-    ]
+    counts = np.bincount(choice, minlength=len(_POINTS) + 1).tolist()
+    present = [number for number, count in enumerate(counts) if count]
+    for number, finer in pairwise(present):
+        more = counts[number] * (_POINTS[finer] - _POINTS[number]) if finer < len(_POINTS) else inf
+        if more <= _CALL:
+            choice[choice == number] = finer
+            counts[number], counts[finer] = 0, counts[number] + counts[finer]
+    groups = [(number, points) for number, points in enumerate((*_POINTS, 0)) if counts[number]]
+    if len(groups) == 1:
+        return [(np.arange(choice.size), groups[0][1])]
+    return [(np.flatnonzero(choice == number), points) for number, points in groups]
 
 
 def _pieces(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 LENGTHS = (0.05, 0.2, 0.7, 1.5, 3.0, 6.0, 11.0, 20.0)
-POINTS = (12, 24, 48)
+POINTS = (8, 12, 24, 48)
 DECADES = tuple(10.0**-k for k in range(3, 14))
 #: Rounding of a sum of some fifty positive terms.
 ROUNDING = 1e-14

@@ -12,6 +12,7 @@ Source: notes, §5.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from mdr_core.typing import Array, Flags, Indices, Parameter
 # weight(x, s, index) = F(x) s / x with s = sqrt(x^2 - b^2): free of the root that F carries at b.
 # x and s have shape (nodes, k), index (k,) says to which integrals they belong.
 Weight = Callable[[Array, Array, Indices], Array]
+
+# Where evenness would help no more than one integral in so many, it is not worth a call.
+_FEW: Final = 8
 
 
 def leg(x: Array, b: Parameter) -> Array:
@@ -223,19 +227,22 @@ def between(
     """
     upper = np.arcsinh(top)
     whole = even if bottom is None else even & (bottom == 0)
-    if whole.all():
+    count = np.count_nonzero(whole)
+    if count == whole.size:
         return integrate_even(h, upper, rtol, analytic)
+    if bottom is None or square_difference is None:
+        lower, length = np.zeros_like(upper), upper
+    else:
+        gap2 = np.where(bottom > 0, square_difference, top * top)
+        lower, length = np.arcsinh(bottom), asinh_difference(top, bottom, gap2)
+    if count * _FEW <= whole.size:
+        return integrate_plain(h, lower, length, rtol, analytic)
     result = np.empty_like(top)
     index = np.flatnonzero(whole)
     result[index] = integrate_even(_chosen(h, index), upper[index], rtol, analytic)
     index = np.flatnonzero(~whole)
-    if bottom is None or square_difference is None:
-        lower, length = np.zeros(index.size), upper[index]
-    else:
-        low = bottom[index]
-        gap2 = np.where(low > 0, square_difference[index], top[index] ** 2)
-        lower, length = np.arcsinh(low), asinh_difference(top[index], low, gap2)
-    result[index] = integrate_plain(_chosen(h, index), lower, length, rtol, analytic)
+    rest = lower[index], length[index]
+    result[index] = integrate_plain(_chosen(h, index), *rest, rtol, analytic)
     return result
 
 

@@ -213,7 +213,11 @@ def _slips(contact: TangentialContact) -> list[_Slip]:
         contact.excess,
         contact.tangential_displacement,
     )
-    columns = [np.atleast_1d(np.broadcast_to(part, shape)).tolist() for part in parts]
+    # A single load has no need of what makes columns of numbers and arrays.
+    columns = [
+        np.broadcast_to(part, shape).tolist() if shape else [np.asarray(part).item()]
+        for part in parts
+    ]
     rows: list[Any] = list(zip(*columns, strict=True))
     spread = pressed if len(pressed) == len(rows) else pressed * len(rows)
     at_once = contact.normal.profile.slips_at_once
