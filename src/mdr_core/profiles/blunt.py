@@ -7,9 +7,9 @@ from typing import ClassVar
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.roots import one_sided
-from mdr_core.checks import first_index
+from mdr_core.abel.roots import leg, one_sided
 from mdr_core.errors import InputError
+from mdr_core.profiles.behind_flat import BehindFlat
 from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
 from mdr_core.profiles.stable import atan_gap
 from mdr_core.typing import Array, Parameter
@@ -102,10 +102,8 @@ class FlatPunch(Profile):
         return np.asarray(2 / np.pi * depth * np.arctan2(a, np.sqrt((r - a) * (r + a))))
 
 
-class Blunt(Profile):
+class Blunt(BehindFlat):
     """Common to the flats of radius b that end in a slope: f = 0 for r <= b, h(r) beyond."""
-
-    flat_radius: Parameter
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -115,43 +113,16 @@ class Blunt(Profile):
     def scale(self) -> Parameter:
         return self.flat_radius
 
-    def _leg(self, radius: Array) -> Array:
-        """sqrt(x^2 - b^2), zero inside the flat."""
-        b = self.flat_radius
-        return np.asarray(np.sqrt(np.maximum(radius - b, 0.0) * (radius + b)))
-
-    def contact_radius(self, coordinate: Array) -> Array:
-        return np.asarray(np.hypot(self.flat_radius, coordinate))
-
-    def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        inside = np.asarray(contact_radius < self.flat_radius)
-        if inside.any():
-            raise InputError(
-                ("load", "contact_radius", *first_index(inside)),
-                f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
-            )
-        return self._leg(contact_radius)
-
-    def radius_slope(self, coordinate: Array) -> Array:
-        return coordinate / self.contact_radius(coordinate)
-
-    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        return (a - c) * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0)
-
-    def radius_width(self, s_a: Array, width: Array) -> Array:
-        total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
-        return width * (2 * s_a - width) / total
-
     @property
     def branches(self) -> tuple[Branch, ...]:
         base = float(np.asarray(self.flat_radius))
         return (Branch(base, lambda x, s, _index: self._weight(x, s)),)
 
     def g(self, x: Array) -> Array:
-        return self.depth(self._leg(x))
+        return self.depth(leg(x, self.flat_radius))
 
     def dg(self, x: Array) -> Array:
-        s = self._leg(x)
+        s = leg(x, self.flat_radius)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(x < self.flat_radius, 0.0, self._weight(x, s) * x / s)
 
@@ -212,7 +183,7 @@ class RoundedPunch(Blunt):
         return np.maximum(radius - self.flat_radius, 0.0) / self.rounding_radius
 
     def dg(self, x: Array) -> Array:
-        s, b = self._leg(x), self.flat_radius
+        s, b = leg(x, self.flat_radius), self.flat_radius
         return (s + atan_gap(s, b)) / self.rounding_radius
 
     def depth(self, coordinate: Array) -> Array:
@@ -297,7 +268,7 @@ class TruncatedParaboloid(Blunt):
         return (float(np.min(self.flat_radius)),)
 
     def f(self, radius: Array) -> Array:
-        return self._leg(radius) ** 2 / (2 * self.radius)
+        return leg(radius, self.flat_radius) ** 2 / (2 * self.radius)
 
     def df(self, radius: Array) -> Array:
         return np.where(radius < self.flat_radius, 0.0, radius / self.radius)
@@ -317,10 +288,15 @@ class TruncatedParaboloid(Blunt):
         return np.sqrt(2 / (b2 + np.hypot(b2, 2 * h))) * h
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        """s^3 + (3/2) b^2 s = (3/4) R F/E*, by the hyperbolic form of the cubic's root."""
+        """s^3 + (3/2) b^2 s = (3/4) R F/E*, by the hyperbolic form of the cubic's root.
+
+        The rounding of its logarithm is felt far from the flat; a step of Newton's takes it out.
+        """
         b = self.flat_radius
-        argument = reduced_force * self.radius * (1.5 / np.sqrt(2)) / (b * np.square(b))
-        return np.asarray(np.sqrt(2) * b * np.sinh(np.arcsinh(argument) / 3))
+        goal = 0.75 * (reduced_force * self.radius / (b * np.square(b)))
+        z = np.sqrt(2) * np.sinh(np.arcsinh(np.sqrt(2) * goal) / 3)
+        z2 = z * z
+        return np.asarray(b * (z - (z * (z2 + 1.5) - goal) / (3 * z2 + 1.5)))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """(1/R^2) [a s^2 (b^2 + s^2/3) + s^4 (3a^3 + 6a^2 b + 4a b^2 + 2b^3)/(15 (a + b)^2)]."""

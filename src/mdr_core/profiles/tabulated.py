@@ -9,11 +9,11 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps
+from mdr_core.abel.roots import leg
 from mdr_core.abel.stress import StressPanels, stress_panels
-from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
-from mdr_core.profiles.profile import Profile
+from mdr_core.profiles.behind_flat import BehindFlat
 from mdr_core.profiles.table_moments import TableSlope
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Parameter
@@ -32,7 +32,7 @@ _TIP: Final = 1e-6
 _ENERGY_POINTS: Final = 10
 
 
-class Tabulated(Profile):
+class Tabulated(BehindFlat):
     """The profile through (r_i, f_i), interpolated, never extrapolated.
 
     Parameters
@@ -84,7 +84,7 @@ class Tabulated(Profile):
         return float(self.r[-1])
 
     @cached_property
-    def flat_radius(self) -> float:
+    def flat_radius(self) -> float:  # type: ignore[override]
         """Radius b up to which f = 0; the contact coordinate is sqrt(a^2 - b^2)."""
         return float(self.r[np.flatnonzero(self.values == 0)[-1]])
 
@@ -97,48 +97,34 @@ class Tabulated(Profile):
 
     @property
     def last_coordinate(self) -> float:
-        return float(self._leg(np.asarray(self.domain)))
+        return float(leg(np.asarray(self.domain), self.flat_radius))
 
     @property
     def scale(self) -> float:
         return self.last_coordinate / 2
 
-    def _leg(self, radius: Array) -> Array:
-        b = self.flat_radius
-        return np.asarray(np.sqrt((radius - b) * (radius + b)))
+    # Without a flat the contact coordinate is the radius itself.
 
     def contact_radius(self, coordinate: Array) -> Array:
         if self.flat_radius == 0:
             return coordinate
-        return np.minimum(np.hypot(self.flat_radius, coordinate), self.domain)
+        return np.minimum(super().contact_radius(coordinate), self.domain)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        inside = np.asarray(contact_radius < self.flat_radius)
-        if inside.any():
-            raise InputError(
-                ("load", "contact_radius", *first_index(inside)),
-                f"the contact cannot be smaller than the flat of radius {self.flat_radius:.12g}",
-            )
-        return contact_radius if self.flat_radius == 0 else self._leg(contact_radius)
+        if self.flat_radius == 0:
+            return contact_radius
+        return super().coordinate_from_radius(contact_radius)
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        if self.flat_radius == 0:
-            return a - c
-        return (a - c) * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0)
+        return a - c if self.flat_radius == 0 else super().coordinate_width(a, c, s_a, s_c)
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
-        if self.flat_radius == 0:
-            return width
-        total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
-        return width * (2 * s_a - width) / total
-
-    def radius_slope(self, coordinate: Array) -> Array:
-        return coordinate / self.contact_radius(coordinate)
+        return width if self.flat_radius == 0 else super().radius_width(s_a, width)
 
     @property
     def coordinate_breaks(self) -> Array:
         inner = self.r[1:-1]
-        return self._leg(inner[inner > self.flat_radius])
+        return leg(inner[inner > self.flat_radius], self.flat_radius)
 
     def _offset(self, coordinate: Array) -> tuple[Array, Array]:
         """The flat's radius and a - b, with the digits of the coordinate."""
