@@ -182,3 +182,37 @@ def test_a_force_that_just_reaches_the_cap_s_rim() -> None:
     )
     contact = normal.solve(profile, 1.0, normal_force=0.2833958695399503)
     np.testing.assert_allclose(contact.contact_radius, profile.cap_radius, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("profile", "control", "load"),
+    [
+        (profiles.Power(1e65, 0.5), "indentation_depth", 1e-60),
+        (profiles.Power(1e-307, 0.05), "normal_force", 1e-171),
+        (profiles.Series((profiles.PowerTerm(1e300, 1.5),)), "indentation_depth", 1e-90),
+        (profiles.Series((profiles.PowerTerm(1e-307, 0.05),)), "normal_force", 1e-171),
+    ],
+)
+def test_an_answer_without_digits_is_no_answer(
+    profile: profiles.Profile, control: str, load: float
+) -> None:
+    """Depth or force would be subnormal, zero or infinite behind a small error estimate."""
+    with pytest.raises(InputError, match="leaves the range") as refused:
+        normal.solve(profile, 1.0, **{control: [0.0, load]})
+    assert refused.value.path == ("load", control, 1)
+    assert "the depth or the force" in str(refused.value)
+
+
+def test_the_end_of_a_series_is_still_named_as_such() -> None:
+    falling = profiles.Series((profiles.PowerTerm(1.0, 2.0), profiles.PowerTerm(-0.1, 3.0)))
+    with pytest.raises(InputError, match="would reach past radius"):
+        normal.solve(falling, 1.0, indentation_depth=1e3)
+
+
+def test_a_series_whose_terms_cancel_admits_it() -> None:
+    """From the closed forms at 80 digits: of a thousand parts one is left."""
+    terms = profiles.PowerTerm(1.0, 2.0), profiles.PowerTerm(-0.999, 2.001)
+    contact = normal.solve(profiles.Series(terms), 1.0, contact_radius=0.5)
+    miss = abs(contact.indentation_depth / 7.4970565808317638242e-4 - 1)
+    assert miss <= contact.error_estimate
+    assert contact.error_estimate > 1e-12

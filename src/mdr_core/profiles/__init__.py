@@ -9,7 +9,8 @@ from mdr_core.profiles.blunt import (
     TruncatedParaboloid,
 )
 from mdr_core.profiles.capped_paraboloid import CappedParaboloid
-from mdr_core.profiles.power_law import Cone, Paraboloid, Power
+from mdr_core.profiles.power import Power
+from mdr_core.profiles.power_law import Cone, Paraboloid
 from mdr_core.profiles.profile import Profile
 from mdr_core.profiles.rounded import Ellipsoid, Hyperboloid, Sphere
 from mdr_core.profiles.rounded_cone import RoundedCone

@@ -17,7 +17,7 @@ _HUGE: Final = 1e290
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """C r^n, also where r^n alone leaves the range of doubles."""
-    with np.errstate(over="ignore", under="ignore"):
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         bare = r**exponent
         extreme = (r > 0) & ((bare < _TINY) | (bare > _HUGE))
         direct = np.asarray(coefficient * np.where(extreme, 1.0, bare))
@@ -48,7 +48,7 @@ def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Arr
     """
     n = np.asarray(exponent, dtype=float)
     c = np.asarray(coefficient, dtype=float)
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
         split = value ** (1 / n) / c ** (1 / n)
         root = np.where(n < 1, (value / c) ** (1 / n), split)
         miss = (value - power(c, root, n)) / np.where(value > 0, value, 1.0)

@@ -1,27 +1,14 @@
-"""Profiles that are powers of the radius: cone, paraboloid, C r^n, and sums of them."""
+"""Cone and paraboloid: the powers of the radius of which everything is closed."""
 
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
-from mdr_core.abel.displacement import Branch
-from mdr_core.profiles.power_kernels import (
-    log_ratio,
-    power,
-    power_moment,
-    power_root,
-    power_slope,
-    power_step,
-    power_stick,
-    root_step,
-)
+from mdr_core.profiles.power_kernels import log_ratio, root_step
 from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
-from mdr_core.profiles.stable import atan_gap, kappa
+from mdr_core.profiles.stable import atan_gap
 from mdr_core.typing import Array, Parameter
-
-# From this part of a characteristic annulus on, a/n, the closed energy loses few digits.
-_WIDE: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -212,132 +199,3 @@ class Paraboloid(Profile):
         """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2). Source: mdr-5, section 5.2; notes, §6."""
         a, c = coordinate, coordinate - width
         return 2 / 15 * width**3 * (a * a + 3 * a * c + c * c) / np.square(self.radius)
-
-
-@dataclass(frozen=True)
-class Power(Profile):
-    """f = C r^n, C = `coefficient` [length^(1-n)], n = `exponent` > 0 [1].
-
-    Source: mdr-5, Eqs. (5.24)-(5.33).
-    """
-
-    coefficient: Parameter
-    exponent: Parameter
-
-    kind: ClassVar[str] = "power"
-    formula: ClassVar[str] = "coefficient·r^exponent"
-    closed_forms: ClassVar[tuple[str, ...]] = NORMAL_ANSWERS
-
-    def __post_init__(self) -> None:
-        require_positive("coefficient", self.coefficient)
-        require_positive("exponent", self.exponent)
-
-    @property
-    def rounding(self) -> float:  # type: ignore[override]
-        # r^n carries n times the rounding of the scaled radius.
-        return float(2e-14 + 8e-15 * np.max(self.exponent))
-
-    def f(self, radius: Array) -> Array:
-        return power(self.coefficient, radius, self.exponent)
-
-    def df(self, radius: Array) -> Array:
-        return power_slope(self.coefficient, radius, self.exponent)
-
-    def g(self, x: Array) -> Array:
-        return kappa(self.exponent) * self.f(x)
-
-    def dg(self, x: Array) -> Array:
-        return kappa(self.exponent) * self.df(x)
-
-    def reduced_force(self, coordinate: Array) -> Array:
-        n = self.exponent
-        return (2 * n / (n + 1)) * self.g(coordinate) * coordinate
-
-    def coordinate_from_depth(self, depth: Array) -> Array:
-        n = self.exponent
-        return power_root(depth / kappa(n), self.coefficient, n)
-
-    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        n = np.asarray(self.exponent)
-        return power_root(reduced_force * (n + 1) / (2 * n * kappa(n)), self.coefficient, n + 1)
-
-    def reduced_energy(self, coordinate: Array) -> Array:
-        n = self.exponent
-        return self.g(coordinate) ** 2 * coordinate * (2 * n * n / ((n + 1) * (2 * n + 1)))
-
-    def stick_from_force_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent) + 1)
-
-    def stick_from_depth_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent))
-
-    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        step = power_step(coordinate, width, stick, np.asarray(self.exponent) + 1)
-        return self.reduced_force(coordinate) * step
-
-    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        return self.g(coordinate) * power_step(coordinate, width, stick, np.asarray(self.exponent))
-
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Closed where the annulus is wide enough for its terms not to cancel, else NaN.
-
-        Source: notes, §6.
-        """
-        n = np.asarray(self.exponent, dtype=float)
-        y = np.maximum(stick, 0.0) / np.where(coordinate > 0, coordinate, 1.0)
-        yn = y**n
-        bracket = (1 + yn) * (1 - yn * y) / (n + 1) - (1 - yn * yn * y) / (2 * n + 1)
-        moment = np.square(self.g(coordinate)) * coordinate * (bracket - yn * (1 - y))
-        narrow = np.maximum(n, 1.0) * (1 - y) < _WIDE
-        return np.where(narrow & (width > 0), np.nan, moment)
-
-    @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        return (0.0,) if np.min(self.exponent) <= 1 else ()
-
-    @property
-    def steepness(self) -> float:
-        return max(3.5, float(np.max(self.exponent)))
-
-    @property
-    def tip_exponent(self) -> float:
-        return min(1.0, float(np.min(self.exponent)))
-
-    @property
-    def branches(self) -> tuple[Branch, ...]:
-        # The lower end holds a part reach^n of the integral.
-        reach = 1e-17 ** max(1.0, 1 / float(np.asarray(self.exponent)))
-        return (
-            Branch(
-                0.0,
-                lambda x, _s, _index: self.dg(x),
-                reach=max(reach, 1e-280),
-                steepness=self.steepness,
-            ),
-        )
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        n = np.asarray(self.exponent)
-        cone = np.asarray(self.coefficient) / 2
-        return np.where(n < 1, np.inf, np.where(n == 1, cone, 0.0))
-
-    def pressure_kernel(
-        self,
-        coordinate: Array,
-        radius: Array,
-        rtol: float,
-        width: Array | None = None,
-        edge: Array | None = None,
-        modulus: float = 1.0,
-        inner: Array | None = None,
-    ) -> Array:
-        n = np.asarray(self.exponent, dtype=float)
-        scale = modulus * kappa(n) / np.pi * self.df(coordinate)
-        return np.asarray(
-            scale * power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
-        )

@@ -8,10 +8,10 @@ from typing import ClassVar, Final
 import numpy as np
 
 from mdr_core.abel.displacement import Branch, slope_integral
-from mdr_core.checks import extremes
+from mdr_core.checks import extremes, first_index
 from mdr_core.errors import InputError
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 # The answers of a normal query, in the words of `Profile.closed_forms`.
 NORMAL_ANSWERS: Final = (
@@ -29,6 +29,9 @@ _POINTS: Final = 16
 _PIECE: Final = 1.5
 _BLOCK: Final = 12_288
 _NO_BREAKS: Final = np.empty(0)
+# Within these a product of a few factors is a double with all its digits.
+SMALLEST_HELD: Final = 1e-300
+LARGEST_HELD: Final = 1e300
 
 
 def require_positive(name: str, value: Parameter) -> None:
@@ -36,6 +39,18 @@ def require_positive(name: str, value: Parameter) -> None:
     low, high = (value, value) if isinstance(value, (int, float)) else extremes(value)
     if not (low > 0 and high < inf):
         raise InputError(("profile", name), "must be positive and finite")
+
+
+def refuse_load(name: str, bad: Flags) -> None:
+    """Raise InputError where depth or force would overflow, or vanish under a load that is none.
+
+    Next to the smallest double a number has few digits or none, which no error estimate says.
+    """
+    if bad.any():
+        raise InputError(
+            ("load", name, *first_index(bad)),
+            "the depth or the force that goes with this load leaves the range of double precision",
+        )
 
 
 class Profile(ABC):

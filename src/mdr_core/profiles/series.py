@@ -1,6 +1,6 @@
 """Sums of powers, with negative terms where the profile stays admissible."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import copysign, exp, inf, isfinite, log
@@ -13,13 +13,18 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 from mdr_core.profiles.power_kernels import power, power_moment, power_slope
-from mdr_core.profiles.profile import Profile
+from mdr_core.profiles.profile import LARGEST_HELD, SMALLEST_HELD, Profile, refuse_load
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
 
 # Bound on the logarithm of a starting radius: no power of it leaves the range of doubles soon.
 _FARTHEST: Final = 70.0
 _LOG_LARGEST: Final = 700.0
+_EPS: Final = float(np.finfo(float).eps)
+# Radii at which it is looked how much the terms cancel.
+_PLACES: Final = 257
+# Radii beyond have no double.
+_LOG_FARTHEST: Final = 690.0
 
 
 @dataclass(frozen=True)
@@ -86,7 +91,19 @@ class Series(Profile):
 
     @property
     def rounding(self) -> float:  # type: ignore[override]
-        return 4e-14 + 4e-15 * max(n for _, n in self._powers)
+        return 4e-14 + 4e-15 * max(n for _, n in self._powers) + 8 * _EPS * self._cancelling
+
+    @cached_property
+    def _cancelling(self) -> float:
+        """Largest sum of the terms' sizes over their total, in depth or force, less one [1]."""
+        if all(c > 0 for c, _ in self._powers):
+            return 0.0
+        low, high = _log_bounds(self._powers)
+        end = min(high, log(self.domain)) if self.domain < inf else high
+        places = np.linspace(min(low, end - 1), end, _PLACES)
+        depth = tuple((c * float(kappa(n)), n) for c, n in self._powers)
+        force = tuple((c * n / (n + 1), n) for c, n in depth)
+        return max(_worst_cancelling(part, places) for part in (depth, force))
 
     def f(self, radius: Array) -> Array:
         return _total(power(c, radius, n) for c, n in self._powers)
@@ -102,17 +119,51 @@ class Series(Profile):
 
     def reduced_force(self, coordinate: Array) -> Array:
         parts = (2 * n / (n + 1) * kappa(n) * power(c, coordinate, n) for c, n in self._powers)
-        return _total(parts) * coordinate
+        with np.errstate(over="ignore"):
+            return _total(parts) * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> None:
+        """No closed form; a depth whose force has no digits is refused."""
+        low, high = self._held_depths
+        refuse_load("indentation_depth", (depth > 0) & ~((depth >= low) & (depth <= high)))
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> None:
+        """No closed form; a force whose depth has no digits is refused."""
+        low, high = self._held_forces
+        outside = ~((reduced_force >= low) & (reduced_force <= high))
+        refuse_load("normal_force", (reduced_force > 0) & outside)
+
+    @cached_property
+    def _held_depths(self) -> tuple[float, float]:
+        return self._loads_between(self.depth)
+
+    @cached_property
+    def _held_forces(self) -> tuple[float, float]:
+        return self._loads_between(self.reduced_force)
+
+    def _loads_between(self, load: Callable[[Array], Array]) -> tuple[float, float]:
+        """Loads under which depth and force are doubles with all their digits.
+
+        A load beyond the profile's end is refused for that, not here.
+        """
+        depth = tuple((c * float(kappa(n)), n) for c, n in self._powers)
+        force = tuple((c * 2 * n / (n + 1), n + 1) for c, n in depth)
+        last = min(log(self.domain), _LOG_FARTHEST) if self.domain < inf else _LOG_FARTHEST
+        low = max(_log_radius_of(part, log(SMALLEST_HELD), last) for part in (depth, force))
+        high = min(_log_radius_of(part, log(LARGEST_HELD), last) for part in (depth, force))
+        ends = load(np.array([exp(low), exp(high)]))
+        return float(ends[0]), float(ends[1]) if high < last else inf
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """sum_ij d_i d_j a n_i n_j (n_i + n_j + 2)/((n_i + 1)(n_j + 1)(n_i + n_j + 1))."""
         depths = [(kappa(n) * power(c, coordinate, n), n) for c, n in self._powers]
         total = np.zeros_like(coordinate)
-        for d_i, n in depths:
-            for d_j, m in depths:
-                factor = n * m * (n + m + 2) / ((n + 1) * (m + 1) * (n + m + 1))
-                total += factor * d_i * d_j
-        return _within_range(total) * coordinate
+        with np.errstate(over="ignore", invalid="ignore"):
+            for d_i, n in depths:
+                for d_j, m in depths:
+                    factor = n * m * (n + m + 2) / ((n + 1) * (m + 1) * (n + m + 1))
+                    total += factor * d_i * d_j
+            return _within_range(total) * coordinate
 
     @property
     def scale(self) -> Parameter:
@@ -181,6 +232,21 @@ def _within_range(total: Array) -> Array:
     return np.where(np.isnan(total), inf, total)
 
 
+def _log_radius_of(powers: tuple[tuple[float, float], ...], goal: float, last: float) -> float:
+    """The logarithm of the radius where log(sum c r^e) = goal, within the range of doubles."""
+
+    def excess(u: float) -> float:
+        top = max(log(abs(c)) + e * u for c, e in powers)
+        rest = _sign_at(powers, u)
+        return top - goal + (log(rest) if rest > 0 else -LARGEST_HELD)
+
+    if excess(last) <= 0:
+        return last
+    if excess(-_LOG_FARTHEST) >= 0:
+        return -_LOG_FARTHEST
+    return float(brentq(excess, -_LOG_FARTHEST, last, xtol=1e-6))
+
+
 def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
     """Smallest r >= 0 beyond which sum c r^e, ascending in e, falls below zero, or infinity."""
     if powers[0][0] < 0:
@@ -217,6 +283,14 @@ def _log_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
         for start, end in pairwise(turns)
         if _sign_at(powers, start) * _sign_at(powers, end) < 0
     ]
+
+
+def _worst_cancelling(powers: tuple[tuple[float, float], ...], places: Array) -> float:
+    """Largest sum |c| r^e / |sum c r^e| - 1 over log(r)."""
+    sizes = np.array([log(abs(c)) + e * places for c, e in powers])
+    terms = np.exp(sizes - sizes.max(axis=0))
+    total = np.abs((terms * np.sign([[c] for c, _ in powers])).sum(axis=0))
+    return float((terms.sum(axis=0) / np.maximum(total, _EPS)).max() - 1)
 
 
 def _log_bounds(powers: tuple[tuple[float, float], ...]) -> tuple[float, float]:
