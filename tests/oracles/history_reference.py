@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 FRONT_DIGITS = 48
 #: How far a quadratic may miss a fourth point, per its size.
 LINEAR = mpf(10) ** -40
+#: A spring that leaves without slip arrives at zero up to rounding, which is no slip.
+ROUNDING = mpf(10) ** -80
 #: More intervals than any path here makes.
 MOST = 1000
 
@@ -86,7 +88,7 @@ def _leg(
     elif new_d <= w:
         span, kind = (d - w) / (d - new_d), 7
     trial = q + g_star * (new_u - u) * span
-    if abs(trial) <= limit * last:
+    if abs(trial) <= limit * last + ROUNDING * limit * max(d, new_d):
         return trial, mpf(0), kind
     sign = 1 if trial > 0 else -1
     excess, room = abs(trial) - limit * last, limit * first - sign * q
