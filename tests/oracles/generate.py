@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import sys
@@ -23,7 +24,7 @@ from tests.oracles.reference import (
     pressure,
     state,
 )
-from tests.oracles.scenes import FAMILIES, SCALES, Family, Profile, scenes
+from tests.oracles.scenes import EXTREMES, FAMILIES, SCALES, Family, Profile, scenes
 from tests.oracles.shapes import FlatPunch, Shape, shape_of
 from tests.oracles.table_scenes import TableScene, table_scenes
 from tests.oracles.tables import TABLE_DIGITS, Table
@@ -119,6 +120,22 @@ def normal_cases() -> Iterable[Record]:
                 load=load,
                 answer=answer,
             )
+
+
+def extreme_cases() -> Iterable[Record]:
+    for name, equation, profile, e_star, control, load in EXTREMES:
+        answer = state(profile, control, load, e_star)
+        yield {
+            "id": f"{name}-{equation[1:-1]}-{SHORT[control]}",
+            "equation": equation,
+            "tags": {"family": name, "regime": "extreme", "scale": "any"},
+            "profile": profile,
+            "e_star": e_star,
+            "control": control,
+            "load": load,
+            "expected": {key: digits(value) for key, value in answer.values.items()},
+            "condition": {key: condition(value) for key, value in answer.condition.items()},
+        }
 
 
 def _normal_record(
@@ -407,7 +424,7 @@ def write(name: str, records: Iterable[Record]) -> None:
 
 MAKERS = {
     "profile": profile_cases,
-    "normal": normal_cases,
+    "normal": lambda: itertools.chain(normal_cases(), extreme_cases()),
     "pressure": pressure_cases,
     "tabulated": table_cases,
 }
