@@ -12,6 +12,7 @@ import os
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import core_ratios
+import history_ratio
 import stress_wire_ratio
 import wear_ratio
 import wire_ratio
@@ -21,6 +22,7 @@ def main() -> None:
     header = ("what", "state", "ratio", "half lie in", "target", "medians and accuracy")
     found = [
         *core_ratios.rows(),
+        *history_ratio.rows(),
         *wear_ratio.rows(),
         *wire_ratio.rows(),
         *stress_wire_ratio.rows(),

@@ -1,0 +1,118 @@
+"""A million steps of random loading: the polyline of `mdr_core.history` against 1000 springs.
+
+The springs are what one would write with NumPy alone: all of them at once, in place, without a
+temporary, only as many operations to a step as the law of friction needs. Their time is taken over
+a part of the steps and multiplied; ours is that of the whole call.
+
+`python history_ratio.py` prints the row; `ratios.py` has it among the others.
+"""
+
+from __future__ import annotations
+
+import os
+
+# Before NumPy is loaded: threads of its BLAS would wait for each other.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+import sys
+from pathlib import Path
+from time import perf_counter
+
+import measure
+import numpy as np
+
+from mdr_core import history
+from mdr_core.profiles import Paraboloid
+
+Array = np.ndarray
+
+STEPS, PART, SPRINGS, ROUNDS = 1_000_000, 20_000, 1000, 3
+#: Steps that the reference follows, with so many springs.
+CHECKED, MANY = 300, 400_000
+R, E_STAR, G_STAR, MU = 0.01, 1.1e11, 0.9e11, 0.3
+DEPTH = 1e-6
+MOST = MU * E_STAR / G_STAR * DEPTH
+
+
+def random_path() -> tuple[Array, Array]:
+    random = np.random.default_rng(11)
+    return (
+        DEPTH * random.uniform(0.2, 1.0, STEPS),
+        MOST * random.uniform(-0.8, 0.8, STEPS),
+    )
+
+
+def springs(d: Array, u: Array, count: int) -> Array:
+    """F_x after each step, from `count` springs at the midpoints of equal lengths."""
+    a = np.sqrt(R * DEPTH)
+    touch = ((np.arange(count) + 0.5) * (a / count)) ** 2 / R
+    # The springs that a step presses for the first time are a run of neighbours.
+    below = np.searchsorted(touch, d)
+    load, limit, most = np.zeros(count), np.empty(count), np.empty(count)
+    np.multiply(touch, -MU * E_STAR, out=most)
+    scale = 2 * a / count
+    force = np.empty(d.size)
+    last_d = last_u = 0.0
+    inside = 0
+    for step, (new_d, new_u, reach) in enumerate(
+        zip(d.tolist(), u.tolist(), below.tolist(), strict=True)
+    ):
+        push = G_STAR * (new_u - last_u)
+        if reach < inside:
+            load[reach:inside] = 0.0
+        elif reach > inside:
+            entering = load[inside:reach]
+            np.subtract(new_d, touch[inside:reach], out=entering)
+            entering *= push / (new_d - last_d)
+        pressed, bound = load[:reach], limit[:reach]
+        pressed[:inside] += push
+        np.add(most[:reach], MU * E_STAR * new_d, out=bound)
+        np.minimum(pressed, bound, out=pressed)
+        np.negative(bound, out=bound)
+        np.maximum(pressed, bound, out=pressed)
+        force[step] = scale * pressed.sum()
+        last_d, last_u, inside = new_d, new_u, reach
+    return force
+
+
+def ours(d: Array, u: Array) -> Array:
+    return history.solve(
+        Paraboloid(R),
+        E_STAR,
+        G_STAR,
+        MU,
+        indentation_depth=d,
+        tangential_displacement=u,
+    ).tangential_force
+
+
+def rows() -> list[measure.Row]:
+    d, u = random_path()
+    few = slice(CHECKED)
+    truth = springs(d[few], u[few], MANY)
+    size = np.max(np.abs(truth))
+    # The whole path is asked for, so that what is checked is what is timed.
+    errors = [
+        float(np.max(np.abs(found - truth)) / size)
+        for found in (ours(d, u)[few], springs(d[few], u[few], SPRINGS))
+    ]
+    part = slice(PART)
+    rounds = []
+    for _ in range(ROUNDS):
+        start = perf_counter()
+        springs(d[part], u[part], SPRINGS)
+        middle = perf_counter()
+        ours(d, u)
+        end = perf_counter()
+        rounds.append(((middle - start) * (STEPS / PART), end - middle))
+    detail = (
+        f"against {MANY} springs: ours within {errors[0]:.0e}, {SPRINGS} springs {errors[1]:.0e}"
+    )
+    name = f"{SPRINGS} springs in NumPy / F_x after 1e6 random steps"
+    return [measure.row(name, "", rounds, ">= 200", detail)]
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).parent))
+    for one in rows():
+        print(f"{one.name}: {one.ratio:.3g} ({one.low:.3g} .. {one.high:.3g}), {one.detail}")
