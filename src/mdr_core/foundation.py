@@ -129,7 +129,7 @@ def invert(
     positive = target > 0
     goal = np.where(positive, target, 1.0)
     s, nothing = start, low
-    settling = False
+    done, settling = ~positive, np.zeros_like(positive)
     for _ in range(_STEPS):
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
             value = function(s)
@@ -142,25 +142,28 @@ def invert(
             proposed = s * np.exp(np.clip(step, -_LEAP, _LEAP))
         low = np.where(value < goal, s, low)
         high = np.where(value > goal, s, high)
-        # One step more than the criterion asks: at a kink the last slope may be the other side's.
-        settled = settling
         # A short step alone may only say that the function all but jumps here.
         short = np.abs(step) <= np.where(known, _LAST_STEP, _BLIND_STEP)
         short &= np.abs(miss) <= _NEAR
         # Where the root leaves the range of doubles, infinity or zero say so to the caller.
         last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-        closed = high - low <= np.where(high < np.inf, _ADJACENT * high, 0.0)
-        settling = bool(np.all(last | closed | ~positive))
-        inside = (proposed > low) & (proposed < high)
-        s = np.where(inside | last, proposed, _middle(low, high))
-        s = np.where(s < _LARGEST, np.where(s > 1 / _LARGEST, s, 0.0), np.inf)
-        if settled:
-            return np.where(positive, np.maximum(s, nothing), nothing)
-    open_ended = positive & ~(last | closed)
-    if np.all(known[open_ended] == 0):
-        # Value or slope left the range of doubles on the way: no number answers that.
-        return np.where(open_ended, np.nan, s)
-    raise DefectError(f"the inverse of a {name} did not converge")
+        usable = ((proposed > low) & (proposed < high)) | last
+        moved = proposed if usable.all() else np.where(usable, proposed, _middle(low, high))
+        moved = np.where(moved < _LARGEST, np.where(moved > 1 / _LARGEST, moved, 0.0), np.inf)
+        # What is done stays: no root of a sweep depends on how long the others take.
+        s = np.where(done, s, moved)
+        # One step more than the criterion asks: at a kink the last slope may be the other side's.
+        done = done | settling
+        if done.all():
+            break
+        settling = last | (high - low <= np.where(high < np.inf, _ADJACENT * high, 0.0))
+    root = np.where(positive, np.maximum(s, nothing), nothing)
+    if done.all():
+        return root
+    if known[~done].any():
+        raise DefectError(f"the inverse of a {name} did not converge")
+    # Value or slope left the range of doubles on the way: no number answers that.
+    return np.where(done, root, np.nan)
 
 
 def _middle(low: Array, high: Array) -> Array:

@@ -5,11 +5,27 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import normal
+from mdr_core import normal, tangential
 from mdr_core.errors import InputError
+from mdr_core.foundation import coordinate_from_force
 from mdr_core.profiles import (
+    CappedParaboloid,
+    Cone,
+    Ellipsoid,
+    FlatPunch,
+    Hyperboloid,
     Paraboloid,
+    Power,
+    PowerTerm,
     Profile,
+    RoundedCone,
+    RoundedPunch,
+    Series,
+    Sphere,
+    SphericalTipCone,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
 )
 from mdr_core.sweeps import BLOCK, in_blocks
 from mdr_core.typing import Array
@@ -71,3 +87,150 @@ def test_a_wrong_modulus_is_refused_in_a_sweep(control: str, wrong: float, load:
     with pytest.raises(InputError) as refused:
         normal.solve(Paraboloid(0.01), moduli, **given)
     assert refused.value.path == ("material", "e_star")
+
+
+# Parameters of a few scenes for every kind that takes arrays and whose answers hold no power with
+# a free exponent: C's pow, for single numbers, and NumPy's, for arrays, round differently.
+RANDOM = np.random.default_rng(7)
+FEW = 40
+
+
+def spread(low: float, high: float) -> Array:
+    return 10 ** RANDOM.uniform(low, high, FEW)
+
+
+KINDS: dict[str, tuple[type[Profile], dict[str, Array]]] = {
+    "cone": (Cone, {"slope": spread(-2, 0)}),
+    "paraboloid": (Paraboloid, {"radius": spread(-3, 0)}),
+    "sphere": (Sphere, {"radius": spread(-2, 0)}),
+    "ellipsoid": (Ellipsoid, {"radius": spread(-2, 0), "height": spread(-2, 0)}),
+    "hyperboloid": (Hyperboloid, {"slope": spread(-2, 0), "tip_radius": spread(-3, 0)}),
+    "flat_punch": (FlatPunch, {"radius": spread(-3, 0)}),
+    "rounded_punch": (
+        RoundedPunch,
+        {"flat_radius": spread(-4, -2), "rounding_radius": spread(-3, 0)},
+    ),
+    "truncated_cone": (TruncatedCone, {"flat_radius": spread(-4, -2), "slope": spread(-2, 0)}),
+    "truncated_paraboloid": (
+        TruncatedParaboloid,
+        {"flat_radius": spread(-4, -2), "radius": spread(-3, 0)},
+    ),
+}
+MODULI, SHEAR_MODULI, FRICTION = spread(9, 12), spread(9, 12), spread(-1, 0)
+# Zero, a limit reached and one exceeded are among the loads.
+LOADS = {
+    "normal_force": np.append(0.0, spread(-3, 1)[1:]),
+    "indentation_depth": np.append(0.0, spread(-9, -5)[1:]),
+}
+PART = np.concatenate([[0.0, 0.0, 0.5], RANDOM.uniform(0.001, 0.999, FEW - 4), [-0.7]])
+NORMAL = (
+    "contact_radius",
+    "indentation_depth",
+    "normal_force",
+    "mean_pressure",
+    "normal_stiffness",
+)
+TANGENTIAL = (
+    "tangential_force",
+    "tangential_displacement",
+    "stick_radius",
+    "slip_width",
+    "tangential_stiffness",
+)
+
+
+def many(values: Array) -> Array:
+    """The few scenes over and over, for more than one block."""
+    return np.resize(values, BLOCK + FEW + 7)
+
+
+@pytest.mark.parametrize("control", LOADS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, control: str) -> None:
+    profile, named = KINDS[kind]
+    sweep = normal.solve(
+        profile(**{name: many(values) for name, values in named.items()}),
+        many(MODULI),
+        **{control: many(LOADS[control])},  # type: ignore[arg-type]
+    )
+    singles = [
+        normal.solve(
+            profile(**{name: float(values[i]) for name, values in named.items()}),
+            float(MODULI[i]),
+            **{control: float(LOADS[control][i])},  # type: ignore[arg-type]
+        )
+        for i in range(FEW)
+    ]
+    for name in NORMAL:
+        alone = np.array([getattr(single, name) for single in singles])
+        assert np.array_equal(getattr(sweep, name), many(alone)), name
+    for tangential_control, limit in (
+        ("tangential_force", FRICTION * [one.normal_force for one in singles]),
+        (
+            "tangential_displacement",
+            FRICTION * MODULI / SHEAR_MODULI * [one.indentation_depth for one in singles],
+        ),
+    ):
+        loads = PART * limit
+        sideways = tangential.solve(
+            sweep,
+            many(SHEAR_MODULI),
+            many(FRICTION),
+            **{tangential_control: many(loads)},  # type: ignore[arg-type]
+        )
+        alone_sideways = [
+            tangential.solve(
+                singles[i],
+                float(SHEAR_MODULI[i]),
+                float(FRICTION[i]),
+                **{tangential_control: float(loads[i])},  # type: ignore[arg-type]
+            )
+            for i in range(FEW)
+        ]
+        for name in TANGENTIAL:
+            alone = np.array([getattr(one, name) for one in alone_sideways])
+            assert np.array_equal(getattr(sideways, name), many(alone)), name
+
+
+EVERY = {
+    **{
+        kind: profile(**{name: float(values[0]) for name, values in named.items()})
+        for kind, (profile, named) in KINDS.items()
+    },
+    "power": Power(2.0, 3.5),
+    "series": Series((PowerTerm(1.0, 2.0), PowerTerm(3.0, 4.5))),
+    "rounded_cone": RoundedCone(0.1, 0.01),
+    "spherical_tip_cone": SphericalTipCone(0.1, 0.01),
+    "capped_paraboloid": CappedParaboloid(1e-3, 1.0, 0.01),
+    "tabulated": Tabulated([0.0, 0.1, 0.2, 0.3], [0.0, 0.01, 0.04, 0.09]),
+}
+
+
+@pytest.mark.parametrize("amount", [-1.0, -1e-200, -0.0, 0.0, np.nan])
+@pytest.mark.parametrize("kind", EVERY)
+def test_no_ordinary_contact_answers_a_force_that_is_not_positive(kind: str, amount: float) -> None:
+    # On that a sweep relies when it lets the contact vouch for the modulus.
+    with np.errstate(invalid="ignore"):
+        assert not coordinate_from_force(EVERY[kind], np.array([amount]))[0] > 0
+
+
+def test_a_sweep_with_loads_of_all_regimes_is_answered_like_its_scenes() -> None:
+    contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
+    loads = np.linspace(-2.0, 2.0, MANY)
+    found = tangential.solve(contact, 0.9e11, 0.3, tangential_displacement=loads * 1e-6)
+    one = normal.solve(Paraboloid(0.01), E_STAR, normal_force=10.0)
+    for i in (0, BLOCK - 1, BLOCK, MANY // 2, MANY - 1):
+        alone = tangential.solve(one, 0.9e11, 0.3, tangential_displacement=loads[i] * 1e-6)
+        assert found.regime[i] == alone.regime
+        for name in (*TANGENTIAL, "dissipated_energy"):
+            assert getattr(found, name)[i] == getattr(alone, name), name
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e3])
+def test_a_wrong_tangential_force_is_named_by_its_place_in_the_sweep(wrong: float) -> None:
+    contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
+    loads = np.full(MANY, 1.0)
+    loads[BLOCK + 5] = wrong
+    with pytest.raises(InputError) as refused:
+        tangential.solve(contact, 0.9e11, 0.3, tangential_force=loads)
+    assert refused.value.path == ("tangential", "tangential_force", BLOCK + 5)
