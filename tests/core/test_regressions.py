@@ -216,3 +216,17 @@ def test_a_series_whose_terms_cancel_admits_it() -> None:
     miss = abs(contact.indentation_depth / 7.4970565808317638242e-4 - 1)
     assert miss <= contact.error_estimate
     assert contact.error_estimate > 1e-12
+
+
+@pytest.mark.parametrize("force", [1e-16, 1e-11, 1e-9, 1e-4])
+def test_a_table_with_a_sharp_flat_keeps_the_smallest_loads(force: float) -> None:
+    # The contact's edge then differs from the flat's by less than the rounding of either.
+    r, f = np.array([0.0, 0.5, 0.7, 1.0, 1.4]), np.array([0.0, 0.0, 0.06, 0.15, 0.27])
+    table = profiles.Tabulated(r, f, breaks=(0.5,))
+    found = normal.solve(table, 1.0, normal_force=force)
+    # A truncated cone: g = t x arccos(b/x) and F_N/E* = t (a^2 arccos(b/a) + b s) behind b.
+    s = float(found.coordinate)
+    phi = np.arctan2(s, 0.5)
+    a = np.hypot(0.5, s)
+    assert 0.3 * (a * a * phi + 0.5 * s) == pytest.approx(force, rel=1e-13)
+    assert float(found.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13)

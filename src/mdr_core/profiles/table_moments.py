@@ -95,8 +95,9 @@ class TableSlope:
         result = np.empty_like(base)
         for start in range(0, order.size, _BLOCK):
             index = order[start : start + _BLOCK]
-            first, last = np.searchsorted(self.edges, place[index[[0, -1]]])
-            near = slice(max(int(first) - 1 - _NEAR, 0), min(int(last), self.edges.size - 1))
+            # From the right: a point may lie above an edge by less than its rounding.
+            first, last = np.searchsorted(self.edges, place[index[[0, -1]]], side="right")
+            near = slice(max(int(first) - 2 - _NEAR, 0), min(int(last), self.edges.size - 1))
             sums = self._weighted_sums if weighted else self._moment_sums
             result[index] = sums(base[index], off[index], near)
             if near.start:
