@@ -149,7 +149,7 @@ def radius_slope_at_depth(profile: Profile, depth: Array) -> Array:
 
 def lens_integral(profile: Profile, depth: Array, span: Array) -> Array:
     """int (I(w) - I(depth - span)) dw = int 2 x (depth - w) dw over a narrow span [length^3]."""
-    breaks = profile.depth(profile.coordinate_breaks)
+    breaks = breaks_below(profile, float(depth.max()), by_force=False)
     return integral(
         lambda left, w: 2 * left * radius_at_depth(profile, w), depth - span, span, breaks
     )
@@ -172,6 +172,14 @@ def integral(
 
     first = below * mean(until, low, below, last_break(breaks, low))
     return first + beyond * mean(after, low + below, beyond, low + below)
+
+
+def breaks_below(profile: Profile, level: float, by_force: bool) -> Array:  # noqa: FBT001
+    """Depths, or forces, of the profile's breaks inside the contact of the given level."""
+    find = coordinate_from_force if by_force else coordinate_from_depth
+    breaks = profile.coordinate_breaks
+    breaks = breaks[breaks < find(profile, np.array([level]))]
+    return profile.reduced_force(breaks) if by_force else profile.depth(breaks)
 
 
 def next_break(breaks: Array, level: Array) -> Array:

@@ -17,16 +17,19 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core import annulus
 from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
 from mdr_core.history.branches import (
+    breaks_below,
     integral,
     mean,
+    radius_at_depth,
     radius_at_force,
     radius_slope_at_depth,
 )
 from mdr_core.history.memory import Pieces
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Flags, Indices
 
 # Below this relative difference a mean is taken from values between, not from a quotient.
 _CLOSE: Final = 1e-4
@@ -34,6 +37,10 @@ _CLOSE: Final = 1e-4
 _BLOCK: Final = 512
 # Up to this part of the level a gap is near: the closed form loses its third power.
 _NEAR: Final = 0.25
+# Up to so many radii of its flat a contact is shallow.
+_SHALLOW: Final = 1.5
+# A load is constant on the way of a front that moves as far as its gap, up to rounding.
+_EVEN: Final = 1e-12
 # A piece that comes nearer to the axis than so many gaps has digits enough for the closed form.
 _GAPS: Final = 4.0
 
@@ -54,16 +61,18 @@ def per_piece(profile: Profile, pieces: Pieces, *, by_force: bool) -> Array:
     if profile.slips_at_once:
         return result
     partial = np.flatnonzero(~pieces.everything & (pieces.span > 0))
-    rows = pieces.level, pieces.span, pieces.upper_gap, pieces.lower_gap
-    level, span, upper, lower = (row[partial] for row in rows)
+    given = pieces.level, pieces.span, pieces.upper_gap, pieces.lower_gap
+    level, span, upper, lower = (row[partial] for row in given)
     reach = np.maximum(level + lower, level + span + upper)
-    close = np.maximum(upper, lower) < _NEAR * reach
+    gap = np.maximum(upper, lower)
+    close = gap < _NEAR * reach
     area = np.zeros(partial.size)
-    for index in _blocks(np.flatnonzero(~close)):
-        area[index] = _closed(
-            profile, (level[index], span[index], upper[index], lower[index]), by_force
-        )
-    near = np.flatnonzero(close)
+    shallow = _shallow(profile, reach, by_force) & (np.abs(lower - upper - span) < _EVEN * gap)
+    for front, chosen in ((_closed, ~close & ~shallow), (_even_front, ~close & shallow)):
+        for index in _blocks(np.flatnonzero(chosen)):
+            rows = level[index], span[index], upper[index], lower[index]
+            area[index] = front(profile, rows, by_force)
+    near = np.flatnonzero(close & (gap > 0))
     if near.size:
         whole = level[near], span[near], upper[near], lower[near]
         area[near] = _of_near_pieces(profile, whole, by_force)
@@ -81,15 +90,39 @@ def _closed(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FB
     return np.maximum(front(profile, *rows), 0.0)
 
 
+def _shallow(profile: Profile, reach: Array, by_force: bool) -> Flags:  # noqa: FBT001
+    """Contacts little larger than the flat they began with: all radii are nearly the same."""
+    flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+    if flat == 0:
+        return np.zeros(reach.shape, dtype=bool)
+    return (radius_at_force if by_force else radius_at_depth)(profile, reach) < _SHALLOW * flat
+
+
+def _even_front(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+    """int R dw under a constant load: 2 int (d - w)(w - w_L) dx less that from w_H on."""
+    level, span, upper, lower = rows
+    find = coordinate_from_force if by_force else coordinate_from_depth
+    ends = annulus.stick_from_force if by_force else annulus.stick_from_depth
+    top = level + lower
+    s = find(profile, top)
+
+    def moment(gap: Array, below: Array) -> Array:
+        stick, width = ends(profile, s, gap / top, below / top)
+        return 2 * annulus.slip_moment(profile, s, width, stick)
+
+    beyond = np.where(upper > 0, moment(upper, level + span), 0.0)
+    return np.maximum(moment(lower, level) - beyond, 0.0)
+
+
 def _of_near_pieces(profile: Profile, whole: _Rows, by_force: bool) -> Array:  # noqa: FBT001
     """Pieces whose front stays near the edge, cut until each part has its digits."""
-    breaks = profile.coordinate_breaks
-    breaks = profile.reduced_force(breaks) if by_force else profile.depth(breaks)
+    level, span, upper, _ = whole
+    breaks = breaks_below(profile, float((level + span + upper).max()), by_force)
     owner, (level, span, upper, lower) = _cut(whole, breaks)
     gap = np.maximum(upper, lower)
     area = np.zeros(owner.size)
     # Next to the axis the gap is no small part of the level.
-    wide = level < (_GAPS - 1) * gap
+    wide = level <= (_GAPS - 1) * gap
     narrow_front = _narrow_force_front if by_force else _narrow_depth_front
     for index in _blocks(np.flatnonzero(wide)):
         rows = level[index], span[index], upper[index], lower[index]
