@@ -222,6 +222,18 @@ def test_pressure_carries_the_force(control: str) -> None:
         assert carried == pytest.approx(found.normal_force[cycle], rel=2e-3 if cycle else 1e-6)
 
 
+@pytest.mark.parametrize("part", [1e-6, 1e-2])
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_narrow_annulus_wears_half_as_wide_again(control: str, part: float) -> None:
+    """a - c grows by a half, and neither depth nor stick edge move by more than its square."""
+    found = worn("paraboloid", control, part)
+    width = float(found.scene.sideways.slip_width)
+    grown = (found.contact_radius - found.stick_radius)[-1] / width
+    assert grown == pytest.approx(1.5, rel=max(1e-4, part))
+    assert found.stick_radius[-1] - found.stick_radius[0] <= 2 * width**2 + 1e-9 * width
+    assert found.error_estimate <= 0.02
+
+
 def test_before_the_first_cycle_all_is_as_it_was() -> None:
     found = worn("paraboloid", CONTROLS[0])
     r = np.array([0.0, 0.3, 0.74, 0.8, 0.95, 1.3])

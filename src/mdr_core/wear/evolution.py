@@ -50,10 +50,8 @@ class WearEvolution:
         scene = self.scene
         if not scene.slips:
             return None
-        unit = scene.length_unit
         found = course(
             scene.system(self.resolution),
-            scene.stick / unit,
             self.cycles / scene.cycle_unit,
             self.rtol,
             scene.stop,

@@ -20,6 +20,9 @@ from mdr_core.wear.annulus_maps import AnnulusMaps
 
 # Where y = (sigma - S_0)/s at the inner nodes ends in the state, and what follows it.
 _EDGES = 4
+# Part of D by which g has risen at the first node when its layer has become too thin, if that is
+# more than twice what it rises by at first.
+_RISEN = 0.02
 # Beyond this part of itself the volume's rate is taken as it is.
 _LARGEST_MISS = 0.2
 # A cycle's work, over b_0/a, from which on it and the volume's rate are noise, and the wear that is
@@ -101,7 +104,8 @@ class State:
     @property
     def stick(self) -> float:
         """c."""
-        return float(self.vector[1 - _EDGES - self.system.kept])
+        # Of c itself the integrator would not keep the digits of a narrow annulus.
+        return self.system.first_stick + float(self.vector[1 - _EDGES - self.system.kept])
 
     @property
     def risen(self) -> float:
@@ -191,6 +195,8 @@ class System:
     maps: AnnulusMaps
     shape: Shape
     control: Control
+    first_stick: float
+    """c_0."""
     outside: Outside | None = None
 
     @cached_property
@@ -203,9 +209,10 @@ class System:
         """How many values of C the state carries."""
         return self.outside.count if self.outside else 0
 
-    def start(self, stick: float) -> Array:
+    @property
+    def start(self) -> Array:
         """The state before the first cycle."""
-        edges = (1.0, stick, 0.0, 0.0)
+        edges = (1.0, 0.0, 0.0, 0.0)
         return np.concatenate([np.zeros(self.maps.zeta.size - 1), edges, np.zeros(self.kept)])
 
     def rates(self, vector: Array, *, moving: bool) -> Array:
@@ -233,14 +240,17 @@ class System:
         return moves
 
     def settling(self, vector: Array) -> float:
-        """Positive once the first node wears faster than a rising depth relieves it.
+        """Positive once the layer in which g rises behind the stick edge is thinner than resolved.
 
-        Then the layer in which g rises behind the stick edge is thinner than the nodes resolve,
-        and the edge rests from there on.
+        Then g has risen by the first node already, and that node wears faster than the rising
+        depth relieves it: the edge rests from there on.
         """
         state = State(self, vector)
         rise = _Columns(state, moving=True).solve()[2]
-        return float(state.pressure[0] * state.slip[0] - 4 / np.pi * rise / state.stick)
+        relief = 4 / np.pi * rise / state.stick
+        wear = float(state.pressure[0] * state.slip[0])
+        part = max(_RISEN, 2 * float(self.maps.squares[0]))
+        return min(wear - relief, float(state.gamma[0]) - part * state.drive)
 
 
 def _clock(power: float, volume: float, faint: float) -> float:

@@ -87,9 +87,8 @@ class Scene:
         """The scene in its units on so many nodes."""
         a = float(self.contact.contact_radius)
         spread = np.clip(np.round(np.log2(2 * self.stick / (a + self.stick))), _SMALLEST_SPREAD, 0)
-        return System(
-            annulus_maps(nodes, float(2.0**spread)), self.shape, self.control, self.outside
-        )
+        maps, stick = annulus_maps(nodes, float(2.0**spread)), self.stick / self.length_unit
+        return System(maps, self.shape, self.control, stick, self.outside)
 
     @cached_property
     def shape(self) -> Shape:
