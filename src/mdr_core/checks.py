@@ -21,6 +21,11 @@ def extremes(values: float | ArrayLike) -> tuple[float, float]:
     return float(array.min()), float(array.max())
 
 
+def least(values: Array) -> float:
+    """Smallest value, NaN if any is NaN; of a single one, without the cost of a reduction."""
+    return float(values) if values.ndim == 0 else float(values.min())
+
+
 def first_index(bad: Flags) -> tuple[int, ...]:
     """Index of the first true element, empty where `bad` has no dimension."""
     return (int(np.flatnonzero(bad)[0]),) if bad.ndim else ()

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.checks import extremes, first_index, largest
+from mdr_core.checks import extremes, first_index, largest, least
 from mdr_core.errors import InputError, Notice
 from mdr_core.foundation import (
     coordinate_from_depth,
@@ -65,7 +65,7 @@ class NormalContact:
     def mean_pressure(self) -> Array:
         """F_N / (pi a^2) [pressure]; at zero load its limit, infinite on a needle's tip."""
         area = np.pi * (self.contact_radius * self.contact_radius)
-        if extremes(area)[0] > 0:
+        if least(area) > 0:
             return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
         return np.where(area > 0, self.normal_force / np.where(area > 0, area, 1.0), limit)
