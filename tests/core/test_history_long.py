@@ -1,0 +1,118 @@
+"""A hundred thousand steps: nothing drifts, and nothing is remembered that was wiped out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from mdr_core import history
+from tests.core.comparison import profile_from
+from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES, solve
+from tests.oracles import slip_reference as slip
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+STEPS = 100_000
+#: Steps between two wipings.
+BATCH = 1000
+#: Displacement of the wiping point, as a part of the one that slides all.
+TOP = 0.8
+SIZE = MATERIAL.mu * MATERIAL.e_star * DEPTH
+chosen = pytest.mark.parametrize("name", ["paraboloid", "truncated-cone"])
+
+
+def wandering(seed: int, steps: int = STEPS) -> tuple[Array, Array]:
+    """Pure normal loading, random points, and (DEPTH, TOP) after each batch of them.
+
+    At that point the springs with g > (1 - TOP) DEPTH slip forward, whatever befell them, if the
+    others were left alone in between; and they are if no point asks more of them than it does:
+    d - |u|, in its units, stays larger.
+    """
+    random = np.random.default_rng(seed)
+    spare = 1.001 * (1 - TOP)
+    d = random.uniform(0.25, 1.15, steps)
+    u = random.uniform(-1.0, 1.0, steps) * (d - spare)
+    d[0], u[0] = 1.0, 0.0
+    d[BATCH - 1 :: BATCH], u[BATCH - 1 :: BATCH] = 1.0, TOP
+    return d * DEPTH, u * MOST
+
+
+@chosen
+def test_a_wiping_step_ends_on_the_curve_of_first_loading(name: str) -> None:
+    d, u = wandering(3)
+    found = solve(name, indentation_depth=d, tangential_displacement=u)
+    with mp.workdps(slip.WORK_DIGITS):
+        at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
+    # The double of the path itself.
+    exact = slip.solve(at, "tangential_displacement", float(u[BATCH - 1]), energy=False)
+    expected = float(exact.values["tangential_force"])
+    returned = found.tangential_force[BATCH - 1 :: BATCH]
+    assert returned.size == STEPS // BATCH
+    assert returned == pytest.approx(np.full(returned.size, expected), rel=1e-12, abs=0)
+
+
+@chosen
+def test_what_follows_a_wiping_step_needs_nothing_before_it(name: str) -> None:
+    d, u = wandering(4, STEPS // 5)
+    found = solve(name, indentation_depth=d, tangential_displacement=u)
+    for batch in (1, 10, 19):
+        part = slice(batch * BATCH, (batch + 1) * BATCH)
+        fresh = solve(
+            name,
+            indentation_depth=np.concatenate([[DEPTH, DEPTH], d[part]]),
+            tangential_displacement=np.concatenate([[0.0, u[BATCH - 1]], u[part]]),
+        )
+        most = MATERIAL.mu * np.max(fresh.normal_force)
+        expected = pytest.approx(fresh.tangential_force[2:], rel=0, abs=1e-12 * most)
+        assert found.tangential_force[part] == expected
+        lost = pytest.approx(fresh.dissipation[2:], rel=1e-9, abs=1e-12 * most * MOST)
+        assert found.dissipation[part] == lost
+
+
+def anchors(d: Array, u: Array, touch: Array) -> Array:
+    """q_x of springs that remember where they hang, not how far they moved: no sum, no drift."""
+    compliance = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star
+    hung = np.zeros_like(touch)
+    last_d = last_u = 0.0
+    for new_d, new_u in zip(d.tolist(), u.tolist(), strict=True):
+        if new_d > last_d:
+            entering = (touch >= last_d) & (touch < new_d)
+            share = (touch - last_d) / (new_d - last_d)
+            hung = np.where(entering, last_u + share * (new_u - last_u), hung)
+        reach = compliance * np.maximum(new_d - touch, 0.0)
+        hung = np.clip(hung, new_u - reach, new_u + reach)
+        last_d, last_u = new_d, new_u
+    return np.where(touch < last_d, MATERIAL.g_star * (last_u - hung), 0.0)
+
+
+@pytest.mark.parametrize("name", ["paraboloid", "flat-punch"])
+def test_the_state_after_all_steps_is_that_of_springs_that_cannot_drift(name: str) -> None:
+    """Without any wiping point; the contact is lost now and then."""
+    random = np.random.default_rng(5)
+    d = random.uniform(-0.002, 1.0, STEPS // 4) * DEPTH
+    u = random.uniform(-0.3, 0.3, STEPS // 4) * MOST
+    d[-1] = DEPTH / 2
+    state = solve(name, indentation_depth=d, tangential_displacement=u).state
+    touch = np.linspace(0.0, 0.999 * d[-1], 97) if name != "flat-punch" else np.zeros(1)
+    found = np.interp(touch, state.depth, state.load)
+    assert found == pytest.approx(anchors(d, u, touch), rel=0, abs=1e-12 * SIZE)
+    assert state.depth.size <= 64
+
+
+def test_the_memory_stays_short() -> None:
+    d, u = wandering(6, 3000)
+    fields = PROFILES["paraboloid"]
+    state = history.unloaded(profile_from(fields), MATERIAL.e_star, MATERIAL.g_star, MATERIAL.mu)
+    longest = 0
+    for point in zip(d.tolist(), u.tolist(), strict=True):
+        state = history.advance(state, *point)
+        longest = max(longest, state.depth.size)
+    assert longest <= 64
+    whole = solve("paraboloid", indentation_depth=d, tangential_displacement=u)
+    assert state.depth == pytest.approx(whole.state.depth, rel=1e-12)

@@ -1,0 +1,186 @@
+"""Random paths of fifty legs against a hundred thousand springs, in every control."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from mdr_core import history
+from tests.core.comparison import profile_from
+from tests.oracles import springs
+from tests.oracles.slip_reference import Material
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+MATERIAL = Material(3.7, 2.9, 0.37)
+DEPTH = 0.25
+MOST = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * DEPTH
+SPRINGS = 100_000
+#: What so many springs are held to; fewer by ten are at most a hundred times as wrong.
+OWN = 1e-9
+TABLE = {"kind": "tabulated", "r": [0.0, 0.3, 0.7, 1.1, 2.0], "breaks": []}
+PROFILES: dict[str, dict[str, Any]] = {
+    "paraboloid": {"kind": "paraboloid", "radius": 1.3},
+    "cone": {"kind": "cone", "slope": 0.3},
+    "power0.7": {"kind": "power", "coefficient": 0.7, "exponent": 0.7},
+    "power4": {"kind": "power", "coefficient": 0.4, "exponent": 4.0},
+    "series": {
+        "kind": "series",
+        "terms": [{"coefficient": 0.2, "exponent": 1.0}, {"coefficient": 0.3, "exponent": 3.0}],
+    },
+    "sphere": {"kind": "sphere", "radius": 1.5},
+    "rounded-punch": {"kind": "rounded_punch", "flat_radius": 0.6, "rounding_radius": 2.0},
+    "truncated-cone": {"kind": "truncated_cone", "flat_radius": 0.6, "slope": 0.3},
+    "rounded-cone": {"kind": "rounded_cone", "slope": 0.3, "tip_radius": 1.7},
+    "capped-paraboloid": {
+        "kind": "capped_paraboloid",
+        "cap_radius": 0.4,
+        "tip_radius": 3.0,
+        "radius": 1.1,
+    },
+    "linear-table": {**TABLE, "f": [0.0, 0.02, 0.1, 0.25, 0.9], "interpolation": "linear"},
+    "cubic-table": {**TABLE, "f": [0.0, 0.02, 0.1, 0.25, 0.8], "interpolation": "cubic"},
+    "flat-punch": {"kind": "flat_punch", "radius": 0.5},
+}
+everywhere = pytest.mark.parametrize("name", PROFILES)
+NAMES = ("normal_force", "tangential_force", "tangential_energy", "dissipated_energy")
+
+
+def solve(name: str, **controls: Any) -> history.History:
+    profile = profile_from(PROFILES[name])
+    return history.solve(profile, MATERIAL.e_star, MATERIAL.g_star, MATERIAL.mu, **controls)
+
+
+def random_path(seed: int, legs: int = 50) -> tuple[Array, Array]:
+    """The contact is lost now and then; some legs are purely normal, some purely tangential."""
+    random = np.random.default_rng(seed)
+    d, u = random.uniform(-0.15, 1.0, legs) * DEPTH, random.uniform(-1.2, 1.2, legs) * MOST
+    for leg, kind in enumerate(random.integers(0, 6, legs)):
+        if leg and kind == 0:
+            d[leg] = d[leg - 1]
+        elif leg and kind == 1:
+            u[leg] = u[leg - 1]
+    return d, u
+
+
+def apart(found: Any, summed: Any) -> float:
+    """The largest difference, each in units of the largest value of its kind."""
+    return max(
+        float(
+            np.max(np.abs(getattr(found, name) - getattr(summed, name)))
+            / np.max(np.abs(getattr(summed, name)))
+        )
+        for name in NAMES
+    )
+
+
+@everywhere
+def test_fifty_legs_are_those_of_the_springs(name: str) -> None:
+    d, u = random_path(1)
+    assert np.any(d[5:-5] <= 0)
+    found = solve(name, indentation_depth=d, tangential_displacement=u)
+    errors = []
+    for count in (SPRINGS // 100, SPRINGS // 10, SPRINGS):
+        bed = springs.bed(PROFILES[name], float(np.max(d)), count)
+        errors.append(apart(found, springs.simulate(bed, MATERIAL, d, u)))
+    assert errors[-1] <= OWN, errors
+    if name != "flat-punch":
+        # The difference is the springs': it falls as theirs must, by a hundred in the limit.
+        assert errors[1] < errors[0] / 25, errors
+        assert errors[2] < errors[1] / 25, errors
+
+
+@pytest.mark.parametrize("name", ["paraboloid", "truncated-cone"])
+def test_samples_within_a_leg_are_those_of_the_springs(name: str) -> None:
+    d, u = random_path(3, 20)
+    found = solve(name, indentation_depth=d, tangential_displacement=u, samples_per_step=4)
+    at = np.arange(1, 81) / 4
+    fine_d = np.interp(at, np.arange(21), np.append(0.0, d))
+    fine_u = np.interp(at, np.arange(21), np.append(0.0, u))
+    assert found.indentation_depth == pytest.approx(fine_d, rel=1e-13, abs=1e-15)
+    assert found.tangential_displacement == pytest.approx(fine_u, rel=1e-13, abs=1e-15)
+    bed = springs.bed(PROFILES[name], float(np.max(d)), SPRINGS)
+    assert apart(found, springs.simulate(bed, MATERIAL, fine_d, fine_u)) <= OWN
+
+
+@everywhere
+def test_the_state_is_that_of_each_spring(name: str) -> None:
+    """q_x spring by spring, through corners and all."""
+    for legs in (1, 2, 7, 50):
+        d, u = random_path(4, legs)
+        d[-1] = abs(d[-1])
+        state = solve(name, indentation_depth=d, tangential_displacement=u).state
+        bed = springs.bed(PROFILES[name], float(np.max(d)), 2000)
+        load = springs.simulate(bed, MATERIAL, d, u).load
+        inside = bed.touch < d[-1]
+        found = np.interp(bed.touch[inside], state.depth, state.load)
+        size = MATERIAL.mu * MATERIAL.e_star * DEPTH
+        assert found == pytest.approx(load[inside], rel=1e-12, abs=1e-13 * size)
+        assert state.depth[0] == 0
+        assert state.depth[-1] == state.indentation_depth
+        assert state.indentation_depth == pytest.approx(d[-1], rel=1e-14)
+        assert np.all(np.diff(state.depth) > 0)
+
+
+def force_path(name: str, legs: int, normal: str, tangential: str) -> dict[str, Array]:
+    """A path in the given controls; forces stay within friction at every point of every leg."""
+    random = np.random.default_rng(8)
+    d = random.uniform(0.05, 1.0, legs) * DEPTH
+    bed = springs.bed(PROFILES[name], DEPTH, 20_000)
+    force = springs.simulate(bed, MATERIAL, d, np.zeros(legs)).normal_force
+    # With the depth held straight, the force lags behind a straight line of forces.
+    part = 0.95 if normal == "normal_force" else 0.3
+    least = force if normal == "normal_force" else np.minimum(force, np.append(0, force[:-1]))
+    sideways = {
+        "tangential_force": random.uniform(-part, part, legs) * MATERIAL.mu * least,
+        "tangential_displacement": random.uniform(-1.0, 1.0, legs) * MOST,
+    }
+    for pushed in sideways.values():
+        # Pure normal loading first: a depth grows from no force like a root, and chords hate roots.
+        pushed[0] = 0.0
+    forward = {"normal_force": force, "indentation_depth": d}
+    return {normal: forward[normal], tangential: sideways[tangential]}
+
+
+@pytest.mark.parametrize(
+    ("name", "normal", "tangential"),
+    [
+        ("paraboloid", "normal_force", "tangential_force"),
+        ("paraboloid", "normal_force", "tangential_displacement"),
+        ("paraboloid", "indentation_depth", "tangential_force"),
+        ("truncated-cone", "normal_force", "tangential_force"),
+        ("truncated-cone", "normal_force", "tangential_displacement"),
+        ("sphere", "normal_force", "tangential_force"),
+    ],
+)
+def test_springs_that_follow_the_found_motion_bear_the_given_forces(
+    name: str, normal: str, tangential: str
+) -> None:
+    """Curved ways in (d, u) are handed to the springs as ever shorter chords."""
+    controls = force_path(name, 4, normal, tangential)
+    bed = springs.bed(PROFILES[name], DEPTH, 20_000)
+    errors = []
+    for samples in (8, 32):
+        found = solve(name, **controls, samples_per_step=samples)
+        ends = slice(samples - 1, None, samples)
+        for control, given in controls.items():
+            assert getattr(found, control)[ends] == pytest.approx(given, rel=1e-12), control
+        summed = springs.simulate(
+            bed, MATERIAL, found.indentation_depth, found.tangential_displacement
+        )
+        errors.append(apart(found, summed))
+        line = np.arange(1, 4 * samples + 1) / samples
+        for control, given in controls.items():
+            straight = np.interp(line, np.arange(5), np.append(0.0, given))
+            size = np.max(np.abs(straight))
+            assert getattr(found, control) == pytest.approx(straight, rel=1e-11, abs=1e-12 * size)
+            borne = getattr(summed, control, straight)
+            assert borne == pytest.approx(straight, rel=0, abs=size / samples)
+    # A chord misses its arc by the square of its length, if nothing else is wrong.
+    assert errors[1] < errors[0] / 6 or errors[1] < 1e-7, errors
+    assert errors[1] < 1e-3, errors
