@@ -27,7 +27,7 @@ CORE = {"mdr_core.errors", "mdr_core.typing", "mdr_core.checks", "mdr_core.lazy"
 TRANSFORMS = {"mdr_core.quadrature", "mdr_core.abel"}
 CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_core.foundation"}
 # What the wire may name of the core: its public face, never the way it calculates.
-RESULTS = {"mdr_core.normal", "mdr_core.tangential"}
+RESULTS = {"mdr_core.normal", "mdr_core.tangential", "mdr_core.history"}
 PUBLIC = RESULTS | {
     "mdr_core.errors",
     "mdr_core.materials",

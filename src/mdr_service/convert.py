@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from mdr_core import materials, profiles
 from mdr_core.errors import DefectError, InputError
 from mdr_service.schemas.answers import Catalogue, ProfileField, ProfileKind
+from mdr_service.schemas.loads import Choice, Cycles, History
 from mdr_service.schemas.profiles import MODELS, Series, Tabulated
 from mdr_service.schemas.profiles import Profile as ProfileModel
 from mdr_service.schemas.quantities import SMALLEST_LOAD, Strict
@@ -16,9 +17,10 @@ from mdr_service.schemas.queries import (
     SHEAR_FIELDS,
     Bodies,
     Body,
-    Load,
+    HistoryQuery,
     Material,
     NormalQuery,
+    Query,
     StressQuery,
     TangentialQuery,
 )
@@ -26,6 +28,7 @@ from mdr_service.settings import SETTINGS
 
 Array = NDArray[np.float64]
 _Arguments = Callable[[Any], dict[str, Any]]
+_Place = tuple[str | int, ...]
 
 
 def normal_arguments(query: NormalQuery) -> dict[str, Any]:
@@ -34,36 +37,72 @@ def normal_arguments(query: NormalQuery) -> dict[str, Any]:
         "profile": profile(query.profile),
         "e_star": material(query.material).e_star,
         "rtol": query.rtol,
-        **controls(query.load),
+        **_controls(("load",), query.load),
     }
 
 
 def tangential_arguments(query: TangentialQuery | StressQuery) -> dict[str, Any]:
     """Return the arguments of `mdr_core.tangential.solve`, besides the normal contact."""
-    g_star = material(query.material).g_star
-    if g_star is None:
-        raise InputError(("material", "g_star"), "is needed where there is friction")
     given = query.tangential
     if given.count > 1 and query.load.count not in {1, given.count}:
         detail = f"{given.count} values for {query.load.count} loads: one or as many are needed"
         raise InputError(("tangential", given.control), detail)
     return {
-        "g_star": g_star,
+        "g_star": _shear_modulus(query),
         "friction_coefficient": query.friction_coefficient,
         given.control: np.array(given.value, dtype=float),
     }
 
 
+def history_arguments(query: HistoryQuery | StressQuery) -> dict[str, Any]:
+    """Return the arguments of `mdr_core.history.solve`."""
+    given = query.history
+    _require_few("history", given)
+    return _remembered(query) | {
+        "samples_per_step": given.samples_per_step,
+        **_controls(("history", "normal"), given.normal),
+        given.tangential.control: np.array(given.tangential.value, dtype=float),
+    }
+
+
+def cycles_arguments(query: HistoryQuery) -> dict[str, Any]:
+    """Return the arguments of `mdr_core.history.cycles`."""
+    given = query.cycles
+    _require_few("cycles", given)
+    _require_digits(("cycles", "normal", "amplitude"), given.normal.amplitude)
+    return _remembered(query) | {
+        "samples_per_step": given.samples_per_step,
+        "count": given.count,
+        "normal_amplitude": given.normal.amplitude,
+        **_controls(("cycles", "normal"), given.normal),
+        given.tangential.control: given.tangential.value,
+    }
+
+
+def require_one_way(query: HistoryQuery) -> None:
+    """Raise InputError unless there is either a history or cycles."""
+    ways = {"history", "cycles"} & query.model_fields_set
+    if len(ways) != 1:
+        raise InputError(
+            (min(ways, default="history"),), "exactly one of history, cycles is needed"
+        )
+
+
 def require_consistent(query: StressQuery) -> None:
     """Raise InputError where fields that are fine alone do not fit together."""
     given = query.model_fields_set
-    friction = {"friction_coefficient", "tangential"}
-    if len(friction & given) == 1:
-        (missing,) = friction - given
-        raise InputError((missing,), f"is needed together with {', '.join(friction & given)}")
+    if ("load" in given) == ("history" in given):
+        raise InputError(
+            ("history" if "history" in given else "load",), "exactly one of load, history is needed"
+        )
+    if query.has_history and "tangential" in given:
+        raise InputError(("tangential",), "is part of history where there is one")
+    if ("friction_coefficient" in given) != query.has_friction:
+        missing = "tangential" if "friction_coefficient" in given else "friction_coefficient"
+        raise InputError((missing,), "friction_coefficient goes with tangential or history")
     for index, name in enumerate(query.quantities):
         if name in SHEAR_FIELDS and not query.has_friction:
-            raise InputError(("quantities", index), f"{name} needs tangential")
+            raise InputError(("quantities", index), f"{name} needs tangential or history")
     if ("radius" in given) == ("points" in given):
         place = "points" if "points" in given else "radius"
         raise InputError((place,), "exactly one of radius, points is needed")
@@ -99,17 +138,6 @@ def poissons_ratios(model: Material) -> list[float]:
     if not isinstance(model, Bodies):
         return []
     return [body.poissons_ratio for body in model.bodies if isinstance(body, Body)]
-
-
-def controls(load: Load) -> dict[str, float | Array]:
-    """Return the one control that was given, by its name."""
-    value = load.value
-    if not isinstance(value, list):
-        return {load.control: _with_digits(value, load, 0)}
-    loads = np.array(value, dtype=float)
-    smallest = int(np.argmin(np.where(loads > 0, loads, np.inf)))
-    _with_digits(loads[smallest], load, smallest)
-    return {load.control: loads}
 
 
 def catalogue() -> Catalogue:
@@ -150,10 +178,50 @@ _SPECIAL_ARGUMENTS: Final[Mapping[type[Strict], _Arguments]] = {
 }
 
 
-def _with_digits(value: float, load: Load, index: int) -> float:
-    if 0 < value < SMALLEST_LOAD:
-        raise InputError(("load", *load.place(index)), f"must be 0 or at least {SMALLEST_LOAD}")
-    return value
+def _shear_modulus(query: Query) -> float:
+    g_star = material(query.material).g_star
+    if g_star is None:
+        raise InputError(("material", "g_star"), "is needed where there is friction")
+    return g_star
+
+
+def _remembered(query: HistoryQuery | StressQuery) -> dict[str, Any]:
+    """Return what any way of the loads takes."""
+    return {
+        "profile": profile(query.profile),
+        "e_star": material(query.material).e_star,
+        "g_star": _shear_modulus(query),
+        "friction_coefficient": query.friction_coefficient,
+        "rtol": query.rtol,
+    }
+
+
+def _require_few(name: str, way: History | Cycles) -> None:
+    for samples, most, where in (
+        (way.samples, SETTINGS.max_samples, ""),
+        (way.curved, SETTINGS.max_curved_samples, " on ways that are not straight"),
+    ):
+        if samples > most:
+            place = ("samples_per_step",) if way.samples_per_step > 1 else ()
+            raise InputError((name, *place), f"at most {most} samples{where} are answered at once")
+
+
+def _controls(path: _Place, given: Choice) -> dict[str, float | Array]:
+    """Return the one control of a normal load that was given, by its name."""
+    value = given.value
+    if not isinstance(value, list):
+        _require_digits((*path, given.control), value)
+        return {given.control: value}
+    loads = np.array(value, dtype=float)
+    sizes = np.abs(loads)
+    smallest = int(np.argmin(np.where(sizes > 0, sizes, np.inf)))
+    _require_digits((*path, given.control, smallest), loads[smallest])
+    return {given.control: loads}
+
+
+def _require_digits(path: _Place, value: float) -> None:
+    if 0 < abs(value) < SMALLEST_LOAD:
+        raise InputError(path, f"must be 0 or at least {SMALLEST_LOAD}")
 
 
 def _profile_fields(model: type[Strict]) -> list[ProfileField]:

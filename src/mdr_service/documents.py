@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdr_core.errors import DefectError, InputError, Notice
+from mdr_core.history import History
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service import solve
 from mdr_service.convert import Array
-from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
-from mdr_service.solve import Stress
+from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
+from mdr_service.solve import Followed, Result, Stress
 
 # One number or one per load, as they are written: a list, or an array where it is long.
 Numbers = list[float] | Array
@@ -35,6 +36,17 @@ _TANGENTIAL_ANSWERS: Final = (
     "tangential_stiffness",
     "dissipated_energy",
 )
+_HISTORY_ANSWERS: Final = (
+    "indentation_depth",
+    "normal_force",
+    "contact_radius",
+    "tangential_displacement",
+    "tangential_force",
+    "dissipated_energy",
+    "elastic_energy",
+    "tangential_energy",
+)
+_CYCLE_ANSWERS: Final = ("energy_per_cycle", "secant_stiffness")
 # The only answers with a true infinity, which the core announces by a notice.
 _MAY_BE_INFINITE: Final = frozenset({"mean_pressure"})
 _FIELDS_MAY_BE_INFINITE: Final = frozenset({"pressure", "shear_stress"})
@@ -44,29 +56,33 @@ _NAMED: Final = 5
 
 def normal(query: NormalQuery, contact: NormalContact) -> dict[str, Any]:
     """Return the document of a normal contact."""
-    answers = {name: _numbers(getattr(contact, name)) for name in _NORMAL_ANSWERS}
-    return _checked(query, answers, contact) | _about(contact, solve.notices(query, contact))
+    return _checked(query, contact) | _about(contact, solve.notices(query, contact))
 
 
-def tangential(query: TangentialQuery | StressQuery, contact: TangentialContact) -> dict[str, Any]:
+def tangential(query: TangentialQuery, contact: TangentialContact) -> dict[str, Any]:
     """Return the document of a contact with friction."""
-    found = {name: getattr(contact.normal, name) for name in _NORMAL_ANSWERS} | {
-        name: getattr(contact, name) for name in _TANGENTIAL_ANSWERS
-    }
-    shape = (query.loads,)
-    answers = {name: _numbers(np.broadcast_to(value, shape)) for name, value in found.items()}
-    regime = {"regime": np.broadcast_to(contact.regime, shape).tolist()}
-    return (
-        _checked(query, answers, contact) | regime | _about(contact, solve.notices(query, contact))
-    )
+    regime = {"regime": np.broadcast_to(contact.regime, (query.loads,)).tolist()}
+    return _checked(query, contact) | regime | _about(contact, solve.notices(query, contact))
+
+
+def history(query: HistoryQuery, followed: Followed) -> dict[str, Any]:
+    """Return the document of a history."""
+    way, cycles = followed.history, followed.cycles
+    step, regime = way.step.tolist(), way.regime.tolist()
+    document = {"step": step} | _checked(query, way) | {"regime": regime}
+    document["slip_fronts"] = _numbers(way.slip_fronts)
+    if cycles:
+        for name in _CYCLE_ANSWERS:
+            document[name] = _numbers(getattr(cycles, name))
+            if not _all_finite(document[name]):
+                raise _overflow(name, ("cycles", *query.cycles.place("tangential", 0)))
+    return document | _about(way, _without_singular(solve.notices(query, way)))
 
 
 def stress(query: StressQuery, solved: Stress) -> dict[str, Any]:
     """Return the document of the fields that were asked for."""
     document = {"radius": solved.radius, **solved.fields}
-    found = solve.notices(query, solved.sheared or solved.contact)
-    # What is singular in the answers of a normal query is not asked for here.
-    warnings = [notice for notice in found if notice.code != "singular"]
+    warnings = _without_singular(solve.notices(query, solved.result))
     singular = {
         name: np.flatnonzero(np.isinf(field).any(axis=0))
         for name, field in solved.fields.items()
@@ -74,18 +90,18 @@ def stress(query: StressQuery, solved: Stress) -> dict[str, Any]:
     }
     if singular:
         # The fields of a contact that overflows may well be no numbers.
-        if solved.sheared:
-            tangential(query, solved.sheared)
-        else:
-            normal(query, solved.contact)
+        _checked(query, solved.result)
         _check_fields(query, solved, singular)
         warnings += [_singular(name, solved.radius[at]) for name, at in singular.items()]
     return document | _about(solved, warnings)
 
 
-def _about(
-    result: NormalContact | TangentialContact | Stress, warnings: Iterable[Notice]
-) -> dict[str, Any]:
+def _without_singular(notices: Iterable[Notice]) -> list[Notice]:
+    """Leave out what is singular in the answers of a normal query, where those are not asked."""
+    return [notice for notice in notices if notice.code != "singular"]
+
+
+def _about(result: Result | Stress, warnings: Iterable[Notice]) -> dict[str, Any]:
     return {
         "method": result.method,
         "error_estimate": result.error_estimate,
@@ -101,16 +117,28 @@ def _numbers(values: Array) -> Numbers:
     return [values.item()] if values.size == 1 else np.ascontiguousarray(values)
 
 
-def _checked(
-    query: NormalQuery, answers: dict[str, Numbers], contact: NormalContact | TangentialContact
-) -> dict[str, Any]:
+def _answers(result: Result) -> dict[str, Numbers]:
+    """Return the numbers that an answer holds, in its order."""
+    if isinstance(result, NormalContact):
+        return {name: _numbers(getattr(result, name)) for name in _NORMAL_ANSWERS}
+    if isinstance(result, History):
+        return {name: _numbers(getattr(result, name)) for name in _HISTORY_ANSWERS}
+    found = {name: getattr(result.normal, name) for name in _NORMAL_ANSWERS} | {
+        name: getattr(result, name) for name in _TANGENTIAL_ANSWERS
+    }
+    shape = (max(value.size for value in found.values()),)
+    return {name: _numbers(np.broadcast_to(value, shape)) for name, value in found.items()}
+
+
+def _checked(query: NormalQuery | HistoryQuery, result: Result) -> dict[str, Any]:
     """Return the answers if they are finite, or infinite where that is announced.
 
     An overflow is looked for first: what is computed from it may well be no number.
     """
+    answers = _answers(result)
     if all(map(_all_finite, answers.values())):
         return answers
-    announced = any(notice.code == "singular" for notice in contact.warnings)
+    announced = any(notice.code == "singular" for notice in result.warnings)
     for name in answers.keys() - (_MAY_BE_INFINITE if announced else frozenset()):
         overflow = np.flatnonzero(np.isinf(answers[name]))
         if overflow.size:

@@ -16,18 +16,25 @@ from mdr_service.problems import Kind
 from mdr_service.schemas.answers import (
     Catalogue,
     Health,
+    HistoryAnswer,
     NormalAnswer,
     Problem,
     StressAnswer,
     TangentialAnswer,
 )
-from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
+from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
 
 _REF: Final = "#/components/schemas/{model}"
-_QUERIES: Final[Sequence[type[BaseModel]]] = (NormalQuery, TangentialQuery, StressQuery)
+_QUERIES: Final[Sequence[type[BaseModel]]] = (
+    NormalQuery,
+    TangentialQuery,
+    HistoryQuery,
+    StressQuery,
+)
 _ANSWERS: Final[Sequence[type[BaseModel]]] = (
     NormalAnswer,
     TangentialAnswer,
+    HistoryAnswer,
     StressAnswer,
     Catalogue,
     Health,

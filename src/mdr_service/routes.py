@@ -16,12 +16,18 @@ from mdr_service.openapi import answers, asks
 from mdr_service.schemas.answers import (
     Catalogue,
     Health,
+    HistoryAnswer,
     NormalAnswer,
     StressAnswer,
     TangentialAnswer,
 )
-from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES, TANGENTIAL_EXAMPLES
-from mdr_service.schemas.queries import NormalQuery, StressQuery, TangentialQuery
+from mdr_service.schemas.examples import (
+    HISTORY_EXAMPLES,
+    NORMAL_EXAMPLES,
+    STRESS_EXAMPLES,
+    TANGENTIAL_EXAMPLES,
+)
+from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
 
 
 class DirectRoute(APIRoute):
@@ -56,6 +62,11 @@ _TANGENTIAL_FORMS: Final = (
     _JSON,
     _TABLE,
     Form(pictures.MEDIA_TYPE, pictures.tangential, pictures.EFFORT),
+)
+_HISTORY_FORMS: Final = (
+    _JSON,
+    _TABLE,
+    Form(pictures.MEDIA_TYPE, pictures.history, pictures.EFFORT),
 )
 _STRESS_FORMS: Final = (_JSON, _TABLE, Form(pictures.MEDIA_TYPE, pictures.stress, pictures.EFFORT))
 _ROW_PER_LOAD: Final = {table.MEDIA_TYPE: "One column per list, one row per load."}
@@ -114,6 +125,39 @@ async def tangential_contact(request: Request) -> Response:
 
 
 @router.post(
+    "/v1/tangential/history",
+    operation_id="history",
+    tags=["contact"],
+    summary="Loads that come and go: any way of normal and tangential load, or equal cycles",
+    openapi_extra=asks(HistoryQuery, HISTORY_EXAMPLES)
+    | answers(
+        HistoryAnswer,
+        _QUERY_FAILURES,
+        {
+            table.MEDIA_TYPE: "One column per list over the samples, one row per sample.",
+            pictures.MEDIA_TYPE: "Force over displacement, with the points that were given.",
+        },
+    ),
+)
+async def loading_history(request: Request) -> Response:
+    """Follow the loads from the first touch on, and answer at samples on the way.
+
+    The loads go straight, in the quantities that are given, from one point to the next. Depths
+    with displacements, and normal with tangential forces, are followed exactly. A depth with a
+    tangential force, or a normal force with a displacement, is followed to `rtol` where both
+    change. A depth below zero is a gap, after which nothing is remembered. A tangential force
+    beyond µ F_N, at a point or on the way to it, has no equilibrium and is refused.
+
+    The answers over the samples are exact to `error_estimate`, relative to the largest on the
+    way. `slip_fronts` may be less exact where both loads change on a way that is not straight; a
+    warning `accuracy` says so. `energy_per_cycle` and `secant_stiffness` answer `cycles`.
+    """
+    form = forms.chosen(request, _HISTORY_FORMS)
+    query = await wire.read(request, HistoryQuery)
+    return await compute.run(query.size + form.effort, _answer_history, query, form)
+
+
+@router.post(
     "/v1/stress",
     operation_id="stress",
     tags=["contact"],
@@ -150,6 +194,12 @@ def _answer_tangential(query: TangentialQuery, form: Form) -> Response:
     with np.errstate(all="ignore"):
         contact = solve.tangential(query)
         return form.write(documents.tangential(query, contact), contact)
+
+
+def _answer_history(query: HistoryQuery, form: Form) -> Response:
+    with np.errstate(all="ignore"):
+        followed = solve.history(query)
+        return form.write(documents.history(query, followed), followed)
 
 
 def _answer_stress(query: StressQuery, form: Form) -> Response:

@@ -28,6 +28,15 @@ class Settings(BaseModel):
     max_numbers: int = Field(
         default=1_000_000, ge=2, description="Most loads times radii in one request."
     )
+    max_samples: int = Field(
+        default=100_000, ge=1, description="Most points times samples_per_step of a history."
+    )
+    max_curved_samples: int = Field(
+        default=1_000,
+        ge=1,
+        description="Most of them where a depth and a tangential force change, or a normal force "
+        "and a displacement.",
+    )
     max_table_points: int = Field(
         default=2_000, ge=2, description="Most points of a tabulated profile."
     )

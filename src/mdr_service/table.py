@@ -10,8 +10,12 @@ import numpy as np
 from starlette.responses import Response
 
 MEDIA_TYPE: Final = "text/csv"
-# What an answer says as a whole has no row.
-_WHOLE: Final = frozenset({"method", "error_estimate", "warnings"})
+# What an answer says as a whole, of its cycles or of its end, has no row.
+_WHOLE: Final = frozenset({"method", "error_estimate", "warnings"}) | {
+    "slip_fronts",
+    "energy_per_cycle",
+    "secant_stiffness",
+}
 
 
 def answer(document: Mapping[str, Any]) -> Response:

@@ -6,7 +6,12 @@ from typing import Any
 
 import pytest
 
-from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES, TANGENTIAL_EXAMPLES
+from mdr_service.schemas.examples import (
+    HISTORY_EXAMPLES,
+    NORMAL_EXAMPLES,
+    STRESS_EXAMPLES,
+    TANGENTIAL_EXAMPLES,
+)
 from tests.conftest import Client
 
 STEEL = 210e9 / (1 - 0.3**2)
@@ -138,6 +143,86 @@ def flat_punch() -> dict[str, object]:
     }
 
 
+def mindlin_curve(force: float, friction: float = 0.3) -> float:
+    """Displacement of the steel ball under 10 N and a first push, Eqs. (5.12), (5.16)."""
+    (depth,), normal_force = hertz()["indentation_depth"], 10.0
+    ratio = STEEL / STEEL_SHEAR
+    return friction * ratio * depth * (1 - (1 - force / (friction * normal_force)) ** (2 / 3))
+
+
+def mindlin_deresiewicz() -> dict[str, object]:
+    """Mindlin and Deresiewicz 1953, Eqs. (5.19), (5.20): the branches and the area of the loop."""
+    (a,), limit, force = hertz()["contact_radius"], 3.0, 2.0
+    rest = 1 - force / limit
+    bracket = 1 - rest ** (5 / 3) - 5 / 6 * (1 - rest) * (1 + rest ** (2 / 3))
+    energy = 18 * limit**2 / (5 * a * STEEL_SHEAR / 2) * bracket
+    top = mindlin_curve(force)
+    back = top - 2 * mindlin_curve(force / 2)
+    return {
+        "step": [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5],
+        "normal_force": [5.0] + [10.0] * 11,
+        "tangential_force": [0.0, 0.0, 1.0, 2.0, *[0.0, -2.0, 0.0, 2.0] * 2],
+        "tangential_displacement": [
+            *(0.0, 0.0, mindlin_curve(1.0), top),
+            *[back, -top, -back, top] * 2,
+        ],
+        "energy_per_cycle": [energy, energy],
+        "secant_stiffness": [force / top] * 2,
+        "slip_fronts": [a * rest ** (1 / 3)],
+    }
+
+
+def residual() -> dict[str, object]:
+    """Eqs. (5.19), (5.20): half of the push in reverse slips back, the rest remains."""
+    (a,), limit, force = hertz()["contact_radius"], 3.0, 2.0
+    top = mindlin_curve(force)
+    fronts = [1 - force / limit, 1 - force / (2 * limit)]
+    return {
+        "tangential_displacement": [0.0, top, top - 2 * mindlin_curve(force / 2)],
+        "slip_fronts": [a * rest ** (1 / 3) for rest in fronts],
+        "regime": ["stick", "partial_slip", "partial_slip"],
+    }
+
+
+def oblique() -> dict[str, object]:
+    """Mindlin and Deresiewicz 1953: F_x = β F_N sticks, and u_x = β E*/G* d.
+
+    The way back is that of friction µ + β, for which the push was none.
+    """
+    (depth,), share = hertz()["indentation_depth"], 0.1
+    there = share * STEEL / STEEL_SHEAR * depth
+    return {
+        "tangential_force": [1.0, -1.0],
+        "tangential_displacement": [there, there - mindlin_curve(2.0, friction=0.3 + share)],
+        "slip_fronts": [hertz()["contact_radius"][0] * (1 - 2 / 4) ** (1 / 3)],
+        "regime": ["stick", "partial_slip"],
+    }
+
+
+def cone_with_a_gap() -> dict[str, object]:
+    """The cone: F_x/(µ F_N) = 1 − (1 − u_x/u_max)², Eqs. (5.47), (5.48); no memory after a gap."""
+    slope, depth, friction = 0.1, 1e-4, 0.5
+    depths = [depth / 4, depth / 2, 3 * depth / 4, *[depth] * 5]
+    forces = [2 * RUBBER * d**2 / (pi * slope) for d in depths]
+    full = friction * RUBBER / RUBBER_SHEAR * depth
+    shares = [1 - max(1 - i / 4 * depth / full, 0.0) ** 2 for i in range(1, 5)]
+    lifting = [0.0725, 0.045, 0.0175]
+    off = [2 * RUBBER * (d * 1e-3) ** 2 / (pi * slope) for d in lifting]
+    return {
+        "normal_force": forces + off + [0.0] + off[::-1] + forces[-1:],
+        "tangential_force": [0.0] * 4
+        + [friction * forces[-1] * share for share in shares]
+        + [friction * force for force in off]
+        + [0.0] * 5,
+        "regime": ["stick"] * 4
+        + ["full_slip" if share == 1 else "partial_slip" for share in shares]
+        + ["full_slip"] * 3
+        + ["no_contact"]
+        + ["stick"] * 4,
+        "slip_fronts": [],
+    }
+
+
 def cattaneo_mindlin_fields() -> dict[str, object]:
     """Eqs. (5.38) and (5.45): pressure, shear stress and Johnson's slip."""
     (a,) = hertz()["contact_radius"]
@@ -202,6 +287,12 @@ TANGENTIAL_TEXTBOOK = {
     "truman": truman,
     "flat_punch": flat_punch,
 }
+HISTORY_TEXTBOOK = {
+    "mindlin_deresiewicz": mindlin_deresiewicz,
+    "residual": residual,
+    "oblique": oblique,
+    "cone_with_a_gap": cone_with_a_gap,
+}
 STRESS_TEXTBOOK = {
     "cattaneo_mindlin": cattaneo_mindlin_fields,
     "sneddon": sneddon_fields,
@@ -219,6 +310,7 @@ CASES = [
     for path, examples, textbooks in (
         ("/v1/normal", NORMAL_EXAMPLES, TEXTBOOK),
         ("/v1/tangential", TANGENTIAL_EXAMPLES, TANGENTIAL_TEXTBOOK),
+        ("/v1/tangential/history", HISTORY_EXAMPLES, HISTORY_TEXTBOOK),
         ("/v1/stress", STRESS_EXAMPLES, STRESS_TEXTBOOK),
     )
     for name, textbook in textbooks.items()
@@ -228,17 +320,18 @@ CASES = [
 def test_every_example_has_its_textbook() -> None:
     assert set(TEXTBOOK) == set(NORMAL_EXAMPLES)
     assert set(TANGENTIAL_TEXTBOOK) == set(TANGENTIAL_EXAMPLES)
+    assert set(HISTORY_TEXTBOOK) == set(HISTORY_EXAMPLES)
     # The stresses of the rounded punch have no closed form; their integrals have.
     assert {*STRESS_TEXTBOOK, "rounded_punch"} == set(STRESS_EXAMPLES)
 
 
 def same(found: object, expected: object) -> None:
     """Compare numbers to twelve digits of the largest, all else exactly."""
-    if isinstance(expected, list) and isinstance(expected[0], list):
+    if isinstance(expected, list) and expected and isinstance(expected[0], list):
         assert isinstance(found, list)
         for one, other in zip(found, expected, strict=True):
             same(one, other)
-    elif isinstance(expected, list) and not isinstance(expected[0], str):
+    elif isinstance(expected, list) and expected and not isinstance(expected[0], str):
         assert found is not None
         given = [inf if value is None else value for value in found]
         wanted = [inf if value is None else value for value in expected]

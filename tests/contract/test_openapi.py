@@ -10,6 +10,7 @@ import pytest
 from mdr_service import problems
 from mdr_service.schemas.answers import (
     Answer,
+    HistoryAnswer,
     NormalAnswer,
     Problem,
     StressAnswer,
@@ -92,6 +93,7 @@ def test_every_kind_of_problem_is_in_the_readme() -> None:
     [
         ("/v1/normal", NormalAnswer),
         ("/v1/tangential", TangentialAnswer),
+        ("/v1/tangential/history", HistoryAnswer),
         ("/v1/stress", StressAnswer),
     ],
 )
@@ -113,9 +115,14 @@ def test_the_answer_of_a_query_is_the_documented_one(
 
 
 def test_every_query_and_answer_tells_its_dimensions() -> None:
-    for query in ("Load", "Tangential", "NormalAnswer", "TangentialAnswer", "StressAnswer"):
+    loads = ("Load", "Tangential", "NormalPoints", "TangentialPoints")
+    swings = ("NormalSwing", "TangentialSwing")
+    told = ("NormalAnswer", "TangentialAnswer", "HistoryAnswer", "StressAnswer")
+    for query in (*loads, *swings, *told):
         for name, field in DOCUMENT["components"]["schemas"][query]["properties"].items():
-            if name not in {"method", "warnings", "regime"}:
+            if name == "amplitude":
+                assert field["description"].endswith("[as the mean]")
+            elif name not in {"method", "warnings", "regime"}:
                 assert re.search(r"\[[a-z0-9/*]+\]$", field["description"]), (query, name)
 
 

@@ -11,7 +11,12 @@ from xml.etree import ElementTree as ET
 import httpx
 import pytest
 
-from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES, TANGENTIAL_EXAMPLES
+from mdr_service.schemas.examples import (
+    HISTORY_EXAMPLES,
+    NORMAL_EXAMPLES,
+    STRESS_EXAMPLES,
+    TANGENTIAL_EXAMPLES,
+)
 from tests.conftest import Client
 
 CASES = [
@@ -19,6 +24,7 @@ CASES = [
     for path, examples in (
         ("/v1/normal", NORMAL_EXAMPLES),
         ("/v1/tangential", TANGENTIAL_EXAMPLES),
+        ("/v1/tangential/history", HISTORY_EXAMPLES),
         ("/v1/stress", STRESS_EXAMPLES),
     )
     for name, example in examples.items()
@@ -29,6 +35,10 @@ EVERY_EXAMPLE = pytest.mark.parametrize(
     ids=[f"{path} {name}" for path, name, _ in CASES],
 )
 BALL = NORMAL_EXAMPLES["hertz"]["value"]
+WITHOUT_ROWS = {
+    *("method", "error_estimate", "warnings"),
+    *("slip_fronts", "energy_per_cycle", "secant_stiffness"),
+}
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -53,11 +63,7 @@ def test_the_table_holds_the_digits_of_the_document(
 ) -> None:
     rows = table(ask(client, path, query, "text/csv"))
     document = client.post(path, query).json()
-    columns = {
-        name: values
-        for name, values in document.items()
-        if name not in {"method", "error_estimate", "warnings"}
-    }
+    columns = {name: values for name, values in document.items() if name not in WITHOUT_ROWS}
     if path != "/v1/stress":
         for name, values in columns.items():
             assert [row[name] for row in rows] == [told(value) for value in values]
@@ -123,7 +129,9 @@ def test_without_a_preference_it_is_json(client: Client) -> None:
 
 
 @pytest.mark.parametrize("accept", ["text/html", "application/xml", "image/png", "rubbish", ";;,"])
-@pytest.mark.parametrize("path", ["/v1/normal", "/v1/tangential", "/v1/stress"])
+@pytest.mark.parametrize(
+    "path", ["/v1/normal", "/v1/tangential", "/v1/tangential/history", "/v1/stress"]
+)
 def test_an_unknown_form_is_refused(client: Client, path: str, accept: str) -> None:
     answer = ask(client, path, BALL, accept)
     assert answer.status_code == 406
@@ -178,6 +186,43 @@ def test_what_is_hard_to_draw_has_a_picture(
     if path == "/v1/tangential":
         query = {name: query[name] for name in query if name not in {"radius", "quantities"}}
     picture(ask(client, path, query, "image/svg+xml"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"normal": {"normal_force": 0.0}, "tangential": {"tangential_force": 0.0}},
+        {"normal": {"indentation_depth": [-1.0, -2.0]}},
+        {"normal": {"normal_force": 0.0}, "tangential": {"tangential_displacement": [1.0, -1.0]}},
+        {"tangential": {"tangential_displacement": [1e-8, 3e-7] * 30}},
+        {"tangential": {"tangential_force": [2.0, -1.0] * 5_000}, "samples_per_step": 2},
+        {"normal": {"normal_force": [10.0, 20.0]}, "samples_per_step": 500},
+    ],
+    ids=["nothing", "gaps", "slip without force", "curves", "many points", "many samples"],
+)
+def test_a_history_that_is_hard_to_draw_has_a_picture(
+    client: Client, change: dict[str, object]
+) -> None:
+    example = HISTORY_EXAMPLES["residual"]["value"]
+    displaced = {"tangential": {"tangential_displacement": [0.0, 1e-8]}}
+    simple = example["history"] | (displaced if "tangential" not in change else {})
+    picture(
+        ask(
+            client,
+            "/v1/tangential/history",
+            example | {"history": simple | change},
+            "image/svg+xml",
+        )
+    )
+
+
+def test_the_picture_shows_the_curve_and_not_its_chords(client: Client) -> None:
+    answer = ask(
+        client, "/v1/tangential/history", HISTORY_EXAMPLES["residual"]["value"], "image/svg+xml"
+    )
+    lines = [len(path.get("d", "").split("L")) for path in picture(answer).iter(f"{SVG}path")]
+    # Drawn are as many of the samples as it takes.
+    assert max(lines) > 20
 
 
 def test_what_is_wrong_is_told_in_json_whatever_was_accepted(client: Client) -> None:

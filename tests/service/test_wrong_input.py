@@ -158,6 +158,36 @@ def fields(
 
 
 FRICTION = f', "friction_coefficient": 0.3, "tangential": {PUSH}, "radius": [0]'
+
+
+def way(
+    normal: str = '{"normal_force": [1, 2]}',
+    tangential: str = '{"tangential_force": [0, 0.1]}',
+    more: str = "",
+    name: str = "history",
+) -> str:
+    return f', "{name}": {{"normal": {normal}, "tangential": {tangential}{more}}}'
+
+
+def swing(
+    normal: str = '{"normal_force": 1}',
+    tangential: str = '{"tangential_force": 0.1}',
+    more: str = "",
+) -> str:
+    return way(normal, tangential, more, "cycles")
+
+
+def along(*ways: str, profile: str = BALL, material: str = SHEARED) -> bytes:
+    friction = ', "friction_coefficient": 0.3'
+    return f'{{"profile": {profile}, "material": {material}{friction}{"".join(ways)}}}'.encode()
+
+
+def at_the_end(*ways: str, more: str = ', "friction_coefficient": 0.3') -> bytes:
+    asked = '"quantities": ["slip"], "radius": [0]'
+    return f'{{"profile": {BALL}, "material": {SHEARED}, {asked}{more}{"".join(ways)}}}'.encode()
+
+
+PUSHES = "/history/tangential/tangential_force"
 POINTED_ELSEWHERE = {
     # friction
     "a yield strength of nothing": (
@@ -238,7 +268,219 @@ POINTED_ELSEWHERE = {
         pushed('{"tangential_force": [0, 0, 0]}', load='{"normal_force": [1, 1]}'),
         "/tangential/tangential_force",
     ),
+    # histories
+    "no way": ("tangential/history", along(), "/history"),
+    "two ways": ("tangential/history", along(way(), swing()), "/cycles"),
+    "a way of null": ("tangential/history", along(', "history": null'), "/history"),
+    "a way that is a list": ("tangential/history", along(', "history": []'), "/history"),
+    "a way without friction": (
+        "tangential/history",
+        along(way()).replace(b'"friction_coefficient": 0.3, ', b""),
+        "/friction_coefficient",
+    ),
+    "a way without a shear modulus": (
+        "tangential/history",
+        along(way(), material=MODULUS),
+        "/material/g_star",
+    ),
+    "a way with a load": (
+        "tangential/history",
+        along(way(), f', "load": {FORCE}'),
+        "/load",
+    ),
+    "two normal controls": (
+        "tangential/history",
+        along(way('{"normal_force": 1, "indentation_depth": 1}')),
+        "/history/normal",
+    ),
+    "no tangential control on the way": (
+        "tangential/history",
+        along(way(tangential="{}")),
+        "/history/tangential",
+    ),
+    "a way by contact radii": (
+        "tangential/history",
+        along(way('{"contact_radius": [1, 2]}')),
+        "/history/normal/contact_radius",
+    ),
+    "three pushes for two points": (
+        "tangential/history",
+        along(way(tangential='{"tangential_force": [0, 0, 0]}')),
+        PUSHES,
+    ),
+    "no points": (
+        "tangential/history",
+        along(way('{"normal_force": []}')),
+        "/history/normal/normal_force",
+    ),
+    "no push": ("tangential/history", along(way(tangential='{"tangential_force": []}')), PUSHES),
+    "a point of NaN": (
+        "tangential/history",
+        along(way('{"normal_force": [1, NaN]}')),
+        "/history/normal/normal_force/1",
+    ),
+    "a depth of Infinity": (
+        "tangential/history",
+        along(way('{"indentation_depth": [1e-6, -Infinity]}')),
+        "/history/normal/indentation_depth/1",
+    ),
+    "a push of a string on the way": (
+        "tangential/history",
+        along(way(tangential='{"tangential_force": [0, "1"]}')),
+        f"{PUSHES}/1",
+    ),
+    "a push of true": (
+        "tangential/history",
+        along(way(tangential='{"tangential_force": true}')),
+        PUSHES,
+    ),
+    "a pulling force": (
+        "tangential/history",
+        along(way('{"normal_force": [1, -1]}')),
+        "/history/normal/normal_force/1",
+    ),
+    "a point without digits": (
+        "tangential/history",
+        along(way('{"indentation_depth": [1e-6, -1e-300]}')),
+        "/history/normal/indentation_depth/1",
+    ),
+    "a way past the end of a table": (
+        "tangential/history",
+        along(
+            way('{"indentation_depth": [1, 100]}', '{"tangential_displacement": 0}'),
+            profile=table("[0, 1, 2]", "[0, 1, 4]"),
+        ),
+        "/history/normal/indentation_depth/1",
+    ),
+    "a single point past the end of a table": (
+        "tangential/history",
+        along(
+            way('{"indentation_depth": 100}', '{"tangential_displacement": [0, 1]}'),
+            profile=table("[0, 1, 2]", "[0, 1, 4]"),
+        ),
+        "/history/normal/indentation_depth",
+    ),
+    "a push beyond friction at a point": (
+        "tangential/history",
+        along(way(tangential='{"tangential_force": [0, 0.61]}')),
+        f"{PUSHES}/1",
+    ),
+    "a single push beyond friction": (
+        "tangential/history",
+        along(way(tangential='{"tangential_force": -0.31}')),
+        PUSHES,
+    ),
+    "a push beyond friction between two points": (
+        "tangential/history",
+        along(
+            way(
+                '{"indentation_depth": [1e-6, 0, 1e-6]}',
+                '{"tangential_force": [0, 0, 0.011]}',
+                ', "samples_per_step": 50',
+            )
+        ),
+        f"{PUSHES}/2",
+    ),
+    "no samples": (
+        "tangential/history",
+        along(way(more=', "samples_per_step": 0')),
+        "/history/samples_per_step",
+    ),
+    "half a sample": (
+        "tangential/history",
+        along(way(more=', "samples_per_step": 1.5')),
+        "/history/samples_per_step",
+    ),
+    "too many samples": (
+        "tangential/history",
+        along(way(more=f', "samples_per_step": {SETTINGS.max_samples}')),
+        "/history/samples_per_step",
+    ),
+    "too many points of a way": (
+        "tangential/history",
+        along(way(f'{{"normal_force": [{"1," * SETTINGS.max_loads}1]}}')),
+        "/history/normal/normal_force",
+    ),
+    "an unknown field of a way": (
+        "tangential/history",
+        along(way(more=', "count": 2')),
+        "/history/count",
+    ),
+    # cycles
+    "a cycle beyond friction": (
+        "tangential/history",
+        along(swing(tangential='{"tangential_force": 0.31}')),
+        "/cycles/tangential/tangential_force",
+    ),
+    "a cycle beyond friction in phase": (
+        "tangential/history",
+        along(swing('{"normal_force": 1, "amplitude": 0.9}')),
+        "/cycles/tangential/tangential_force",
+    ),
+    "a swing larger than its mean": (
+        "tangential/history",
+        along(swing('{"normal_force": 1, "amplitude": 1.1}')),
+        "/cycles/normal/amplitude",
+    ),
+    "a swing of NaN": (
+        "tangential/history",
+        along(swing('{"normal_force": 1, "amplitude": NaN}')),
+        "/cycles/normal/amplitude",
+    ),
+    "a swing without digits": (
+        "tangential/history",
+        along(swing('{"normal_force": 1, "amplitude": 1e-300}')),
+        "/cycles/normal/amplitude",
+    ),
+    "a swing about nothing": (
+        "tangential/history",
+        along(swing('{"amplitude": 1}')),
+        "/cycles/normal",
+    ),
+    "a list of cycles": (
+        "tangential/history",
+        along(swing('{"normal_force": [1, 2]}')),
+        "/cycles/normal/normal_force",
+    ),
+    "cycles of no force": (
+        "tangential/history",
+        along(swing(tangential='{"tangential_force": 0}')),
+        "/cycles/tangential/tangential_force",
+    ),
+    "two amplitudes": (
+        "tangential/history",
+        along(swing(tangential='{"tangential_force": 1, "tangential_displacement": 1}')),
+        "/cycles/tangential",
+    ),
+    "no cycles": ("tangential/history", along(swing(more=', "count": 0')), "/cycles/count"),
+    "cycles past the end of a table": (
+        "tangential/history",
+        along(
+            swing('{"indentation_depth": 100}', '{"tangential_displacement": 1}'),
+            profile=table("[0, 1, 2]", "[0, 1, 4]"),
+        ),
+        "/cycles/normal/indentation_depth",
+    ),
+    # fields of an end
+    "a history and a load": ("stress", at_the_end(way(), f', "load": {FORCE}'), "/history"),
+    "a history and a push": ("stress", at_the_end(way(), f', "tangential": {PUSH}'), "/tangential"),
+    "a history without friction": (
+        "stress",
+        at_the_end(way(), more=""),
+        "/friction_coefficient",
+    ),
+    "the end of cycles": ("stress", at_the_end(swing()), "/cycles"),
+    "an end beyond friction": (
+        "stress",
+        at_the_end(way(tangential='{"tangential_force": [0, 0.61]}')),
+        f"{PUSHES}/1",
+    ),
     # fields
+    "neither a load nor a history": (
+        "stress",
+        at_the_end(more=""),
+        "/load",
+    ),
     "no quantities": ("stress", query(more=', "radius": [0]'), "/quantities"),
     "an empty list of quantities": ("stress", fields("[]"), "/quantities"),
     "an unknown quantity": ("stress", fields('["pressure", "heat"]'), "/quantities/1"),

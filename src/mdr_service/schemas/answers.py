@@ -41,6 +41,47 @@ class NormalAnswer(Known):
     elastic_energy: list[float] = quantity("force*length", "Energy stored in the contact")
 
 
+class HistoryAnswer(Known):
+    """One entry per sample in every list but the last ones.
+
+    Those are about the end of the history, and about each of the cycles where there are any.
+    """
+
+    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
+
+    step: list[int] = quantity("1", "Index of the point that the load goes to, from 0")
+    indentation_depth: list[float] = quantity("length", "Depth d of indentation, below 0 a gap")
+    normal_force: list[float] = quantity("force", "Normal force F_N, positive in compression")
+    contact_radius: list[float] = quantity("length", "Radius a of the contact, 0 in a gap")
+    tangential_displacement: list[float] = quantity(
+        "length", "Tangential displacement u_x of the bodies"
+    )
+    tangential_force: list[float] = quantity("force", "Tangential force F_x")
+    dissipated_energy: list[float] = quantity(
+        "force*length", "Energy dissipated by slip since the start"
+    )
+    elastic_energy: list[float] = quantity("force*length", "Energy stored by the normal load")
+    tangential_energy: list[float] = quantity(
+        "force*length", "Energy stored by the tangential load"
+    )
+    regime: list[Literal["no_contact", "stick", "partial_slip", "full_slip"]] = Field(
+        description="Whether the bodies touch, and nothing, the rim or all of the contact slips."
+    )
+    slip_fronts: list[float] = quantity(
+        "length",
+        "Radii inside the contact, ascending, between which the load of the foundation goes "
+        "another way: what the contact remembers at the end",
+    )
+    energy_per_cycle: list[float] = quantity(
+        "force*length", "Energy dissipated in each cycle, the area of its loop", default=None
+    )
+    secant_stiffness: list[float] = quantity(
+        "force/length",
+        "Of each cycle, the range of F_x over the range of u_x at its turning points",
+        default=None,
+    )
+
+
 class TangentialAnswer(NormalAnswer):
     """One entry per pair of normal and tangential load in every list."""
 

@@ -104,6 +104,59 @@ TANGENTIAL_EXAMPLES: Final = {
     ),
 }
 
+# The same ball, by forces along a way.
+_FOLLOWED: Final = {name: _BALL[name] for name in ("profile", "material")} | {
+    "friction_coefficient": 0.3
+}
+
+HISTORY_EXAMPLES: Final = {
+    "mindlin_deresiewicz": _example(
+        "Mindlin and Deresiewicz: a steel ball on a steel flat, pushed 2 N to and fro",
+        {
+            **_FOLLOWED,
+            "cycles": {
+                "normal": {"normal_force": 10.0},
+                "tangential": {"tangential_force": 2.0},
+                "count": 2,
+                "samples_per_step": 2,
+            },
+        },
+    ),
+    "residual": _example(
+        "The same ball pushed and let go: the displacement that is left, and the slip fronts",
+        {
+            **_FOLLOWED,
+            "history": {
+                "normal": {"normal_force": 10.0},
+                "tangential": {"tangential_force": [0.0, 2.0, 0.0]},
+            },
+        },
+    ),
+    "oblique": _example(
+        "Pressed and pushed at once, within friction: it sticks all over; then pulled back",
+        {
+            **_FOLLOWED,
+            "history": {
+                "normal": {"normal_force": [10.0, 10.0]},
+                "tangential": {"tangential_force": [1.0, -1.0]},
+            },
+        },
+    ),
+    "cone_with_a_gap": _example(
+        "A rigid cone on rubber, by depths: slid, lifted off, and pressed again without memory",
+        {
+            "profile": {"kind": "cone", "slope": 0.1},
+            "material": {"bodies": ["rigid", _RUBBER]},
+            "friction_coefficient": 0.5,
+            "history": {
+                "normal": {"indentation_depth": [1e-4, 1e-4, -1e-5, 1e-4]},
+                "tangential": {"tangential_displacement": [0.0, 1e-4, 1e-4, 1e-4]},
+                "samples_per_step": 4,
+            },
+        },
+    ),
+}
+
 STRESS_EXAMPLES: Final = {
     "cattaneo_mindlin": _example(
         "Cattaneo and Mindlin: pressure, shear stress and slip at seven radii",

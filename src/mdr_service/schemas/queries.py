@@ -1,15 +1,13 @@
 """The requests: what is pressed by what, how hard, and how exactly it is to be known."""
 
-from itertools import permutations
-from typing import Annotated, Any, Final, Literal, Self
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
+from mdr_service.schemas.loads import Choice, Cycles, History, Load, Tangential
 from mdr_service.schemas.profiles import Profile, Tabulated
 from mdr_service.schemas.quantities import (
-    ScalarOrArray,
-    SignedScalarOrArray,
     Size,
     Strict,
     drop_null_defaults,
@@ -73,72 +71,11 @@ Material = Annotated[
 ]
 
 
-def _describe_choice(schema: dict[str, Any]) -> None:
-    drop_null_defaults(schema)
-    schema["oneOf"] = [{"required": [name]} for name in schema["properties"]]
-
-
-class Choice(Strict, json_schema_extra=_describe_choice):
-    """Fields of which exactly one is given."""
-
-    @model_validator(mode="after")
-    def _exactly_one(self) -> Self:
-        if len(self.model_fields_set) != 1:
-            names = ", ".join(type(self).model_fields)
-            raise PydanticCustomError("one_control", f"exactly one of {names} is needed")
-        return self
-
-    @property
-    def control(self) -> str:
-        """The name of the one that is given."""
-        (name,) = self.model_fields_set
-        return name
-
-    @property
-    def value(self) -> float | list[float]:
-        """The one that is given."""
-        given: float | list[float] = getattr(self, self.control)
-        return given
-
-    @property
-    def count(self) -> int:
-        """How many values are given."""
-        return len(self.value) if isinstance(self.value, list) else 1
-
-    def place(self, index: int) -> tuple[str | int, ...]:
-        """Return the path from here to one of the values."""
-        return (self.control, index) if isinstance(self.value, list) else (self.control,)
-
-
-class Load(Choice):
-    """Exactly one control, a number or a list of them, each 0 or from 1e-90 to 1e30."""
-
-    # A control that is left out is none; one that is given is never null.
-    indentation_depth: ScalarOrArray = quantity("length", "Depth d of indentation", default=None)
-    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
-    contact_radius: ScalarOrArray = quantity("length", "Radius a of the contact", default=None)
-
-
-class Tangential(Choice):
-    """Exactly one control, a number or a list: one for all normal loads, or as many as they."""
-
-    tangential_force: SignedScalarOrArray = quantity(
-        "force", "Tangential force F_x, |F_x| ≤ µ F_N, of either sign", default=None
-    )
-    tangential_displacement: SignedScalarOrArray = quantity(
-        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
-    )
-    stick_radius: ScalarOrArray = quantity(
-        "length", "Radius c of the stick zone, at most a, and not inside a flat", default=None
-    )
-
-
-class NormalQuery(Strict):
-    """A profile pressed into an elastic half-space without friction."""
+class Query(Strict):
+    """What every request is about."""
 
     profile: Profile
     material: Material
-    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
     rtol: float = quantity(
         "1", "Relative accuracy that is needed", default=1e-10, ge=1e-13, le=1e-3
     )
@@ -146,8 +83,17 @@ class NormalQuery(Strict):
     @property
     def size(self) -> int:
         """How many numbers it is about."""
-        table = len(self.profile.r) if isinstance(self.profile, Tabulated) else 0
-        return table + self.loads
+        return len(self.profile.r) if isinstance(self.profile, Tabulated) else 0
+
+
+class NormalQuery(Query):
+    """A profile pressed into an elastic half-space without friction."""
+
+    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+
+    @property
+    def size(self) -> int:
+        return super().size + self.loads
 
     @property
     def loads(self) -> int:
@@ -161,6 +107,11 @@ class NormalQuery(Strict):
 
 def _friction_coefficient(**field: Any) -> Any:
     return positive("1", "Coefficient of friction µ", low=1e-15, high=1e6, **field)
+
+
+def _left_out(description: str) -> Any:
+    """Return a field that may be left out, but not be null."""
+    return Field(default=None, description=description)
 
 
 class TangentialQuery(NormalQuery):
@@ -177,6 +128,40 @@ class TangentialQuery(NormalQuery):
         return max(self.load.count, self.tangential.count)
 
 
+def _one_of(*names: str) -> dict[str, Any]:
+    return {"oneOf": [{"required": [name]} for name in names]}
+
+
+def _describe_history(schema: dict[str, Any]) -> None:
+    drop_null_defaults(schema)
+    schema |= _one_of("history", "cycles")
+
+
+class HistoryQuery(Query, json_schema_extra=_describe_history):
+    """A contact with friction under loads that come and go."""
+
+    friction_coefficient: float = _friction_coefficient()
+    history: History = _left_out("The points that the loads go through.")
+    cycles: Cycles = _left_out("In place of `history`: equal cycles of the tangential load.")
+
+    @property
+    def size(self) -> int:
+        """How many numbers it is about, also where both or neither way to say so was taken."""
+        ways = {"history": self.history, "cycles": self.cycles}
+        return super().size + sum(ways[name].effort for name in ways.keys() & self.model_fields_set)
+
+    @property
+    def has_cycles(self) -> bool:
+        """Whether it is told by cycles."""
+        return "cycles" in self.model_fields_set
+
+    def place(self, index: int) -> tuple[str | int, ...]:
+        """Return the path to what says where the normal load goes, on the way to a sample."""
+        way: History | Cycles = self.cycles if self.has_cycles else self.history
+        name = "cycles" if self.has_cycles else "history"
+        return (name, *way.place("normal", index // way.samples_per_step))
+
+
 FieldName = Literal[
     "pressure",
     "shear_stress",
@@ -191,16 +176,14 @@ FieldName = Literal[
 SHEAR_FIELDS: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
 
 
-def _left_out(description: str) -> Any:
-    """Return a field that may be left out, but not be null."""
-    return Field(default=None, description=description)
-
-
 def _describe_stress(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
-    schema["oneOf"] = [{"required": ["radius"]}, {"required": ["points"]}]
-    together = ("friction_coefficient", "tangential")
-    schema["dependentRequired"] = {one: [other] for one, other in permutations(together)}
+    schema["allOf"] = [_one_of("radius", "points"), _one_of("load", "history")]
+    schema["dependentRequired"] = {
+        "tangential": ["load", "friction_coefficient"],
+        "history": ["friction_coefficient"],
+    }
+    schema["dependentSchemas"] = {"friction_coefficient": _one_of("tangential", "history")}
 
 
 def _once_each(names: list[FieldName]) -> list[FieldName]:
@@ -212,8 +195,13 @@ def _once_each(names: list[FieldName]) -> list[FieldName]:
 class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
     """The fields of a contact over the radius, with friction or without."""
 
+    load: Load = _left_out("Exactly one control: depth, force or contact radius.")
     friction_coefficient: float = _friction_coefficient(default=None)
     tangential: Tangential = _left_out("Exactly one control, with `friction_coefficient`.")
+    history: History = _left_out(
+        "In place of `load` and `tangential`: the points that the loads go through; the fields "
+        "are those of its end. With `friction_coefficient`."
+    )
     radius: list[Size] = quantity(
         "length",
         "Radii r at which the fields are answered, in any order",
@@ -232,7 +220,7 @@ class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
     quantities: Annotated[list[FieldName], AfterValidator(_once_each)] = Field(
         description=(
             "The fields to answer, each once; shear_stress, slip and foundation_shear need "
-            "`tangential`"
+            "`tangential` or `history`"
         ),
         min_length=1,
         json_schema_extra={"uniqueItems": True},
@@ -240,13 +228,24 @@ class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
 
     @property
     def loads(self) -> int:
-        """How many loads, or pairs of loads, it is about."""
-        return max(self.load.count, self.tangential.count if self.has_friction else 1)
+        """How many loads, or pairs of loads, it is about; of a history its end."""
+        return max((control.count for control in self.controls), default=1)
+
+    @property
+    def controls(self) -> list[Choice]:
+        """The loads that are given, where there is no history."""
+        named: dict[str, Choice] = {"load": self.load, "tangential": self.tangential}
+        return [control for name, control in named.items() if name in self.model_fields_set]
 
     @property
     def has_friction(self) -> bool:
         """Whether there is a tangential load."""
-        return "tangential" in self.model_fields_set
+        return not self.model_fields_set.isdisjoint(("tangential", "history"))
+
+    @property
+    def has_history(self) -> bool:
+        """Whether the loads come and go."""
+        return "history" in self.model_fields_set
 
     @property
     def radii(self) -> int:
@@ -255,7 +254,13 @@ class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
 
     @property
     def size(self) -> int:
-        return super().size + self.loads * self.radii
+        effort = self.history.effort if self.has_history else 0
+        return super().size + effort + self.loads * self.radii
+
+    def place(self, index: int) -> tuple[str | int, ...]:
+        if self.has_history:
+            return ("history", *self.history.place("normal", self.history.steps - 1))
+        return super().place(index)
 
 
 # After these fields (or their items) pydantic names the branch of a union in the location of an

@@ -1,25 +1,17 @@
-"""Answers as pictures (SVG), for people who look rather than read."""
+"""Fields over the radius."""
 
-import io
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
-from threading import Lock
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from starlette.responses import Response
 
-from mdr_core.tangential import TangentialContact
 from mdr_service.convert import Array
-from mdr_service.solve import Stress, travel_to_full_slip
+from mdr_service.pictures import canvas
+from mdr_service.solve import Stress
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-MEDIA_TYPE: Final = "image/svg+xml"
-# What a picture costs, in numbers that could be answered meanwhile.
-EFFORT: Final = 10_000
 
 _NAMES: Final = {
     "pressure": "pressure $p$",
@@ -29,27 +21,9 @@ _NAMES: Final = {
     "foundation_load": "foundation load $q$",
     "foundation_shear": "foundation shear $q_x$",
 }
-_UNITS: Final = "in the units of the request"
 _MAY_BE_INFINITE: Final = frozenset({"pressure", "shear_stress"})
 # Lines that can still be told apart.
 _MOST_LINES: Final = 8
-_WIDTH, _PANEL = 7.2, 2.6
-_STYLE: Final[dict[Any, Any]] = {
-    "axes.formatter.limits": (-3, 4),
-    "axes.formatter.use_mathtext": True,
-    "axes.grid": True,
-    "axes.linewidth": 0.6,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "font.size": 9.0,
-    "grid.alpha": 0.25,
-    "grid.linewidth": 0.5,
-    "legend.frameon": False,
-    "lines.linewidth": 1.4,
-    "mathtext.fontset": "dejavusans",
-    # The same answer makes the same picture.
-    "svg.hashsalt": "mdr",
-}
 _SYMBOLS: Final = {
     "indentation_depth": "$d$",
     "normal_force": "$F_N$",
@@ -62,8 +36,6 @@ _SYMBOLS: Final = {
 _REST, _HEADROOM = 0.03, 1.15
 # Marks closer than this share of the axis have one label.
 _CLOSE: Final = 0.025
-# The library keeps its style in one place for all threads.
-_lock: Final = Lock()
 
 
 def stress(_document: dict[str, Any], solved: Stress) -> Response:
@@ -72,8 +44,8 @@ def stress(_document: dict[str, Any], solved: Stress) -> Response:
     radius = solved.radius[order]
     loads = len(next(iter(solved.fields.values())))
     shown = range(min(loads, _MOST_LINES))
-    with _lock, _style():
-        figure, panels = _panels(len(solved.fields))
+    with canvas.drawing():
+        figure, panels = canvas.panels(len(solved.fields))
         for axes, (name, field) in zip(panels, solved.fields.items(), strict=True):
             values = field[: len(shown), order]
             for index in shown:
@@ -84,59 +56,11 @@ def stress(_document: dict[str, Any], solved: Stress) -> Response:
             _mark_radii(axes, solved, shown)
         panels[0].set_xlim(*_span(radius))
         _label_radii(panels[0], solved, shown)
-        panels[-1].set_xlabel(f"radius $r$   ({_UNITS})")
+        panels[-1].set_xlabel(f"radius $r$   ({canvas.UNITS})")
         if loads > 1:
             title = None if len(shown) == loads else f"the first {len(shown)} of {loads} loads"
             panels[0].legend(title=title, loc="upper right")
-        return _response(figure)
-
-
-def tangential(_document: dict[str, Any], contact: TangentialContact) -> Response:
-    """Return force over displacement up to full slip, for the first normal load."""
-    travel = travel_to_full_slip(contact)
-    forces, displacements = (
-        np.ravel(contact.tangential_force),
-        np.ravel(contact.tangential_displacement),
-    )
-    normal_forces = np.broadcast_to(np.ravel(contact.normal.normal_force), forces.shape)
-    answered = normal_forces == normal_forces[0]
-    end = max(displacements[answered].max(), -displacements[answered].min())
-    x = np.append(travel.tangential_displacement, max(end, travel.tangential_displacement[-1]))
-    y = np.append(travel.tangential_force, travel.tangential_force[-1])
-    with _lock, _style():
-        figure, (axes,) = _panels(1)
-        for sign in (1, -1) if displacements[answered].min() < 0 else (1,):
-            axes.plot(sign * x, sign * y, color="C0")
-            axes.axhline(sign * y[-1], color="0.5", linestyle=":", linewidth=0.8)
-        axes.plot(displacements[answered], forces[answered], "o", color="C1", label="answered")
-        axes.annotate(
-            r"$\mu F_N$", (0, y[-1]), xytext=(3, 3), textcoords="offset points", color="0.4"
-        )
-        axes.set_xlabel(f"tangential displacement $u_x$   ({_UNITS})")
-        axes.set_ylabel("tangential force $F_x$")
-        axes.set_title(f"$F_N$ = {normal_forces[0]:.6g}", fontsize="medium")
-        axes.legend(loc="lower right")
-        return _response(figure)
-
-
-def _style() -> AbstractContextManager[None]:
-    import matplotlib as mpl  # noqa: PLC0415 -- it takes longer to load than all else
-
-    return mpl.rc_context(_STYLE)
-
-
-def _panels(count: int) -> "tuple[Figure, list[Axes]]":
-    from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
-
-    figure = Figure(figsize=(_WIDTH, 0.9 + _PANEL * count), layout="constrained")
-    panels = figure.subplots(count, 1, sharex=True, squeeze=False)
-    return figure, list(panels[:, 0])
-
-
-def _response(figure: "Figure") -> Response:
-    text = io.BytesIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return Response(text.getvalue(), media_type=MEDIA_TYPE)
+        return canvas.response(figure)
 
 
 def _finite(values: Array) -> Array:
@@ -191,8 +115,8 @@ def _radii(solved: Stress, index: int) -> list[tuple[float, str]]:
     """Return the radii of one load that mean something, with their symbols."""
     found = [(float(b), "b") for b in solved.contact.profile.breaks[:_MOST_LINES]]
     found.append((_one(solved.contact.contact_radius, index), "a"))
-    if solved.sheared:
-        found.append((_one(solved.sheared.stick_radius, index), "c"))
+    fronts = solved.fronts
+    found += [(c, "c") for c in fronts[index if len(fronts) > 1 else 0, :_MOST_LINES].tolist()]
     return [(r, symbol) for r, symbol in found if r > 0]
 
 

@@ -1,0 +1,8 @@
+"""Answers as pictures (SVG), for people who look rather than read."""
+
+from mdr_service.pictures.canvas import EFFORT, MEDIA_TYPE
+from mdr_service.pictures.fields import stress
+from mdr_service.pictures.loops import history
+from mdr_service.pictures.push import tangential
+
+__all__ = ["EFFORT", "MEDIA_TYPE", "history", "stress", "tangential"]

@@ -1,0 +1,228 @@
+"""Histories over the wire: the core's digits at every sample, its fields at the end."""
+
+import pytest
+
+from mdr_core import fields, history, normal
+from mdr_service.settings import SETTINGS
+from tests.conftest import Client
+from tests.service.test_normal import E_STAR, PROFILES
+
+G_STAR, FRICTION = 1.9e9, 0.4
+PATH = "/v1/tangential/history"
+SAMPLED = (
+    "step",
+    "indentation_depth",
+    "normal_force",
+    "contact_radius",
+    "tangential_displacement",
+    "tangential_force",
+    "dissipated_energy",
+    "elastic_energy",
+    "tangential_energy",
+    "regime",
+)
+WAYS = {
+    "forces": ({"normal_force": [1e5, 2e5, 5e4]}, {"tangential_force": [0.0, 5e4, -1e4]}),
+    "one force": ({"normal_force": 1e5}, {"tangential_force": [0.0, 3e4, -3e4, 1e4]}),
+    "depths, a gap": (
+        {"indentation_depth": [1e-4, 2e-4, -1e-5, 1e-4]},
+        {"tangential_displacement": [0.0, 5e-5, 0.0, -1e-3]},
+    ),
+    "a force and displacements": (
+        {"normal_force": 1e5},
+        {"tangential_displacement": [0.0, 1e-6, -1e-6]},
+    ),
+    "a depth and forces": ({"indentation_depth": [1e-3]}, {"tangential_force": [0.0, 10.0, -5.0]}),
+}
+
+
+def query(kind: str = "paraboloid", **way: object) -> dict[str, object]:
+    return {
+        "profile": {"kind": kind, **PROFILES[kind][0]},
+        "material": {"e_star": E_STAR, "g_star": G_STAR},
+        "friction_coefficient": FRICTION,
+        **way,
+    }
+
+
+def told(normal_load: object, tangential: object, **more: object) -> dict[str, object]:
+    return {"history": {"normal": normal_load, "tangential": tangential, **more}}
+
+
+def solved(kind: str, *controls: dict[str, object], **more: object) -> history.History:
+    given = controls[0] | controls[1]
+    return history.solve(PROFILES[kind][1], E_STAR, G_STAR, FRICTION, **given, **more)
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("kind", ["paraboloid", "flat_punch", "cone", "truncated_cone"])
+def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str, way: str) -> None:
+    document = client.post(PATH, query(kind, **told(*WAYS[way], samples_per_step=3))).json()
+    expected = solved(kind, *WAYS[way], samples_per_step=3)
+    for name in (*SAMPLED, "slip_fronts"):
+        assert document[name] == getattr(expected, name).tolist(), name
+    assert document["method"] == expected.method
+    assert document["error_estimate"] == expected.error_estimate
+    assert not {"energy_per_cycle", "secant_stiffness"} & set(document)
+
+
+def test_a_curved_way_is_followed_to_the_accuracy_asked_for(client: Client) -> None:
+    way = {"normal_force": [1e5, 2e5]}, {"tangential_displacement": [1e-5, -1e-5]}
+    for rtol in (1e-3, 1e-9):
+        document = client.post(PATH, query(**told(*way), rtol=rtol)).json()
+        expected = solved("paraboloid", *way, rtol=rtol)
+        assert document["tangential_force"] == expected.tangential_force.tolist()
+        assert document["error_estimate"] == expected.error_estimate <= rtol
+        # The answers are extrapolated, the memory is not.
+        told_so = {each["code"] for each in document["warnings"]}
+        assert ("accuracy" in told_so) == (expected.state_error_estimate > rtol)
+
+
+def test_numbers_and_lists_of_one_are_the_same(client: Client) -> None:
+    answers = [
+        client.post(PATH, query(**told({"normal_force": one}, {"tangential_force": other}))).json()
+        for one, other in ((1e5, 1e4), ([1e5], 1e4), (1e5, [1e4]), ([1e5], [1e4]))
+    ]
+    assert all(answer == answers[0] for answer in answers)
+    assert all(len(answers[0][name]) == 1 for name in SAMPLED)
+
+
+CYCLES = {
+    "forces": ({"normal_force": 1e5}, {"tangential_force": 3e4}),
+    "forces in phase": ({"normal_force": 1e5, "amplitude": 2e4}, {"tangential_force": 3e4}),
+    "depths": ({"indentation_depth": 2e-4}, {"tangential_displacement": 3e-5}),
+    "depths in phase": (
+        {"indentation_depth": 2e-4, "amplitude": 2e-4},
+        {"tangential_displacement": 3e-5},
+    ),
+    "a force and a displacement": ({"normal_force": 1e5}, {"tangential_displacement": 1e-6}),
+}
+
+
+@pytest.mark.parametrize("way", CYCLES)
+def test_cycles_agree_with_the_core_digit_for_digit(client: Client, way: str) -> None:
+    pressed, pushed = CYCLES[way]
+    told_by = {"normal": pressed, "tangential": pushed, "count": 3, "samples_per_step": 2}
+    document = client.post(PATH, query(cycles=told_by)).json()
+    controls = {name: value for name, value in pressed.items() if name != "amplitude"}
+    expected = history.cycles(
+        PROFILES["paraboloid"][1],
+        E_STAR,
+        G_STAR,
+        FRICTION,
+        **controls,
+        **pushed,
+        normal_amplitude=pressed.get("amplitude", 0.0),
+        count=3,
+        samples_per_step=2,
+    )
+    for name in (*SAMPLED, "slip_fronts"):
+        assert document[name] == getattr(expected.history, name).tolist(), name
+    for name in ("energy_per_cycle", "secant_stiffness"):
+        assert document[name] == getattr(expected, name).tolist()
+        assert len(document[name]) == 3
+
+
+def test_cycles_are_one_without_their_number(client: Client) -> None:
+    told_by = {"normal": {"normal_force": 1e5}, "tangential": {"tangential_force": 3e4}}
+    document = client.post(PATH, query(cycles=told_by)).json()
+    assert document["tangential_force"] == [0.0, 3e4, -3e4, 3e4]
+    assert len(document["energy_per_cycle"]) == 1
+
+
+def test_bodies_and_yield_are_as_for_any_contact(client: Client) -> None:
+    rubber = {"youngs_modulus": 5e6, "poissons_ratio": 0.4, "yield_strength": 1.0}
+    material = {"bodies": ["rigid", {k: rubber[k] for k in ("youngs_modulus", "poissons_ratio")}]}
+    question = query(**told({"normal_force": 1.0}, {"tangential_force": 0.1}))
+    answer = client.post(PATH, question | {"material": material | {"yield_strength": 1.0}})
+    assert {each["code"] for each in answer.json()["warnings"]} == {"elastic_similarity", "yield"}
+
+
+def test_a_load_of_nothing_has_no_singular_answer(client: Client) -> None:
+    question = query(
+        "truncated_cone", **told({"normal_force": [0.0, 1.0]}, {"tangential_force": 0})
+    )
+    question["profile"] = {"kind": "power", "coefficient": 1.0, "exponent": 0.5}
+    answer = client.post(PATH, question)
+    assert answer.status_code == 200
+    assert "singular" not in {each["code"] for each in answer.json()["warnings"]}
+
+
+@pytest.mark.parametrize(
+    ("way", "samples", "pointer"),
+    [
+        (WAYS["one force"], SETTINGS.max_samples // 4 + 1, "/history/samples_per_step"),
+        (
+            WAYS["a force and displacements"],
+            SETTINGS.max_curved_samples + 1,
+            None,
+        ),
+        (
+            ({"normal_force": [1.0, 2.0]}, {"tangential_displacement": [1e-9, -1e-9]}),
+            SETTINGS.max_curved_samples // 2 + 1,
+            "/history/samples_per_step",
+        ),
+    ],
+    ids=["straight", "straight while one of the two stays", "curved"],
+)
+def test_samples_are_limited(
+    client: Client, way: tuple[object, object], samples: int, pointer: str | None
+) -> None:
+    answer = client.post(PATH, query(**told(*way, samples_per_step=samples)))
+    if pointer is None:
+        assert len(answer.json()["step"]) == 3 * samples
+        return
+    assert answer.status_code == 422
+    assert [error["pointer"] for error in answer.json()["errors"]] == [pointer]
+
+
+def test_cycles_are_limited(client: Client) -> None:
+    told_by = {"normal": {"normal_force": 1.0}, "tangential": {"tangential_force": 0.1}}
+    for more, pointer in (
+        ({"count": SETTINGS.max_samples // 2}, "/cycles"),
+        ({"count": SETTINGS.max_samples, "samples_per_step": 2}, "/cycles/samples_per_step"),
+        ({"count": SETTINGS.max_samples + 1}, "/cycles/count"),
+    ):
+        answer = client.post(PATH, query(cycles=told_by | more))
+        assert answer.status_code == 422
+        assert [error["pointer"] for error in answer.json()["errors"]] == [pointer]
+
+
+RADII = [0.0, 0.001, 0.01, 0.3, 1.2]
+OF_NORMAL = ("pressure", "normal_displacement", "foundation_load")
+OF_SHEAR = ("shear_stress", "slip", "foundation_shear")
+
+
+@pytest.mark.parametrize("way", ["forces", "depths, a gap", "a depth and forces"])
+@pytest.mark.parametrize("kind", ["paraboloid", "flat_punch", "cone", "truncated_cone"])
+def test_the_fields_of_the_end_are_those_of_the_core(client: Client, kind: str, way: str) -> None:
+    asked = {"radius": RADII, "quantities": [*OF_NORMAL, *OF_SHEAR]}
+    document = client.post("/v1/stress", query(kind, **told(*WAYS[way]), **asked)).json()
+    expected = solved(kind, *WAYS[way])
+    depth = max(float(expected.indentation_depth[-1]), 0.0)
+    end = normal.solve(PROFILES[kind][1], E_STAR, indentation_depth=depth)
+    for names, source in ((OF_NORMAL, end), (OF_SHEAR, expected.state)):
+        for name in names:
+            found = getattr(fields, name)(source, RADII).tolist()
+            assert document[name] == [[r if abs(r) < float("inf") else None for r in found]], name
+
+
+def test_a_push_told_as_a_history_has_the_same_fields(client: Client) -> None:
+    asked = {"radius": RADII, "quantities": [*OF_NORMAL, *OF_SHEAR]}
+    way = told({"normal_force": 1e5}, {"tangential_force": [0.0, 3e4]})
+    push = {"load": {"normal_force": 1e5}, "tangential": {"tangential_force": 3e4}}
+    followed, pushed = (
+        client.post("/v1/stress", query(**each, **asked)).json() for each in (way, push)
+    )
+    for name in asked["quantities"]:
+        (one,), (other,) = followed[name], pushed[name]
+        assert one == pytest.approx(other, rel=1e-11, abs=1e-13 * max(map(abs, other)))
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_the_grid_of_an_end_holds_its_slip_fronts(client: Client, way: str) -> None:
+    asked = query(**told(*WAYS[way]), points=100, quantities=["shear_stress"])
+    document = client.post("/v1/stress", asked).json()
+    assert len(document["radius"]) == len(document["shear_stress"][0]) == 100
+    fronts = client.post(PATH, query(**told(*WAYS[way]))).json()["slip_fronts"]
+    assert set(fronts) <= set(document["radius"])
