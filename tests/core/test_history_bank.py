@@ -1,0 +1,186 @@
+"""Cycles and random paths of every stored case, by the quick query and by the general one."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from mdr_core import history
+from tests.core.comparison import EPS, INPUT, profile_from, relative_error
+from tests.oracles import history_bank
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+ENERGY = 1e-10
+BOUND = 1e-12
+#: A table is a sum over its knots, and has the normal query's own bound.
+TABLE = 1e-11
+#: Of mu F_N on the way that slides all of the contact: a depth is rounded, and so is where on a
+#: slanted way a spring touches and leaves.
+TOUCH = 8 * EPS
+
+
+def name_of(case: dict[str, Any]) -> str:
+    return str(case["id"])
+
+
+def material(case: dict[str, Any]) -> tuple[Any, ...]:
+    return (
+        profile_from(case["profile"]),
+        case["e_star"],
+        case["g_star"],
+        case["friction_coefficient"],
+    )
+
+
+def bound_of(case: dict[str, Any]) -> float:
+    return TABLE if case["profile"]["kind"] == "tabulated" else BOUND
+
+
+def allowance(case: dict[str, Any], name: str, index: int) -> float:
+    rates = (case[kind][name][index] for kind in ("condition", "condition_load"))
+    return INPUT * sum(rates)
+
+
+def cycle_failures(case: dict[str, Any], index: int, found: Iterable[float]) -> list[str]:
+    """What of one amplitude's loss and stiffness, as often as they were found, is wrong."""
+    failures = []
+    names = ("energy_per_cycle", "secant_stiffness")
+    for name, bound, value in zip(names, (ENERGY, bound_of(case)), found, strict=True):
+        error = relative_error(value, case["expected"][name][index])
+        allowed = bound + allowance(case, name, index)
+        if not error <= allowed:
+            failures.append(f"{name} at {case['given'][index]!r}: {error:.2e} > {allowed:.2e}")
+    return failures
+
+
+@pytest.mark.parametrize("case", history_bank.load("cycles"), ids=name_of)
+def test_loss_and_stiffness_of_a_cycle(case: dict[str, Any]) -> None:
+    failures = []
+    for index, amplitude in enumerate(case["given"]):
+        control = {case["control"]: case["load"], case["tangential_control"]: amplitude}
+        found = history.cycles(*material(case), **control, count=2)
+        assert found.energy_per_cycle.shape == found.secant_stiffness.shape == (2,)
+        for cycle in range(2):
+            pair = (found.energy_per_cycle[cycle], found.secant_stiffness[cycle])
+            failures += cycle_failures(case, index, map(float, pair))
+    assert not failures, failures
+
+
+@pytest.mark.parametrize("case", history_bank.load("cycles")[::3], ids=name_of)
+def test_loss_along_a_path_is_that_of_the_cycle(case: dict[str, Any]) -> None:
+    """Samples within the legs, and the losses of their stretches added up."""
+    failures = []
+    for index, amplitude in enumerate(case["given"]):
+        path = {
+            case["control"]: case["load"],
+            case["tangential_control"]: [0.0, amplitude, -amplitude, amplitude],
+        }
+        found = history.solve(*material(case), **path, samples_per_step=3)
+        assert found.step.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3]
+        lost = float(np.sum(found.dissipation[6:]))
+        u, force = found.tangential_displacement, found.tangential_force
+        secant = float((force[11] - force[8]) / (u[11] - u[8]))
+        failures += cycle_failures(case, index, (lost, secant))
+    assert not failures, failures
+
+
+@pytest.mark.parametrize("case", history_bank.load("inphase"), ids=name_of)
+def test_normal_load_in_phase(case: dict[str, Any]) -> None:
+    found = history.cycles(
+        *material(case),
+        indentation_depth=case["mean"],
+        normal_amplitude=case["swing"],
+        tangential_displacement=case["amplitude"],
+        count=3,
+    )
+    expected, failures = case["expected"], []
+    top = case["mean"] + case["swing"]
+    limit = case["friction_coefficient"] * float(np.max(found.history.normal_force))
+    whole = limit * case["friction_coefficient"] * case["e_star"] / case["g_star"] * top
+    for cycle in range(3):
+        stiffness = expected["secant_stiffness"][cycle]
+        error = relative_error(float(found.secant_stiffness[cycle]), stiffness)
+        if not error <= bound_of(case):
+            failures.append(f"stiffness of cycle {cycle}: {error:.2e}")
+        lost, exact = float(found.energy_per_cycle[cycle]), expected["energy_per_cycle"][cycle]
+        bound = (ENERGY + INPUT * case["condition"][cycle]) * float(exact) + TOUCH * whole
+        miss = abs(Decimal(lost) - Decimal(exact))
+        if not miss <= bound:
+            failures.append(f"loss of cycle {cycle}: {miss:.2e} > {bound:.2e}")
+    assert not failures, failures
+
+
+def misses(case: dict[str, Any], found: history.History) -> dict[str, float]:
+    """The largest errors, each in units of what it is a part of."""
+    expected = {
+        name: np.array([float(value) for value in row]) for name, row in case["expected"].items()
+    }
+    most = np.max(expected["normal_force"])
+    energy = expected["tangential_energy"] + expected["dissipated_energy"]
+    scales = {
+        "normal_force": most,
+        "tangential_force": case["friction_coefficient"] * most,
+        # The sum grows; what is left at the end has been through all of it.
+        "tangential_energy": np.maximum.accumulate(energy),
+        "dissipated_energy": np.maximum.accumulate(energy),
+    }
+    errors = {}
+    for name, scale in scales.items():
+        difference = np.abs(getattr(found, name) - expected[name])
+        # Before the first contact both are nothing.
+        errors[name] = float(
+            np.max(np.where(difference == 0, 0.0, difference) / np.maximum(scale, 1e-300))
+        )
+    return errors
+
+
+@pytest.mark.parametrize("case", history_bank.load("paths"), ids=name_of)
+def test_random_path(case: dict[str, Any]) -> None:
+    controls = {
+        name: np.array(case[name]) for name in ("indentation_depth", "tangential_displacement")
+    }
+    found = history.solve(*material(case), **controls)
+    errors = misses(case, found)
+    assert max(errors.values()) <= bound_of(case), errors
+    assert found.error_estimate >= errors["tangential_force"]
+    touching = controls["indentation_depth"] > 0
+    assert np.array_equal(found.regime == "no_contact", ~touching)
+    expected = [float(value) for value in case["expected"]["tangential_force"]]
+    limit = case["friction_coefficient"] * found.normal_force
+    sliding = touching & (np.abs(expected) >= limit * (1 - 1e-13))
+    assert np.array_equal(found.regime == "full_slip", sliding)
+
+
+@pytest.mark.parametrize("case", history_bank.load("paths")[::2], ids=name_of)
+def test_the_mirrored_path_has_the_mirrored_answers(case: dict[str, Any]) -> None:
+    d, u = np.array(case["indentation_depth"]), np.array(case["tangential_displacement"])
+    right, left = (
+        history.solve(*material(case), indentation_depth=d, tangential_displacement=sign * u)
+        for sign in (1, -1)
+    )
+    assert np.array_equal(left.tangential_force, -right.tangential_force)
+    for name in ("normal_force", "dissipated_energy", "tangential_energy", "slip_fronts"):
+        assert np.array_equal(getattr(left, name), getattr(right, name)), name
+    assert np.array_equal(left.regime, right.regime)
+
+
+@pytest.mark.parametrize("case", history_bank.load("paths")[1::2], ids=name_of)
+def test_one_step_after_another_is_the_whole_path(case: dict[str, Any]) -> None:
+    d, u = case["indentation_depth"], case["tangential_displacement"]
+    state = history.unloaded(*material(case))
+    for point in zip(d, u, strict=True):
+        state = history.advance(state, *point)
+    whole = history.solve(
+        *material(case), indentation_depth=d, tangential_displacement=u, samples_per_step=7
+    ).state
+    size = case["friction_coefficient"] * case["e_star"] * max(d)
+    assert state.indentation_depth == whole.indentation_depth
+    assert state.tangential_displacement == whole.tangential_displacement
+    assert state.depth.shape == whole.depth.shape
+    assert state.depth == pytest.approx(whole.depth, rel=1e-13, abs=1e-13 * max(d))
+    assert state.load == pytest.approx(whole.load, rel=1e-12, abs=1e-13 * size)
