@@ -44,9 +44,10 @@ class Rim:
     @property
     def room(self) -> Array:
         """Width at which the profile ends."""
-        end = float(self.profile.domain)
-        poles = [branch.pole for branch in self.profile.branches]
-        return np.asarray(min(end, min(poles) * (1 - _BEFORE_POLE)) - self.stick)
+        ends = [float(self.profile.domain)]
+        # A stretch that ends before its pole never comes to it.
+        ends += [b.pole * (1 - _BEFORE_POLE) for b in self.profile.branches if b.stop >= b.pole]
+        return np.asarray(min(ends) - self.stick)
 
     def at(self, radius: Array) -> Array:
         """Width of the rim that ends at a radius >= c."""
