@@ -83,7 +83,7 @@ class Annulus:
         start = mp.asinh(self.body.t)
         if v <= start:
             return big * mp.tanh(v)
-        power = 2 * max(start, mpf(1))
+        power = max(start, mpf(2))
         square = 2 * start * b * h**2 / (power * big) * ((v / start) ** power - 1)
         return mp.sqrt(b**2 + square)
 

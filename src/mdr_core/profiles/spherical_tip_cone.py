@@ -58,12 +58,12 @@ class SphericalTipCone(TippedCone):
     @property
     def _stretched(self) -> Stretched:
         """The coordinate beyond b, of the excess (s/l)^2: at s = b it is a few v_b."""
-        return Stretched(self.scale, 2 * np.maximum(self.scale, 1.0))
+        return Stretched(self.scale, np.maximum(self.scale, 2.0))
 
     @property
     def _length(self) -> Parameter:
         """l [length], where dv/da is the same on both sides: C l^2/(2 v_b) = b h^2/R."""
-        part = np.minimum(self.scale, 1.0) * self.tangent_radius / np.hypot(1.0, self.slope)
+        part = np.minimum(self.scale, 2.0) * self.tangent_radius / np.hypot(1.0, self.slope)
         return np.sqrt(part) * np.sqrt(self._height)
 
     @property
