@@ -9,7 +9,7 @@ from numpy.polynomial import chebyshev
 
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps, bisect
-from mdr_core.abel.roots import one_sided
+from mdr_core.abel.roots import leg, one_sided
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import Analytic, gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
@@ -82,7 +82,7 @@ class StressPanels:
 
     def _block(self, a: Array, r: Array, c: Array, width: Array, rtol: float) -> Array:
         base, start, stop = self.base[:, None], self.start[:, None], self.stop[:, None]
-        leg_a, leg_c, leg_r = _leg(a, base), _leg(c, base), _leg(r, base)
+        leg_a, leg_c, leg_r = leg(a, base), leg(c, base), leg(r, base)
         low, high = np.maximum(start, leg_c), np.minimum(stop, leg_a)
         used = (high > np.maximum(low, leg_r)) & (a > base)
         # The root at r inside the panel: the rule starts on it, at y = 0, even in y.
@@ -195,7 +195,7 @@ def stress_panels(
     [2.0, 1.6]
     """
     base = edges[:-1]
-    last = _leg(edges[1:], base)
+    last = leg(edges[1:], base)
     intervals = np.stack([np.zeros_like(last), last], axis=1)
 
     def in_s(s: Array, tags: Indices) -> Array:
@@ -222,8 +222,3 @@ def stress_panels(
     pole = np.zeros_like(base)
     pole[np.searchsorted(base, jumps.at)] = jumps.at * jumps.size
     return StressPanels(base[tags], places[:, 0], places[:, 1], pole[tags], coefficients, error)
-
-
-def _leg(x: Array, b: Array) -> Array:
-    """sqrt(x^2 - b^2), zero for x < b."""
-    return np.asarray(np.sqrt(np.maximum(x - b, 0.0) * (x + b)))
