@@ -191,6 +191,9 @@ def _lower(
         with np.errstate(divide="ignore"):
             length = np.minimum(upper - np.log(low), -np.log(branch.reach))
         length = np.minimum(length, upper + _LOG_RANGE)
+    if not length.max() > 0:
+        # Two neighbouring doubles may have one logarithm.
+        return np.zeros_like(s_r)
     piece = _PIECE * min(1.0, _STEEP / branch.steepness)
     count = max(ceil(length.max() / piece), 1)
     nodes, weights = composite_rule(points, count)
