@@ -63,9 +63,8 @@ def slip(state: State, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
     # The edge as another route gives it, to the last digit but one, belongs to the contact.
     a = state.contact_radius * _EDGE
     bends = np.diff(state.slope, prepend=0.0)
-    fronts = profile.contact_radius(state.coordinate[:-1]) if state.touches else np.zeros(0)
     # S(0; r) and S(b; r) are the same: g is zero on a flat.
-    fronts[:1] = 0.0
+    fronts = np.append(0.0, profile.contact_radius(state.coordinate[1:-1]))[: bends.size]
 
     def values(r: Array, _highest: float) -> Array:
         result = np.zeros(r.shape)

@@ -91,7 +91,7 @@ class Branches:
         below = self.tree.parent
         energy, depth_step = self.profile.reduced_energy(self.coordinate), self.depth_step
         lens = energy - energy[below] - self.force[below] * depth_step
-        narrow = np.flatnonzero(depth_step < NARROW * self.depth)
+        narrow = np.flatnonzero((depth_step > 0) & (depth_step < NARROW * self.depth))
         if narrow.size:
             lens[narrow] = lens_integral(self.profile, self.depth[narrow], depth_step[narrow])
         return lens

@@ -39,6 +39,8 @@ _BLOCK: Final = 512
 _NEAR: Final = 0.25
 # Up to so many radii of its flat a contact is shallow.
 _SHALLOW: Final = 1.5
+# So short a way, relative to the level, costs the closed form more digits than a rule.
+_THIN: Final = 1e-4
 # A load is constant on the way of a front that moves as far as its gap, up to rounding.
 _EVEN: Final = 1e-12
 # A piece that comes nearer to the axis than so many gaps has digits enough for the closed form.
@@ -86,8 +88,33 @@ def _blocks(index: Indices) -> Iterator[Indices]:
 
 def _closed(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
     front = _force_front if by_force else _depth_front
+    area = front(profile, *rows)
+    level, span, *_ = rows
+    thin = np.flatnonzero(span < _THIN * (level + span))
+    if thin.size:
+        thin_rows = level[thin], span[thin], rows[2][thin], rows[3][thin]
+        area[thin] = _thin_front(profile, thin_rows, by_force)
     # A difference of rounded numbers may fall below zero, a loss may not.
-    return np.maximum(front(profile, *rows), 0.0)
+    return np.maximum(area, 0.0)
+
+
+def _thin_front(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+    """int R dw over so short a way of the front that the closed form's ends are all but one."""
+    level, span, upper, lower = rows
+
+    def overlap(left: Array, at: Array) -> Array:
+        share = left / span[:, None]
+        top = at + (upper[:, None] + (lower - upper)[:, None] * share)
+        find = coordinate_from_force if by_force else coordinate_from_depth
+        front, edge = find(profile, at), find(profile, top)
+        depth = profile.depth(edge) - profile.depth(front)
+        force = profile.reduced_force(edge) - profile.reduced_force(front)
+        x = profile.contact_radius(front)
+        moved = force - 2 * x * depth
+        return moved / (2 * x) if by_force else moved
+
+    breaks = breaks_below(profile, float((level + span).max()), by_force)
+    return integral(overlap, level, span, breaks)
 
 
 def _shallow(profile: Profile, reach: Array, by_force: bool) -> Flags:  # noqa: FBT001

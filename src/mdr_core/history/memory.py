@@ -16,6 +16,7 @@ normal forces where forces are. Source: notes, §10.
 """
 
 from dataclasses import dataclass
+from math import fsum
 from typing import NamedTuple
 
 import numpy as np
@@ -41,10 +42,9 @@ class Chain(NamedTuple):
     @property
     def point(self) -> tuple[float, float]:
         """Level and shift of the load point."""
-        forward, backward = self.forward[-1], self.backward[-1]
-        level = (forward[0] + backward[0]) + (forward[1] + backward[1])
-        shift = (forward[0] - backward[0]) + (forward[1] - backward[1])
-        return float(level / 2), float(shift / 2)
+        forward, backward = self.forward[-1].tolist(), self.backward[-1].tolist()
+        # Summed exactly: the very numbers that were given.
+        return fsum(forward + backward) / 2, fsum(forward + [-part for part in backward]) / 2
 
 
 @dataclass(frozen=True)

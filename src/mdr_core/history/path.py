@@ -61,8 +61,11 @@ def build(
 
     Raises
     ------
-    InputError : lengths that differ and are not 1, no points, or numbers that are not finite.
+    InputError : lengths that differ and are not 1, no points, numbers that are not finite, or
+        less than one sample a step.
     """
+    if samples_per_step < 1:
+        raise InputError(("history", "samples_per_step"), "must be at least 1")
     pressed, pushed = _checked("normal", *normal), _checked("tangential", *tangential)
     if pressed.size != pushed.size and 1 not in {pressed.size, pushed.size}:
         raise InputError(

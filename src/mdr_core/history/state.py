@@ -57,30 +57,30 @@ class State:
     @property
     def depth(self) -> Array:
         """Depths w of the breakpoints, from 0 to d [length]; empty in a gap."""
-        return self._branches.depth if self.touches else np.zeros(0)
+        return _kept(self._branches.depth if self.touches else np.zeros(0))
 
-    @property
+    @cached_property
     def load(self) -> Array:
         """q_x of the springs at the breakpoints [force/length]; linear in w between them."""
         if not self.touches:
             return np.zeros(0)
         above = np.cumsum((self._branches.tree.slope * self._branches.tree.span)[:0:-1])
-        return self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
+        return _kept(self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0))
 
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchors in w on each piece from the axis outwards, from -1 to 1."""
-        return self._branches.tree.slope[1:]
+        return _kept(self._branches.tree.slope[1:])
 
     @cached_property
     def coordinate(self) -> Array:
         """Contact coordinates of the breakpoints."""
-        return self._branches.coordinate if self.touches else np.zeros(0)
+        return _kept(self._branches.coordinate if self.touches else np.zeros(0))
 
     @cached_property
     def width(self) -> Array:
         """Widths of the pieces in the contact coordinate, with the digits of their steps."""
-        return self._branches.width[1:]
+        return _kept(self._branches.width[1:])
 
     @property
     def contact_radius(self) -> float:
@@ -99,6 +99,12 @@ class State:
         """F_x = mu E* sum k (I_i - I_i-1) [force]. Source: notes, §10."""
         shear = float(self._branches.shear[-1]) if self.touches else 0.0
         return self.friction_coefficient * self.e_star * shear
+
+
+def _kept(values: Array) -> Array:
+    """The array, closed to changes: what is remembered stays."""
+    values.flags.writeable = False
+    return values
 
 
 def unloaded(profile: Profile, e_star: float, g_star: float, friction_coefficient: float) -> State:

@@ -19,8 +19,8 @@ cpdef accumulate(Py_ssize_t[::1] parent, double[::1] increment, double[::1] tota
 @cython.locals(start=Py_ssize_t, upper=Py_ssize_t, below=Py_ssize_t)
 cdef Py_ssize_t _step(
     double[:, ::1] vertices, Py_ssize_t[:, ::1] links, double[:, ::1] pieces,
-    Py_ssize_t[::1] piece_step, Py_ssize_t[::1] counts, Py_ssize_t at, double x, double y,
-    Py_ssize_t step, Py_ssize_t leg, bint record
+    Py_ssize_t[::1] piece_step, Py_ssize_t[::1] counts, Py_ssize_t at, double x0, double y0,
+    double x, double y, Py_ssize_t step, Py_ssize_t leg, bint record
 ) noexcept
 @cython.locals(below=Py_ssize_t)
 cdef Py_ssize_t _last_above(
@@ -64,8 +64,8 @@ cdef void _record_slide(
 @cython.locals(new=Py_ssize_t)
 cdef Py_ssize_t _extend(
     double[:, ::1] vertices, Py_ssize_t[:, ::1] links, Py_ssize_t[::1] counts,
-    Py_ssize_t below, double forward, double forward_low, double backward, double backward_low,
-    Py_ssize_t leg
+    Py_ssize_t below, double forward_step, double backward_step, double forward,
+    double forward_low, double backward, double backward_low, Py_ssize_t leg
 ) noexcept
 @cython.locals(new=Py_ssize_t)
 cdef Py_ssize_t _push(

@@ -52,16 +52,18 @@ def run(
                 touch = y0 + (y1 - y0) * (-x0 / (x1 - x0))
                 at = _push(vertices, links, counts, -1, -1)
                 _place(vertices, at, touch, 0.0, -touch, 0.0)
+                x0 = 0.0
+                y0 = touch
             at = _step(
                 vertices, links, pieces, piece_step, counts, at,
-                x1, y1, i, leg[i], record,
+                x0, y0, x1, y1, i, leg[i], record,
             )  # fmt: skip
         elif at >= 0:
             leave = y0 + (y1 - y0) * (x0 / (x0 - x1))
             if record:
                 _step(
                     vertices, links, pieces, piece_step, counts, at,
-                    0.0, leave, i, leg[i], record,
+                    x0, y0, 0.0, leave, i, leg[i], record,
                 )  # fmt: skip
             at = -1
         top[i] = at
@@ -83,6 +85,8 @@ def _step(
     piece_step: Indices,
     counts: Indices,
     at: int,
+    x0: float,
+    y0: float,
     x: float,
     y: float,
     step: int,
@@ -100,12 +104,18 @@ def _step(
     if rise <= 0 and fall <= 0:
         if rise == 0 and fall == 0:
             return at
+        # Straight on, from the load point itself: where one sum of the two shifts stands still
+        # both grow by the same number.
+        forward_step = max((x - x0) + (y - y0), 0.0) if rise < 0 else 0.0
+        backward_step = max((x - x0) - (y - y0), 0.0) if fall < 0 else 0.0
         below = at
         if links[LEG, at] == leg and links[PARENT, at] >= 0:
             # The same straight line goes on.
+            forward_step += vertices[FORWARD_STEP, at]
+            backward_step += vertices[BACKWARD_STEP, at]
             below = links[PARENT, at]
         return _extend(
-            vertices, links, counts, below,
+            vertices, links, counts, below, forward_step, backward_step,
             forward, forward_low, backward, backward_low, leg,
         )  # fmt: skip
     start = at
@@ -127,7 +137,12 @@ def _step(
             _place(vertices, at, -backward, -backward_low, backward, backward_low)
         if not x > 0:
             return at
-    return _extend(vertices, links, counts, at, forward, forward_low, backward, backward_low, -1)
+    return _extend(
+        vertices, links, counts, at,
+        -_above(vertices, FORWARD, at, forward, forward_low),
+        -_above(vertices, BACKWARD, at, backward, backward_low),
+        forward, forward_low, backward, backward_low, -1,
+    )  # fmt: skip
 
 
 def _last_above(
@@ -377,6 +392,8 @@ def _extend(
     links: Indices,
     counts: Indices,
     below: int,
+    forward_step: float,
+    backward_step: float,
     forward: float,
     forward_low: float,
     backward: float,
@@ -384,11 +401,9 @@ def _extend(
     leg: int,
 ) -> int:
     """Push the load point; one piece stands for two that slip the same way."""
-    forward_step = -_above(vertices, FORWARD, below, forward, forward_low)
-    backward_step = -_above(vertices, BACKWARD, below, backward, backward_low)
     if links[PARENT, below] >= 0 and (
-        (backward_step == 0 and vertices[BACKWARD_STEP, below] == 0)
-        or (forward_step == 0 and vertices[FORWARD_STEP, below] == 0)
+        (backward_step <= 0 and vertices[BACKWARD_STEP, below] == 0)
+        or (forward_step <= 0 and vertices[FORWARD_STEP, below] == 0)
     ):
         below = links[PARENT, below]
         forward_step = -_above(vertices, FORWARD, below, forward, forward_low)

@@ -1,0 +1,443 @@
+"""The histories that are known in closed form, each by the controls that make it exact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import history, normal
+from mdr_core.errors import InputError
+from tests.core.comparison import INPUT, profile_from
+from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES, solve
+from tests.oracles import slip_reference as slip
+from tests.oracles.history_reference import overlap
+
+MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
+SHIFT = E_STAR / G_STAR
+BOUND = 1e-12
+SHAPES = ["paraboloid", "power0.7", "sphere", "rounded-punch", "truncated-cone", "cubic-table"]
+CHOSEN = [*SHAPES, "flat-punch"]
+everywhere = pytest.mark.parametrize("name", CHOSEN)
+shapes = pytest.mark.parametrize("name", SHAPES)
+both_ways = pytest.mark.parametrize("sign", [1, -1])
+#: F_N of most tests: nearly that at DEPTH, so that the breaks are inside.
+FORCES = {
+    name: float(normal.solve(profile_from(fields), E_STAR, indentation_depth=DEPTH).normal_force)
+    for name, fields in PROFILES.items()
+    if name in CHOSEN
+}
+
+
+def near(value: Any, absolute: float = 0.0, rel: float = BOUND) -> Any:
+    return pytest.approx(value, rel=rel, abs=absolute)
+
+
+class Virgin:
+    """The curve of first loading at one normal load, with its inverse and what both amplify."""
+
+    def __init__(self, name: str, control: str, load: float, mu: mpf | float = MU) -> None:
+        with mp.workdps(slip.WORK_DIGITS):
+            at = slip.setting(PROFILES[name], control, load, MATERIAL)
+            self.at = slip.Setting(
+                at.body, at.a, at.depth, at.n, at.e_star, at.g_star, mpf(mu), at.load_rate, at.load
+            )
+            self.depth, self.force = float(at.depth), float(at.n * at.e_star)
+            self.bound = float(at.n * at.e_star * mpf(mu))
+            self.most = float(self.at.shift * at.depth)
+
+    def _ask(self, control: str, given: float) -> tuple[float, float, float]:
+        """The other quantity, its condition number with respect to the given one, and c."""
+        other = {
+            "tangential_force": "tangential_displacement",
+            "tangential_displacement": "tangential_force",
+        }[control]
+        with mp.workdps(slip.WORK_DIGITS):
+            if self.at.flat_punch:
+                stiffness = 2 * self.at.g_star * self.at.a
+                factor = stiffness if other == "tangential_force" else 1 / stiffness
+                return float(mpf(given) * factor), 1.0, float(self.at.a)
+            found = slip.solve(self.at, control, given, energy=False)
+            rate = float(found.condition[other] + found.condition_load[other])
+            return float(found.values[other]), rate, float(found.c)
+
+    def displacement(self, force: float) -> float:
+        return self._ask("tangential_force", force)[0]
+
+    def load(self, displacement: float) -> float:
+        return self._ask("tangential_displacement", displacement)[0]
+
+    def allowed(self, force: float) -> float:
+        """Relative error of u that a rounding of the given forces makes."""
+        return BOUND + INPUT * self._ask("tangential_force", force)[1]
+
+    def radius(self, force: float) -> float:
+        return self._ask("tangential_force", force)[2]
+
+
+@everywhere
+@both_ways
+@pytest.mark.parametrize("rho", [1e-6, 0.9])
+def test_raised_normal_force_leaves_the_displacement(name: str, sign: int, rho: float) -> None:
+    """Then dF_x <= mu dF_N is borne by an annulus of the new contact, beyond it by the virgin."""
+    before, after = FORCES[name] / 2, FORCES[name]
+    first = sign * rho * MU * before
+    steps = [0.6, 0.999]
+    extra = [sign * part * MU * (after - before) for part in steps]
+    # Half way from where the virgin curve begins to where all slides.
+    beyond = sign * (abs(first) + MU * (after - before) + MU * after) / 2
+    found = solve(
+        name,
+        normal_force=[before, before, after, after, after, after],
+        tangential_force=[0.0, first, first, *(first + step for step in extra), beyond],
+    )
+    low, high = Virgin(name, "normal_force", before), Virgin(name, "normal_force", after)
+    u = found.tangential_displacement
+    start = low.displacement(first)
+    assert u[1] == near(start, rel=low.allowed(first))
+    assert u[2] == near(u[1])
+    assert found.dissipation[2] == 0
+    assert found.regime[2] == "stick"
+    for index, step in enumerate(extra):
+        move = high.displacement(step)
+        # The step of the force is a difference of two given ones.
+        rounding = 4 * 2.0**-52 * abs(first / step)
+        assert u[3 + index] == near(start + move, abs(move) * (high.allowed(step) + rounding))
+    assert u[5] == near(high.displacement(beyond), rel=high.allowed(beyond))
+
+
+@everywhere
+@both_ways
+def test_lowered_normal_force_ends_on_the_curve_of_the_lower(name: str, sign: int) -> None:
+    before, after = FORCES[name], FORCES[name] / 2
+    force = sign * 0.8 * MU * after
+    found = solve(name, normal_force=[before, before, after], tangential_force=[0.0, force, force])
+    low = Virgin(name, "normal_force", after)
+    assert found.tangential_displacement[2] == near(low.displacement(force), rel=low.allowed(force))
+    depth = Virgin(name, "normal_force", after).depth
+    assert found.indentation_depth[2] == near(depth)
+    on = solve(name, normal_force=[after, after], tangential_force=[0.0, force])
+    assert found.state.depth == near(on.state.depth, rel=1e-11)
+    assert found.state.load == near(on.state.load, rel=1e-11)
+
+
+@everywhere
+@both_ways
+@pytest.mark.parametrize("share", [0.3, 0.99])
+def test_oblique_loading_sticks(name: str, sign: int, share: float) -> None:
+    """Eq. (5.71), and then Cattaneo and Mindlin with what of mu is left."""
+    force, slope = FORCES[name], share * MU
+    first = sign * slope * force
+    step = 0.3 * MU * (1 - share) * force
+    ahead = solve(
+        name, normal_force=force, tangential_force=[first, first + sign * step], samples_per_step=5
+    )
+    back = solve(name, normal_force=force, tangential_force=[first, first - sign * step])
+    given = ahead.normal_force[:5]
+    assert given == near(np.linspace(0.2, 1.0, 5) * force)
+    u = sign * slope * SHIFT * ahead.indentation_depth[:5]
+    assert ahead.tangential_displacement[:5] == near(u)
+    assert list(ahead.regime[:5]) == ["stick"] * 5
+    assert not ahead.dissipated_energy[:5].any()
+    exact = mpf(first) / mpf(force) * sign
+    for found, direction in ((ahead, 1), (back, -1)):
+        left = Virgin(name, "normal_force", force, MU - direction * exact)
+        move = left.displacement(step)
+        # The slope is known to the rounding of the given force.
+        rounding = (left.allowed(step) + 8 * 2.0**-52 * abs(first) / step) * abs(move)
+        expected = u[-1] + sign * direction * move
+        assert found.tangential_displacement[-1] == near(expected, rounding + 2e-15 * abs(u[-1]))
+
+
+@everywhere
+@both_ways
+def test_oblique_loading_on_the_edge_of_the_cone(name: str, sign: int) -> None:
+    """At tan(alpha) = mu every spring is at its limit, and none slips."""
+    force = FORCES[name]
+    found = solve(name, normal_force=[force], tangential_force=[sign * MU * force])
+    assert found.tangential_displacement[0] == near(sign * MU * SHIFT * found.indentation_depth[0])
+    assert found.tangential_force[0] == near(sign * MU * force)
+    assert float(found.dissipated_energy[0]) == near(0.0, 1e-14 * MU * force * DEPTH)
+
+
+@everywhere
+@both_ways
+@pytest.mark.parametrize("part", [1 / 3, 1 / 4, 0.7])
+def test_the_edge_of_the_cone_after_a_preload(name: str, sign: int, part: float) -> None:
+    """The springs that touch are at their limit from the start; the slip of a rounding is none."""
+    for ulps in range(-4, 5):
+        found = solve(
+            name,
+            indentation_depth=[part * DEPTH, DEPTH],
+            tangential_displacement=[0.0, sign * (1 - part) * MOST * (1 + ulps * 2.0**-52)],
+            samples_per_step=4,
+        )
+        bound = 64 * 2.0**-52 * MU * float(found.normal_force[-1]) * MOST
+        assert np.all(found.dissipated_energy <= bound), ulps
+        gained = found.normal_force[-1] - found.normal_force[3]
+        assert found.tangential_force[-1] == near(sign * MU * gained)
+
+
+@everywhere
+@both_ways
+def test_oblique_displacement_slides_from_the_first_touch(name: str, sign: int) -> None:
+    """Steeper than the cone: tan of the displacement above mu E*/G*."""
+    u = sign * 1.7 * MOST
+    found = solve(name, indentation_depth=[DEPTH], tangential_displacement=[u], samples_per_step=4)
+    assert found.tangential_force == near(sign * MU * found.normal_force)
+    assert list(found.regime) == ["full_slip"] * 4
+    curve = Virgin(name, "indentation_depth", DEPTH)
+    with mp.workdps(50):
+        at = curve.at
+        # Each spring slips by (u - shift d) of the way that its load grows along.
+        squares = at.depth**2 * at.a if at.flat_punch else _squares(at)
+        excess = (abs(mpf(u)) / at.depth - at.shift) * at.mu * at.e_star
+        # A table's energies are sums over its knots.
+        bound = 1e-11 if "table" in name else BOUND
+        assert float(found.dissipated_energy[-1]) == near(float(excess * squares), rel=bound)
+
+
+def _squares(at: slip.Setting) -> mpf:
+    """int_0^a (d - g)^2 dx."""
+    edge = at.body.b if at.body.blunt else mpf(0)
+    return at.depth * at.n / 2 - overlap(at, edge)
+
+
+@everywhere
+@both_ways
+def test_slope_after_a_preload(name: str, sign: int) -> None:
+    before, after = FORCES[name] / 3, FORCES[name]
+    low, high = Virgin(name, "normal_force", before), Virgin(name, "normal_force", after)
+    gentle = sign * 0.7 * MU * (after - before)
+    found = solve(name, normal_force=[before, after], tangential_force=[0.0, gentle])
+    expected = SHIFT * 0.7 * MU * sign * (high.depth - low.depth)
+    if name == "flat-punch":
+        expected = sign * abs(gentle) / (2 * G_STAR * PROFILES[name]["radius"])
+    assert found.tangential_displacement[1] == near(expected)
+    assert found.dissipated_energy[1] == 0
+    assert found.regime[1] == "stick"
+    steep = sign * 1.2 * MU * (after - before)
+    found = solve(name, normal_force=[before, after], tangential_force=[0.0, steep])
+    assert found.tangential_displacement[1] == near(
+        high.displacement(steep), rel=high.allowed(steep)
+    )
+
+
+@everywhere
+@both_ways
+@pytest.mark.parametrize("rho", [1e-3, 0.97])
+def test_unloading_and_reloading(name: str, sign: int, rho: float) -> None:
+    """Masing: each branch is the first curve twice as large, from where it turned."""
+    force = FORCES[name]
+    top = rho * MU * force
+    points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
+    found = solve(name, normal_force=force, tangential_force=[sign * f for f in points])
+    curve = Virgin(name, "normal_force", force)
+    u = sign * found.tangential_displacement
+    high = curve.displacement(top)
+    size = high * curve.allowed(top) * 3
+    assert u[1] == near(high, size)
+    for index in (2, 3, 4):
+        expected = high - 2 * curve.displacement((top - points[index]) / 2)
+        assert u[index] == near(expected, size)
+    assert u[4] == near(-high, size)
+    assert u[5] == near(-high + 2 * curve.displacement(0.4 * top), size)
+    assert u[6] == near(high, size)
+    if name != "flat-punch":
+        # What is left at no force.
+        assert u[3] > 0
+
+
+@everywhere
+@both_ways
+@pytest.mark.parametrize("rho", [1e-3, 0.97])
+def test_unloading_and_reloading_by_displacement(name: str, sign: int, rho: float) -> None:
+    curve = Virgin(name, "indentation_depth", DEPTH)
+    top = rho * curve.most
+    points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
+    found = solve(name, indentation_depth=DEPTH, tangential_displacement=[sign * u for u in points])
+    force = sign * found.tangential_force
+    high = curve.load(top)
+    expected = [
+        0.0,
+        high,
+        *(high - 2 * curve.load((top - u) / 2) for u in points[2:4]),
+        -high,
+        -high + 2 * curve.load(0.4 * top),
+        high,
+    ]
+    assert force == near(expected, 1e-12 * high)
+
+
+@shapes
+def test_slip_fronts_are_where_the_branches_meet(name: str) -> None:
+    force = FORCES[name]
+    top, back = 0.9 * MU * force, 0.5 * MU * force
+    curve = Virgin(name, "normal_force", force)
+    c, c2 = curve.radius(top), curve.radius((top - back) / 2)
+    path: dict[str, Any] = {"normal_force": force}
+    start = solve(name, **path, tangential_force=[0.0])
+    assert start.slip_fronts.shape == (0,)
+    loaded = solve(name, **path, tangential_force=[0.0, top])
+    assert loaded.slip_fronts == near([c], rel=1e-11)
+    turned = solve(name, **path, tangential_force=[0.0, top, back])
+    assert turned.slip_fronts == near([c, c2], rel=1e-11)
+    back_again = solve(name, **path, tangential_force=[0.0, top, back, top])
+    assert back_again.slip_fronts == near([c], rel=1e-11)
+    reversed_ = solve(name, **path, tangential_force=[0.0, top, -top])
+    assert reversed_.slip_fronts == near([c], rel=1e-11)
+
+
+@everywhere
+def test_an_inner_loop_leaves_no_trace(name: str) -> None:
+    force = FORCES[name]
+    outer = [0.0, 0.8, -0.3]
+    inner = [0.5, 0.1, 0.4, 0.0, 0.5]
+    rest = [0.6, -0.5, 0.2]
+    scale = MU * force
+    short, long = (
+        solve(name, normal_force=force, tangential_force=[f * scale for f in points])
+        for points in ([*outer, 0.5, *rest], [*outer, *inner, *rest])
+    )
+    kept = len(rest) + 1
+    for column in ("tangential_displacement", "tangential_energy"):
+        values = [getattr(found, column)[-kept:] for found in (short, long)]
+        assert values[1] == near(values[0], 1e-13 * np.max(np.abs(values[0]))), column
+    losses = [found.dissipation[-len(rest) :] for found in (short, long)]
+    assert losses[1] == near(losses[0], rel=1e-11)
+    assert long.state.depth.shape == short.state.depth.shape
+    assert long.state.depth == near(short.state.depth)
+    assert long.state.load == near(short.state.load, 1e-13 * np.max(np.abs(short.state.load)))
+
+
+@everywhere
+@both_ways
+def test_contact_lost_and_found_again(name: str, sign: int) -> None:
+    """It touches at the displacement of that moment: here after a fifth of the leg."""
+    u = sign * 0.4 * MOST
+    found = solve(
+        name,
+        indentation_depth=[DEPTH, -DEPTH / 4, DEPTH],
+        tangential_displacement=[u, 2 * u, -u],
+        samples_per_step=20,
+    )
+    gone = found.indentation_depth <= 0
+    assert list(found.regime[gone]) == ["no_contact"] * np.count_nonzero(gone)
+    for column in ("normal_force", "tangential_force", "tangential_energy", "contact_radius"):
+        if column != "contact_radius" or name in SHAPES[:3]:
+            assert not getattr(found, column)[gone].any(), column
+    # From 2 u at the touch, -3 u in all: a fifth of it before the touch.
+    fresh = solve(name, indentation_depth=[DEPTH], tangential_displacement=[0.8 * -3 * u])
+    assert found.tangential_force[-1] == near(fresh.tangential_force[-1])
+    lost = found.dissipated_energy
+    assert lost[-1] - lost[gone][-1] == near(fresh.dissipated_energy[-1], 1e-13 * lost[-1])
+    assert not found.dissipation[gone][1:].any()
+
+
+@everywhere
+def test_force_returns_to_nothing_and_grows_again(name: str) -> None:
+    """The last touch is forgotten: oblique loading starts anew, from where it stands."""
+    force, slope = FORCES[name], 0.5 * MU
+    found = solve(
+        name,
+        normal_force=[force, 0.0, force],
+        tangential_force=[0.9 * MU * force, 0.0, slope * force],
+    )
+    assert found.regime[1] == "no_contact"
+    move = found.tangential_displacement[2] - found.tangential_displacement[1]
+    assert move == near(slope * SHIFT * found.indentation_depth[2], rel=1e-11)
+    assert found.dissipation[2] == near(0.0, 1e-14 * MU * force * DEPTH)
+
+
+@both_ways
+def test_flat_punch_sticks_and_then_slides_at_once(sign: int) -> None:
+    radius = PROFILES["flat-punch"]["radius"]
+    stiffness, bound = 2 * G_STAR * radius, MU * 2 * E_STAR * radius * DEPTH
+    most = bound / stiffness
+    points = np.array([0.0, 0.9, 1.5, 1.0, -0.4, -0.9, -2.0])
+    found = solve(
+        "flat-punch",
+        indentation_depth=DEPTH,
+        tangential_displacement=sign * most * points,
+    )
+    # It slides from 1 to 1.5, sticks down to -0.5, and slides on.
+    expected = np.array([0.0, 0.9, 1.0, 0.5, -0.9, -1.0, -1.0])
+    assert found.tangential_force == near(sign * bound * expected)
+    lost = np.array([0.0, 0.0, 0.5, 0.5, 0.5, 0.9, 2.0]) * most * bound
+    assert found.dissipated_energy == near(lost)
+    regimes = ["stick", "stick", "full_slip", "stick", "stick", "full_slip", "full_slip"]
+    assert list(found.regime) == regimes
+    assert found.slip_fronts.shape == (0,)
+
+
+@shapes
+@both_ways
+def test_sliding_far_keeps_the_force(name: str, sign: int) -> None:
+    """A long way is no depth: neither the friction nor what it leaves may lose digits to it."""
+    far = sign * 2.0**40 * MOST
+    found = solve(
+        name, indentation_depth=[DEPTH, DEPTH, DEPTH / 2], tangential_displacement=[0.0, far, far]
+    )
+    assert found.tangential_force[1] == near(sign * MU * found.normal_force[1])
+    assert found.tangential_force[2] == near(sign * MU * found.normal_force[2])
+    assert found.indentation_depth.tolist() == [DEPTH, DEPTH, DEPTH / 2]
+    assert found.state.depth[-1] == near(DEPTH / 2)
+
+
+@shapes
+def test_cycles_leave_their_loop_in_force(name: str) -> None:
+    force = FORCES[name]
+    found = history.cycles(
+        profile_from(PROFILES[name]),
+        E_STAR,
+        G_STAR,
+        MU,
+        normal_force=force,
+        tangential_force=0.6 * MU * force,
+        count=3,
+        samples_per_step=2,
+    )
+    assert found.history.tangential_force.shape == (2 * (2 + 2 * 3),)
+    assert found.energy_per_cycle == near([found.energy_per_cycle[0]] * 3)
+    total = np.sum(found.history.dissipation)
+    assert found.history.dissipated_energy[-1] == near(float(total))
+
+
+def test_forces_beyond_friction_are_refused_by_their_point() -> None:
+    options = {"normal_force": [1.0, 2.0, 0.5], "tangential_force": [0.1, 0.3, 0.5 * MU * 1.001]}
+    with pytest.raises(InputError) as caught:
+        solve("paraboloid", **options)
+    assert caught.value.path == ("history", "tangential", "tangential_force", 2)
+    # Both points are within friction, the way between them is not: N falls faster than F_N bears.
+    with pytest.raises(InputError) as caught:
+        solve("paraboloid", indentation_depth=[0.2, -0.2], tangential_force=[0.0, 0.01])
+    assert caught.value.path[:3] == ("history", "tangential", "tangential_force")
+    with pytest.raises(InputError) as caught:
+        solve("paraboloid", normal_force=[1.0, -1.0], tangential_force=[0.0, 0.0])
+    assert caught.value.path[:1] == ("history",)
+    assert caught.value.path[-1] == 1
+
+
+@pytest.mark.parametrize(
+    "controls",
+    [
+        {"indentation_depth": [0.1]},
+        {"tangential_force": [0.1]},
+        {"indentation_depth": [0.1], "normal_force": [0.1], "tangential_force": [0.0]},
+        {
+            "indentation_depth": [0.1],
+            "tangential_displacement": [0.1],
+            "tangential_force": [0.0],
+        },
+        {"indentation_depth": [0.1, 0.2], "tangential_displacement": [0.1, 0.2, 0.3]},
+        {"indentation_depth": [np.nan], "tangential_displacement": [0.1]},
+        {"indentation_depth": [0.1], "tangential_displacement": [np.inf]},
+        {"indentation_depth": [], "tangential_displacement": []},
+        {"indentation_depth": [0.1], "tangential_displacement": [0.0], "samples_per_step": 0},
+    ],
+)
+def test_what_is_no_path_is_refused(controls: dict[str, Any]) -> None:
+    with pytest.raises(InputError):
+        solve("paraboloid", **controls)

@@ -1,0 +1,269 @@
+"""Laws of every history, on profiles and paths drawn at random (the same every time)."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.polynomial.legendre import Legendre
+
+from mdr_core import history, normal
+from tests.core.comparison import profile_from
+from tests.core.test_history_paths import PROFILES
+from tests.core.test_laws import E_STAR, at_radius, rescaled, scenes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Scene = tuple[dict[str, Any], float]
+
+G_STAR = 2.9
+MU = 0.37
+SHIFT = MU * E_STAR / G_STAR
+#: Lobatto's rule: with the ends of a panel among its nodes, no kink hides between two panels.
+NODES = np.concatenate([[-1.0], Legendre.basis(6).deriv().roots(), [1.0]])
+WEIGHTS = 2 / (42 * Legendre.basis(6)(NODES) ** 2)
+LAST = np.stack([Legendre.basis(n)(NODES) * WEIGHTS for n in (4, 5)], axis=1)
+
+repeatable = settings(derandomize=True, deadline=None, max_examples=50)
+few = settings(derandomize=True, deadline=None, max_examples=8)
+
+#: Parts of the largest depth, gaps among them, and of the displacement that slides all of it. In
+#: steps, so that depths and displacements are often the same again.
+push = st.integers(-26, 26).map(lambda n: n / 20)
+point = st.tuples(st.integers(-5, 32).map(lambda n: n / 32), push)
+contact = st.tuples(st.integers(2, 32).map(lambda n: n / 32), push)
+paths = st.lists(point, min_size=1, max_size=9)
+loops = st.lists(contact, min_size=2, max_size=6)
+
+
+def near(value: Any, absolute: float = 0.0, rel: float = 1e-12) -> Any:
+    return pytest.approx(value, rel=rel, abs=absolute)
+
+
+def controls(scene: Scene, path: list[tuple[float, float]]) -> tuple[Array, Array, float]:
+    """Depths, displacements, and the depth that both are parts of."""
+    depth = float(at_radius(*scene).indentation_depth)
+    d, u = np.array(path).T
+    return d * depth, u * SHIFT * depth, depth
+
+
+def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.History:
+    return history.solve(
+        profile_from(scene[0]),
+        E_STAR,
+        G_STAR,
+        MU,
+        indentation_depth=d,
+        tangential_displacement=u,
+        **options,
+    )
+
+
+@repeatable
+@given(scenes(), paths)
+def test_friction_bounds_the_force_and_names_the_regime(
+    scene: Scene, path: list[tuple[float, float]]
+) -> None:
+    d, u, _ = controls(scene, path)
+    found = solve(scene, d, u, samples_per_step=5)
+    limit = MU * found.normal_force
+    size = np.max(limit, initial=0.0)
+    assert np.all(np.abs(found.tangential_force) <= limit + 1e-13 * size)
+    sliding = found.regime == "full_slip"
+    assert np.abs(found.tangential_force[sliding]) == near(limit[sliding], 1e-13 * size)
+    assert np.array_equal(found.regime == "no_contact", found.indentation_depth <= 0)
+    for name in ("normal_force", "tangential_force", "tangential_energy", "elastic_energy"):
+        assert not getattr(found, name)[found.regime == "no_contact"].any(), name
+
+
+@repeatable
+@given(scenes(), paths)
+def test_the_normal_problem_knows_nothing_of_the_other(
+    scene: Scene, path: list[tuple[float, float]]
+) -> None:
+    d, u, _ = controls(scene, path)
+    found = solve(scene, d, u)
+    alone = normal.solve(profile_from(scene[0]), E_STAR, indentation_depth=np.maximum(d, 0.0))
+    touching = d > 0
+    for name in ("normal_force", "contact_radius", "elastic_energy"):
+        assert getattr(found, name)[touching] == near(getattr(alone, name)[touching]), name
+
+
+@repeatable
+@given(scenes(), paths)
+def test_nothing_is_won_from_friction(scene: Scene, path: list[tuple[float, float]]) -> None:
+    found = solve(scene, *controls(scene, path)[:2], samples_per_step=5)
+    assert np.all(found.dissipation >= 0)
+    assert np.all(np.diff(found.dissipated_energy) >= 0)
+    assert np.all(found.tangential_energy >= 0)
+    total = found.dissipated_energy[-1]
+    assert np.cumsum(found.dissipation) == near(found.dissipated_energy, 1e-14 * total)
+
+
+@repeatable
+@given(scenes(), loops)
+def test_a_loop_closes_the_second_time_and_costs_work(
+    scene: Scene, loop: list[tuple[float, float]]
+) -> None:
+    """Each spring's leg is a clip, and a clip of a clip is one: what the first round made stays."""
+    d, u, depth = controls(scene, loop * 3)
+    found = solve(scene, d, u)
+    count = len(loop)
+    size = MU * np.max(found.normal_force)
+    force, stored = found.tangential_force, found.tangential_energy
+    assert force[count : 2 * count] == near(force[2 * count :], 1e-12 * size)
+    energy = size * SHIFT * depth
+    assert stored[count : 2 * count] == near(stored[2 * count :], 1e-12 * energy)
+    lost = found.dissipation
+    assert lost[count : 2 * count] == near(lost[2 * count :], 1e-12 * energy)
+    # All of the work is lost, for what is stored is the same again.
+    assert np.sum(lost[count : 2 * count]) >= 0
+
+
+def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.History]:
+    """int F_x du to each point, by Lobatto's rule on panels that close in on kinks of F_x.
+
+    More points on a straight leg change nothing, so that the rule's nodes are points of the path.
+    """
+    panels = [np.linspace(leg, leg + 1, 65) for leg in range(len(d))]
+    edges = np.unique(np.concatenate(panels))
+    knots = np.arange(len(d) + 1)
+    all_d, all_u = np.append(0.0, d), np.append(0.0, u)
+    for last in (False, False, True):
+        low, width = edges[:-1], np.diff(edges)
+        at = (low[:, None] + width[:, None] * (NODES + 1) / 2).ravel()
+        times = np.unique(np.concatenate([at, knots[1:]]))
+        found = solve(scene, np.interp(times, knots, all_d), np.interp(times, knots, all_u))
+        force = found.tangential_force[np.searchsorted(times, at)].reshape(-1, NODES.size)
+        leg = np.minimum(low.astype(int), len(d) - 1)
+        part = force @ WEIGHTS / 2 * width * (all_u[leg + 1] - all_u[leg])
+        if last:
+            total = np.append(0.0, np.cumsum(part))
+            return total[np.searchsorted(edges, knots[1:])], found
+        # A smooth function leaves its last coefficients small; a kink does not, or only one.
+        rough = np.sum(np.abs(force @ LAST), axis=1) * width
+        chosen = np.flatnonzero(rough > 1e-13 * np.max(np.abs(force)))
+        inner = low[chosen, None] + width[chosen, None] * np.arange(1, 64) / 64
+        edges = np.unique(np.concatenate([edges, inner.ravel()]))
+    raise AssertionError
+
+
+@few
+@given(scenes(), st.lists(point, min_size=2, max_size=4))
+def test_work_is_stored_or_lost(scene: Scene, path: list[tuple[float, float]]) -> None:
+    d, u, _ = controls(scene, path)
+    done, _ = work(scene, d, u)
+    found = solve(scene, d, u)
+    balance = found.tangential_energy + found.dissipated_energy
+    assert balance == near(done, 1e-10 * np.max(np.abs(balance)), rel=0)
+
+
+@repeatable
+@given(scenes(), paths, st.integers(2, 9))
+def test_samples_change_nothing_at_the_points(
+    scene: Scene, path: list[tuple[float, float]], count: int
+) -> None:
+    d, u, depth = controls(scene, path)
+    one, many = (solve(scene, d, u, samples_per_step=number) for number in (1, count))
+    assert many.step.tolist() == np.repeat(np.arange(len(d)), count).tolist()
+    size = MU * np.max(one.normal_force, initial=0.0)
+    for name, scale in (
+        ("tangential_force", size),
+        ("tangential_energy", size * SHIFT * depth),
+        ("dissipated_energy", size * SHIFT * depth),
+    ):
+        sampled = getattr(many, name)[count - 1 :: count]
+        assert sampled == near(getattr(one, name), 1e-13 * scale), name
+    if d[-1] <= 0:
+        assert many.state.depth.size == one.state.depth.size == 0
+        return
+    # Rounding may leave a corner that turns by nothing.
+    for first, second in ((one.state, many.state), (many.state, one.state)):
+        load = np.interp(first.depth, second.depth, second.load)
+        assert load == near(first.load, 1e-13 * MU * E_STAR * depth)
+
+
+@repeatable
+@given(scenes(), paths)
+def test_states_follow_each_other_and_stay(scene: Scene, path: list[tuple[float, float]]) -> None:
+    d, u, depth = controls(scene, path)
+    states = [history.unloaded(profile_from(scene[0]), E_STAR, G_STAR, MU)]
+    kept = []
+    for end in zip(d.tolist(), u.tolist(), strict=True):
+        states.append(history.advance(states[-1], *end))
+        kept.append((states[-1].depth.copy(), states[-1].load.copy()))
+    whole = solve(scene, d, u).state
+    assert states[-1].depth == near(whole.depth, 1e-14 * depth)
+    assert states[-1].load == near(whole.load, 1e-13 * MU * E_STAR * depth)
+    # Another way from an old state leaves the states that came of it alone.
+    for state in states:
+        history.advance(state, 0.7 * depth, 0.3 * SHIFT * depth)
+    for state, (old_depth, old_load) in zip(states[1:], kept, strict=True):
+        assert np.array_equal(state.depth, old_depth)
+        assert np.array_equal(state.load, old_load)
+
+
+def test_a_state_cannot_be_changed() -> None:
+    state = history.unloaded(profile_from(PROFILES["sphere"]), E_STAR, G_STAR, MU)
+    assert state.indentation_depth == state.tangential_displacement == 0
+    state = history.advance(history.advance(state, 0.2, 0.0), 0.2, 0.05)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        state.indentation_depth = 0.3
+    for name in ("depth", "load"):
+        kept, array = getattr(state, name).copy(), getattr(state, name)
+        with contextlib.suppress(ValueError):
+            array[:] = 1.0
+        # Either the array cannot be written to, or it is the caller's own.
+        assert np.array_equal(getattr(state, name), kept)
+
+
+@repeatable
+@given(scenes(), paths, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
+def test_a_change_of_units_rescales_the_answers(
+    scene: Scene, path: list[tuple[float, float]], length_power: float, modulus_power: float
+) -> None:
+    fields, radius = scene
+    unit, modulus = 10.0**length_power, 10.0**modulus_power
+    d, u, depth = controls(scene, path)
+    old = solve(scene, d, u)
+    new = history.solve(
+        profile_from(rescaled(fields, unit)),
+        E_STAR * modulus,
+        G_STAR * modulus,
+        MU,
+        indentation_depth=d * unit,
+        tangential_displacement=u * unit,
+    )
+    force = modulus * unit**2
+    size = MU * np.max(old.normal_force, initial=0.0)
+    for name, factor, scale in (
+        ("contact_radius", unit, radius),
+        ("normal_force", force, size),
+        ("tangential_force", force, size),
+        ("tangential_energy", force * unit, size * SHIFT * depth),
+        ("dissipated_energy", force * unit, size * SHIFT * depth),
+    ):
+        expected = getattr(old, name) * factor
+        # A power's coefficient is rounded, and that counts by its exponent.
+        assert getattr(new, name) == near(expected, 1e-12 * scale * factor, rel=1e-11), name
+    assert np.array_equal(new.step, old.step)
+
+
+@repeatable
+@given(scenes(), paths)
+def test_the_other_direction_is_the_mirror_image(
+    scene: Scene, path: list[tuple[float, float]]
+) -> None:
+    d, u, _ = controls(scene, path)
+    right, left = solve(scene, d, u), solve(scene, d, -u)
+    assert np.array_equal(left.tangential_force, -right.tangential_force)
+    assert np.array_equal(left.state.load, -right.state.load)
+    for name in ("normal_force", "dissipated_energy", "tangential_energy"):
+        assert np.array_equal(getattr(left, name), getattr(right, name)), name
