@@ -54,16 +54,18 @@ class State:
         """Some spring is in contact."""
         return len(self.chain.forward) > 1
 
-    @property
+    @cached_property
     def depth(self) -> Array:
         """Depths w of the breakpoints, from 0 to d [length]; empty in a gap."""
-        return _kept(self._branches.depth if self.touches else np.zeros(0))
+        if not self.touches:
+            return _kept(np.zeros(0))
+        return _kept(np.append(self._branches.depth[:-1], self.indentation_depth))
 
     @cached_property
     def load(self) -> Array:
         """q_x of the springs at the breakpoints [force/length]; linear in w between them."""
         if not self.touches:
-            return np.zeros(0)
+            return _kept(np.zeros(0))
         above = np.cumsum((self._branches.tree.slope * self._branches.tree.span)[:0:-1])
         return _kept(self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0))
 
