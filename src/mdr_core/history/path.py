@@ -122,25 +122,35 @@ def steps(path: Path, profile: Profile, e_star: float, scale: float, pieces: int
     """
     divided = path.normal if path.normal_name == "indentation_depth" else path.normal / e_star
     curved = path.curved
-    counts = np.where(curved, pieces, 1)
-    last = np.cumsum(counts) - 1
-    normal, tangential = np.repeat(divided, counts), np.repeat(path.tangential, counts)
-    leg = np.repeat(path.step, counts)
     if curved.any():
-        inner = np.repeat(curved, counts)
-        leg[inner] = path.step[-1] + 1 + np.arange(int(inner.sum()))
-        shares = _shares(path, profile, divided, curved, pieces)
-        for values, samples in ((normal, divided), (tangential, path.tangential)):
-            start = np.append(0.0, samples[:-1])[curved]
-            ends = samples[curved]
-            between = start[:, None] + (ends - start)[:, None] * shares
-            between[:, -1] = ends
-            values[inner] = between.ravel()
+        normal, tangential, leg, last = _bent(path, profile, divided, curved, pieces)
+    else:
+        normal, tangential, leg = divided, path.tangential, path.step
+        last = np.arange(divided.size)
     level = _levels(path, profile, normal)
     shift = tangential / scale
     if path.by_force:
         shift = _carried(path, level, shift, leg, last)
-    return Steps(level, shift, leg.astype(np.intp), last)
+    return Steps(level, shift, leg, last)
+
+
+def _bent(
+    path: Path, profile: Profile, divided: Array, curved: Flags, pieces: int
+) -> tuple[Array, Array, Indices, Indices]:
+    """Normal and tangential quantity, leg and last step of a path with curved stretches."""
+    counts = np.where(curved, pieces, 1)
+    normal, tangential = np.repeat(divided, counts), np.repeat(path.tangential, counts)
+    inner = np.repeat(curved, counts)
+    leg = np.repeat(path.step, counts)
+    leg[inner] = path.step[-1] + 1 + np.arange(int(inner.sum()))
+    shares = _shares(path, profile, divided, curved, pieces)
+    for values, samples in ((normal, divided), (tangential, path.tangential)):
+        start = np.append(0.0, samples[:-1])[curved]
+        ends = samples[curved]
+        between = start[:, None] + (ends - start)[:, None] * shares
+        between[:, -1] = ends
+        values[inner] = between.ravel()
+    return normal, tangential, leg, np.cumsum(counts) - 1
 
 
 def _find(path: Path, profile: Profile, normal: Array) -> Array:

@@ -37,8 +37,6 @@ class History:
     path: Path
     start: State
     """The unloaded contact."""
-    contact: NormalContact
-    """Normal contact of every sample; gaps as zero load."""
     steps: Steps
     rtol: float
     coarser: "History | None" = None
@@ -47,6 +45,12 @@ class History:
     """How far the last halving of those steps moved the answers, relative."""
     chord: float = 0.0
     """How far it moved what is remembered, relative."""
+
+    @cached_property
+    def contact(self) -> NormalContact:
+        """Normal contact of every sample; gaps as zero load."""
+        loads = {self.path.normal_name: np.maximum(self.path.normal, 0.0)}
+        return normal.solve(self.start.profile, self.start.e_star, **loads, rtol=self.rtol)
 
     @property
     def step(self) -> Indices:
@@ -304,12 +308,12 @@ def solve(
         "tangential_force": tangential_force,
     }
     way = path.build(_one("normal", pressed), _one("tangential", pushed), samples_per_step)
-    contact = _contacts(start, way, rtol)
+    _require_reach(start, way)
     scale = friction_coefficient * e_star / (1.0 if way.by_force else g_star)
 
     def follow(pieces: int) -> History:
         walked = path.steps(way, profile, e_star, scale, pieces)
-        return History(way, start, contact, walked, rtol)
+        return History(way, start, walked, rtol)
 
     return _refine(way, follow, rtol) if way.curved.any() else follow(1)
 
@@ -321,17 +325,16 @@ def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]
     return named[0]
 
 
-def _contacts(start: State, way: Path, rtol: float) -> NormalContact:
-    """Normal contacts at all samples; a load past the profile's end names its point."""
-    name = way.normal_name
-    loads = {name: np.maximum(way.normal, 0.0)}
+def _require_reach(start: State, way: Path) -> None:
+    """Refuse a load past the profile's end: if the largest is not, none is."""
+    name, most = way.normal_name, int(way.normal.argmax())
     try:
-        return normal.solve(start.profile, start.e_star, **loads, rtol=rtol)
+        normal.solve(start.profile, start.e_star, **{name: max(float(way.normal[most]), 0.0)})
     except InputError as error:
         if error.path[:1] != ("load",):
             raise
-        at = () if len(error.path) < 3 else (int(way.step[int(error.path[2])]),)
-        raise InputError(("history", "normal", name, *at), error.detail) from None
+        at = ("history", "normal", name, int(way.step[most]))
+        raise InputError(at, error.detail) from None
 
 
 def _refine(way: Path, follow: Callable[[int], History], rtol: float) -> History:
