@@ -10,7 +10,7 @@ from mdr_core.typing import Array, Flags
 
 def extremes(values: float | ArrayLike) -> tuple[float, float]:
     """Smallest and largest value, NaN if any is NaN; (NaN, NaN) of nothing."""
-    if isinstance(values, int | float):
+    if isinstance(values, (int, float)):
         # One number needs no reduction; NumPy's own doubles are floats as well.
         return float(values), float(values)
     array = np.asarray(values, dtype=float)

@@ -50,7 +50,7 @@ class Cone(Profile):
         return np.asarray(np.sqrt(reduced_force / ((np.pi / 2) * self.slope)))
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        return self.g(coordinate) ** 2 * coordinate / 3
+        return np.square(self.g(coordinate)) * coordinate / 3
 
     def stick_from_force_ratio(
         self, coordinate: Array, ratio: Array, rest: Array
@@ -73,7 +73,9 @@ class Cone(Profile):
         return self.g(width + np.zeros_like(coordinate))
 
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        return np.square((np.pi / 2) * self.slope) * width**3 / 6 + np.zeros_like(coordinate)
+        return np.square((np.pi / 2) * self.slope) * np.square(width) * width / 6 + np.zeros_like(
+            coordinate
+        )
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """t [sqrt(r^2 - c^2) - c arccos(c/r)]. Source: notes, §4."""
@@ -137,7 +139,7 @@ class Paraboloid(Profile):
         return np.cbrt(cube, out=cube)
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        return self.g(coordinate) ** 2 * coordinate * (8 / 15)
+        return np.square(self.g(coordinate)) * coordinate * (8 / 15)
 
     def pressure_kernel(
         self,
@@ -198,4 +200,6 @@ class Paraboloid(Profile):
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2). Source: mdr-5, section 5.2; notes, §6."""
         a, c = coordinate, coordinate - width
-        return 2 / 15 * width**3 * (a * a + 3 * a * c + c * c) / np.square(self.radius)
+        return (
+            2 / 15 * np.square(width) * width * (a * a + 3 * a * c + c * c) / np.square(self.radius)
+        )
