@@ -19,6 +19,7 @@ from mdr_core.profiles import (
     Profile,
     RoundedPunch,
     Sphere,
+    SphericalTipCone,
     Tabulated,
     TruncatedCone,
 )
@@ -268,6 +269,24 @@ def test_steep_and_needle_like_powers() -> None:
         values(wear)
         assert (np.diff(wear.wear_radius) >= 0).all()
         assert (wear.worn_volume > 0).all()
+
+
+@pytest.mark.parametrize("slope", [1e-3, 1.0, 3.0])
+def test_a_rim_may_pass_the_sphere_that_a_tip_is_cut_from(slope: float) -> None:
+    """g' of the tip has a pole at the sphere's equator, which the cone begins before."""
+    profile = SphericalTipCone(slope, 1.0)
+    depth = float(profile.g(np.array([2.5]))[0])
+    sizes = 0.5 / 0.8 * depth * np.array([0.1, 0.5, 0.9])
+    wear = worn(profile, {"indentation_depth": depth}, {"tangential_displacement": sizes})
+    assert (wear.wear_radius > 2.5).all()
+    assert (np.diff(wear.wear_radius) > 0).all()
+    # A stick edge on the tangent radius itself, or a rounding beside it.
+    b = float(np.asarray(profile.tangent_radius))
+    for c in (b, np.nextafter(b, 0.0), np.nextafter(b, 9.0)):
+        size = 0.5 / 0.8 * (depth - float(profile.g(np.array([c]))[0]))
+        wear = worn(profile, {"indentation_depth": depth}, {"tangential_displacement": size})
+        assert float(wear.stick_radius) == pytest.approx(c, rel=1e-12)
+        assert float(wear.worn_volume) > 0
 
 
 def test_loads_broadcast_with_moduli() -> None:
