@@ -22,7 +22,7 @@ from mdr_core.foundation import (
 )
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Parameter
 
 # Up to this part of the contact an annulus is narrow; beyond, a difference keeps its digits.
 _NARROW: Final = 0.05
@@ -213,15 +213,33 @@ def _summed(weights: Array, values: Array) -> Array:
 
 def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
     """`slip_moment` by pieces that shrink towards the axis and end on every break."""
-    shape = np.broadcast_shapes(coordinate.shape, width.shape)
+    names: tuple[str, ...] = getattr(profile, "__match_args__", ())
+    named = {name: getattr(profile, name) for name in names}
+    swept = [value for value in named.values() if isinstance(value, np.ndarray) and value.ndim]
+    shape = np.broadcast_shapes(coordinate.shape, width.shape, *(part.shape for part in swept))
     high, width = np.broadcast_to(coordinate, shape), np.broadcast_to(width, shape)
-    breaks = profile.coordinate_breaks
+    if swept:
+        return _moment_of_scenes(type(profile), named, high, width)
     result = np.empty(high.size)
-    step = max(_MOMENT_BLOCK // ((breaks.size + 4 * _PIECES) * _MOMENT_POINTS), 1)
+    step = max(
+        _MOMENT_BLOCK // ((profile.coordinate_breaks.size + 4 * _PIECES) * _MOMENT_POINTS), 1
+    )
     for start in range(0, high.size, step):
         part = slice(start, start + step)
         result[part] = _moment_block(profile, high.ravel()[part], width.ravel()[part])
     return result.reshape(shape)
+
+
+def _moment_of_scenes(
+    kind: type[Profile], named: dict[str, Parameter], high: Array, width: Array
+) -> Array:
+    """The same where every scene has its own profile, and with it its own pieces."""
+    columns = {name: np.broadcast_to(value, high.shape) for name, value in named.items()}
+    result = np.empty(high.shape)
+    for index in np.ndindex(high.shape):
+        alone = kind(**{name: float(column[index]) for name, column in columns.items()})
+        result[index] = _moment(alone, high[index], width[index])
+    return result
 
 
 def _moment_block(profile: Profile, high: Array, width: Array) -> Array:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import normal, tangential
+from mdr_core import normal, profiles, tangential
 from mdr_core.errors import InputError
 from mdr_core.foundation import coordinate_from_force
 from mdr_core.profiles import (
@@ -238,3 +238,31 @@ def test_a_wrong_tangential_force_is_named_by_its_place_in_the_sweep(wrong: floa
     with pytest.raises(InputError) as refused:
         tangential.solve(contact, 0.9e11, 0.3, tangential_force=loads)
     assert refused.value.path == ("tangential", "tangential_force", BLOCK + 5)
+
+
+@pytest.mark.parametrize(
+    "sweep",
+    [
+        (profiles.Power, (np.array([1.0, 2.0, 0.5]), np.array([1.5, 2.0, 3.3]))),
+        (profiles.Sphere, (np.array([1.0, 2.0, 3.0]),)),
+        (profiles.RoundedPunch, (0.3, np.array([1.0, 2.0, 3.0]))),
+        (profiles.RoundedCone, (0.3, np.array([1.0, 2.0, 3.0]))),
+    ],
+    ids=lambda sweep: sweep[0].kind,
+)
+def test_the_loss_of_a_sweep_is_that_of_its_scenes(
+    sweep: tuple[type[profiles.Profile], tuple[Any, ...]],
+) -> None:
+    kind, parameters = sweep
+    e_star, force = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.05])
+
+    def lost(body: profiles.Profile, *numbers: Any) -> Any:
+        contact = normal.solve(body, numbers[0], normal_force=numbers[1])
+        sideways = tangential.solve(contact, 0.9, 0.3, tangential_force=0.1 * numbers[1])
+        return sideways.dissipated_energy
+
+    found = lost(kind(*parameters), e_star, force)
+    columns = np.broadcast_arrays(*parameters, e_star, force)
+    for i, numbers in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
+        own = kind(*numbers[: len(parameters)])
+        assert found[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14)
