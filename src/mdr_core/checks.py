@@ -7,6 +7,9 @@ from numpy.typing import ArrayLike
 
 from mdr_core.typing import Array, Flags
 
+# Doubles that stay in cache between two reductions.
+_AT_ONCE: Final = 65_536
+
 
 def extremes(values: float | ArrayLike) -> tuple[float, float]:
     """Smallest and largest value, NaN if any is NaN; (NaN, NaN) of nothing."""
@@ -18,7 +21,16 @@ def extremes(values: float | ArrayLike) -> tuple[float, float]:
         return float(array), float(array)
     if array.size == 0:
         return float("nan"), float("nan")
-    return float(array.min()), float(array.max())
+    if array.size <= _AT_ONCE or not array.flags.c_contiguous:
+        return float(array.min()), float(array.max())
+    # Of each part the second reduction finds what the first has fetched from the memory.
+    flat = array.ravel()
+    ends = [
+        (part.min(), part.max())
+        for part in (flat[i : i + _AT_ONCE] for i in range(0, flat.size, _AT_ONCE))
+    ]
+    lows, highs = zip(*ends, strict=True)
+    return float(np.min(lows)), float(np.max(highs))
 
 
 def least(values: Array) -> float:
