@@ -42,7 +42,9 @@ OUTPUTS = (
     "worn_volume",
 )
 FIELDS = ("worn_depth", "limiting_profile", "pressure")
+#: Inputs that differ in this digit have rims that differ by less than `CLOSE`.
 NUDGE_DIGITS = 30
+CLOSE = mpf(10) ** -18
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,12 @@ class Limit:
 def stick_edge(at: Setting, control: str, name: str, given: mpf) -> tuple[mpf, mpf]:
     """c and d - g(c) for what is held (`control`) and what oscillates (`name`)."""
     body = at.body
+    rest = {
+        "tangential_displacement": at.depth - given / at.shift,
+        "tangential_force": at.n - given / (at.mu * at.e_star),
+    }
+    if rest[name] <= 0:
+        raise ArithmeticError("no stick zone is left")
     if control == "indentation_depth" and name == "tangential_displacement":
         # Eq. (5.80): c is where it was.
         return stick_radius(at, name, given), given / at.shift
@@ -159,12 +167,19 @@ def _volume(at: Setting, c: mpf, step: mpf, r: mpf) -> mpf:
     return 4 * (step * (r**2 * angle - c * mp.sqrt((r - c) * (r + c))) / 2 - rises)
 
 
-def rim_width(at: Setting, c: mpf, step: mpf) -> mpf:
-    """Where the worn depth vanishes again, by a bracketed secant method in log(width)."""
+def rim_width(at: Setting, c: mpf, step: mpf, near: mpf | None = None) -> mpf:
+    """Where the worn depth vanishes again, by a bracketed secant method in log(width).
+
+    `near` is a width known to be within `CLOSE` of it.
+    """
 
     def worn(w: mpf) -> mpf:
         return _worn(at, c, step, c + mp.exp(w)) / step
 
+    if near is not None:
+        ends = mp.log(near) - CLOSE, mp.log(near) + CLOSE
+        if worn(ends[0]) > 0 > worn(ends[1]):
+            return mp.exp(_illinois(worn, *ends))
     low = high = mp.log(at.a - c) if at.a > c else mp.log(step)
     stride = mpf(1) / 4
     while worn(low) < 0:
@@ -208,11 +223,11 @@ def _illinois(fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
 
 
 def solve(profile: Mapping[str, Any], control: str, load: mpf, material: Material,
-          name: str, given: mpf) -> Limit:  # fmt: skip
+          name: str, given: mpf, near: mpf | None = None) -> Limit:  # fmt: skip
     with mp.workdps(WORK_DIGITS):
         at = setting(profile, control, load, material)
         c, step = stick_edge(at, control, name, mpf(given))
-        return Limit(at, c, step, rim_width(at, c, step))
+        return Limit(at, c, step, rim_width(at, c, step, near))
 
 
 def answers(limit: Limit) -> dict[str, mpf]:

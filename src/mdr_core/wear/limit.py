@@ -156,16 +156,8 @@ class LimitingWear:
     @cached_property
     def rim(self) -> Rim:
         """The worn rims of all loads, in one row."""
-        profile, c = self._normal.profile, np.ravel(self.stuck.radius)
-        flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
-        if profile.slips_at_once:
-            return Rim(profile, c, c - flat)
-        first, edge = profile.first_coordinate, np.ravel(self.stuck.coordinate)
-        # Of full slip the edge is meaningless.
-        sticks = (c >= flat) & (c > 0)
-        edge = np.where(sticks, edge, first)
-        above = profile.radius_width(edge, edge - first)
-        return Rim(profile, c, np.where(sticks, above, c - flat))
+        c, coordinate = np.ravel(self.stuck.radius), np.ravel(self.stuck.coordinate)
+        return Rim(self._normal.profile, c, coordinate)
 
     def initial_profile(self, radius: ArrayLike) -> Array:
         """Return the shape before any wear, f(r) [length], the same for all loads.

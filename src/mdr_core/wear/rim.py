@@ -5,7 +5,6 @@ than at the stick edge. Near incipient slip the rim is narrow, so its width is t
 every integral is taken over the width, never between two radii. Source: notes, §9.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -33,8 +32,8 @@ class Rim:
     profile: Profile
     stick: Array
     """c, the inner edge [length]."""
-    above: Array
-    """c less the radius of the profile's flat, or c itself where there is none, with its digits."""
+    coordinate: Array
+    """The same in the profile's contact coordinate; meaningless where c lies inside the flat."""
 
     @property
     def flat(self) -> float:
@@ -51,11 +50,27 @@ class Rim:
 
     def at(self, radius: Array) -> Array:
         """Width of the rim that ends at a radius >= c."""
-        return np.asarray((radius - self.flat) - self.above)
+        return np.asarray((radius - self.flat) - self.below(self.flat))
+
+    def below(self, radius: float) -> Array:
+        """c less a radius; less the flat's or a break's, with the digits of the coordinate."""
+        plain, profile = self.stick - radius, self.profile
+        if profile.slips_at_once or radius not in self._special:
+            return plain
+        start = profile.coordinate_from_radius(np.asarray(radius))
+        beyond = (self.stick >= radius) & (self.coordinate >= start)
+        edge = np.where(beyond, self.coordinate, start)
+        return np.where(beyond, profile.radius_width(edge, edge - start), plain)
+
+    @property
+    def _special(self) -> set[float]:
+        """Radii behind which a coordinate starts anew; the axis needs none."""
+        breaks = (float(np.asarray(b)) for b in self.profile.breaks)
+        return {self.flat, *breaks} - {0.0}
 
     def chosen(self, which: Indices) -> "Rim":
         """Some of the rims."""
-        return Rim(self.profile, self.stick[which], self.above[which])
+        return Rim(self.profile, self.stick[which], self.coordinate[which])
 
     def slip_kernel(self, width: Array, rtol: float = _RTOL) -> Array:
         """S(c; c + w) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
@@ -114,17 +129,12 @@ class Rim:
             return np.zeros_like(width)
         branches, result = self.profile.branches, np.empty_like(width)
         for start in range(0, width.size, _BLOCK):
-            part = slice(start, start + _BLOCK)
-            low = self.stick[part]
+            part = np.arange(start, min(start + _BLOCK, width.size))
+            some = self.chosen(part)
             result[part] = annulus_integral(
-                branches, low, width[part], self._below(part), kernel, rtol
+                branches, some.stick, width[part], some.below, kernel, rtol
             )
         return result
-
-    def _below(self, part: slice) -> Callable[[float], Array]:
-        """c - x, where c is nearest to the flat by the digits of its distance from it."""
-        flat = self.flat
-        return lambda x: self.above[part] if x == flat else self.stick[part] - x
 
 
 def _rate(x: Array, leg: Array) -> Array:
