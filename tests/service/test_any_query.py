@@ -1,12 +1,19 @@
 """Whatever the schema lets in is answered with numbers or refused with a reason."""
 
 from collections.abc import Callable
+from functools import partial
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mdr_service.problems import MEDIA_TYPE
-from mdr_service.schemas.answers import Known, NormalAnswer, StressAnswer, TangentialAnswer
+from mdr_service.schemas.answers import (
+    HistoryAnswer,
+    Known,
+    NormalAnswer,
+    StressAnswer,
+    TangentialAnswer,
+)
 from mdr_service.schemas.quantities import LARGEST, SMALLEST, SMALLEST_LOAD
 from tests.conftest import Client
 from tests.contract import strict_json
@@ -119,6 +126,71 @@ STRESSES = st.builds(
 )
 
 
+def one_or_many(values: st.SearchStrategy[float]) -> st.SearchStrategy[object]:
+    return values | st.lists(values, min_size=1, max_size=4)
+
+
+# Pushes that friction may carry, besides those of any size.
+SMALL = st.just(0.0) | st.floats(-1e-9, 1e-9) | SIGNED
+NORMAL_POINTS = {"normal_force": LOADS, "indentation_depth": SIGNED}
+TANGENTIAL_POINTS = {"tangential_force": SMALL, "tangential_displacement": SIGNED}
+STRAIGHT = [
+    ("normal_force", "tangential_force"),
+    ("indentation_depth", "tangential_displacement"),
+]
+CURVED = [
+    ("normal_force", "tangential_displacement"),
+    ("indentation_depth", "tangential_force"),
+]
+
+
+@st.composite
+def histories(draw: st.DrawFn, controls: list[tuple[str, str]]) -> dict[str, object]:
+    pressed, pushed = draw(st.sampled_from(controls))
+    return {
+        "normal": {pressed: draw(one_or_many(NORMAL_POINTS[pressed]))},
+        "tangential": {pushed: draw(one_or_many(TANGENTIAL_POINTS[pushed]))},
+        "samples_per_step": draw(st.integers(1, 3)),
+    }
+
+
+@st.composite
+def cycles(draw: st.DrawFn, controls: list[tuple[str, str]]) -> dict[str, object]:
+    pressed, pushed = draw(st.sampled_from(controls))
+    mean, share = draw(LOADS), draw(st.just(0.0) | st.floats(0.01, 1.0))
+    return {
+        "normal": {pressed: mean, "amplitude": mean * share},
+        "tangential": {pushed: draw(LENGTHS | st.floats(SMALLEST, 1e-9))},
+        "count": draw(st.integers(1, 3)),
+        "samples_per_step": draw(st.integers(1, 3)),
+    }
+
+
+FOLLOWED = {
+    "profile": PROFILES,
+    **{name: FRICTION[name] for name in ("material", "friction_coefficient")},
+}
+# Each step of such a way is many steps: profiles that need no search.
+FOLLOWED_SHORTLY = FOLLOWED | {"profile": simple(), "rtol": st.just(1e-3)}
+WAYS = st.fixed_dictionaries(FOLLOWED | {"history": histories(STRAIGHT)}) | (
+    st.fixed_dictionaries(FOLLOWED | {"cycles": cycles(STRAIGHT)})
+)
+CURVED_WAYS = st.fixed_dictionaries(FOLLOWED_SHORTLY | {"history": histories(CURVED)}) | (
+    st.fixed_dictionaries(FOLLOWED_SHORTLY | {"cycles": cycles(CURVED)})
+)
+ENDS = st.builds(
+    lambda query, places: query | places,
+    st.fixed_dictionaries(
+        FOLLOWED
+        | {
+            "history": histories(STRAIGHT),
+            "quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS),
+        }
+    ),
+    PLACES,
+)
+
+
 def check(client: Client, path: str, query: object, model: type[Known]) -> None:
     answer = client.post(path, query)
     document = strict_json.loads(answer.content)
@@ -133,9 +205,9 @@ def check(client: Client, path: str, query: object, model: type[Known]) -> None:
         assert all(error["pointer"] for error in document["errors"])
 
 
-def many(test: Callable[..., None]) -> Callable[..., None]:
+def many(test: Callable[..., None], examples: int = 400) -> Callable[..., None]:
     return settings(
-        max_examples=400,
+        max_examples=examples,
         deadline=None,
         derandomize=True,
         suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
@@ -157,4 +229,24 @@ def test_a_tangential_query_within_the_schema(client: Client, query: dict[str, o
 @many
 @given(query=STRESSES)
 def test_a_stress_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/stress", query, StressAnswer)
+
+
+@many
+@given(query=WAYS)
+def test_a_history_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/tangential/history", query, HistoryAnswer)
+
+
+@partial(many, examples=50)
+@given(query=CURVED_WAYS)
+def test_a_curved_history_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/tangential/history", query, HistoryAnswer)
+
+
+@many
+@given(query=ENDS)
+def test_a_stress_query_of_an_end_within_the_schema(
+    client: Client, query: dict[str, object]
+) -> None:
     check(client, "/v1/stress", query, StressAnswer)
