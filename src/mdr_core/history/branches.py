@@ -24,7 +24,10 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
 
-# Up to this part of its level a span is narrow, and steps over it are integrals.
+# Up to this part of its level a span is so short that a difference over it costs more than three
+# of sixteen digits: steps over it are integrals.
+_SHORT: Final = 2e-3
+# Of a lens, a second difference, as much is lost up to here.
 NARROW: Final = 0.05
 # Over so narrow a span all is smooth, away from breaks: this rule reaches rounding.
 _POINTS: Final = 10
@@ -99,7 +102,7 @@ class Branches:
     @cached_property
     def _narrow(self) -> Indices:
         """Vertices so near their parent that a difference would lose digits."""
-        return np.flatnonzero(self.tree.span < NARROW * self.tree.level)
+        return np.flatnonzero(self.tree.span < _SHORT * self.tree.level)
 
     @property
     def width(self) -> Array:

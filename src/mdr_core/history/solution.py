@@ -21,7 +21,7 @@ from mdr_core.typing import Array, Indices
 from mdr_core.validity import friction_notices
 
 # Steps walked at once: bounds the memory, and keeps what is computed of them in cache.
-_BLOCK: Final = 8_192
+_BLOCK: Final = 16_384
 # Pieces of a curved stretch, at first and at most, and how many steps they may be in all.
 _FEWEST: Final = 16
 _MOST: Final = 16_384

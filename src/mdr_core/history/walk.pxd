@@ -27,7 +27,7 @@ cdef Py_ssize_t _last_above(
     double[:, ::1] vertices, Py_ssize_t[:, ::1] links, Py_ssize_t at, double forward,
     double forward_low, double backward, double backward_low
 ) noexcept
-@cython.locals(new=Py_ssize_t, by_forward=bint)
+@cython.locals(new=Py_ssize_t, row=Py_ssize_t, by_forward=bint)
 cdef Py_ssize_t _corner(
     double[:, ::1] vertices, Py_ssize_t[:, ::1] links, Py_ssize_t[::1] counts,
     Py_ssize_t lower, Py_ssize_t upper, double forward, double forward_low, double backward,

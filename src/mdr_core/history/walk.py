@@ -101,8 +101,8 @@ def _step(
     rise = _above(vertices, FORWARD, at, forward, forward_low)
     fall = _above(vertices, BACKWARD, at, backward, backward_low)
     # How far the old load point exceeds the new one, negative where it lies below.
-    if rise <= 0 and fall <= 0:
-        if rise == 0 and fall == 0:
+    if (rise <= 0) & (fall <= 0):
+        if (rise == 0) & (fall == 0):
             return at
         # Straight on, from the load point itself: where one sum of the two shifts stands still
         # both grow by the same number.
@@ -156,9 +156,10 @@ def _last_above(
 ) -> int:
     """The vertex nearest to the axis that exceeds the load point in either sum; `at` does."""
     below = at
+    # Both are looked at, whatever the first says: on a random path no guess pays.
     while below >= 0 and (
-        _above(vertices, FORWARD, below, forward, forward_low) > 0
-        or _above(vertices, BACKWARD, below, backward, backward_low) > 0
+        (_above(vertices, FORWARD, below, forward, forward_low) > 0)
+        | (_above(vertices, BACKWARD, below, backward, backward_low) > 0)
     ):
         at = below
         below = links[PARENT, below]
@@ -184,20 +185,17 @@ def _corner(
     keep_forward = -_above(vertices, FORWARD, lower, forward, forward_low)
     keep_backward = -_above(vertices, BACKWARD, lower, backward, backward_low)
     # The cut nearer to the axis holds; shares of the piece are compared crosswise.
-    by_forward = over_forward > 0 and (
-        over_backward <= 0 or keep_forward * backward_step <= keep_backward * forward_step
+    by_forward = (over_forward > 0) & (
+        (over_backward <= 0) | (keep_forward * backward_step <= keep_backward * forward_step)
     )
-    if (keep_forward if by_forward else keep_backward) <= 0:
+    keep = keep_forward if by_forward else keep_backward
+    if keep <= 0:
         return lower
     new = _push(vertices, links, counts, lower, -1)
-    if by_forward:
-        _cut(vertices, new, lower, upper, FORWARD, keep_forward, over_forward)
-        vertices[FORWARD, new] = forward
-        vertices[FORWARD + 1, new] = forward_low
-    else:
-        _cut(vertices, new, lower, upper, BACKWARD, keep_backward, over_backward)
-        vertices[BACKWARD, new] = backward
-        vertices[BACKWARD + 1, new] = backward_low
+    row = FORWARD if by_forward else BACKWARD
+    _cut(vertices, new, lower, upper, row, keep, over_forward if by_forward else over_backward)
+    vertices[row, new] = forward if by_forward else backward
+    vertices[row + 1, new] = forward_low if by_forward else backward_low
     return new
 
 
