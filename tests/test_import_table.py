@@ -29,6 +29,7 @@ CONTACT = CORE | TRANSFORMS | {"mdr_core.materials", "mdr_core.profiles", "mdr_c
 # What the wire may name of the core: its public face, never the way it calculates.
 RESULTS = {"mdr_core.normal", "mdr_core.tangential", "mdr_core.history"}
 PUBLIC = RESULTS | {
+    "mdr_core.wear",
     "mdr_core.errors",
     "mdr_core.materials",
     "mdr_core.profiles",
@@ -37,6 +38,8 @@ PUBLIC = RESULTS | {
 }
 SCHEMAS = {"mdr_service.settings", "mdr_service.schemas"}
 WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
+
+SOLVED = {"mdr_service.convert", "mdr_service.worn", "mdr_service.solve"}
 
 # Each row imports only from rows above it.
 TABLE = (
@@ -82,10 +85,11 @@ TABLE = (
     Row("mdr_service.settings", set(), {"pydantic"}),
     Row("mdr_service.schemas", {"mdr_service.settings"}, {"pydantic", "pydantic_core"}),
     Row("mdr_service.convert", PUBLIC | SCHEMAS, {"numpy"}),
-    Row("mdr_service.solve", PUBLIC | SCHEMAS | {"mdr_service.convert"}, {"numpy"}),
+    Row("mdr_service.worn", PUBLIC | SCHEMAS | {"mdr_service.convert"}, {"numpy"}),
+    Row("mdr_service.solve", PUBLIC | SCHEMAS | SOLVED - {"mdr_service.solve"}, {"numpy"}),
     Row(
         "mdr_service.documents",
-        PUBLIC | SCHEMAS | {"mdr_service.convert", "mdr_service.solve"},
+        PUBLIC | SCHEMAS | SOLVED,
         {"numpy"},
     ),
     Row(
@@ -97,7 +101,7 @@ TABLE = (
     Row("mdr_service.table", set(), {"numpy", "starlette"}),
     Row(
         "mdr_service.pictures",
-        RESULTS | {"mdr_service.convert", "mdr_service.solve"},
+        RESULTS | SOLVED | {"mdr_core.wear"},
         {"matplotlib", "numpy", "starlette"},
     ),
     Row("mdr_service.forms", {"mdr_service.problems"}, WEB),
@@ -106,7 +110,8 @@ TABLE = (
     Row(
         "mdr_service.routes",
         WIRE
-        | {"mdr_service.convert", "mdr_service.solve", "mdr_service.documents"}
+        | SOLVED
+        | {"mdr_service.documents"}
         | {"mdr_service.table", "mdr_service.pictures", "mdr_service.forms"}
         | {"mdr_service.compute", "mdr_service.openapi"},
         WEB | {"numpy"},

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mdr_core import materials, profiles
 from mdr_core.errors import DefectError, InputError
+from mdr_core.wear import evolution
 from mdr_service.schemas.answers import Catalogue, ProfileField, ProfileKind
 from mdr_service.schemas.loads import Choice, Cycles, History
 from mdr_service.schemas.profiles import MODELS, Series, Tabulated
@@ -24,34 +25,48 @@ from mdr_service.schemas.queries import (
     StressQuery,
     TangentialQuery,
 )
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.settings import SETTINGS
 
 Array = NDArray[np.float64]
 _Arguments = Callable[[Any], dict[str, Any]]
 _Place = tuple[str | int, ...]
+# What it costs to halt at a number of cycles, in values of the profile for each node.
+_HALT: Final = 40
 
 
-def normal_arguments(query: NormalQuery) -> dict[str, Any]:
+def normal_arguments(query: NormalQuery | WearQuery) -> dict[str, Any]:
     """Return the arguments of `mdr_core.normal.solve`."""
-    return {
-        "profile": profile(query.profile),
-        "e_star": material(query.material).e_star,
-        "rtol": query.rtol,
-        **_controls(("load",), query.load),
-    }
+    return _pressed(query) | {"rtol": query.rtol} | _controls(("load",), query.load)
 
 
 def tangential_arguments(query: TangentialQuery | StressQuery) -> dict[str, Any]:
     """Return the arguments of `mdr_core.tangential.solve`, besides the normal contact."""
-    given = query.tangential
-    if given.count > 1 and query.load.count not in {1, given.count}:
-        detail = f"{given.count} values for {query.load.count} loads: one or as many are needed"
-        raise InputError(("tangential", given.control), detail)
-    return {
-        "g_star": _shear_modulus(query),
-        "friction_coefficient": query.friction_coefficient,
-        given.control: np.array(given.value, dtype=float),
+    return _rubbed(query) | _as_many("tangential", query.tangential, query.load)
+
+
+def wear_arguments(query: WearQuery) -> dict[str, Any]:
+    """Return the arguments of `mdr_core.wear.limit.solve`, besides the normal contact."""
+    _require_places(query)
+    return _rubbed(query) | _as_many("oscillation", query.oscillation, query.load)
+
+
+def evolution_arguments(query: EvolutionQuery) -> dict[str, Any]:
+    """Return the arguments of `mdr_core.wear.evolution.solve`, besides the normal contact."""
+    _require_places(query)
+    _require_budget(query)
+    return _rubbed(query) | {
+        "wear_coefficient": query.wear_coefficient,
+        "cycles": np.array(query.cycles, dtype=float),
+        "resolution": query.resolution,
+        "rtol": query.rtol,
+        query.oscillation.control: query.oscillation.value,
     }
+
+
+def held_arguments(query: EvolutionQuery) -> dict[str, Any]:
+    """Return the arguments of `mdr_core.normal.solve`; its tolerance is another one."""
+    return _pressed(query) | _controls(("load",), query.load)
 
 
 def history_arguments(query: HistoryQuery | StressQuery) -> dict[str, Any]:
@@ -106,10 +121,7 @@ def require_consistent(query: StressQuery) -> None:
     if ("radius" in given) == ("points" in given):
         place = "points" if "points" in given else "radius"
         raise InputError((place,), "exactly one of radius, points is needed")
-    if query.loads * query.radii > SETTINGS.max_numbers:
-        place = "points" if "points" in given else "radius"
-        detail = f"at most {SETTINGS.max_numbers} loads times radii are answered at once"
-        raise InputError((place,), detail)
+    _require_few_numbers(query)
 
 
 def profile(model: ProfileModel) -> profiles.Profile:
@@ -185,15 +197,74 @@ def _shear_modulus(query: Query) -> float:
     return g_star
 
 
-def _remembered(query: HistoryQuery | StressQuery) -> dict[str, Any]:
-    """Return what any way of the loads takes."""
+def _pressed(query: Query) -> dict[str, Any]:
+    return {"profile": profile(query.profile), "e_star": material(query.material).e_star}
+
+
+def _rubbed(
+    query: TangentialQuery | HistoryQuery | StressQuery | WearQuery | EvolutionQuery,
+) -> dict[str, Any]:
     return {
-        "profile": profile(query.profile),
-        "e_star": material(query.material).e_star,
         "g_star": _shear_modulus(query),
         "friction_coefficient": query.friction_coefficient,
-        "rtol": query.rtol,
     }
+
+
+def _as_many(name: str, given: Choice, load: Choice) -> dict[str, Any]:
+    """Return the tangential control, of which there is to be one, or one for each load."""
+    if given.count > 1 and load.count not in {1, given.count}:
+        detail = f"{given.count} values for {load.count} loads: one or as many are needed"
+        raise InputError((name, given.control), detail)
+    return {given.control: np.array(given.value, dtype=float)}
+
+
+def _remembered(query: HistoryQuery | StressQuery) -> dict[str, Any]:
+    """Return what any way of the loads takes."""
+    return _pressed(query) | _rubbed(query) | {"rtol": query.rtol}
+
+
+def _require_places(query: WearQuery | EvolutionQuery) -> None:
+    """Raise InputError unless there are radii, in one of two ways, where fields are asked for."""
+    given = query.model_fields_set
+    if {"radius", "points"} <= given:
+        raise InputError(("points",), "at most one of radius, points is needed")
+    if "quantities" in given and not query.radii:
+        raise InputError(("radius",), "quantities over the radius need radius or points")
+    _require_few_numbers(query)
+
+
+def _require_few_numbers(query: StressQuery | WearQuery | EvolutionQuery) -> None:
+    if query.loads * query.radii > SETTINGS.max_numbers:
+        place = "points" if "points" in query.model_fields_set else "radius"
+        what = "cycles" if isinstance(query, EvolutionQuery) else "loads"
+        detail = f"at most {SETTINGS.max_numbers} {what} times radii are answered at once"
+        raise InputError((place,), detail)
+
+
+def _require_budget(query: EvolutionQuery) -> None:
+    """Raise InputError where following the wear takes too long, with what would not."""
+    budget = SETTINGS.max_evaluations / query.weight
+
+    def cost(resolution: int, cycles: int) -> int:
+        halts = _HALT * resolution * cycles
+        return evolution.evaluations(resolution, cycles, query.radii) + halts
+
+    asked = cost(query.resolution, query.loads)
+    if asked <= budget:
+        return
+    start = cost(query.resolution, 0)
+    cycles = int((budget - start) * query.loads / (asked - start))
+    finest = [
+        n for n in range(evolution.COARSEST, query.resolution) if cost(n, query.loads) <= budget
+    ]
+    fits = [f"a resolution of {n}" for n in finest[-1:]]
+    fits += [f"{cycles} numbers of cycles"] * (cycles > 0)
+    raise InputError(
+        ("resolution" if finest else "cycles",),
+        f"this takes about {asked * query.weight:.0f} values of the profile, and at most "
+        f"{SETTINGS.max_evaluations} are answered; {' or '.join(fits) or 'a simpler profile'} "
+        "would fit",
+    )
 
 
 def _require_few(name: str, way: History | Cycles) -> None:

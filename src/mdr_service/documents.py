@@ -11,10 +11,13 @@ from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import History
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
+from mdr_core.wear.limit import LimitingWear
 from mdr_service import solve
 from mdr_service.convert import Array
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.solve import Followed, Result, Stress
+from mdr_service.worn import Wear, Worn
 
 # One number or one per load, as they are written: a list, or an array where it is long.
 Numbers = list[float] | Array
@@ -47,6 +50,26 @@ _HISTORY_ANSWERS: Final = (
     "tangential_energy",
 )
 _CYCLE_ANSWERS: Final = ("energy_per_cycle", "secant_stiffness")
+_LIMIT_ANSWERS: Final = (
+    "stick_radius",
+    "wear_radius",
+    "indentation_depth",
+    "normal_force",
+    "worn_volume",
+)
+_EVOLUTION_ANSWERS: Final = (
+    "cycles",
+    "worn_volume",
+    "indentation_depth",
+    "normal_force",
+    "stick_radius",
+    "contact_radius",
+    "dissipated_energy",
+)
+# What is infinite where the wear has no end, which the core announces by a notice.
+_ENDLESS: Final = frozenset(
+    {"wear_radius", "indentation_depth", "worn_volume", "limiting_profile", "worn_depth"}
+)
 # The only answers with a true infinity, which the core announces by a notice.
 _MAY_BE_INFINITE: Final = frozenset({"mean_pressure"})
 _FIELDS_MAY_BE_INFINITE: Final = frozenset({"pressure", "shear_stress"})
@@ -96,12 +119,57 @@ def stress(query: StressQuery, solved: Stress) -> dict[str, Any]:
     return document | _about(solved, warnings)
 
 
+def wear(query: WearQuery | EvolutionQuery, solved: Worn[Any]) -> dict[str, Any]:
+    """Return the document of the wear in the end, or over the cycles."""
+    result: Wear = solved.result
+    limits = isinstance(result, LimitingWear)
+    answers = {
+        name: np.broadcast_to(getattr(result, name), (query.loads,))
+        for name in (_LIMIT_ANSWERS if limits else _EVOLUTION_ANSWERS)
+    }
+    _check_worn(query, answers, solved)
+    warnings = _without_singular(solve.notices(query, result))
+    if "pressure" in solved.fields:
+        at = np.flatnonzero(np.isinf(solved.fields["pressure"]).any(axis=0))
+        warnings += [_singular("pressure", solved.radius[at])] * (at.size > 0)
+    document: dict[str, Any] = {name: _numbers(values) for name, values in answers.items()}
+    if isinstance(result, LimitingWear):
+        document["regime"] = np.broadcast_to(result.regime, (query.loads,)).tolist()
+    if solved.radius.size:
+        document |= {"radius": solved.radius} | dict(solved.fields)
+    return document | _about(result, warnings)
+
+
+def _check_worn(
+    query: WearQuery | EvolutionQuery, answers: Mapping[str, Array], solved: Worn[Any]
+) -> None:
+    """Let true infinities pass, to be written as null, and raise for anything else."""
+    result: Wear = solved.result
+    endless = np.zeros(query.loads, dtype=bool)
+    if isinstance(result, LimitingWear):
+        endless |= np.ravel(result.stuck.endless)
+    by_place = np.isin(solved.radius, solved.singular_radii)
+    for name, values in (*answers.items(), *solved.fields.items()):
+        over = np.isinf(values)
+        if name == "initial_profile":
+            if over.any():
+                raise _overflow(name, ("radius", int(np.flatnonzero(over)[0])))
+        else:
+            over = over & ~by_place if name == "pressure" else over
+            rows = over.reshape(query.loads, -1).any(axis=1)
+            stray = np.flatnonzero(rows & ~endless if name in _ENDLESS else rows)
+            if stray.size:
+                raise _overflow(name, query.place(int(stray[0])))
+    for name, values in (*answers.items(), *solved.fields.items()):
+        _require_numbers(name, values)
+
+
 def _without_singular(notices: Iterable[Notice]) -> list[Notice]:
     """Leave out what is singular in the answers of a normal query, where those are not asked."""
     return [notice for notice in notices if notice.code != "singular"]
 
 
-def _about(result: Result | Stress, warnings: Iterable[Notice]) -> dict[str, Any]:
+def _about(result: Result | Stress | Wear, warnings: Iterable[Notice]) -> dict[str, Any]:
     return {
         "method": result.method,
         "error_estimate": result.error_estimate,

@@ -15,14 +15,17 @@ from mdr_service import problems, wire
 from mdr_service.problems import Kind
 from mdr_service.schemas.answers import (
     Catalogue,
+    EvolutionAnswer,
     Health,
     HistoryAnswer,
     NormalAnswer,
     Problem,
     StressAnswer,
     TangentialAnswer,
+    WearAnswer,
 )
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 _REF: Final = "#/components/schemas/{model}"
 _QUERIES: Final[Sequence[type[BaseModel]]] = (
@@ -30,12 +33,16 @@ _QUERIES: Final[Sequence[type[BaseModel]]] = (
     TangentialQuery,
     HistoryQuery,
     StressQuery,
+    WearQuery,
+    EvolutionQuery,
 )
 _ANSWERS: Final[Sequence[type[BaseModel]]] = (
     NormalAnswer,
     TangentialAnswer,
     HistoryAnswer,
     StressAnswer,
+    WearAnswer,
+    EvolutionAnswer,
     Catalogue,
     Health,
     Problem,
@@ -49,7 +56,8 @@ Contact mechanics of axisymmetric bodies by the method of dimensionality reducti
 converted; each field names its dimension in brackets, `[1]` for a plain number.
 
 **Arrays.** Where a load is given it may be a number or a list; answers are always lists over the
-loads. `null` stands for a true infinity only, and a warning with the code `singular` says where.
+loads. `null` stands for a true infinity only, and a warning with the code `singular` says where
+(of wear without an end, one with the code `endless_wear`).
 
 **Forms.** `Accept: text/csv` asks for a table with a column per quantity, where infinities are
 written `inf`; `Accept: image/svg+xml` for a picture, where there is one. JSON is the default.

@@ -10,24 +10,40 @@ from fastapi.routing import APIRoute
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import request_response
 
-from mdr_service import compute, convert, documents, forms, pictures, problems, solve, table, wire
+from mdr_service import (
+    compute,
+    convert,
+    documents,
+    forms,
+    pictures,
+    problems,
+    solve,
+    table,
+    wire,
+    worn,
+)
 from mdr_service.forms import Form
 from mdr_service.openapi import answers, asks
 from mdr_service.schemas.answers import (
     Catalogue,
+    EvolutionAnswer,
     Health,
     HistoryAnswer,
     NormalAnswer,
     StressAnswer,
     TangentialAnswer,
+    WearAnswer,
 )
 from mdr_service.schemas.examples import (
+    EVOLUTION_EXAMPLES,
     HISTORY_EXAMPLES,
     NORMAL_EXAMPLES,
     STRESS_EXAMPLES,
     TANGENTIAL_EXAMPLES,
+    WEAR_EXAMPLES,
 )
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 
 class DirectRoute(APIRoute):
@@ -69,6 +85,12 @@ _HISTORY_FORMS: Final = (
     Form(pictures.MEDIA_TYPE, pictures.history, pictures.EFFORT),
 )
 _STRESS_FORMS: Final = (_JSON, _TABLE, Form(pictures.MEDIA_TYPE, pictures.stress, pictures.EFFORT))
+_WEAR_FORMS: Final = (_JSON, _TABLE, Form(pictures.MEDIA_TYPE, pictures.wear, pictures.EFFORT))
+_EVOLUTION_FORMS: Final = (
+    _JSON,
+    _TABLE,
+    Form(pictures.MEDIA_TYPE, pictures.evolution, pictures.EFFORT),
+)
 _ROW_PER_LOAD: Final = {table.MEDIA_TYPE: "One column per list, one row per load."}
 _CATALOGUE: Final = convert.catalogue().model_dump()
 _HEALTH: Final = Health(status="ok").model_dump()
@@ -183,6 +205,68 @@ async def stress_fields(request: Request) -> Response:
     return await compute.run(query.size + form.effort, _answer_stress, query, form)
 
 
+@router.post(
+    "/v1/wear",
+    operation_id="wear",
+    tags=["wear"],
+    summary="Fretting wear in the end: the shape that a small oscillation wears no further",
+    openapi_extra=asks(WearQuery, WEAR_EXAMPLES)
+    | answers(
+        WearAnswer,
+        _QUERY_FAILURES,
+        {
+            table.MEDIA_TYPE: "Without radii one column per list, one row per load; with them one "
+            "column per field, one row per radius, and with several loads the index of the load "
+            "in a first column, and one row per load and radius.",
+            pictures.MEDIA_TYPE: "The profile before and in the limit, with c and ã marked.",
+        },
+    ),
+)
+async def wear_limit(request: Request) -> Response:
+    """Answer the limit of fretting: the rim outside the stick zone wears until it bears nothing.
+
+    What is given is held: the depth or the normal force, and the amplitude. Held depth and
+    displacement, and held forces, have one limit, whatever the law of wear. Under a held normal
+    force with a displacement the depth grows, and the limit depends on the path: the book's is
+    answered with a warning `path_dependent`; `/v1/wear/evolution` follows the path itself.
+
+    Where everything slips, a held force wears without end (`endless_wear`), a held depth until
+    nothing touches (`contact_lost`); where nothing slips nothing wears (`no_wear`).
+    """
+    form = forms.chosen(request, _WEAR_FORMS)
+    query = await wire.read(request, WearQuery)
+    return await compute.run(query.size + form.effort, _answer_wear, query, form)
+
+
+@router.post(
+    "/v1/wear/evolution",
+    operation_id="evolution",
+    tags=["wear"],
+    summary="Fretting wear over the cycles: the shape and the pressure on the way to the limit",
+    openapi_extra=asks(EvolutionQuery, EVOLUTION_EXAMPLES)
+    | answers(
+        EvolutionAnswer,
+        _QUERY_FAILURES,
+        {
+            table.MEDIA_TYPE: "Without radii one column per list, one row per number of cycles; "
+            "with them the cycles, the radius, and one column per field.",
+            pictures.MEDIA_TYPE: "Profiles and pressures over the cycles, with the limiting "
+            "profile where there is one.",
+        },
+    ),
+)
+async def wear_evolution(request: Request) -> Response:
+    """Follow the wear over the cycles, by dV/dN = K W at each place: W is a cycle's friction work.
+
+    What is given is held, as of `/v1/wear`. A single load is followed to all listed numbers of
+    cycles; it takes a second or so, more with the resolution, and what takes too long is refused
+    beforehand. A warning `limit_reached` says from when on nothing wears any more.
+    """
+    form = forms.chosen(request, _EVOLUTION_FORMS)
+    query = await wire.read(request, EvolutionQuery)
+    return await compute.run(query.size, _answer_evolution, query, form)
+
+
 # What is not finite is looked for in the documents, once, instead of at every operation.
 def _answer_normal(query: NormalQuery, form: Form) -> Response:
     with np.errstate(all="ignore"):
@@ -206,6 +290,18 @@ def _answer_stress(query: StressQuery, form: Form) -> Response:
     with np.errstate(all="ignore"):
         solved = solve.stress(query)
         return form.write(documents.stress(query, solved), solved)
+
+
+def _answer_wear(query: WearQuery, form: Form) -> Response:
+    with np.errstate(all="ignore"):
+        found = worn.limit(query)
+        return form.write(documents.wear(query, found), found)
+
+
+def _answer_evolution(query: EvolutionQuery, form: Form) -> Response:
+    with np.errstate(all="ignore"):
+        found = worn.evolution(query)
+        return form.write(documents.wear(query, found), found)
 
 
 @router.get(

@@ -37,6 +37,12 @@ class Settings(BaseModel):
         description="Most of them where a depth and a tangential force change, or a normal force "
         "and a displacement.",
     )
+    max_evaluations: int = Field(
+        default=2_000_000,
+        ge=100_000,
+        description="Most values of a profile that following its wear over the cycles takes, as "
+        "estimated beforehand; a million take some seconds.",
+    )
     max_table_points: int = Field(
         default=2_000, ge=2, description="Most points of a tabulated profile."
     )

@@ -14,7 +14,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.history import Cycles, History, State
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
-from mdr_service import convert
+from mdr_service import convert, worn
 from mdr_service.convert import Array
 from mdr_service.schemas import loads
 from mdr_service.schemas.queries import (
@@ -24,6 +24,7 @@ from mdr_service.schemas.queries import (
     StressQuery,
     TangentialQuery,
 )
+from mdr_service.worn import Wear
 
 # Of the normal contact, and of the one with friction.
 _NORMAL_FIELDS: Final[Mapping[str, Callable[..., Array]]] = {
@@ -142,7 +143,7 @@ def stress(query: StressQuery) -> Stress:
     return Stress(result, contact, radius, found, varied)
 
 
-def notices(query: Query, result: Result) -> list[Notice]:
+def notices(query: Query, result: Result | Wear) -> list[Notice]:
     """Return what is to be said of a result, of its material, and of yield if that is asked.
 
     What the material says is about the coupling with a tangential load: without one there is
@@ -161,10 +162,11 @@ def notices(query: Query, result: Result) -> list[Notice]:
             "full_slip": result.regime == "full_slip",
         }
     else:
-        pressed = result.normal
+        sideways = result if isinstance(result, TangentialContact) else worn.sideways(result)
+        pressed = sideways.normal
         friction = {
-            "friction_coefficient": result.friction_coefficient,
-            "full_slip": result.full_slip,
+            "friction_coefficient": sideways.friction_coefficient,
+            "full_slip": sideways.full_slip,
         }
     if friction:
         found += convert.material(query.material).warnings

@@ -18,6 +18,10 @@ _WHOLE: Final = frozenset({"method", "error_estimate", "warnings"}) | {
 }
 
 
+# Over the radius the same for all loads.
+_OF_NO_LOAD: Final = frozenset({"initial_profile"})
+
+
 def answer(document: Mapping[str, Any]) -> Response:
     """Return the table of a document; numbers keep all digits, infinities are written inf."""
     columns = {name: values for name, values in document.items() if name not in _WHOLE}
@@ -33,18 +37,31 @@ def answer(document: Mapping[str, Any]) -> Response:
 
 
 def _over_radii(columns: dict[str, Any]) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
-    """Return the header and one row per load and radius; one load needs no index."""
-    radius = _numbers(columns.pop("radius"))
-    fields = [_numbers(field) for field in columns.values()]
-    header = ["radius", *columns]
-    if len(fields[0]) == 1:
-        return header, zip(radius, *(field[0] for field in fields), strict=True)
+    """Return the header and one row per load, or number of cycles, and radius.
+
+    One load needs no index. What has no radius has no row here.
+    """
+    radius = _numbers(columns["radius"])
+    fields = {name: _numbers(field) for name, field in columns.items() if _has_radii(name, field)}
+    loads = next((len(field) for name, field in fields.items() if name not in _OF_NO_LOAD), 1)
+    lines = [
+        repeat(field, loads) if name in _OF_NO_LOAD else field for name, field in fields.items()
+    ]
+    header = ["radius", *fields]
+    if loads == 1 and "cycles" not in columns:
+        return header, zip(radius, *(next(iter(line)) for line in lines), strict=True)
+    name = "cycles" if "cycles" in columns else "load"
+    indices = _numbers(columns.get(name, range(loads)))
     rows = (
         row
-        for load, lines in enumerate(zip(*fields, strict=True))
-        for row in zip(repeat(load, len(radius)), radius, *lines, strict=True)
+        for index, *line in zip(indices, *lines, strict=True)
+        for row in zip(repeat(index, len(radius)), radius, *line, strict=True)
     )
-    return ["load", *header], rows
+    return [name, *header], rows
+
+
+def _has_radii(name: str, values: Any) -> bool:
+    return name in _OF_NO_LOAD or np.ndim(values[0]) == 1
 
 
 def _numbers(values: Sequence[Any] | np.ndarray[Any, Any]) -> Sequence[Any]:

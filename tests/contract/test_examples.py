@@ -7,10 +7,12 @@ from typing import Any
 import pytest
 
 from mdr_service.schemas.examples import (
+    EVOLUTION_EXAMPLES,
     HISTORY_EXAMPLES,
     NORMAL_EXAMPLES,
     STRESS_EXAMPLES,
     TANGENTIAL_EXAMPLES,
+    WEAR_EXAMPLES,
 )
 from tests.conftest import Client
 
@@ -274,6 +276,112 @@ def boussinesq_fields() -> dict[str, object]:
     }
 
 
+E_STAR, G_STAR, BALL, FRICTION = 115e9, 95e9, 0.01, 0.3
+DEPTH, STICK = 1e-6, 5e-5
+
+
+def worn_ball_profile(r: float, c: float, depth: float) -> float:
+    """Eqs. (5.83), (5.85), inside the worn rim."""
+    rim = c * r / (pi * BALL) * sqrt(1 - (c / r) ** 2)
+    return depth - 2 / pi * (depth - r**2 / (2 * BALL)) * asin(c / r) - rim
+
+
+def worn_rim(c: float, depth: float) -> tuple[float, float]:
+    """Eq. (5.88) for the wear radius, and the integral of the worn depth up to it."""
+    low, high = c * (1 + 1e-9), sqrt(2 * depth * BALL)
+    for _ in range(100):
+        middle = (low + high) / 2
+        worn = worn_ball_profile(middle, c, depth) > middle**2 / (2 * BALL)
+        low, high = (middle, high) if worn else (low, middle)
+    s, angle = sqrt(high**2 - c**2), acos(c / high)
+    lens = (high**2 * angle - c * s) / 2
+    moment = high**4 / 8 * angle + c * s * (high**2 - 2 * c**2) / 8
+    return high, 4 * (depth * lens - moment / BALL)
+
+
+def shakedown() -> dict[str, object]:
+    """Eqs. (5.80), (5.85), (5.88), (5.90) for c = a/2, at a held depth."""
+    end, volume = worn_rim(STICK, DEPTH)
+    radii = [0.0, 4e-5, 7e-5, 1e-4, 1.2e-4, 1.5e-4]
+    before = [r**2 / (2 * BALL) for r in radii]
+    return {
+        "stick_radius": [STICK],
+        "wear_radius": [end],
+        "normal_force": [2 * E_STAR * (DEPTH * STICK - STICK**3 / (3 * BALL))],
+        "worn_volume": [volume],
+        "initial_profile": before,
+        "limiting_profile": [
+            [
+                worn_ball_profile(r, STICK, DEPTH) if STICK < r < end else f
+                for r, f in zip(radii, before, strict=True)
+            ]
+        ],
+    }
+
+
+def fretted(push: float, force: float = 10.0) -> tuple[float, float, float, float]:
+    """Held forces: c by Eq. (5.16), and F_x = 2 µ E* c (d − c²/R); with it rim and volume."""
+    a = (3 * force * BALL / (4 * E_STAR)) ** (1 / 3)
+    c = a * (1 - push / (FRICTION * force)) ** (1 / 3)
+    depth = c**2 / BALL + push / (2 * FRICTION * E_STAR * c)
+    return c, depth, *worn_rim(c, depth)
+
+
+def amplitudes() -> dict[str, object]:
+    rims = [fretted(push) for push in (1.0, 2.0, 2.9)]
+    a = fretted(0.0)[0]
+    return {
+        "stick_radius": [a, *(rim[0] for rim in rims)],
+        "indentation_depth": [a**2 / BALL, *(rim[1] for rim in rims)],
+        "wear_radius": [a, *(rim[2] for rim in rims)],
+        "worn_volume": [0.0, *(rim[3] for rim in rims)],
+        "regime": ["stick"] + ["partial_slip"] * 3,
+    }
+
+
+def endless() -> dict[str, object]:
+    c, depth, end, volume = fretted(2.0)
+    depths = [0.0, 0.0, worn_ball_profile(1e-4, c, depth) - 1e-8 / (2 * BALL)]
+    return {
+        "stick_radius": [c, 0.0],
+        "wear_radius": [end, None],
+        "worn_volume": [volume, None],
+        "worn_depth": [depths, [None] * 3],
+        "regime": ["partial_slip", "full_slip"],
+    }
+
+
+def held_force() -> dict[str, object]:
+    """Eq. (5.90): F_N = (4/3) E* √R √(d − w) (d + w/2), w = G* u/(µ E*)."""
+    w, force = G_STAR * 2e-7 / (FRICTION * E_STAR), 10.0
+    low, high = w, 1e-5
+    for _ in range(100):
+        d = (low + high) / 2
+        bears = 4 / 3 * E_STAR * sqrt(BALL) * sqrt(d - w) * (d + w / 2)
+        low, high = (d, high) if bears < force else (low, d)
+    return {"indentation_depth": [d], "stick_radius": [sqrt(BALL * (d - w))]}
+
+
+def wear_of_cycles() -> dict[str, object]:
+    """The first cycle wears K W, and Eqs. (5.80)-(5.90) are the end."""
+    a, c = sqrt(DEPTH * BALL), STICK
+    work = 16 * FRICTION**2 * E_STAR**2 / (15 * G_STAR * BALL**2)
+    first = work * (a - c) ** 3 * (a**2 + 3 * a * c + c**2)
+    end, volume = worn_rim(c, DEPTH)
+    return {
+        "cycles": [0.0, 1.0, 1e5, 1e6, 1e8],
+        "worn_volume": [0.0, 1e-14 * first, None, None, volume],
+        "dissipated_energy": [0.0, first, None, None, volume / 1e-14],
+        "contact_radius": [a, a, None, None, end],
+        "stick_radius": [c] * 5,
+    }
+
+
+def wear_of_held_forces() -> dict[str, object]:
+    c, _, _, _ = fretted(2.0)
+    return {"normal_force": [10.0] * 5, "stick_radius": [c] * 5}
+
+
 TEXTBOOK = {
     "hertz": hertz,
     "boussinesq": boussinesq,
@@ -298,6 +406,19 @@ STRESS_TEXTBOOK = {
     "sneddon": sneddon_fields,
     "boussinesq": boussinesq_fields,
 }
+WEAR_TEXTBOOK = {
+    "shakedown": shakedown,
+    "amplitudes": amplitudes,
+    "endless": endless,
+    "held_force": held_force,
+}
+EVOLUTION_TEXTBOOK = {"shakedown": wear_of_cycles, "held_forces": wear_of_held_forces}
+# What wear itself has to say of the examples.
+TOLD = {
+    "amplitudes": {"no_wear"},
+    "endless": {"endless_wear"},
+    "held_force": {"path_dependent"},
+}
 # A tip or an edge that no real material bears, and a sphere pressed to half its radius.
 WARNINGS = {
     "cone": {"plastic"},
@@ -312,6 +433,7 @@ CASES = [
         ("/v1/tangential", TANGENTIAL_EXAMPLES, TANGENTIAL_TEXTBOOK),
         ("/v1/tangential/history", HISTORY_EXAMPLES, HISTORY_TEXTBOOK),
         ("/v1/stress", STRESS_EXAMPLES, STRESS_TEXTBOOK),
+        ("/v1/wear", WEAR_EXAMPLES, WEAR_TEXTBOOK),
     )
     for name, textbook in textbooks.items()
 ]
@@ -321,6 +443,8 @@ def test_every_example_has_its_textbook() -> None:
     assert set(TEXTBOOK) == set(NORMAL_EXAMPLES)
     assert set(TANGENTIAL_TEXTBOOK) == set(TANGENTIAL_EXAMPLES)
     assert set(HISTORY_TEXTBOOK) == set(HISTORY_EXAMPLES)
+    assert set(WEAR_TEXTBOOK) == set(WEAR_EXAMPLES)
+    assert set(EVOLUTION_TEXTBOOK) == set(EVOLUTION_EXAMPLES)
     # The stresses of the rounded punch have no closed form; their integrals have.
     assert {*STRESS_TEXTBOOK, "rounded_punch"} == set(STRESS_EXAMPLES)
 
@@ -351,7 +475,19 @@ def test_example_gives_the_textbook_number(
         same(document[quantity], expected)
     codes = {warning["code"] for warning in document["warnings"]}
     kind = query["profile"]["kind"]
+    if path == "/v1/wear":
+        assert codes == next((TOLD[n] for n in TOLD if query == WEAR_EXAMPLES[n]["value"]), set())
+        return
     assert codes == WARNINGS.get(kind, set()) | ({"singular"} if "null" in answer.text else set())
+
+
+@pytest.mark.parametrize("name", EVOLUTION_EXAMPLES)
+def test_wear_over_the_cycles_gives_what_is_known_of_it(client: Client, name: str) -> None:
+    document = client.post("/v1/wear/evolution", EVOLUTION_EXAMPLES[name]["value"]).json()
+    for quantity, values in EVOLUTION_TEXTBOOK[name]().items():
+        for found, expected in zip(document[quantity], values, strict=True):
+            if expected is not None:
+                assert found == pytest.approx(expected, rel=2e-3), quantity
 
 
 def test_the_stresses_of_the_rounded_punch_carry_its_forces(client: Client) -> None:

@@ -10,11 +10,13 @@ import pytest
 from mdr_service import problems
 from mdr_service.schemas.answers import (
     Answer,
+    EvolutionAnswer,
     HistoryAnswer,
     NormalAnswer,
     Problem,
     StressAnswer,
     TangentialAnswer,
+    WearAnswer,
 )
 from tests.conftest import Client
 from tests.contract import strict_json
@@ -95,6 +97,8 @@ def test_every_kind_of_problem_is_in_the_readme() -> None:
         ("/v1/tangential", TangentialAnswer),
         ("/v1/tangential/history", HistoryAnswer),
         ("/v1/stress", StressAnswer),
+        ("/v1/wear", WearAnswer),
+        ("/v1/wear/evolution", EvolutionAnswer),
     ],
 )
 def test_the_answer_of_a_query_is_the_documented_one(
@@ -116,14 +120,15 @@ def test_the_answer_of_a_query_is_the_documented_one(
 
 def test_every_query_and_answer_tells_its_dimensions() -> None:
     loads = ("Load", "Tangential", "NormalPoints", "TangentialPoints")
-    swings = ("NormalSwing", "TangentialSwing")
+    swings = ("NormalSwing", "TangentialSwing", "HeldLoad", "HeldPoint", "Oscillation")
     told = ("NormalAnswer", "TangentialAnswer", "HistoryAnswer", "StressAnswer")
+    told += ("WearAnswer", "EvolutionAnswer")
     for query in (*loads, *swings, *told):
         for name, field in DOCUMENT["components"]["schemas"][query]["properties"].items():
             if name == "amplitude":
                 assert field["description"].endswith("[as the mean]")
             elif name not in {"method", "warnings", "regime"}:
-                assert re.search(r"\[[a-z0-9/*]+\]$", field["description"]), (query, name)
+                assert re.search(r"\[[a-z0-9/*^]+\]$", field["description"]), (query, name)
 
 
 def test_a_failure_is_the_documented_one(client: Client) -> None:

@@ -12,10 +12,12 @@ import httpx
 import pytest
 
 from mdr_service.schemas.examples import (
+    EVOLUTION_EXAMPLES,
     HISTORY_EXAMPLES,
     NORMAL_EXAMPLES,
     STRESS_EXAMPLES,
     TANGENTIAL_EXAMPLES,
+    WEAR_EXAMPLES,
 )
 from tests.conftest import Client
 
@@ -26,6 +28,8 @@ CASES = [
         ("/v1/tangential", TANGENTIAL_EXAMPLES),
         ("/v1/tangential/history", HISTORY_EXAMPLES),
         ("/v1/stress", STRESS_EXAMPLES),
+        ("/v1/wear", WEAR_EXAMPLES),
+        ("/v1/wear/evolution", EVOLUTION_EXAMPLES),
     )
     for name, example in examples.items()
 ]
@@ -57,6 +61,13 @@ def told(value: object) -> str:
     return repr(inf) if value is None else value if isinstance(value, str) else repr(value)
 
 
+OF_NO_LOAD = "initial_profile"
+
+
+def has_radii(name: str, values: list[object]) -> bool:
+    return name == OF_NO_LOAD or isinstance(values[0], list)
+
+
 @EVERY_EXAMPLE
 def test_the_table_holds_the_digits_of_the_document(
     client: Client, path: str, query: dict[str, object]
@@ -64,15 +75,20 @@ def test_the_table_holds_the_digits_of_the_document(
     rows = table(ask(client, path, query, "text/csv"))
     document = client.post(path, query).json()
     columns = {name: values for name, values in document.items() if name not in WITHOUT_ROWS}
-    if path != "/v1/stress":
+    if "radius" not in document:
         for name, values in columns.items():
             assert [row[name] for row in rows] == [told(value) for value in values]
         return
     radius = columns.pop("radius")
-    loads = range(len(next(iter(columns.values()))))
-    assert ("load" in rows[0]) == (len(loads) > 1)
+    cycles = columns.get("cycles")
+    columns = {name: values for name, values in columns.items() if has_radii(name, values)}
+    loads = range(max(len(field) for name, field in columns.items() if name != OF_NO_LOAD))
+    if OF_NO_LOAD in columns:
+        columns[OF_NO_LOAD] = [columns[OF_NO_LOAD]] * len(loads)
+    assert ("load" in rows[0]) == (len(loads) > 1 and cycles is None)
+    assert ("cycles" in rows[0]) == (cycles is not None)
     expected = [
-        ({"load": str(load)} if len(loads) > 1 else {})
+        ({"cycles": repr(cycles[load])} if cycles else {"load": str(load)} if loads[1:] else {})
         | {"radius": repr(r)}
         | {name: told(field[load][at]) for name, field in columns.items()}
         for load in loads
@@ -130,7 +146,11 @@ def test_without_a_preference_it_is_json(client: Client) -> None:
 
 @pytest.mark.parametrize("accept", ["text/html", "application/xml", "image/png", "rubbish", ";;,"])
 @pytest.mark.parametrize(
-    "path", ["/v1/normal", "/v1/tangential", "/v1/tangential/history", "/v1/stress"]
+    "path",
+    [
+        *("/v1/normal", "/v1/tangential", "/v1/tangential/history", "/v1/stress"),
+        *("/v1/wear", "/v1/wear/evolution"),
+    ],
 )
 def test_an_unknown_form_is_refused(client: Client, path: str, accept: str) -> None:
     answer = ask(client, path, BALL, accept)
@@ -160,7 +180,10 @@ def test_every_example_has_a_picture(client: Client, path: str, query: dict[str,
     answer = ask(client, path, query, "image/svg+xml")
     axes = [part.get("id", "") for part in picture(answer).iter(f"{SVG}g")]
     panels = [name for name in axes if name.startswith("axes_")]
-    assert len(panels) == len(query.get("quantities", ["force over displacement"]))
+    if path.startswith("/v1/wear"):
+        assert len(panels) == (2 if path.endswith("evolution") else 1)
+    else:
+        assert len(panels) == len(query.get("quantities", ["force over displacement"]))
     # The same question, the same picture.
     assert ask(client, path, query, "image/svg+xml").content == answer.content
 
@@ -214,6 +237,47 @@ def test_a_history_that_is_hard_to_draw_has_a_picture(
             "image/svg+xml",
         )
     )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"load": {"normal_force": 0.0}, "oscillation": {"tangential_force": 0.0}},
+        {"load": {"indentation_depth": 1e-6}, "oscillation": {"tangential_displacement": 1.0}},
+        {"oscillation": {"tangential_force": 3.0}},
+        {"load": {"normal_force": [1.0 + i for i in range(20)]}},
+        {"oscillation": {"tangential_force": [0.1 * i for i in range(20)]}},
+        {"profile": {"kind": "flat_punch", "radius": 0.01}},
+        {
+            "profile": {"kind": "tabulated", "r": [0, 1e-4, 1e-2], "f": [0, 1e-7, 1e-3]},
+            "rtol": 1e-3,
+        },
+    ],
+    ids=str,
+)
+def test_wear_that_is_hard_to_draw_has_a_picture(client: Client, change: dict[str, object]) -> None:
+    query = {**WEAR_EXAMPLES["amplitudes"]["value"], "oscillation": {"tangential_force": 0.2}}
+    picture(ask(client, "/v1/wear", query | change, "image/svg+xml"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"load": {"normal_force": 1e30}},
+        {"cycles": [0.0]},
+        {"cycles": [1e12] * 30, "resolution": 8},
+        {"oscillation": {"tangential_displacement": 2e-7}, "resolution": 8},
+        {"profile": {"kind": "flat_punch", "radius": 0.01}},
+        {"profile": {"kind": "cone", "slope": 0.1}},
+        {"profile": {"kind": "ellipsoid", "radius": 0.01, "height": 0.01}, "resolution": 8},
+    ],
+    ids=str,
+)
+def test_a_way_that_is_hard_to_draw_has_a_picture(
+    client: Client, change: dict[str, object]
+) -> None:
+    query = EVOLUTION_EXAMPLES["held_forces"]["value"]
+    picture(ask(client, "/v1/wear/evolution", query | change, "image/svg+xml"))
 
 
 def test_the_picture_shows_the_curve_and_not_its_chords(client: Client) -> None:

@@ -4,5 +4,6 @@ from mdr_service.pictures.canvas import EFFORT, MEDIA_TYPE
 from mdr_service.pictures.fields import stress
 from mdr_service.pictures.loops import history
 from mdr_service.pictures.push import tangential
+from mdr_service.pictures.wear import evolution, wear
 
-__all__ = ["EFFORT", "MEDIA_TYPE", "history", "stress", "tangential"]
+__all__ = ["EFFORT", "MEDIA_TYPE", "evolution", "history", "stress", "tangential", "wear"]

@@ -137,6 +137,79 @@ class StressAnswer(Known):
     )
 
 
+class WearAnswer(Known):
+    """One entry per pair of load and amplitude in every list; what was not asked for is left out.
+
+    Where everything slips under a held force the wear has no end: what grows with it is null, with
+    a warning `endless_wear`.
+    """
+
+    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
+
+    stick_radius: list[float] = quantity("length", "Radius c inside which nothing ever wears")
+    wear_radius: list[float | None] = quantity(
+        "length", "Outer radius ã of the worn rim; null where the wear has no end"
+    )
+    indentation_depth: list[float | None] = quantity(
+        "length", "Depth d in the limit; null where the wear has no end"
+    )
+    normal_force: list[float] = quantity("force", "Normal force F_N in the limit")
+    worn_volume: list[float | None] = quantity(
+        "length^3", "Volume that has worn off; null where the wear has no end"
+    )
+    regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
+        description="Whether nothing, the rim or all of the contact slips, and so wears."
+    )
+    radius: list[float] = quantity("length", "The radii r, as asked for or chosen", default=None)
+    initial_profile: list[float] = quantity(
+        "length", "Profile f₀(r) before any wear, by radius: the same for all loads", default=None
+    )
+    limiting_profile: _Field = _field(
+        "length", "Profile f(r) in the limit; null where the wear has no end"
+    )
+    worn_depth: _Field = _field("length", "f(r) − f₀(r); null where the wear has no end")
+    pressure: _Field = _field(
+        "pressure",
+        "Pressure p(r) in the limit; null where infinite, at c, with a warning `singular`",
+    )
+
+
+_ByCycle = list[list[float]]
+
+
+class EvolutionAnswer(Known):
+    """One entry per number of cycles in every list; what was not asked for is left out.
+
+    `error_estimate` is that of all but the pressure; of profile and worn depth, relative to the
+    depth d.
+    """
+
+    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
+
+    cycles: list[float] = quantity("1", "The numbers of cycles, as asked for")
+    worn_volume: list[float] = quantity("length^3", "Volume V that has worn off so far")
+    indentation_depth: list[float] = quantity("length", "Depth d; grows where F_N is held")
+    normal_force: list[float] = quantity("force", "Normal force F_N; falls where d is held")
+    stick_radius: list[float] = quantity("length", "Radius c of the stick zone")
+    contact_radius: list[float] = quantity("length", "Radius a of the contact")
+    dissipated_energy: list[float] = quantity(
+        "force*length", "Energy dissipated by slip in all cycles so far"
+    )
+    radius: list[float] = quantity("length", "The radii r, as asked for or chosen", default=None)
+    profile: _ByCycle = quantity(
+        "length", "Worn profile f(r), by number of cycles and radius", default=None
+    )
+    worn_depth: _ByCycle = quantity(
+        "length", "f(r) − f₀(r), by number of cycles and radius", default=None
+    )
+    pressure: _Field = quantity(
+        "pressure",
+        "Pressure p(r), by number of cycles and radius; null where infinite, with a warning "
+        "`singular`",
+        default=None,
+    )
+
+
 class ProfileField(Answer):
     """One parameter of a kind of profile."""
 

@@ -157,6 +157,74 @@ HISTORY_EXAMPLES: Final = {
     ),
 }
 
+# The same ball, sticking up to half of its contact radius under 0.75 of what it takes to slide.
+_FRETTED: Final = {
+    "profile": {"kind": "paraboloid", "radius": 0.01},
+    "material": {"e_star": 115e9, "g_star": 95e9},
+    "friction_coefficient": 0.3,
+}
+_HELD_DEPTH: Final = _FRETTED | {
+    "load": {"indentation_depth": 1e-6},
+    "oscillation": {"tangential_displacement": 0.75 * 0.3 * 115 / 95 * 1e-6},
+}
+
+WEAR_EXAMPLES: Final = {
+    "shakedown": _example(
+        "Fretting of a steel ball at a depth of 1 µm: the shape that wears no further",
+        _HELD_DEPTH | {"radius": [0.0, 4e-5, 7e-5, 1e-4, 1.2e-4, 1.5e-4]},
+    ),
+    "amplitudes": _example(
+        "The same ball under 10 N, µ F_N = 3 N: the worn rim by the amplitude of the force",
+        _FRETTED
+        | {
+            "load": {"normal_force": 10.0},
+            "oscillation": {"tangential_force": [0.0, 1.0, 2.0, 2.9]},
+        },
+    ),
+    "endless": _example(
+        "Under a force that lets it slide as a whole it wears without end",
+        _FRETTED
+        | {
+            "load": {"normal_force": 10.0},
+            "oscillation": {"tangential_force": [2.0, 3.0]},
+            "radius": [0.0, 5e-5, 1e-4],
+            "quantities": ["worn_depth", "pressure"],
+        },
+    ),
+    "held_force": _example(
+        "A held force with a held displacement: the book's limit, which depends on the path",
+        _FRETTED
+        | {
+            "load": {"normal_force": 10.0},
+            "oscillation": {"tangential_displacement": 2e-7},
+            "points": 200,
+        },
+    ),
+}
+
+EVOLUTION_EXAMPLES: Final = {
+    "shakedown": _example(
+        "The ball at a depth of 1 µm, over the cycles, until nothing wears any more",
+        _HELD_DEPTH
+        | {
+            "wear_coefficient": 1e-14,
+            "cycles": [0.0, 1.0, 1e5, 1e6, 1e8],
+            "radius": [0.0, 4e-5, 7e-5, 1e-4, 1.2e-4, 1.5e-4],
+        },
+    ),
+    "held_forces": _example(
+        "The same ball under 10 N and ±2 N: it sinks in, and the contact grows",
+        _FRETTED
+        | {
+            "load": {"normal_force": 10.0},
+            "oscillation": {"tangential_force": 2.0},
+            "wear_coefficient": 1e-14,
+            "cycles": [1e4, 1e5, 3e5, 1e6, 3e6],
+            "points": 100,
+        },
+    ),
+}
+
 STRESS_EXAMPLES: Final = {
     "cattaneo_mindlin": _example(
         "Cattaneo and Mindlin: pressure, shear stress and slip at seven radii",

@@ -133,6 +133,31 @@ class TangentialSwing(Choice):
     )
 
 
+class HeldLoad(Choice):
+    """Exactly one control, a number or a list of them: what is held while the contact wears."""
+
+    indentation_depth: ScalarOrArray = quantity("length", "Depth d of indentation", default=None)
+    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+
+
+class HeldPoint(Choice):
+    """Exactly one control, a number: what is held while the contact wears."""
+
+    indentation_depth: Size = quantity("length", "Depth d of indentation", default=None)
+    normal_force: Size = quantity("force", "Normal force F_N", default=None)
+
+
+class Oscillation(Choice):
+    """Exactly one amplitude, a number or a list: one for all normal loads, or as many as they."""
+
+    tangential_displacement: ScalarOrArray = quantity(
+        "length", "Amplitude of the tangential displacement u_x", default=None
+    )
+    tangential_force: ScalarOrArray = quantity(
+        "force", "Amplitude of the tangential force F_x, at most µ F_N", default=None
+    )
+
+
 def _samples_per_step() -> Any:
     return quantity(
         "1",

@@ -1,6 +1,6 @@
 """The requests: what is pressed by what, how hard, and how exactly it is to be known."""
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final, Literal, TypeVar
 
 from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
@@ -105,19 +105,39 @@ class NormalQuery(Query):
         return ("load", *self.load.place(index))
 
 
-def _friction_coefficient(**field: Any) -> Any:
+def friction(**field: Any) -> Any:
+    """Return the field of a coefficient of friction."""
     return positive("1", "Coefficient of friction µ", low=1e-15, high=1e6, **field)
 
 
-def _left_out(description: str) -> Any:
+def left_out(description: str) -> Any:
     """Return a field that may be left out, but not be null."""
     return Field(default=None, description=description)
+
+
+def places() -> Any:
+    """Return the field of the radii at which fields are answered."""
+    return quantity(
+        "length",
+        "Radii r at which the fields are answered, in any order",
+        default=None,
+        min_length=1,
+        max_length=SETTINGS.max_radii,
+        fail_fast=True,
+    )
+
+
+def chosen_places(meaning: str) -> Any:
+    """Return the field of how many radii to choose, in their place."""
+    return quantity(
+        "1", f"How many radii to choose, {meaning}", default=None, ge=2, le=SETTINGS.max_radii
+    )
 
 
 class TangentialQuery(NormalQuery):
     """A contact with friction, pressed first and then loaded tangentially."""
 
-    friction_coefficient: float = _friction_coefficient()
+    friction_coefficient: float = friction()
     tangential: Tangential = Field(
         description="Exactly one control: force, displacement or radius of the stick zone."
     )
@@ -128,21 +148,22 @@ class TangentialQuery(NormalQuery):
         return max(self.load.count, self.tangential.count)
 
 
-def _one_of(*names: str) -> dict[str, Any]:
+def one_of(*names: str) -> dict[str, Any]:
+    """Return the schema of exactly one of the fields."""
     return {"oneOf": [{"required": [name]} for name in names]}
 
 
 def _describe_history(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
-    schema |= _one_of("history", "cycles")
+    schema |= one_of("history", "cycles")
 
 
 class HistoryQuery(Query, json_schema_extra=_describe_history):
     """A contact with friction under loads that come and go."""
 
-    friction_coefficient: float = _friction_coefficient()
-    history: History = _left_out("The points that the loads go through.")
-    cycles: Cycles = _left_out("In place of `history`: equal cycles of the tangential load.")
+    friction_coefficient: float = friction()
+    history: History = left_out("The points that the loads go through.")
+    cycles: Cycles = left_out("In place of `history`: equal cycles of the tangential load.")
 
     @property
     def size(self) -> int:
@@ -174,19 +195,21 @@ FieldName = Literal[
 
 # The fields that friction brings.
 SHEAR_FIELDS: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
+_Name = TypeVar("_Name", bound=str)
 
 
 def _describe_stress(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
-    schema["allOf"] = [_one_of("radius", "points"), _one_of("load", "history")]
+    schema["allOf"] = [one_of("radius", "points"), one_of("load", "history")]
     schema["dependentRequired"] = {
         "tangential": ["load", "friction_coefficient"],
         "history": ["friction_coefficient"],
     }
-    schema["dependentSchemas"] = {"friction_coefficient": _one_of("tangential", "history")}
+    schema["dependentSchemas"] = {"friction_coefficient": one_of("tangential", "history")}
 
 
-def _once_each(names: list[FieldName]) -> list[FieldName]:
+def once_each(names: list[_Name]) -> list[_Name]:
+    """Return the names, unless one is there twice."""
     if len(set(names)) < len(names):
         raise PydanticCustomError("not_unique", "each quantity can be asked for once")
     return names
@@ -195,29 +218,16 @@ def _once_each(names: list[FieldName]) -> list[FieldName]:
 class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
     """The fields of a contact over the radius, with friction or without."""
 
-    load: Load = _left_out("Exactly one control: depth, force or contact radius.")
-    friction_coefficient: float = _friction_coefficient(default=None)
-    tangential: Tangential = _left_out("Exactly one control, with `friction_coefficient`.")
-    history: History = _left_out(
+    load: Load = left_out("Exactly one control: depth, force or contact radius.")
+    friction_coefficient: float = friction(default=None)
+    tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
+    history: History = left_out(
         "In place of `load` and `tangential`: the points that the loads go through; the fields "
         "are those of its end. With `friction_coefficient`."
     )
-    radius: list[Size] = quantity(
-        "length",
-        "Radii r at which the fields are answered, in any order",
-        default=None,
-        min_length=1,
-        max_length=SETTINGS.max_radii,
-        fail_fast=True,
-    )
-    points: int = quantity(
-        "1",
-        "How many radii to choose, from 0 to 1.5 a, close together where the fields change fast",
-        default=None,
-        ge=2,
-        le=SETTINGS.max_radii,
-    )
-    quantities: Annotated[list[FieldName], AfterValidator(_once_each)] = Field(
+    radius: list[Size] = places()
+    points: int = chosen_places("from 0 to 1.5 a, close together where the fields change fast")
+    quantities: Annotated[list[FieldName], AfterValidator(once_each)] = Field(
         description=(
             "The fields to answer, each once; shear_stress, slip and foundation_shear need "
             "`tangential` or `history`"

@@ -1,0 +1,254 @@
+"""Wear over the wire: the core's digits, nothing that was not asked for, and what is refused."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import normal
+from mdr_core.wear import evolution, limit
+from mdr_service import convert
+from mdr_service.schemas.wear import EvolutionQuery
+from mdr_service.settings import SETTINGS
+from tests.conftest import Client
+from tests.service.test_normal import E_STAR, PROFILES
+
+G_STAR, FRICTION = 1.9e9, 0.4
+LIMIT, EVOLUTION = "/v1/wear", "/v1/wear/evolution"
+LIMITS = ("stick_radius", "wear_radius", "indentation_depth", "normal_force", "worn_volume")
+OVER_CYCLES = (
+    "cycles",
+    "worn_volume",
+    "indentation_depth",
+    "normal_force",
+    "stick_radius",
+    "contact_radius",
+    "dissipated_energy",
+)
+RADII = [0.0, 0.001, 0.01, 0.05, 0.3]
+HELD: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "depth and displacement": (
+        {"indentation_depth": 1e-3},
+        {"tangential_displacement": 3e-4},
+    ),
+    "forces": ({"normal_force": 1e5}, {"tangential_force": 3e4}),
+    "force and displacement": ({"normal_force": 1e5}, {"tangential_displacement": 1e-5}),
+}
+KINDS = ["paraboloid", "cone", "truncated_paraboloid", "tabulated"]
+
+
+def query(kind: str, load: object, oscillation: object, **more: object) -> dict[str, object]:
+    return {
+        "profile": {"kind": kind, **PROFILES[kind][0]},
+        "material": {"e_star": E_STAR, "g_star": G_STAR},
+        "friction_coefficient": FRICTION,
+        "load": load,
+        "oscillation": oscillation,
+        **more,
+    }
+
+
+def followed(kind: str = "paraboloid", held: str = "forces", **more: object) -> dict[str, object]:
+    return query(kind, *HELD[held], **({"wear_coefficient": 1e-13, "cycles": [1.0, 1e6]} | more))
+
+
+def worn(kind: str, load: dict[str, Any], oscillation: dict[str, Any]) -> limit.LimitingWear:
+    contact = normal.solve(PROFILES[kind][1], E_STAR, **load)
+    return limit.solve(contact, G_STAR, FRICTION, **oscillation)
+
+
+def told(values: Any) -> Any:
+    return np.where(np.isfinite(values), values, None).tolist()
+
+
+def codes(document: dict[str, Any]) -> set[str]:
+    return {each["code"] for each in document["warnings"]}
+
+
+@pytest.mark.parametrize("held", HELD)
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_limit_is_that_of_the_core_digit_for_digit(
+    client: Client, kind: str, held: str
+) -> None:
+    names = ["initial_profile", "limiting_profile", "worn_depth", "pressure"]
+    asked = query(kind, *HELD[held], radius=RADII, quantities=names)
+    document = client.post(LIMIT, asked).json()
+    expected = worn(kind, *HELD[held])
+    for name in LIMITS:
+        assert document[name] == [float(getattr(expected, name))], name
+    assert document["regime"] == [str(expected.regime)]
+    assert document["radius"] == RADII
+    assert document["initial_profile"] == expected.initial_profile(RADII).tolist()
+    for name in names[1:]:
+        assert document[name] == [told(getattr(expected, name)(RADII))], name
+    assert document["error_estimate"] == expected.error_estimate
+    assert ("path_dependent" in codes(document)) == (held == "force and displacement")
+
+
+@pytest.mark.parametrize("held", HELD)
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_way_is_that_of_the_core_digit_for_digit(client: Client, kind: str, held: str) -> None:
+    names = ["profile", "worn_depth", "pressure"]
+    asked = followed(kind, held, radius=RADII, quantities=names, resolution=8)
+    answer = client.post(EVOLUTION, asked)
+    document = answer.json()
+    contact = normal.solve(PROFILES[kind][1], E_STAR, **HELD[held][0])
+    expected = evolution.solve(
+        contact,
+        G_STAR,
+        FRICTION,
+        wear_coefficient=1e-13,
+        cycles=[1.0, 1e6],
+        resolution=8,
+        **HELD[held][1],
+    )
+    for name in OVER_CYCLES:
+        assert document[name] == getattr(expected, name).tolist(), name
+    for name in names:
+        assert document[name] == told(getattr(expected, name)(RADII)), name
+    assert document["error_estimate"] == expected.error_estimate
+
+
+def test_many_loads_have_a_limit_each(client: Client) -> None:
+    loads, pushes = {"normal_force": [1e5, 2e5, 0.0]}, {"tangential_force": [1e4, 8e4, 0.0]}
+    document = client.post(LIMIT, query("paraboloid", loads, pushes, radius=RADII)).json()
+    expected = worn("paraboloid", loads, pushes)
+    for name in LIMITS:
+        assert document[name] == told(getattr(expected, name)), name
+    assert document["limiting_profile"] == told(expected.limiting_profile(RADII))
+    assert document["initial_profile"] == expected.initial_profile(RADII).tolist()
+    # 0.4 x 2e5 N is what friction bears at most.
+    assert document["worn_volume"][1] is None
+    assert {"endless_wear", "no_wear"} <= codes(document)
+    pushes = {"tangential_force": [1e4, 2e4, 3e4]}
+    one = client.post(LIMIT, query("paraboloid", {"normal_force": 1e5}, pushes)).json()
+    assert len(one["stick_radius"]) == 3
+
+
+def test_what_is_not_asked_for_is_left_out(client: Client) -> None:
+    for path, asked, default in (
+        (LIMIT, query("cone", *HELD["forces"]), {"initial_profile", "limiting_profile"}),
+        (EVOLUTION, followed("cone", resolution=8), {"profile", "pressure"}),
+    ):
+        plain = set(client.post(path, asked).json())
+        assert not plain & {"radius", "pressure", "profile", "worn_depth", "initial_profile"}
+        assert set(client.post(path, asked | {"radius": RADII}).json()) - plain == (
+            default | {"radius"}
+        )
+        chosen = client.post(path, asked | {"radius": RADII, "quantities": ["worn_depth"]}).json()
+        assert set(chosen) - plain == {"radius", "worn_depth"}
+
+
+def test_the_chosen_radii_hold_the_edges(client: Client) -> None:
+    document = client.post(LIMIT, query("cone", *HELD["forces"], points=50)).json()
+    assert {*document["stick_radius"], *document["wear_radius"]} <= set(document["radius"])
+    document = client.post(EVOLUTION, followed("cone", points=50, resolution=8)).json()
+    assert {*document["stick_radius"], *document["contact_radius"]} <= set(document["radius"])
+    assert len(document["radius"]) == len(document["profile"][1]) == 50
+
+
+def test_the_pressure_at_the_stick_edge_is_infinite(client: Client) -> None:
+    asked = query("paraboloid", *HELD["forces"], points=50, quantities=["pressure"])
+    document = client.post(LIMIT, asked).json()
+    at = document["radius"].index(document["stick_radius"][0])
+    assert [where for where, p in enumerate(document["pressure"][0]) if p is None] == [at]
+    assert "singular" in codes(document)
+
+
+def test_the_way_ends_in_the_limit(client: Client) -> None:
+    for held in ("forces", "depth and displacement"):
+        document = client.post(EVOLUTION, followed(held=held, cycles=[1e12])).json()
+        ends = client.post(LIMIT, query("paraboloid", *HELD[held])).json()
+        assert "limit_reached" in codes(document)
+        for name in ("worn_volume", "indentation_depth", "normal_force", "stick_radius"):
+            assert document[name] == pytest.approx(ends[name], rel=1e-3), name
+        assert document["contact_radius"] == pytest.approx(ends["wear_radius"], rel=1e-3)
+
+
+def test_many_radii_are_answered_in_blocks(client: Client) -> None:
+    asked = followed(held="force and displacement", resolution=8, cycles=[1e6])
+    many = client.post(EVOLUTION, asked | {"points": 5_000}).json()
+    few = many["radius"][1_990:2_010]
+    assert client.post(EVOLUTION, asked | {"radius": few}).json()["profile"] == [
+        many["profile"][0][1_990:2_010]
+    ]
+
+
+def refused(client: Client, path: str, asked: object) -> tuple[str, str]:
+    answer = client.post(path, asked)
+    assert answer.status_code == 422
+    ((error),) = answer.json()["errors"]
+    return error["pointer"], error["detail"]
+
+
+def long_table() -> dict[str, object]:
+    r = np.linspace(0.0, 2.0, SETTINGS.max_table_points)
+    return {"profile": {"kind": "tabulated", "r": r.tolist(), "f": (r * r / 4).tolist()}}
+
+
+@pytest.mark.parametrize(
+    ("more", "pointer", "way_out"),
+    [
+        ({"resolution": 96, **long_table()}, "/resolution", "a resolution of"),
+        ({"cycles": [1.0] * 5_000}, "/resolution", "numbers of cycles would fit"),
+        ({"cycles": [1.0] * 50_000}, "/cycles", "numbers of cycles would fit"),
+        (
+            {
+                "profile": {
+                    "kind": "series",
+                    "terms": [{"coefficient": 1.0, "exponent": 2.0}] * SETTINGS.max_series_terms,
+                },
+                "resolution": 96,
+                "cycles": [1.0] * 5_000,
+            },
+            "/cycles",
+            "",
+        ),
+    ],
+    ids=["resolution", "cycles", "very many cycles", "all at once"],
+)
+def test_what_takes_too_long_is_refused_with_what_would_not(
+    client: Client, more: dict[str, object], pointer: str, way_out: str
+) -> None:
+    found, detail = refused(client, EVOLUTION, followed(**more))
+    assert found == pointer
+    assert str(SETTINGS.max_evaluations) in detail
+    assert way_out in detail
+
+
+def test_what_is_said_to_fit_does(client: Client) -> None:
+    asked = followed(**long_table(), resolution=96)
+    _, detail = refused(client, EVOLUTION, asked)
+    finest = int(detail.partition("a resolution of ")[2].split()[0])
+    assert evolution.COARSEST < finest < 96
+    let_in(asked | {"resolution": finest})
+    refused(client, EVOLUTION, asked | {"resolution": finest + 1})
+    _, detail = refused(client, EVOLUTION, followed(cycles=[1.0] * 50_000))
+    most = int(detail.partition(" numbers of")[0].split()[-1])
+    let_in(followed(cycles=[1.0] * most))
+    refused(client, EVOLUTION, followed(cycles=[1.0] * (most + 1)))
+
+
+def let_in(asked: dict[str, object]) -> None:
+    """Only let it in: to follow it takes some seconds."""
+    convert.evolution_arguments(EvolutionQuery.model_validate(asked))
+
+
+def test_too_many_numbers_are_refused(client: Client) -> None:
+    radii = {"points": 1 + SETTINGS.max_numbers // 100}
+    loads = {"normal_force": [1e5] * 100}
+    asked = query("paraboloid", loads, {"tangential_force": 1e4}, **radii)
+    assert refused(client, LIMIT, asked)[0] == "/points"
+    assert refused(client, EVOLUTION, followed(cycles=[1.0] * 100, **radii))[0] == "/points"
+
+
+def test_yield_and_material_are_spoken_of_as_for_any_contact(client: Client) -> None:
+    bodies = ["rigid", {"youngs_modulus": 5e6, "poissons_ratio": 0.4}]
+    material = {"material": {"bodies": bodies, "yield_strength": 1.0}}
+    load, push = {"normal_force": 1.0}, {"tangential_force": 0.1}
+    limits = query("paraboloid", load, push) | material
+    for path, asked in (
+        (LIMIT, limits),
+        (EVOLUTION, limits | {"wear_coefficient": 1e-13, "cycles": [1.0], "resolution": 8}),
+    ):
+        assert {"elastic_similarity", "yield"} <= codes(client.post(path, asked).json())
