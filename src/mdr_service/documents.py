@@ -129,9 +129,9 @@ def wear(query: WearQuery | EvolutionQuery, solved: Worn[Any]) -> dict[str, Any]
     }
     _check_worn(query, answers, solved)
     warnings = _without_singular(solve.notices(query, result))
-    if "pressure" in solved.fields:
-        at = np.flatnonzero(np.isinf(solved.fields["pressure"]).any(axis=0))
-        warnings += [_singular("pressure", solved.radius[at])] * (at.size > 0)
+    for name, field in solved.fields.items():
+        at = solved.may_be_infinite(name) & np.isinf(np.atleast_2d(field)).any(axis=0)
+        warnings += [_singular(name, solved.radius[at])] * bool(at.any())
     document: dict[str, Any] = {name: _numbers(values) for name, values in answers.items()}
     if isinstance(result, LimitingWear):
         document["regime"] = np.broadcast_to(result.regime, (query.loads,)).tolist()
@@ -148,18 +148,18 @@ def _check_worn(
     endless = np.zeros(query.loads, dtype=bool)
     if isinstance(result, LimitingWear):
         endless |= np.ravel(result.stuck.endless)
-    by_place = np.isin(solved.radius, solved.singular_radii)
     for name, values in (*answers.items(), *solved.fields.items()):
         over = np.isinf(values)
+        if name in solved.fields:
+            over = over & ~solved.may_be_infinite(name)
         if name == "initial_profile":
             if over.any():
                 raise _overflow(name, ("radius", int(np.flatnonzero(over)[0])))
-        else:
-            over = over & ~by_place if name == "pressure" else over
-            rows = over.reshape(query.loads, -1).any(axis=1)
-            stray = np.flatnonzero(rows & ~endless if name in _ENDLESS else rows)
-            if stray.size:
-                raise _overflow(name, query.place(int(stray[0])))
+            continue
+        rows = over.reshape(query.loads, -1).any(axis=1)
+        stray = np.flatnonzero(rows & ~endless if name in _ENDLESS else rows)
+        if stray.size:
+            raise _overflow(name, query.place(int(stray[0])))
     for name, values in (*answers.items(), *solved.fields.items()):
         _require_numbers(name, values)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdr_core import fields
 from mdr_core import normal as normal_contact
@@ -25,6 +26,8 @@ _BLOCK: Final = 2_000
 _BEYOND: Final = 1.25
 
 Wear = LimitingWear | WearEvolution
+Flags = NDArray[np.bool_]
+_SHAPES: Final = frozenset({"initial_profile", "limiting_profile", "profile"})
 _Wear = TypeVar("_Wear", LimitingWear, WearEvolution)
 
 
@@ -38,11 +41,20 @@ class Worn(Generic[_Wear]):
     fields: Mapping[str, Array]
     """By load or number of cycles, and radius; but for the initial profile, by radius."""
 
-    @property
-    def singular_radii(self) -> Array:
-        """Where the pressure may truly be infinite: the tip, kinks, the stick edge."""
-        edges: Array = np.ravel(self.result.stick_radius)
-        return np.array([0.0, *map(float, profile(self.result).breaks), *edges])
+    def may_be_infinite(self, name: str) -> Flags:
+        """Return at which of the radii a field may truly be infinite.
+
+        A pressure at the tip, at kinks and at the stick edge; a shape outside a flat punch.
+        """
+        shape: Profile = profile(self.result)
+        if name == "pressure":
+            edges: Array = np.ravel(self.result.stick_radius)
+            return np.isin(self.radius, np.array([0.0, *map(float, shape.breaks), *edges]))
+        if name in _SHAPES and shape.slips_at_once:
+            return np.asarray(
+                self.radius > shape.contact_radius(np.asarray(shape.first_coordinate))
+            )
+        return np.zeros(self.radius.size, dtype=bool)
 
 
 def limit(query: WearQuery) -> Worn[LimitingWear]:

@@ -155,6 +155,21 @@ def test_the_pressure_at_the_stick_edge_is_infinite(client: Client) -> None:
     assert "singular" in codes(document)
 
 
+def test_outside_a_flat_punch_its_profile_is_infinite(client: Client) -> None:
+    radii = [0.1, 0.3, 0.4]
+    held = {"normal_force": 1e5}, {"tangential_force": 1e4}
+    for path, names, more in (
+        (LIMIT, ("initial_profile", "limiting_profile"), {}),
+        (EVOLUTION, ("profile",), {"wear_coefficient": 1e-13, "cycles": [1.0]}),
+    ):
+        answer = client.post(path, query("flat_punch", *held, radius=radii, **more))
+        document = answer.json()
+        for name in names:
+            assert np.ravel(document[name]).tolist() == [0.0, 0.0, None]
+            said = f"{name} is infinite at radius 0.4"
+            assert said in {each["message"] for each in document["warnings"]}
+
+
 def test_the_way_ends_in_the_limit(client: Client) -> None:
     for held in ("forces", "depth and displacement"):
         document = client.post(EVOLUTION, followed(held=held, cycles=[1e12])).json()

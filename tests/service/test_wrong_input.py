@@ -187,6 +187,28 @@ def at_the_end(*ways: str, more: str = ', "friction_coefficient": 0.3') -> bytes
     return f'{{"profile": {BALL}, "material": {SHEARED}, {asked}{more}{"".join(ways)}}}'.encode()
 
 
+def worn(
+    load: str = FORCE,
+    oscillation: str = PUSH,
+    more: str = "",
+    profile: str = BALL,
+    material: str = SHEARED,
+) -> bytes:
+    friction = ', "friction_coefficient": 0.3'
+    return query(profile, material, load, f'{friction}, "oscillation": {oscillation}{more}')
+
+
+def fretted(
+    load: str = FORCE,
+    oscillation: str = PUSH,
+    more: str = "",
+    cycles: str = "[1, 2]",
+    coefficient: str = "1e-14",
+) -> bytes:
+    over = f', "cycles": {cycles}, "wear_coefficient": {coefficient}'
+    return worn(load, oscillation, over + more)
+
+
 PUSHES = "/history/tangential/tangential_force"
 POINTED_ELSEWHERE = {
     # friction
@@ -474,6 +496,166 @@ POINTED_ELSEWHERE = {
         "stress",
         at_the_end(way(tangential='{"tangential_force": [0, 0.61]}')),
         f"{PUSHES}/1",
+    ),
+    # wear
+    "wear by a contact radius": ("wear", worn('{"contact_radius": 1}'), "/load/contact_radius"),
+    "wear under two loads": (
+        "wear",
+        worn('{"normal_force": 1, "indentation_depth": 1}'),
+        "/load",
+    ),
+    "wear under no load": ("wear", worn("{}"), "/load"),
+    "wear by two amplitudes": (
+        "wear",
+        worn(oscillation='{"tangential_force": 1, "tangential_displacement": 1}'),
+        "/oscillation",
+    ),
+    "wear by no amplitude": ("wear", worn(oscillation="{}"), "/oscillation"),
+    "wear by a stick radius": (
+        "wear",
+        worn(oscillation='{"stick_radius": 1e-6}'),
+        "/oscillation/stick_radius",
+    ),
+    "wear without a shear modulus": ("wear", worn(material=MODULUS), "/material/g_star"),
+    "wear without friction": (
+        "wear",
+        worn().replace(b'"friction_coefficient": 0.3, ', b""),
+        "/friction_coefficient",
+    ),
+    "a negative amplitude": (
+        "wear",
+        worn(oscillation='{"tangential_force": -0.1}'),
+        "/oscillation/tangential_force",
+    ),
+    "a negative amplitude in a list": (
+        "wear",
+        worn(oscillation='{"tangential_force": [0, -0.1]}'),
+        "/oscillation/tangential_force/1",
+    ),
+    "an amplitude of NaN": (
+        "wear",
+        worn(oscillation='{"tangential_displacement": [0, NaN]}'),
+        "/oscillation/tangential_displacement/1",
+    ),
+    "an amplitude beyond friction": (
+        "wear",
+        worn(oscillation='{"tangential_force": 0.31}'),
+        "/oscillation/tangential_force",
+    ),
+    "an amplitude beyond friction in a list": (
+        "wear",
+        worn(oscillation='{"tangential_force": [0.2, 0.31]}'),
+        "/oscillation/tangential_force/1",
+    ),
+    "a force that a held depth does not carry": (
+        "wear",
+        worn('{"indentation_depth": 1e-6}', '{"tangential_force": 0.39}'),
+        "/oscillation/tangential_force",
+    ),
+    "two amplitudes for three loads": (
+        "wear",
+        worn('{"normal_force": [1, 1, 1]}', '{"tangential_force": [0, 0.1]}'),
+        "/oscillation/tangential_force",
+    ),
+    "a load to wear without digits": (
+        "wear",
+        worn('{"normal_force": 1e-300}'),
+        "/load/normal_force",
+    ),
+    "wear past the end of a table": (
+        "wear",
+        worn(
+            '{"indentation_depth": [0.1, 7.5]}',
+            '{"tangential_displacement": 1}',
+            profile=table("[0, 1, 2]", "[0, 1, 4]"),
+        ),
+        "/load/indentation_depth/1",
+    ),
+    "a radius past the end of a table": (
+        "wear",
+        worn(more=', "radius": [1, 3]', profile=table("[0, 1, 2]", "[0, 1, 4]")),
+        "/radius/1",
+    ),
+    "wear at radii twice": ("wear", worn(more=', "radius": [0], "points": 9'), "/points"),
+    "wear over no radii": ("wear", worn(more=', "quantities": ["pressure"]'), "/radius"),
+    "wear at a negative radius": ("wear", worn(more=', "radius": [-1]'), "/radius/0"),
+    "a field that no limit has": (
+        "wear",
+        worn(more=', "radius": [0], "quantities": ["profile"]'),
+        "/quantities/0",
+    ),
+    "a field of wear twice": (
+        "wear",
+        worn(more=', "radius": [0], "quantities": ["pressure", "pressure"]'),
+        "/quantities",
+    ),
+    "fewer points than edges": ("wear", worn(more=', "points": 3'), "/points"),
+    # wear over the cycles
+    "cycles under many loads": (
+        "wear/evolution",
+        fretted('{"normal_force": [1, 2]}'),
+        "/load/normal_force",
+    ),
+    "cycles by many amplitudes": (
+        "wear/evolution",
+        fretted(oscillation='{"tangential_force": [0.1, 0.2]}'),
+        "/oscillation/tangential_force",
+    ),
+    "cycles by a contact radius": (
+        "wear/evolution",
+        fretted('{"contact_radius": 1}'),
+        "/load/contact_radius",
+    ),
+    "cycles by two controls": (
+        "wear/evolution",
+        fretted('{"normal_force": 1, "indentation_depth": 1}'),
+        "/load",
+    ),
+    "a negative wear coefficient": (
+        "wear/evolution",
+        fretted(coefficient="-1e-14"),
+        "/wear_coefficient",
+    ),
+    "no wear coefficient": ("wear/evolution", worn(more=', "cycles": [1]'), "/wear_coefficient"),
+    "no numbers of cycles": ("wear/evolution", fretted(cycles="[]"), "/cycles"),
+    "cycles that are no list": ("wear/evolution", fretted(cycles="1"), "/cycles"),
+    "cycles of NaN": ("wear/evolution", fretted(cycles="[1, NaN]"), "/cycles/1"),
+    "negative cycles": ("wear/evolution", fretted(cycles="[-1, 1]"), "/cycles/0"),
+    "cycles that fall": ("wear/evolution", fretted(cycles="[1, 3, 2]"), "/cycles/2"),
+    "very many cycles": ("wear/evolution", fretted(cycles="[1, 1.1e12]"), "/cycles/1"),
+    "too many numbers of cycles": (
+        "wear/evolution",
+        fretted(cycles=f"[{'1,' * SETTINGS.max_samples}1]"),
+        "/cycles",
+    ),
+    "cycles that slide as a whole": (
+        "wear/evolution",
+        fretted(oscillation='{"tangential_displacement": 1}'),
+        "/oscillation/tangential_displacement",
+    ),
+    "cycles beyond friction": (
+        "wear/evolution",
+        fretted(oscillation='{"tangential_force": 0.31}'),
+        "/oscillation/tangential_force",
+    ),
+    "cycles of a force at a held depth": (
+        "wear/evolution",
+        fretted('{"indentation_depth": 1e-6}'),
+        "/oscillation/tangential_force",
+    ),
+    "cycles without an amplitude": (
+        "wear/evolution",
+        fretted(oscillation='{"tangential_force": 0}'),
+        "/oscillation/tangential_force",
+    ),
+    "too coarse": ("wear/evolution", fretted(more=', "resolution": 7'), "/resolution"),
+    "too fine": ("wear/evolution", fretted(more=', "resolution": 97'), "/resolution"),
+    "half a node": ("wear/evolution", fretted(more=', "resolution": 8.5'), "/resolution"),
+    "too exact": ("wear/evolution", fretted(more=', "rtol": 1e-11'), "/rtol"),
+    "the limit on the way": (
+        "wear/evolution",
+        fretted(more=', "radius": [0], "quantities": ["limiting_profile"]'),
+        "/quantities/0",
     ),
     # fields
     "neither a load nor a history": (

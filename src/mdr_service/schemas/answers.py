@@ -161,20 +161,21 @@ class WearAnswer(Known):
         description="Whether nothing, the rim or all of the contact slips, and so wears."
     )
     radius: list[float] = quantity("length", "The radii r, as asked for or chosen", default=None)
-    initial_profile: list[float] = quantity(
-        "length", "Profile f₀(r) before any wear, by radius: the same for all loads", default=None
+    initial_profile: list[float | None] = quantity(
+        "length",
+        "Profile f₀(r) before any wear, by radius: the same for all loads; null outside a flat "
+        "punch, where it is infinite, with a warning `singular`",
+        default=None,
     )
     limiting_profile: _Field = _field(
-        "length", "Profile f(r) in the limit; null where the wear has no end"
+        "length",
+        "Profile f(r) in the limit; null where the wear has no end, and outside a flat punch",
     )
     worn_depth: _Field = _field("length", "f(r) − f₀(r); null where the wear has no end")
     pressure: _Field = _field(
         "pressure",
         "Pressure p(r) in the limit; null where infinite, at c, with a warning `singular`",
     )
-
-
-_ByCycle = list[list[float]]
 
 
 class EvolutionAnswer(Known):
@@ -196,10 +197,13 @@ class EvolutionAnswer(Known):
         "force*length", "Energy dissipated by slip in all cycles so far"
     )
     radius: list[float] = quantity("length", "The radii r, as asked for or chosen", default=None)
-    profile: _ByCycle = quantity(
-        "length", "Worn profile f(r), by number of cycles and radius", default=None
+    profile: _Field = quantity(
+        "length",
+        "Worn profile f(r), by number of cycles and radius; null outside a flat punch, where it "
+        "is infinite, with a warning `singular`",
+        default=None,
     )
-    worn_depth: _ByCycle = quantity(
+    worn_depth: list[list[float]] = quantity(
         "length", "f(r) − f₀(r), by number of cycles and radius", default=None
     )
     pressure: _Field = quantity(
