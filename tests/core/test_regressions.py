@@ -4,8 +4,9 @@ import threading
 
 import numpy as np
 import pytest
+from scipy.special import gamma
 
-from mdr_core import foundation, normal, profiles, tangential
+from mdr_core import fields, foundation, normal, profiles, tangential
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 
@@ -230,3 +231,14 @@ def test_a_table_with_a_sharp_flat_keeps_the_smallest_loads(force: float) -> Non
     a = np.hypot(0.5, s)
     assert 0.3 * (a * a * phi + 0.5 * s) == pytest.approx(force, rel=1e-13)
     assert float(found.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13)
+
+
+def test_the_traction_of_a_power_near_its_axis_is_that_on_it() -> None:
+    """The square of such a radius is no double; the kernel no longer changes there."""
+    contact = normal.solve(profiles.Power(1.0, 1.7), 1.0, contact_radius=1.0)
+    sideways = tangential.solve(contact, 1.0, 0.3, stick_radius=0.5)
+    found = fields.shear_stress(sideways, [0.0, 1e-300, 1e-236, 1e-120, 1e-90])
+    # Eq. (5.70) at r = 0: (mu E* n kappa C/pi) (1 - c^(n - 1))/(n - 1).
+    n, kappa = 1.7, float(np.sqrt(np.pi) * gamma(1.85) / gamma(1.35))
+    expected = 0.3 * n * kappa / np.pi * (1 - 0.5 ** (n - 1)) / (n - 1)
+    np.testing.assert_allclose(found, expected, rtol=1e-13)

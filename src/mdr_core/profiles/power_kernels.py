@@ -13,6 +13,8 @@ from mdr_core.typing import Array, Indices, Parameter
 
 _TINY: Final = 1e-290
 _HUGE: Final = 1e290
+# So small a part of the stick radius is the axis to it: its square is far below rounding.
+_INMOST: Final = 1e-100
 
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
@@ -121,6 +123,9 @@ def power_moment(
     if m == 1:
         return root_step(a, r, width, inner) / a
     on_axis = r == 0
+    if width is not None:
+        # So far inside c the radius changes nothing, and its square leaves the range of doubles.
+        on_axis = on_axis | (r < _INMOST * (a - width if inner is None else inner))
     safe = np.where(on_axis, a, r)
     ratio = safe / a
     top = np.sqrt((a - safe) * (a + safe)) / safe
