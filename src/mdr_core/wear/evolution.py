@@ -184,6 +184,10 @@ class WearEvolution:
         Of the worn depth and of the profile relative to the depth d. It is the difference to a
         run on fewer nodes with a looser integrator, and what rounding leaves. The pressure's
         narrow peak at the stick edge is not resolved to this accuracy.
+
+        Raises
+        ------
+        AccuracyError : the two runs have little in common; a bound on that says nothing.
         """
         if self.course is None:
             return self.scene.sideways.error_estimate
@@ -197,7 +201,13 @@ class WearEvolution:
             mine, theirs = getattr(self, name), getattr(other, name)
             found.append(np.abs(mine - theirs) / np.where(mine > 0, mine, 1.0))
         rounding = _EPS * float(depth[0]) / self.scene.depth_unit * self.resolution**2
-        return _SAFETY * float(np.max(found)) + 10 * self.rtol + rounding
+        estimate = _SAFETY * float(np.max(found)) + 10 * self.rtol + rounding
+        if estimate > _UNRESOLVED:
+            raise AccuracyError(
+                "the worn annulus is not resolved: ask for a finer resolution, or for an "
+                "amplitude further from full slip"
+            )
+        return estimate
 
     @property
     def method(self) -> str:
@@ -220,6 +230,8 @@ class WearEvolution:
         return tuple(found)
 
 
+# Beyond such an estimate neither of its two runs is near the truth.
+_UNRESOLVED: Final = 0.1
 _SCALARS: Final = (
     "worn_volume",
     "indentation_depth",
