@@ -8,11 +8,13 @@ from hypothesis import strategies as st
 
 from mdr_service.problems import MEDIA_TYPE
 from mdr_service.schemas.answers import (
+    EvolutionAnswer,
     HistoryAnswer,
     Known,
     NormalAnswer,
     StressAnswer,
     TangentialAnswer,
+    WearAnswer,
 )
 from mdr_service.schemas.quantities import LARGEST, SMALLEST, SMALLEST_LOAD
 from tests.conftest import Client
@@ -191,13 +193,57 @@ ENDS = st.builds(
 )
 
 
+HELD = st.sampled_from(["indentation_depth", "normal_force"])
+AMPLITUDE = st.sampled_from(["tangential_displacement", "tangential_force"])
+MANY = LOADS | st.lists(LOADS, min_size=1, max_size=4)
+# Powers whose contacts have a radius with digits for its cube.
+ORDINARY_POWERS = st.fixed_dictionaries(
+    {"kind": st.just("power"), "coefficient": st.floats(1e-3, 1e3), "exponent": st.floats(0.5, 20)}
+)
+WEARING = {"profile": simple() | tables() | ORDINARY_POWERS, "rtol": st.just(1e-3)} | {
+    name: FRICTION[name] for name in ("material", "friction_coefficient")
+}
+LIMITS = st.builds(
+    lambda query, places, names: query | places | ({"quantities": names} if places else {}),
+    st.fixed_dictionaries(
+        WEARING
+        | {
+            "load": st.dictionaries(HELD, MANY, min_size=1, max_size=1),
+            "oscillation": st.dictionaries(AMPLITUDE, MANY, min_size=1, max_size=1),
+        }
+    ),
+    st.just({}) | PLACES,
+    quantities(["initial_profile", "limiting_profile", "worn_depth", "pressure"]),
+)
+
+
+@st.composite
+def ways_to_wear(draw: st.DrawFn) -> dict[str, object]:
+    """Queries of which many slip in part: by a share of the friction, or by any displacement.
+
+    Without those whose stick edge moves: less than its radius' last digit is not followed.
+    """
+    query = draw(st.fixed_dictionaries(WEARING | {"wear_coefficient": LENGTHS}))
+    held, load = draw(HELD), draw(LOADS)
+    if held == "normal_force":
+        push = draw(st.floats(0.0, 1.0)) * load * query["friction_coefficient"]
+        query["oscillation"] = {"tangential_force": min(LARGEST, max(SMALLEST, push))}
+    else:
+        displacement = draw(LENGTHS | st.floats(SMALLEST, 1e-9))
+        query["oscillation"] = {"tangential_displacement": displacement}
+    cycles = sorted(draw(st.lists(st.just(0.0) | st.floats(1e-3, 1e12), min_size=1, max_size=3)))
+    places = draw(st.just({}) | PLACES)
+    return query | {"load": {held: load}, "cycles": cycles, "resolution": 8} | places
+
+
 def check(client: Client, path: str, query: object, model: type[Known]) -> None:
     answer = client.post(path, query)
     document = strict_json.loads(answer.content)
     assert isinstance(document, dict)
     if answer.status_code == 200:
         told = model.model_validate_json(answer.content)
-        singular = any(warning.code == "singular" for warning in told.warnings)
+        infinite = {"singular", "endless_wear"}
+        singular = any(warning.code in infinite for warning in told.warnings)
         assert singular == (b"null" in answer.content)
     else:
         assert answer.status_code == 422, answer.text
@@ -250,3 +296,15 @@ def test_a_stress_query_of_an_end_within_the_schema(
     client: Client, query: dict[str, object]
 ) -> None:
     check(client, "/v1/stress", query, StressAnswer)
+
+
+@many
+@given(query=LIMITS)
+def test_a_limit_of_wear_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/wear", query, WearAnswer)
+
+
+@partial(many, examples=100)
+@given(query=ways_to_wear())
+def test_wear_over_the_cycles_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/wear/evolution", query, EvolutionAnswer)
