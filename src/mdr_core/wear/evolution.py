@@ -231,7 +231,7 @@ class WearEvolution:
 
 
 # Beyond such an estimate neither of its two runs is near the truth.
-_UNRESOLVED: Final = 0.1
+_UNRESOLVED: Final = 0.25
 _SCALARS: Final = (
     "worn_volume",
     "indentation_depth",
