@@ -236,6 +236,28 @@ def ways_to_wear(draw: st.DrawFn) -> dict[str, object]:
     return query | {"load": {held: load}, "cycles": cycles, "resolution": 8} | places
 
 
+@st.composite
+def partial_slips(draw: st.DrawFn) -> dict[str, object]:
+    """Queries that slip in part, of ordinary bodies: these are followed to the last cycle."""
+    size = st.floats(0.1, 10)
+    kind = draw(st.sampled_from(["cone", "paraboloid", "rounded_punch", "hyperboloid"]))
+    force, friction = draw(size), draw(st.floats(0.1, 1))
+    push = draw(st.floats(0.05, 0.95)) * friction * force
+    cycles = sorted(draw(st.lists(st.just(0.0) | st.floats(1, 1e12), min_size=1, max_size=3)))
+    return {
+        "profile": {"kind": kind} | {name: draw(size) for name in PARAMETERS[kind]},
+        "material": {"e_star": draw(size), "g_star": draw(size)},
+        "friction_coefficient": friction,
+        "load": {"normal_force": force},
+        "oscillation": {"tangential_force": push},
+        "wear_coefficient": draw(st.floats(1e-9, 1)),
+        "cycles": cycles,
+        "resolution": 8,
+        "rtol": 1e-3,
+        "radius": draw(st.lists(st.just(0.0) | size, min_size=1, max_size=8)),
+    }
+
+
 def check(client: Client, path: str, query: object, model: type[Known]) -> None:
     answer = client.post(path, query)
     document = strict_json.loads(answer.content)
@@ -307,4 +329,12 @@ def test_a_limit_of_wear_within_the_schema(client: Client, query: dict[str, obje
 @partial(many, examples=100)
 @given(query=ways_to_wear())
 def test_wear_over_the_cycles_within_the_schema(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/wear/evolution", query, EvolutionAnswer)
+
+
+@partial(many, examples=40)
+@given(query=partial_slips())
+def test_ordinary_bodies_are_followed(client: Client, query: dict[str, object]) -> None:
+    answer = client.post("/v1/wear/evolution", query)
+    assert answer.status_code == 200
     check(client, "/v1/wear/evolution", query, EvolutionAnswer)
