@@ -115,8 +115,9 @@ def _radii(solved: Stress, index: int) -> list[tuple[float, str]]:
     """Return the radii of one load that mean something, with their symbols."""
     found = [(float(b), "b") for b in solved.contact.profile.breaks[:_MOST_LINES]]
     found.append((_one(solved.contact.contact_radius, index), "a"))
-    fronts = solved.fronts
-    found += [(c, "c") for c in fronts[index if len(fronts) > 1 else 0, :_MOST_LINES].tolist()]
+    fronts = solved.fronts[index if len(solved.fronts) > 1 else 0]
+    if fronts.size <= _MOST_LINES:
+        found += [(c, "c") for c in fronts.tolist()]
     return [(r, symbol) for r, symbol in found if r > 0]
 
 
