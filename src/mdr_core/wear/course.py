@@ -19,6 +19,8 @@ _DECADE = 10.0
 
 # Cycles nearer than this part to their goal have reached it: no step is so short.
 _SPAN = 1e-9
+# Scaled cycles below which the integrator's first step is no double.
+_FIRST = 1e-100
 # Some times what the finest resolution takes at the tightest tolerance in use.
 _MOST_CALLS = 40_000
 
@@ -109,6 +111,8 @@ class _Run:
 
     def to(self, goal: float) -> Array:
         """Go on to the goal and return the state there."""
+        if 0 < goal < _FIRST:
+            raise AccuracyError("so few cycles wear less than the integrator can tell from none")
         while goal - self.now > _SPAN * goal and isinf(self.settled) and isinf(self.left):
             # What little has worn after few cycles is to have digits of its own.
             end = min(goal, _DECADE * self.now) if 0 < self.now < 1 else goal

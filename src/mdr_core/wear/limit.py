@@ -19,6 +19,7 @@ from mdr_core.wear import shape, stick
 from mdr_core.wear.rim import Rim
 
 _NAMES: Final = ("tangential_displacement", "tangential_force")
+_RANGE: Final = 1e90
 # The grid goes on outside the worn rim up to so many times its radius.
 _BEYOND: Final = 1.25
 _SAID: Final = {
@@ -313,6 +314,7 @@ def solve(
         raise InputError(("oscillation",), f"exactly one of {', '.join(_NAMES)} is needed")
     name, size = named[0][0], np.asarray(named[0][1], dtype=float)
     _require_amplitude(name, size)
+    _require_range(contact)
     first = stick.first_slip(contact, g_star, friction_coefficient, name, size)
     result = LimitingWear(first, name, stick.find(first, name, size))
     _require_room(result)
@@ -322,6 +324,17 @@ def solve(
 def _parameters(profile: Profile) -> list[Any]:
     values = [getattr(profile, name) for name in getattr(profile, "__match_args__", ())]
     return [value for value in values if isinstance(value, np.ndarray)]
+
+
+def _require_range(contact: NormalContact) -> None:
+    """Refuse contacts whose square or cube, and with it the rim's integrals, is no double."""
+    radius = np.asarray(contact.contact_radius)
+    beyond = (radius > 0) & ~((radius > 1 / _RANGE) & (radius < _RANGE))
+    if beyond.any():
+        raise InputError(
+            ("load", contact.control, *first_index(beyond)),
+            "the rim that wears under this load leaves the range of double precision",
+        )
 
 
 def _require_amplitude(name: str, size: Array) -> None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.errors import AccuracyError
 from mdr_core.lazy import cached_property
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps
@@ -72,7 +73,10 @@ class Outside:
 
     @property
     def _range(self) -> float:
-        return 1 / self.start - 1 / self.stop
+        length = 1 / self.start - 1 / self.stop
+        if not length > 0:
+            raise AccuracyError("the slip annulus is narrower than the rounding of its radius")
+        return length
 
     @cached_property
     def _inverse(self) -> Array:
