@@ -25,7 +25,9 @@ _BLOCK: Final = 16_384
 # Pieces of a curved stretch, at first and at most, and how many steps they may be in all.
 _FEWEST: Final = 16
 _MOST: Final = 16_384
-_MOST_STEPS: Final = 2_000_000
+_MOST_STEPS: Final = 300_000
+# A step on a body whose depth has no closed inverse costs some ten times as much.
+_DEARER: Final = 10
 # Rounding of the sums over the branches, in units of the profile's own.
 _SUMS: Final = 40.0
 
@@ -138,7 +140,7 @@ class History:
             chain = self._in_depths(chain)
         elif self.path.by_force:
             chain = memory.gap(min(float(self.indentation_depth[-1]), 0.0), 0.0)
-        return replace(self.start, chain=chain)
+        return replace(self.start, chain=chain, chords=bool(self.path.curved.any()))
 
     @property
     def slip_fronts(self) -> Array:
@@ -315,7 +317,8 @@ def solve(
         walked = path.steps(way, profile, e_star, scale, pieces)
         return History(way, start, walked, rtol)
 
-    return _refine(way, follow, rtol) if way.curved.any() else follow(1)
+    closed = profile.coordinate_from_depth(np.zeros(1)) is not None
+    return _refine(way, follow, rtol, closed=closed) if way.curved.any() else follow(1)
 
 
 def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]:
@@ -337,18 +340,21 @@ def _require_reach(start: State, way: Path) -> None:
         raise InputError(at, error.detail) from None
 
 
-def _refine(way: Path, follow: Callable[[int], History], rtol: float) -> History:
+def _refine(way: Path, follow: Callable[[int], History], rtol: float, *, closed: bool) -> History:
     """Halve the steps on curved stretches until they move the answers less than rtol.
 
     Chords leave an error that falls with the square of their length, which two lengths tell; what
     is left beyond it falls at least as fast, so that the last change exceeds it.
     """
-    most = min(_MOST, max(_MOST_STEPS // int(way.curved.sum()), 4 * _FEWEST))
+    steps = _MOST_STEPS if closed else _MOST_STEPS // _DEARER
+    most = min(_MOST, max(steps // int(way.curved.sum()), 4 * _FEWEST))
     pieces, rough, found = 2 * _FEWEST, follow(_FEWEST), follow(2 * _FEWEST)
     found = replace(found, coarser=rough)
-    moved = np.inf
-    while pieces < most and moved > rtol:
+    moved, before = np.inf, np.inf
+    # Where rounding is all that moves, shorter steps do not help.
+    while pieces < most and moved > rtol and (moved < before or moved == np.inf):
         pieces *= 2
+        before = moved
         finer = replace(follow(pieces), coarser=replace(found, coarser=None))
         moved = max(_distance(*pair) for pair in zip(_moving(found), _moving(finer), strict=True))
         found = finer

@@ -1,6 +1,7 @@
 """What a contact remembers: the anchors of its springs, and one straight step on from there."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from mdr_core.history.memory import Chain
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
+
+# Slopes of neighbouring chords differ by less, those of different branches by more.
+_CHORD: Final = 0.02
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,8 @@ class State:
     g_star: float
     friction_coefficient: float
     chain: Chain
+    chords: bool = False
+    """A curved way was followed in chords: not every vertex is a front."""
 
     @property
     def compliance(self) -> float:
@@ -94,7 +100,8 @@ class State:
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
         if self.profile.slips_at_once:
             return np.zeros(0)
-        return self.profile.contact_radius(self.coordinate[1:-1])
+        fronts = self.profile.contact_radius(self.coordinate[1:-1])
+        return fronts[np.abs(np.diff(self.slope)) > _CHORD] if self.chords else fronts
 
     @property
     def tangential_force(self) -> float:
@@ -156,4 +163,4 @@ def advance(state: State, indentation_depth: float, tangential_displacement: flo
         raise InputError(("history",), "must be finite")
     coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
     tree = memory.walk(state.chain, depth, shift / state.compliance, np.zeros(1, dtype=np.intp))
-    return State(state.profile, state.e_star, state.g_star, state.friction_coefficient, tree.end)
+    return replace(state, chain=tree.end)
