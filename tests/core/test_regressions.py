@@ -242,3 +242,18 @@ def test_the_traction_of_a_power_near_its_axis_is_that_on_it() -> None:
     n, kappa = 1.7, float(np.sqrt(np.pi) * gamma(1.85) / gamma(1.35))
     expected = 0.3 * n * kappa / np.pi * (1 - 0.5 ** (n - 1)) / (n - 1)
     np.testing.assert_allclose(found, expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize("ratio", [2e8, 1e18])
+def test_a_surface_far_away_feels_a_point_force(ratio: float) -> None:
+    """F_N/(pi E* r): the next term is (a/r)^2; rounding once carried nodes past the equator."""
+    contact = normal.solve(profiles.Ellipsoid(1e-10, 2.6), 3.0, indentation_depth=1e-9)
+    r = ratio * float(contact.contact_radius)
+    found = float(fields.normal_displacement(contact, [r])[0])
+    assert found == pytest.approx(float(contact.normal_force) / (3.0 * np.pi * r), rel=1e-13)
+
+
+def test_a_series_without_a_coefficient_that_holds_is_refused() -> None:
+    series = profiles.Series((profiles.PowerTerm(5e-324, 2.0),))
+    with pytest.raises(InputError, match="leaves the range"):
+        normal.solve(series, 1.0, indentation_depth=1.0)

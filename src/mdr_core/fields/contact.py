@@ -17,6 +17,7 @@ from mdr_core.typing import Array
 
 # The grid goes on outside the contact up to so many times its radius.
 BEYOND: Final = 1.5
+_FAR: Final = 1e8
 
 
 @dataclass(frozen=True)
@@ -134,11 +135,15 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
             inside = r <= load.a
             result = np.empty(r.shape)
             result[inside] = depth - load.profile.f(r[inside])
-            outer = r[~inside]
-            if outer.size:
-                result[~inside] = load.profile.outer_displacement(
-                    np.full(outer.shape, load.a), outer, rtol, depth
-                )
+            far = r > _FAR * load.a
+            outer = ~(inside | far)
+            if outer.any():
+                edge = np.full(int(outer.sum()), load.a)
+                result[outer] = load.profile.outer_displacement(edge, r[outer], rtol, depth)
+            if far.any():
+                # The contact is a point to them: the next term is (a/r)^2, below rounding.
+                force = load.profile.reduced_force(np.asarray(load.coordinate))
+                result[far] = force / (np.pi * r[far])
             return result
 
         return values

@@ -146,8 +146,10 @@ class Series(Profile):
 
         A load beyond the profile's end is refused for that, not here.
         """
-        depth = tuple((c * float(kappa(n)), n) for c, n in self._powers)
-        force = tuple((c * 2 * n / (n + 1), n + 1) for c, n in depth)
+        depth = _without_zeros((c * float(kappa(n)), n) for c, n in self._powers)
+        force = _without_zeros((c * 2 * n / (n + 1), n + 1) for c, n in depth)
+        if not force:
+            return inf, inf
         last = min(log(self.domain), _LOG_FARTHEST) if self.domain < inf else _LOG_FARTHEST
         low = max(_log_radius_of(part, log(SMALLEST_HELD), last) for part in (depth, force))
         high = min(_log_radius_of(part, log(LARGEST_HELD), last) for part in (depth, force))
@@ -245,6 +247,11 @@ def _log_radius_of(powers: tuple[tuple[float, float], ...], goal: float, last: f
     if excess(-_LOG_FARTHEST) >= 0:
         return -_LOG_FARTHEST
     return float(brentq(excess, -_LOG_FARTHEST, last, xtol=1e-6))
+
+
+def _without_zeros(powers: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """The terms whose coefficient has not sunk below the smallest double."""
+    return tuple((c, e) for c, e in powers if c != 0)
 
 
 def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
