@@ -70,8 +70,7 @@ class HistoryAnswer(Known):
     slip_fronts: list[float] = quantity(
         "length",
         "Radii inside the contact, ascending, between which the load of the foundation goes "
-        "another way: what the contact remembers at the end; on ways that are not straight also "
-        "the ends of the short pieces that they are followed by",
+        "another way: what the contact remembers at the end",
     )
     energy_per_cycle: list[float] = quantity(
         "force*length", "Energy dissipated in each cycle, the area of its loop", default=None
