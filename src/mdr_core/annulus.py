@@ -272,13 +272,19 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
         run = np.where(half > 0, 2 * v * half * profile.radius_slope(s), 0.0)
     piece = (rise * weights).sum(axis=-1)
     # Rows run from the contact's edge inwards.
-    above = np.cumsum(piece, axis=0) - piece
-    inside = piece.sum(axis=0) - above - piece
+    above = _before(piece)
+    # Summed from its own side: most of the rise may lie above.
+    inside = _before(piece[::-1])[::-1]
     climbed = (rise[..., None, :] * _cumulative(_MOMENT_POINTS)).sum(axis=-1)
     to_edge = above[..., None] + (piece[..., None] - climbed)
     to_stick = inside[..., None] + climbed
     rows = (to_edge * to_stick * run * weights).sum(axis=-1)
     return _summed(np.ones(len(rows)), rows)
+
+
+def _before(rows: Array) -> Array:
+    """Sum of the rows before each."""
+    return np.concatenate([np.zeros_like(rows[:1]), np.cumsum(rows[:-1], axis=0)])
 
 
 @lru_cache(maxsize=4)

@@ -2,6 +2,7 @@
 
 import threading
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.special import gamma
@@ -257,3 +258,22 @@ def test_a_series_without_a_coefficient_that_holds_is_refused() -> None:
     series = profiles.Series((profiles.PowerTerm(5e-324, 2.0),))
     with pytest.raises(InputError, match="leaves the range"):
         normal.solve(series, 1.0, indentation_depth=1.0)
+
+
+def test_the_loss_keeps_its_digits_where_a_steep_flank_carries_most_of_the_rise() -> None:
+    """int_c^a (g(a) - g)(g - g(c)) dx of a cap 1e10 times flatter than its flank, by mpmath."""
+    b, flat, steep = 0.01, 1e8, 0.01
+    contact = normal.solve(profiles.CappedParaboloid(b, flat, steep), 1.0, contact_radius=0.02)
+    c = b * (1 - 1e-3)
+    lost = tangential.solve(contact, 1.0, 0.3, stick_radius=c).dissipated_energy
+    with mpmath.workdps(40):
+        edge = mpmath.mpf(b)
+
+        def g(x: mpmath.mpf) -> mpmath.mpf:
+            beyond = x * mpmath.sqrt(x * x - edge**2) if x > edge else mpmath.mpf(0)
+            return x * x / flat + (1 / mpmath.mpf(steep) - 1 / mpmath.mpf(flat)) * beyond
+
+        low, high = mpmath.mpf(c), mpmath.mpf(0.02)
+        moment = mpmath.quad(lambda x: (g(high) - g(x)) * (g(x) - g(low)), [low, edge, high])
+        expected = float(2 * mpmath.mpf(0.3) ** 2 * moment)
+    assert float(lost) == pytest.approx(expected, rel=1e-12)
