@@ -39,5 +39,8 @@ def test_compiled_and_read_give_the_same_digits(
 
 
 def arrays(result: object) -> dict[str, np.ndarray]:
-    named = result._asdict() if isinstance(result, tuple) else vars(result)
+    if isinstance(result, tuple):
+        tree, pieces = result
+        return arrays(tree) | pieces._asdict()
+    named = vars(result)
     return {name: part for name, part in named.items() if isinstance(part, np.ndarray)}

@@ -111,9 +111,9 @@ def walk(chain: Chain, level: Array, shift: Array, leg: Indices) -> Tree:
     return _walk(chain, level, shift, leg, record=False)[0]
 
 
-def slips(chain: Chain, level: Array, shift: Array, leg: Indices) -> Pieces:
-    """Return what slipped on the same way, in the order of the steps."""
-    return _walk(chain, level, shift, leg, record=True)[1]
+def slips(chain: Chain, level: Array, shift: Array, leg: Indices) -> tuple[Tree, Pieces]:
+    """Return the same, and what slipped on the way, in the order of the steps."""
+    return _walk(chain, level, shift, leg, record=True)
 
 
 def total(tree: Tree, increment: Array) -> Array:

@@ -134,8 +134,8 @@ class History:
     def state(self) -> State:
         """What the contact remembers at the end."""
         chain = self.start.chain
-        for part, begin in self._blocks():
-            chain = memory.walk(begin, *self._walked(part)).end
+        for _, walked in self._blocks():
+            chain = memory.walk(chain, *walked).end
         if self.path.by_force and len(chain.forward) > 1:
             chain = self._in_depths(chain)
         elif self.path.by_force:
@@ -181,24 +181,18 @@ class History:
     def _force_scale(self) -> float:
         return self.start.friction_coefficient * self.start.e_star
 
-    def _walked(self, part: slice) -> tuple[Array, Array, Indices]:
-        return self.steps.level[part], self.steps.shift[part], self.steps.leg[part]
-
-    def _blocks(self) -> Iterator[tuple[slice, Chain]]:
-        """Blocks of steps, each with the memory at its start."""
-        chain = self.start.chain
-        for begin in range(0, self.steps.level.size, _BLOCK):
+    def _blocks(self) -> Iterator[tuple[slice, tuple[Array, Array, Indices]]]:
+        """Blocks of steps: their place, levels, shifts and legs."""
+        steps = self.steps
+        for begin in range(0, steps.level.size, _BLOCK):
             part = slice(begin, begin + _BLOCK)
-            yield part, chain
-            if part.stop < self.steps.level.size:
-                chain = memory.walk(chain, *self._walked(part)).end
+            yield part, (steps.level[part], steps.shift[part], steps.leg[part])
 
     def _tops(self) -> Iterator[tuple[slice, Tree, Indices]]:
         """For each block the samples in it, the vertices, and each sample's load point."""
         last, chain = self.steps.last, self.start.chain
-        for begin in range(0, self.steps.level.size, _BLOCK):
-            part = slice(begin, begin + _BLOCK)
-            tree = memory.walk(chain, *self._walked(part))
+        for part, walked in self._blocks():
+            tree = memory.walk(chain, *walked)
             chain = tree.end
             samples = slice(*np.searchsorted(last, [part.start, part.stop]))
             yield samples, tree, tree.top[last[samples] - part.start]
@@ -231,9 +225,10 @@ class History:
 
     @cached_property
     def _dissipation(self) -> Array:
-        lost = np.zeros(self.steps.level.shape)
-        for part, chain in self._blocks():
-            found = memory.slips(chain, *self._walked(part))
+        lost, chain = np.zeros(self.steps.level.shape), self.start.chain
+        for part, walked in self._blocks():
+            tree, found = memory.slips(chain, *walked)
+            chain = tree.end
             each = dissipation.per_piece(self.start.profile, found, by_force=self.path.by_force)
             np.add.at(lost, found.step + part.start, each)
         before = np.append(-1, self.steps.last[:-1]) + 1
