@@ -10,13 +10,20 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.fields.rows import Load, Row, fill, foundation_row, graded, kernel, loads, slip_kernel
+from mdr_core.fields.rows import (
+    Load,
+    Row,
+    fill,
+    foundation_row,
+    grid_through,
+    kernel,
+    loads,
+    slip_kernel,
+)
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
-# The grid goes on outside the contact up to so many times its radius.
-BEYOND: Final = 1.5
 _FAR: Final = 1e8
 
 
@@ -193,15 +200,10 @@ def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
     InputError : fewer points than there are such radii.
     """
     normal = contact.normal if isinstance(contact, TangentialContact) else contact
-    special = [np.zeros(1), np.ravel(normal.contact_radius)]
-    special += [np.ravel(np.asarray(b, dtype=float)) for b in normal.profile.breaks]
+    special = [np.ravel(normal.contact_radius)]
     if isinstance(contact, TangentialContact):
         special.append(np.ravel(contact.stick_radius))
-    end = BEYOND * float(np.max(normal.contact_radius)) or 1.0
-    if normal.profile.kind != "flat_punch":
-        end = min(end, float(np.max(normal.profile.domain)))
-    stops = np.unique(np.concatenate(special))
-    return graded(np.append(stops[stops < end], end), points)
+    return grid_through(normal.profile, special, float(np.max(normal.contact_radius)), points)
 
 
 def _slips(contact: TangentialContact) -> list[_Slip]:

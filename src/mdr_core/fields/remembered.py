@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import annulus
-from mdr_core.fields.contact import BEYOND
-from mdr_core.fields.rows import Load, fill, graded, kernel, slip_kernel
+from mdr_core.fields.rows import Load, fill, grid_through, kernel, slip_kernel
 from mdr_core.history import State
 from mdr_core.typing import Array
 
@@ -115,14 +114,8 @@ def grid(state: State, points: int) -> Array:
     ------
     InputError : fewer points than there are such radii.
     """
-    profile = state.profile
-    special = [np.zeros(1), np.array([state.contact_radius]), state.slip_fronts]
-    special += [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
-    end = BEYOND * state.contact_radius or 1.0
-    if not profile.slips_at_once:
-        end = min(end, float(np.max(profile.domain)))
-    stops = np.unique(np.concatenate(special))
-    return graded(np.append(stops[stops < end], end), points)
+    special = [np.array([state.contact_radius]), state.slip_fronts]
+    return grid_through(state.profile, special, state.contact_radius, points)
 
 
 def _pieces(state: State) -> list[tuple[Load, tuple[float, float] | None, float]]:

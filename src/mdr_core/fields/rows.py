@@ -17,6 +17,8 @@ from mdr_core.typing import Array
 
 # Radii handled at once: bounds the memory, whatever their number.
 _BLOCK: Final = 131_072
+# A grid goes on outside the contact up to so many times its radius.
+_BEYOND: Final = 1.5
 
 # One load at some radii, of which `highest` is the largest.
 Row = Callable[[Array, float], Array]
@@ -54,6 +56,23 @@ def graded(stops: Array, points: int) -> Array:
         for low, gap, count in zip(stops[:-1], gaps, counts, strict=True)
     ]
     return np.append(np.concatenate(parts), end)
+
+
+def grid_through(profile: Profile, special: list[Array], largest: float, points: int) -> Array:
+    """Return radii from 0 to half as far again as the largest contact [length], shape (points,).
+
+    They crowd towards the axis, the profile's breaks and the special radii, all among them.
+
+    Raises
+    ------
+    InputError : fewer points than there are such radii.
+    """
+    breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
+    end = _BEYOND * largest or 1.0
+    if not profile.slips_at_once:
+        end = min(end, float(np.max(profile.domain)))
+    stops = np.unique(np.concatenate([np.zeros(1), *breaks, *special]))
+    return graded(np.append(stops[stops < end], end), points)
 
 
 def foundation_row(load: Load) -> Row:
