@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from importlib.resources import files
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Request
@@ -44,6 +44,8 @@ from mdr_service.schemas.examples import (
 )
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+
+_Query = TypeVar("_Query")
 
 
 class DirectRoute(APIRoute):
@@ -119,7 +121,7 @@ async def normal_contact(request: Request) -> Response:
     """
     form = forms.chosen(request, _NORMAL_FORMS)
     query = await wire.read(request, NormalQuery)
-    return await compute.run(query.size, _answer_normal, query, form)
+    return await compute.run(query.size, _answer, query, form, solve.normal, documents.normal)
 
 
 @router.post(
@@ -143,7 +145,9 @@ async def tangential_contact(request: Request) -> Response:
     """
     form = forms.chosen(request, _TANGENTIAL_FORMS)
     query = await wire.read(request, TangentialQuery)
-    return await compute.run(query.size + form.effort, _answer_tangential, query, form)
+    return await compute.run(
+        query.size + form.effort, _answer, query, form, solve.tangential, documents.tangential
+    )
 
 
 @router.post(
@@ -176,7 +180,9 @@ async def loading_history(request: Request) -> Response:
     """
     form = forms.chosen(request, _HISTORY_FORMS)
     query = await wire.read(request, HistoryQuery)
-    return await compute.run(query.size + form.effort, _answer_history, query, form)
+    return await compute.run(
+        query.size + form.effort, _answer, query, form, solve.history, documents.history
+    )
 
 
 @router.post(
@@ -202,7 +208,9 @@ async def stress_fields(request: Request) -> Response:
     """
     form = forms.chosen(request, _STRESS_FORMS)
     query = await wire.read(request, StressQuery)
-    return await compute.run(query.size + form.effort, _answer_stress, query, form)
+    return await compute.run(
+        query.size + form.effort, _answer, query, form, solve.stress, documents.stress
+    )
 
 
 @router.post(
@@ -235,7 +243,9 @@ async def wear_limit(request: Request) -> Response:
     """
     form = forms.chosen(request, _WEAR_FORMS)
     query = await wire.read(request, WearQuery)
-    return await compute.run(query.size + form.effort, _answer_wear, query, form)
+    return await compute.run(
+        query.size + form.effort, _answer, query, form, worn.limit, documents.wear
+    )
 
 
 @router.post(
@@ -264,44 +274,19 @@ async def wear_evolution(request: Request) -> Response:
     """
     form = forms.chosen(request, _EVOLUTION_FORMS)
     query = await wire.read(request, EvolutionQuery)
-    return await compute.run(query.size, _answer_evolution, query, form)
+    return await compute.run(query.size, _answer, query, form, worn.evolution, documents.wear)
 
 
-# What is not finite is looked for in the documents, once, instead of at every operation.
-def _answer_normal(query: NormalQuery, form: Form) -> Response:
+def _answer(
+    query: _Query,
+    form: Form,
+    solved: Callable[[_Query], Any],
+    document: Callable[[_Query, Any], dict[str, Any]],
+) -> Response:
+    # What is not finite is looked for in the documents, once, instead of at every operation.
     with np.errstate(all="ignore"):
-        contact = solve.normal(query)
-        return form.write(documents.normal(query, contact), contact)
-
-
-def _answer_tangential(query: TangentialQuery, form: Form) -> Response:
-    with np.errstate(all="ignore"):
-        contact = solve.tangential(query)
-        return form.write(documents.tangential(query, contact), contact)
-
-
-def _answer_history(query: HistoryQuery, form: Form) -> Response:
-    with np.errstate(all="ignore"):
-        followed = solve.history(query)
-        return form.write(documents.history(query, followed), followed)
-
-
-def _answer_stress(query: StressQuery, form: Form) -> Response:
-    with np.errstate(all="ignore"):
-        solved = solve.stress(query)
-        return form.write(documents.stress(query, solved), solved)
-
-
-def _answer_wear(query: WearQuery, form: Form) -> Response:
-    with np.errstate(all="ignore"):
-        found = worn.limit(query)
-        return form.write(documents.wear(query, found), found)
-
-
-def _answer_evolution(query: EvolutionQuery, form: Form) -> Response:
-    with np.errstate(all="ignore"):
-        found = worn.evolution(query)
-        return form.write(documents.wear(query, found), found)
+        found = solved(query)
+        return form.write(document(query, found), found)
 
 
 @router.get(
