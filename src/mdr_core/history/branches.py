@@ -45,9 +45,7 @@ class Branches:
     @cached_property
     def coordinate(self) -> Array:
         """Contact coordinate of each vertex."""
-        level = self.tree.level
-        find = coordinate_from_force if self.by_force else coordinate_from_depth
-        return find(self.profile, level)
+        return coordinate_from_level(self.profile, self.tree.level, by_force=self.by_force)
 
     @cached_property
     def depth(self) -> Array:
@@ -117,8 +115,9 @@ class Branches:
         """Contact coordinate of the parents of narrow pieces, and its distance."""
         tree, narrow = self.tree, self._narrow
         top, low = tree.level[narrow], tree.level[tree.parent[narrow]]
-        ends = annulus.stick_from_force if self.by_force else annulus.stick_from_depth
-        return ends(self.profile, self.coordinate[narrow], tree.span[narrow] / top, low / top)
+        shares = tree.span[narrow] / top, low / top
+        at = self.coordinate[narrow]
+        return ends_below(self.profile, at, *shares, by_force=self.by_force)
 
     def _other_step(self, values: Array) -> Array:
         """Step of what is not the level from each vertex' parent."""
@@ -132,6 +131,19 @@ class Branches:
             edge, width = self._narrow_edges
             step[narrow] = between(profile, self.coordinate[narrow], width, edge)
         return step
+
+
+def coordinate_from_level(profile: Profile, level: Array, *, by_force: bool) -> Array:
+    """Contact coordinate of a level: a depth, or a reduced force."""
+    return (coordinate_from_force if by_force else coordinate_from_depth)(profile, level)
+
+
+def ends_below(
+    profile: Profile, coordinate: Array, ratio: Array, rest: Array, *, by_force: bool
+) -> tuple[Array, Array]:
+    """Coordinate `ratio` = 1 - `rest` of the level below an edge, and its distance."""
+    find = annulus.stick_from_force if by_force else annulus.stick_from_depth
+    return find(profile, coordinate, ratio, rest)
 
 
 def radius_at_depth(profile: Profile, depth: Array) -> Array:
@@ -177,11 +189,10 @@ def integral(
     return first + beyond * mean(after, low + below, beyond, low + below)
 
 
-def breaks_below(profile: Profile, level: float, by_force: bool) -> Array:  # noqa: FBT001
+def breaks_below(profile: Profile, level: float, *, by_force: bool) -> Array:
     """Depths, or forces, of the profile's breaks inside the contact of the given level."""
-    find = coordinate_from_force if by_force else coordinate_from_depth
     breaks = profile.coordinate_breaks
-    breaks = breaks[breaks < find(profile, np.array([level]))]
+    breaks = breaks[breaks < coordinate_from_level(profile, np.array([level]), by_force=by_force)]
     return profile.reduced_force(breaks) if by_force else profile.depth(breaks)
 
 

@@ -21,9 +21,10 @@ from mdr_core import annulus
 from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
 from mdr_core.history.branches import (
     breaks_below,
+    coordinate_from_level,
+    ends_below,
     integral,
     mean,
-    radius_at_depth,
     radius_at_force,
     radius_slope_at_depth,
 )
@@ -69,15 +70,17 @@ def per_piece(profile: Profile, pieces: Pieces, *, by_force: bool) -> Array:
     gap = np.maximum(upper, lower)
     close = gap < _NEAR * reach
     area = np.zeros(partial.size)
-    shallow = _shallow(profile, reach, by_force) & (np.abs(lower - upper - span) < _EVEN * gap)
+    shallow = _shallow(profile, reach, by_force=by_force) & (
+        np.abs(lower - upper - span) < _EVEN * gap
+    )
     for front, chosen in ((_closed, ~close & ~shallow), (_even_front, ~close & shallow)):
         for index in _blocks(np.flatnonzero(chosen)):
             rows = level[index], span[index], upper[index], lower[index]
-            area[index] = front(profile, rows, by_force)
+            area[index] = front(profile, rows, by_force=by_force)
     near = np.flatnonzero(close & (gap > 0))
     if near.size:
         whole = level[near], span[near], upper[near], lower[near]
-        area[near] = _of_near_pieces(profile, whole, by_force)
+        area[near] = _of_near_pieces(profile, whole, by_force=by_force)
     result[partial] = pieces.slip[partial] / pieces.span[partial] * area
     return result
 
@@ -86,65 +89,64 @@ def _blocks(index: Indices) -> Iterator[Indices]:
     return (index[start : start + _BLOCK] for start in range(0, index.size, _BLOCK))
 
 
-def _closed(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+def _closed(profile: Profile, rows: _Rows, *, by_force: bool) -> Array:
     front = _force_front if by_force else _depth_front
     area = front(profile, *rows)
     level, span, *_ = rows
     thin = np.flatnonzero(span < _THIN * (level + span))
     if thin.size:
         thin_rows = level[thin], span[thin], rows[2][thin], rows[3][thin]
-        area[thin] = _thin_front(profile, thin_rows, by_force)
+        area[thin] = _thin_front(profile, thin_rows, by_force=by_force)
     # A difference of rounded numbers may fall below zero, a loss may not.
     return np.maximum(area, 0.0)
 
 
-def _thin_front(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+def _thin_front(profile: Profile, rows: _Rows, *, by_force: bool) -> Array:
     """int R dw over so short a way of the front that the closed form's ends are all but one."""
     level, span, upper, lower = rows
 
     def overlap(left: Array, at: Array) -> Array:
         share = left / span[:, None]
         top = at + (upper[:, None] + (lower - upper)[:, None] * share)
-        find = coordinate_from_force if by_force else coordinate_from_depth
-        front, edge = find(profile, at), find(profile, top)
+        front = coordinate_from_level(profile, at, by_force=by_force)
+        edge = coordinate_from_level(profile, top, by_force=by_force)
         depth = profile.depth(edge) - profile.depth(front)
         force = profile.reduced_force(edge) - profile.reduced_force(front)
         x = profile.contact_radius(front)
         moved = force - 2 * x * depth
         return moved / (2 * x) if by_force else moved
 
-    breaks = breaks_below(profile, float((level + span).max()), by_force)
+    breaks = breaks_below(profile, float((level + span).max()), by_force=by_force)
     return integral(overlap, level, span, breaks)
 
 
-def _shallow(profile: Profile, reach: Array, by_force: bool) -> Flags:  # noqa: FBT001
+def _shallow(profile: Profile, reach: Array, *, by_force: bool) -> Flags:
     """Contacts little larger than the flat they began with: all radii are nearly the same."""
     flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
     if flat == 0:
         return np.zeros(reach.shape, dtype=bool)
-    return (radius_at_force if by_force else radius_at_depth)(profile, reach) < _SHALLOW * flat
+    s = coordinate_from_level(profile, reach, by_force=by_force)
+    return np.asarray(profile.contact_radius(s) < _SHALLOW * flat)
 
 
-def _even_front(profile: Profile, rows: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+def _even_front(profile: Profile, rows: _Rows, *, by_force: bool) -> Array:
     """int R dw under a constant load: 2 int (d - w)(w - w_L) dx less that from w_H on."""
     level, span, upper, lower = rows
-    find = coordinate_from_force if by_force else coordinate_from_depth
-    ends = annulus.stick_from_force if by_force else annulus.stick_from_depth
     top = level + lower
-    s = find(profile, top)
+    s = coordinate_from_level(profile, top, by_force=by_force)
 
     def moment(gap: Array, below: Array) -> Array:
-        stick, width = ends(profile, s, gap / top, below / top)
+        stick, width = ends_below(profile, s, gap / top, below / top, by_force=by_force)
         return 2 * annulus.slip_moment(profile, s, width, stick)
 
     beyond = np.where(upper > 0, moment(upper, level + span), 0.0)
     return np.maximum(moment(lower, level) - beyond, 0.0)
 
 
-def _of_near_pieces(profile: Profile, whole: _Rows, by_force: bool) -> Array:  # noqa: FBT001
+def _of_near_pieces(profile: Profile, whole: _Rows, *, by_force: bool) -> Array:
     """Pieces whose front stays near the edge, cut until each part has its digits."""
     level, span, upper, _ = whole
-    breaks = breaks_below(profile, float((level + span + upper).max()), by_force)
+    breaks = breaks_below(profile, float((level + span + upper).max()), by_force=by_force)
     owner, (level, span, upper, lower) = _cut(whole, breaks)
     gap = np.maximum(upper, lower)
     area = np.zeros(owner.size)
@@ -153,7 +155,7 @@ def _of_near_pieces(profile: Profile, whole: _Rows, by_force: bool) -> Array:  #
     narrow_front = _narrow_force_front if by_force else _narrow_depth_front
     for index in _blocks(np.flatnonzero(wide)):
         rows = level[index], span[index], upper[index], lower[index]
-        area[index] = _closed(profile, rows, by_force)
+        area[index] = _closed(profile, rows, by_force=by_force)
     for index in _blocks(np.flatnonzero(~wide)):
         rows = level[index], span[index], upper[index], lower[index]
         area[index] = narrow_front(profile, breaks, *rows)
