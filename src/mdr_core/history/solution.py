@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any, Final
 
 import numpy as np
@@ -43,10 +44,6 @@ class History:
     rtol: float
     coarser: "History | None" = None
     """The same with steps twice as long on the curved stretches, where there are any."""
-    deviation: float = 0.0
-    """How far the last halving of those steps moved the answers, relative."""
-    chord: float = 0.0
-    """How far it moved what is remembered, relative."""
 
     @cached_property
     def contact(self) -> NormalContact:
@@ -146,6 +143,27 @@ class History:
     def slip_fronts(self) -> Array:
         """Radii inside the contact where the branch of q_x changes at the end [length]."""
         return self.state.slip_fronts
+
+    @cached_property
+    def deviation(self) -> float:
+        """How far the last halving of the chords moved the answers, relative; infinite if none."""
+        if self.coarser is None:
+            return 0.0
+        return (
+            inf
+            if self.coarser.coarser is None
+            else self._moved_from(self.coarser, History._refined)
+        )
+
+    @cached_property
+    def chord(self) -> float:
+        """How far it moved what is remembered, which is not extrapolated."""
+        return 0.0 if self.coarser is None else self._moved_from(self.coarser, getattr)
+
+    def _moved_from(self, rough: "History", answer: Callable[["History", str], Array]) -> float:
+        """Largest relative difference to the rougher in the answers that chords move."""
+        names = "_displacement" if self.path.by_force else "_force", "_dissipation"
+        return max(_distance(answer(self, name), answer(rough, name)) for name in names)
 
     @property
     def method(self) -> str:
@@ -308,12 +326,12 @@ def solve(
     _require_reach(start, way)
     scale = friction_coefficient * e_star / (1.0 if way.by_force else g_star)
 
-    def follow(pieces: int) -> History:
+    def follow(pieces: int, coarser: History | None) -> History:
         walked = path.steps(way, profile, e_star, scale, pieces)
-        return History(way, start, walked, rtol)
+        return History(way, start, walked, rtol, coarser)
 
     closed = profile.coordinate_from_depth(np.zeros(1)) is not None
-    return _refine(way, follow, rtol, closed=closed) if way.curved.any() else follow(1)
+    return _refine(way, follow, rtol, closed=closed) if way.curved.any() else follow(1, None)
 
 
 def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]:
@@ -335,7 +353,9 @@ def _require_reach(start: State, way: Path) -> None:
         raise InputError(at, error.detail) from None
 
 
-def _refine(way: Path, follow: Callable[[int], History], rtol: float, *, closed: bool) -> History:
+def _refine(
+    way: Path, follow: Callable[[int, History | None], History], rtol: float, *, closed: bool
+) -> History:
     """Halve the steps on curved stretches until they move the answers less than rtol.
 
     Chords leave an error that falls with the square of their length, which two lengths tell; what
@@ -343,41 +363,19 @@ def _refine(way: Path, follow: Callable[[int], History], rtol: float, *, closed:
     """
     steps = _MOST_STEPS if closed else _MOST_STEPS // _DEARER
     most = min(_MOST, max(steps // int(way.curved.sum()), 4 * _FEWEST))
-    pieces, rough, found = 2 * _FEWEST, follow(_FEWEST), follow(2 * _FEWEST)
-    found = replace(found, coarser=rough)
-    moved, before = np.inf, np.inf
+    pieces, found = 2 * _FEWEST, follow(2 * _FEWEST, follow(_FEWEST, None))
+    before = inf
     # Where rounding is all that moves, shorter steps do not help.
-    while pieces < most and moved > rtol and (moved < before or moved == np.inf):
-        pieces *= 2
-        before = moved
-        finer = replace(follow(pieces), coarser=replace(found, coarser=None))
-        moved = max(_distance(*pair) for pair in zip(_moving(found), _moving(finer), strict=True))
-        found = finer
-    coarse = found.coarser
-    chord = (
-        0.0
-        if coarse is None
-        else max(_distance(getattr(coarse, name), getattr(found, name)) for name in _by_chords(way))
-    )
-    kept = {name: vars(found)[name] for name in _by_chords(way)}
-    final = replace(found, deviation=moved, chord=chord)
-    vars(final).update(kept)
-    return final
+    while pieces < most and found.deviation > rtol and (found.deviation < before or before == inf):
+        pieces, before = 2 * pieces, found.deviation
+        found = follow(pieces, found)
+    return found
 
 
 def _extrapolated(rough: Array, fine: Array) -> Array:
     return np.asarray(fine + (fine - rough) / 3)
 
 
-def _by_chords(way: Path) -> tuple[str, str]:
-    """The answers that the length of the steps moves, before extrapolation."""
-    return "_displacement" if way.by_force else "_force", "_dissipation"
-
-
-def _moving(history: History) -> tuple[Array, ...]:
-    return tuple(history._refined(name) for name in _by_chords(history.path))  # noqa: SLF001
-
-
-def _distance(rough: Array, fine: Array) -> float:
+def _distance(fine: Array, rough: Array) -> float:
     scale = float(np.abs(fine).max())
     return float(np.abs(fine - rough).max()) / scale if scale > 0 else 0.0
