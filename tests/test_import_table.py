@@ -45,7 +45,7 @@ SOLVED = {"mdr_service.convert", "mdr_service.worn", "mdr_service.solve"}
 TABLE = (
     Row("mdr_core.errors", set(), set()),
     Row("mdr_core.typing", set(), NUMBERS),
-    Row("mdr_core.checks", {"mdr_core.typing"}, NUMBERS),
+    Row("mdr_core.checks", {"mdr_core.errors", "mdr_core.typing"}, NUMBERS),
     Row("mdr_core.lazy", set(), set()),
     Row("mdr_core.materials", CORE, NUMBERS),
     Row("mdr_core.quadrature", CORE, NUMBERS),

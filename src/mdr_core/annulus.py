@@ -213,8 +213,7 @@ def _summed(weights: Array, values: Array) -> Array:
 
 def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
     """`slip_moment` by pieces that shrink towards the axis and end on every break."""
-    names: tuple[str, ...] = getattr(profile, "__match_args__", ())
-    named = {name: getattr(profile, name) for name in names}
+    named = profile.parameters
     swept = [value for value in named.values() if isinstance(value, np.ndarray) and value.ndim]
     shape = np.broadcast_shapes(coordinate.shape, width.shape, *(part.shape for part in swept))
     high, width = np.broadcast_to(coordinate, shape), np.broadcast_to(width, shape)

@@ -1,10 +1,12 @@
 """Bounds of inputs, cheap enough for a sweep over millions of scenes."""
 
+from math import inf
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.errors import InputError
 from mdr_core.typing import Array, Flags
 
 # Doubles that stay in cache between two reductions.
@@ -36,6 +38,13 @@ def extremes(values: float | ArrayLike) -> tuple[float, float]:
 def least(values: Array) -> float:
     """Smallest value, NaN if any is NaN; of a single one, without the cost of a reduction."""
     return float(values) if values.ndim == 0 else float(values.min())
+
+
+def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
+    """Raise InputError at the path unless all of the value is positive and finite."""
+    low, high = extremes(value)
+    if not (low > 0 and high < inf):
+        raise InputError(path, "must be positive and finite")
 
 
 def first_index(bad: Flags) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.checks import extremes, first_index, largest, least
+from mdr_core.checks import extremes, first_index, largest, least, require_positive
 from mdr_core.errors import InputError, Notice
 from mdr_core.foundation import (
     coordinate_from_depth,
@@ -16,7 +16,7 @@ from mdr_core.foundation import (
 )
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
-from mdr_core.sweeps import BLOCK, in_blocks, parameters
+from mdr_core.sweeps import BLOCK, in_blocks
 from mdr_core.typing import Array, Parameter
 from mdr_core.validity import normal_notices, top
 
@@ -174,9 +174,7 @@ def solve(
 
 def require_modulus(e_star: Parameter) -> None:
     """Raise InputError unless E* is positive and finite."""
-    low, high = extremes(e_star)
-    if not (low > 0 and high < inf):
-        raise InputError(("material", "e_star"), "must be positive and finite")
+    require_positive(("material", "e_star"), e_star)
 
 
 def _require_load(name: str, load: Array) -> None:
@@ -240,7 +238,7 @@ def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) ->
     """The load for every scene of a sweep, shapes that do not agree refused."""
     shapes = [
         part.shape
-        for part in (e_star, *parameters(profile).values())
+        for part in (e_star, *profile.parameters.values())
         if isinstance(part, np.ndarray)
     ]
     if not shapes:

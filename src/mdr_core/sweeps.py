@@ -20,12 +20,6 @@ BLOCK: Final = 65_536
 _Answer = np.ndarray[Any, np.dtype[Any]]
 
 
-def parameters(profile: Profile) -> dict[str, Any]:
-    """The parameters by name of a profile that is no more than they are, else none."""
-    names: tuple[str, ...] = getattr(profile, "__match_args__", ())
-    return {name: getattr(profile, name) for name in names}
-
-
 def scene_by_scene(
     size: int, answer: Callable[..., Array], profile: Profile, values: Sequence[Parameter]
 ) -> Array:
@@ -45,7 +39,7 @@ def in_blocks(
     dimension, not to be written to; what has no dimension is handed over as it is, and a result
     without dimension stays one as long as it is the same for all blocks.
     """
-    named = parameters(profile)
+    named = profile.parameters
     columns = [*named.values(), *values]
     swept = [
         i for i, column in enumerate(columns) if isinstance(column, np.ndarray) and column.ndim

@@ -2,14 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, prod
+from math import prod
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import annulus
-from mdr_core.checks import extremes
+from mdr_core.checks import require_positive
 from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
@@ -236,9 +236,7 @@ def solve(
         (("material", "g_star"), g_star),
         (("friction_coefficient",), friction_coefficient),
     ):
-        low, high = extremes(value)
-        if not (low > 0 and high < inf):
-            raise InputError(path, "must be positive and finite")
+        require_positive(path, value)
     loads = (tangential_force, tangential_displacement, stick_radius)
     named = [(name, load) for name, load in zip(CONTROLS, loads, strict=True) if load is not None]
     if len(named) != 1:

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.checks import extremes
+from mdr_core.checks import require_positive
 from mdr_core.errors import InputError
 from mdr_core.foundation import coordinate_from_depth
 from mdr_core.history import memory
@@ -128,9 +128,7 @@ def unloaded(profile: Profile, e_star: float, g_star: float, friction_coefficien
         (("material", "g_star"), g_star),
         (("friction_coefficient",), friction_coefficient),
     ):
-        low, high = extremes(value)
-        if not (low > 0 and high < np.inf):
-            raise InputError(path, "must be positive and finite")
+        require_positive(path, value)
     return State(profile, e_star, g_star, friction_coefficient, memory.gap(0.0, 0.0))
 
 

@@ -3,12 +3,13 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from math import inf
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from mdr_core import checks
 from mdr_core.abel.displacement import Branch, slope_integral
-from mdr_core.checks import extremes, first_index
+from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Parameter
@@ -36,9 +37,7 @@ LARGEST_HELD: Final = 1e300
 
 def require_positive(name: str, value: Parameter) -> None:
     """Raise InputError unless the profile's parameter is positive and finite."""
-    low, high = (value, value) if isinstance(value, (int, float)) else extremes(value)
-    if not (low > 0 and high < inf):
-        raise InputError(("profile", name), "must be positive and finite")
+    checks.require_positive(("profile", name), value)
 
 
 def refuse_load(name: str, bad: Flags) -> None:
@@ -70,6 +69,12 @@ class Profile(ABC):
     closed_forms: ClassVar[tuple[str, ...]]
     # Bound on the relative rounding error of the closed forms.
     rounding: float = 3e-14
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The parameters by name of a profile that is no more than they are, else none."""
+        names: tuple[str, ...] = getattr(self, "__match_args__", ())
+        return {name: getattr(self, name) for name in names}
 
     @property
     def normal_method(self) -> str:

@@ -12,7 +12,6 @@ from mdr_core.checks import extremes, first_index
 from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
-from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
 from mdr_core.wear import shape, stick
@@ -306,7 +305,7 @@ def solve(
             ("load", "contact_radius"),
             "a contact radius cannot be held while it wears: give the depth or the normal force",
         )
-    if any(np.ndim(part) for part in _parameters(contact.profile)):
+    if any(np.ndim(part) for part in contact.profile.parameters.values()):
         raise InputError(("profile",), "the rim of one profile at a time: no arrays of parameters")
     amplitudes = (tangential_displacement, tangential_force)
     named = [(n, value) for n, value in zip(_NAMES, amplitudes, strict=True) if value is not None]
@@ -319,11 +318,6 @@ def solve(
     result = LimitingWear(first, name, stick.find(first, name, size))
     _require_room(result)
     return result
-
-
-def _parameters(profile: Profile) -> list[Any]:
-    values = [getattr(profile, name) for name in getattr(profile, "__match_args__", ())]
-    return [value for value in values if isinstance(value, np.ndarray)]
 
 
 def _require_range(contact: NormalContact) -> None:
