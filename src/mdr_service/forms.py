@@ -1,40 +1,27 @@
-"""The forms of an answer, of which the request chooses one by its header ``Accept``."""
+"""Which form of an answer a request chooses, by its header ``Accept``."""
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Sequence
+from typing import Final
 
 from fastapi import Request
-from starlette.responses import Response
 
 from mdr_service import problems
 
 _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 
-@dataclass(frozen=True)
-class Form:
-    """One form of an answer: its media type and what writes it.
-
-    `effort` is what the writing costs, in numbers that could be answered in that time.
-    """
-
-    media_type: str
-    write: Callable[[dict[str, Any], Any], Response]
-    effort: int = 0
-
-
-def chosen(request: Request, offered: Sequence[Form]) -> Form:
-    """Return the form that the request prefers; the earlier offer where it does not care."""
+def chosen(request: Request, offered: Sequence[str]) -> str:
+    """Return the media type that the request prefers; the earlier where it does not care."""
     accept = request.headers.get("accept", "*/*").strip() or "*/*"
-    if accept in {"*/*", offered[0].media_type}:
+    if accept in {"*/*", offered[0]}:
         return offered[0]
     ranges = dict(map(_range, accept.lower().split(",")))
-    best = max(offered, key=lambda form: _preference(form.media_type, ranges))
-    if _preference(best.media_type, ranges) <= 0:
-        media_types = ", ".join(form.media_type for form in offered)
-        raise problems.ServiceError(problems.NOT_ACCEPTABLE, f"the answer can be {media_types}")
+    best = max(offered, key=lambda media_type: _preference(media_type, ranges))
+    if _preference(best, ranges) <= 0:
+        raise problems.ServiceError(
+            problems.NOT_ACCEPTABLE, f"the answer can be {', '.join(offered)}"
+        )
     return best
 
 

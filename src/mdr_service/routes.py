@@ -1,28 +1,25 @@
-"""The endpoints; each of the queries is three statements: convert, solve, convert."""
+"""The endpoints: what is asked is read, answered by the one that knows how, and sent."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.resources import files
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
-import numpy as np
 from fastapi import APIRouter, Request
 from fastapi.routing import APIRoute
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import request_response
 
 from mdr_service import (
+    body,
     compute,
     convert,
-    documents,
     forms,
     pictures,
     problems,
-    solve,
+    questions,
     table,
     wire,
-    worn,
 )
-from mdr_service.forms import Form
 from mdr_service.openapi import answers, asks
 from mdr_service.schemas.answers import (
     Catalogue,
@@ -44,8 +41,6 @@ from mdr_service.schemas.examples import (
 )
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-
-_Query = TypeVar("_Query")
 
 
 class DirectRoute(APIRoute):
@@ -73,26 +68,6 @@ _QUERY_FAILURES: Final = (
     problems.INVALID_REQUEST,
     problems.ACCURACY,
 )
-_JSON: Final = Form(wire.MEDIA_TYPE, lambda document, _result: wire.answer(document))
-_TABLE: Final = Form(table.MEDIA_TYPE, lambda document, _result: table.answer(document))
-_NORMAL_FORMS: Final = (_JSON, _TABLE)
-_TANGENTIAL_FORMS: Final = (
-    _JSON,
-    _TABLE,
-    Form(pictures.MEDIA_TYPE, pictures.tangential, pictures.EFFORT),
-)
-_HISTORY_FORMS: Final = (
-    _JSON,
-    _TABLE,
-    Form(pictures.MEDIA_TYPE, pictures.history, pictures.EFFORT),
-)
-_STRESS_FORMS: Final = (_JSON, _TABLE, Form(pictures.MEDIA_TYPE, pictures.stress, pictures.EFFORT))
-_WEAR_FORMS: Final = (_JSON, _TABLE, Form(pictures.MEDIA_TYPE, pictures.wear, pictures.EFFORT))
-_EVOLUTION_FORMS: Final = (
-    _JSON,
-    _TABLE,
-    Form(pictures.MEDIA_TYPE, pictures.evolution, pictures.EFFORT),
-)
 _ROW_PER_LOAD: Final = {table.MEDIA_TYPE: "One column per list, one row per load."}
 _CATALOGUE: Final = convert.catalogue().model_dump()
 _HEALTH: Final = Health(status="ok").model_dump()
@@ -119,9 +94,7 @@ async def normal_contact(request: Request) -> Response:
     Every list of the answer has one entry per load. `method` names the dearest route that was
     taken, `error_estimate` bounds the relative error of every number.
     """
-    form = forms.chosen(request, _NORMAL_FORMS)
-    query = await wire.read(request, NormalQuery)
-    return await compute.run(query.size, _answer, query, form, solve.normal, documents.normal)
+    return await _ask(request, "normal")
 
 
 @router.post(
@@ -143,11 +116,7 @@ async def tangential_contact(request: Request) -> Response:
     Every list of the answer has one entry per pair of loads. A tangential force beyond µ F_N has
     no equilibrium and is refused; a displacement beyond full slip is answered as `full_slip`.
     """
-    form = forms.chosen(request, _TANGENTIAL_FORMS)
-    query = await wire.read(request, TangentialQuery)
-    return await compute.run(
-        query.size + form.effort, _answer, query, form, solve.tangential, documents.tangential
-    )
+    return await _ask(request, "tangential")
 
 
 @router.post(
@@ -178,11 +147,7 @@ async def loading_history(request: Request) -> Response:
     way. `slip_fronts` may be less exact where both loads change on a way that is not straight; a
     warning `accuracy` says so. `energy_per_cycle` and `secant_stiffness` answer `cycles`.
     """
-    form = forms.chosen(request, _HISTORY_FORMS)
-    query = await wire.read(request, HistoryQuery)
-    return await compute.run(
-        query.size + form.effort, _answer, query, form, solve.history, documents.history
-    )
+    return await _ask(request, "history")
 
 
 @router.post(
@@ -206,11 +171,7 @@ async def stress_fields(request: Request) -> Response:
 
     `error_estimate` bounds the error of each field relative to its largest value.
     """
-    form = forms.chosen(request, _STRESS_FORMS)
-    query = await wire.read(request, StressQuery)
-    return await compute.run(
-        query.size + form.effort, _answer, query, form, solve.stress, documents.stress
-    )
+    return await _ask(request, "stress")
 
 
 @router.post(
@@ -241,11 +202,7 @@ async def wear_limit(request: Request) -> Response:
     Where everything slips, a held force wears without end (`endless_wear`), a held depth until
     nothing touches (`contact_lost`); where nothing slips nothing wears (`no_wear`).
     """
-    form = forms.chosen(request, _WEAR_FORMS)
-    query = await wire.read(request, WearQuery)
-    return await compute.run(
-        query.size + form.effort, _answer, query, form, worn.limit, documents.wear
-    )
+    return await _ask(request, "wear")
 
 
 @router.post(
@@ -272,21 +229,21 @@ async def wear_evolution(request: Request) -> Response:
     cycles; it takes a second or so, more with the resolution, and what takes too long is refused
     beforehand. A warning `limit_reached` says from when on nothing wears any more.
     """
-    form = forms.chosen(request, _EVOLUTION_FORMS)
-    query = await wire.read(request, EvolutionQuery)
-    return await compute.run(query.size, _answer, query, form, worn.evolution, documents.wear)
+    return await _ask(request, "evolution")
 
 
-def _answer(
-    query: _Query,
-    form: Form,
-    solved: Callable[[_Query], Any],
-    document: Callable[[_Query, Any], dict[str, Any]],
-) -> Response:
-    # What is not finite is looked for in the documents, once, instead of at every operation.
-    with np.errstate(all="ignore"):
-        found = solved(query)
-        return form.write(document(query, found), found)
+async def _ask(request: Request, name: str) -> Response:
+    """Return the answer to the question `name` that the request holds."""
+    question = questions.QUESTIONS[name]
+    media_type = forms.chosen(request, question.media_types)
+    query = wire.read(question.model, await body.read(request))
+    effort = questions.effort(query, media_type)
+    found = await compute.run(effort, questions.answer, name, query, media_type)
+    return Response(found.content, media_type=found.media_type)
+
+
+def _said(document: Mapping[str, Any]) -> Response:
+    return Response(wire.write(document), media_type=wire.MEDIA_TYPE)
 
 
 @router.get(
@@ -298,7 +255,7 @@ def _answer(
 )
 async def profile_catalogue(_request: Request) -> Response:
     """List every kind that a request may name, with what is closed form for it."""
-    return wire.answer(_CATALOGUE)
+    return _said(_CATALOGUE)
 
 
 @router.get(
@@ -310,7 +267,7 @@ async def profile_catalogue(_request: Request) -> Response:
 )
 async def health(_request: Request) -> Response:
     """Answer 200 as soon as requests are served."""
-    return wire.answer(_HEALTH)
+    return _said(_HEALTH)
 
 
 @router.get("/", include_in_schema=False)
@@ -328,4 +285,4 @@ async def docs(_request: Request) -> Response:
 @router.get("/openapi.json", include_in_schema=False)
 async def openapi_document(request: Request) -> Response:
     """Answer the description of this service."""
-    return wire.answer(request.app.state.openapi)
+    return _said(request.app.state.openapi)

@@ -7,7 +7,6 @@ from itertools import repeat
 from typing import Any, Final
 
 import numpy as np
-from starlette.responses import Response
 
 MEDIA_TYPE: Final = "text/csv"
 # What an answer says as a whole, of its cycles or of its end, has no row.
@@ -22,7 +21,7 @@ _WHOLE: Final = frozenset({"method", "error_estimate", "warnings"}) | {
 _OF_NO_LOAD: Final = frozenset({"initial_profile"})
 
 
-def answer(document: Mapping[str, Any]) -> Response:
+def write(document: Mapping[str, Any]) -> bytes:
     """Return the table of a document; numbers keep all digits, infinities are written inf."""
     columns = {name: values for name, values in document.items() if name not in _WHOLE}
     text = io.StringIO()
@@ -33,7 +32,7 @@ def answer(document: Mapping[str, Any]) -> Response:
         header, rows = [*columns], zip(*map(_numbers, columns.values()), strict=True)
     writer.writerow(header)
     writer.writerows(rows)
-    return Response(text.getvalue(), media_type=MEDIA_TYPE)
+    return text.getvalue().encode()
 
 
 def _over_radii(columns: dict[str, Any]) -> tuple[list[str], Iterator[tuple[Any, ...]]]:

@@ -6,8 +6,6 @@ from contextlib import contextmanager
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Final
 
-from starlette.responses import Response
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -56,8 +54,8 @@ def panels(count: int, height: float = _PANEL) -> "tuple[Figure, list[Axes]]":
     return figure, list(axes[:, 0])
 
 
-def response(figure: "Figure") -> Response:
-    """Return the picture as it is sent."""
+def written(figure: "Figure") -> bytes:
+    """Return the text of the picture."""
     text = io.BytesIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return Response(text.getvalue(), media_type=MEDIA_TYPE)
+    return text.getvalue()

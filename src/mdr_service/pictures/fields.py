@@ -1,10 +1,9 @@
 """Fields over the radius."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from starlette.responses import Response
 
 from mdr_service.convert import Array
 from mdr_service.pictures import canvas
@@ -38,7 +37,7 @@ _REST, _HEADROOM = 0.03, 1.15
 _CLOSE: Final = 0.025
 
 
-def stress(_document: dict[str, Any], solved: Stress) -> Response:
+def stress(solved: Stress) -> bytes:
     """Return the fields over the radius, a panel for each, with a, b and c marked."""
     order = np.argsort(solved.radius, kind="stable")
     radius = solved.radius[order]
@@ -60,7 +59,7 @@ def stress(_document: dict[str, Any], solved: Stress) -> Response:
         if loads > 1:
             title = None if len(shown) == loads else f"the first {len(shown)} of {loads} loads"
             panels[0].legend(title=title, loc="upper right")
-        return canvas.response(figure)
+        return canvas.written(figure)
 
 
 def _finite(values: Array) -> Array:

@@ -1,9 +1,8 @@
 """Force over displacement along a history."""
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from starlette.responses import Response
 
 from mdr_core.history import History
 from mdr_service.convert import Array
@@ -22,7 +21,7 @@ _NEAR: Final = 0.6
 _SAME: Final = 0.01
 
 
-def history(_document: dict[str, Any], followed: Followed) -> Response:
+def history(followed: Followed) -> bytes:
     """Return force over displacement from rest to the end, with the points that were given."""
     way = followed.history
     curve = smooth(way)
@@ -38,7 +37,7 @@ def history(_document: dict[str, Any], followed: Followed) -> Response:
         axes.set_ylabel("tangential force $F_x$")
         # Above the axes: within them a loop may be anywhere.
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0)
-        return canvas.response(figure)
+        return canvas.written(figure)
 
 
 def _mark_points(axes: "Axes", curve: History) -> None:

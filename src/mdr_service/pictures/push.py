@@ -1,16 +1,13 @@
 """Force over displacement of a contact that is loaded once."""
 
-from typing import Any
-
 import numpy as np
-from starlette.responses import Response
 
 from mdr_core.tangential import TangentialContact
 from mdr_service.pictures import canvas
 from mdr_service.solve import travel_to_full_slip
 
 
-def tangential(_document: dict[str, Any], contact: TangentialContact) -> Response:
+def tangential(contact: TangentialContact) -> bytes:
     """Return force over displacement up to full slip, for the first normal load."""
     travel = travel_to_full_slip(contact)
     forces, displacements = (
@@ -35,4 +32,4 @@ def tangential(_document: dict[str, Any], contact: TangentialContact) -> Respons
         axes.set_ylabel("tangential force $F_x$")
         axes.set_title(f"$F_N$ = {normal_forces[0]:.6g}", fontsize="medium")
         axes.legend(loc="lower right")
-        return canvas.response(figure)
+        return canvas.written(figure)

@@ -1,10 +1,9 @@
 """The worn shape over the radius, in the end or over the cycles."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from starlette.responses import Response
 
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
@@ -26,7 +25,7 @@ _SHOWN, _HEADROOM = 97.0, 1.3
 _Mark = tuple[float, str, str]
 
 
-def wear(_document: dict[str, Any], solved: Worn[LimitingWear]) -> Response:
+def wear(solved: Worn[LimitingWear]) -> bytes:
     """Return the first and the limiting profile over the radius, with c and the wear radius."""
     worn = few(solved.result, _MOST_LINES)
     radius = worn.grid(_POINTS + _edges(worn))
@@ -50,10 +49,10 @@ def wear(_document: dict[str, Any], solved: Worn[LimitingWear]) -> Response:
         asked = solved.result.wear_radius.size
         title = None if loads == asked else f"the first {loads} of {asked} loads"
         axes.legend(title=title, loc="lower right")
-        return canvas.response(figure)
+        return canvas.written(figure)
 
 
-def evolution(_document: dict[str, Any], solved: Worn[WearEvolution]) -> Response:
+def evolution(solved: Worn[WearEvolution]) -> bytes:
     """Return the profiles and pressures over the cycles, and the limiting shape if there is one."""
     worn = solved.result
     size = worn.cycles.size
@@ -76,7 +75,7 @@ def evolution(_document: dict[str, Any], solved: Worn[WearEvolution]) -> Respons
         above.set_xlabel("")
         title = None if shown.size == size else f"{shown.size} of {size} numbers of cycles"
         above.legend(title=title, loc="lower right")
-        return canvas.response(figure)
+        return canvas.written(figure)
 
 
 def _edges(worn: LimitingWear) -> int:

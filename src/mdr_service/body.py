@@ -1,0 +1,32 @@
+"""The body of a request, as long as it may be and of the type that is understood."""
+
+from fastapi import Request
+
+from mdr_service import problems, wire
+from mdr_service.settings import SETTINGS
+
+
+async def read(request: Request) -> bytes:
+    """Return the body, refusing it as soon as it is known to be too long."""
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type != wire.MEDIA_TYPE:
+        raise problems.ServiceError(
+            problems.UNSUPPORTED_MEDIA_TYPE, f"the Content-Type must be {wire.MEDIA_TYPE}"
+        )
+    announced = request.headers.get("content-length", "")
+    if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:
+        raise _too_large()
+    chunks: list[bytes] = []
+    size = 0
+    async for chunk in request.stream():
+        size += len(chunk)
+        if size > SETTINGS.max_body_bytes:
+            raise _too_large()
+        chunks.append(chunk)
+    return b"".join(chunks)
+
+
+def _too_large() -> problems.ServiceError:
+    return problems.ServiceError(
+        problems.BODY_TOO_LARGE, f"the limit is {SETTINGS.max_body_bytes} bytes"
+    )
