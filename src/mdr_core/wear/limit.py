@@ -305,7 +305,7 @@ def solve(
             ("load", "contact_radius"),
             "a contact radius cannot be held while it wears: give the depth or the normal force",
         )
-    if any(np.ndim(part) for part in contact.profile.parameters.values()):
+    if any(isinstance(part, np.ndarray) for part in contact.profile.parameters.values()):
         raise InputError(("profile",), "the rim of one profile at a time: no arrays of parameters")
     amplitudes = (tangential_displacement, tangential_force)
     named = [(n, value) for n, value in zip(_NAMES, amplitudes, strict=True) if value is not None]
