@@ -249,10 +249,9 @@ def _inside(at: Setting, task: Task, c: float) -> float | None:
     return c
 
 
-def tangential_record(task: Task) -> Record | None:
-    at = reference.setting(task.profile, task.control, task.load, task.material)
-    outputs = OUTPUTS if task.energy else OUTPUTS[:-1]
-    record: Record = {
+def _head(task: Task) -> Record:
+    """What every record of a task begins with: its name and its scene."""
+    return {
         "id": task.name,
         "equation": task.equation,
         "tags": task.tags,
@@ -263,6 +262,14 @@ def tangential_record(task: Task) -> Record | None:
         "control": task.control,
         "load": task.load,
         "tangential_control": task.tangential,
+    }
+
+
+def tangential_record(task: Task) -> Record | None:
+    at = reference.setting(task.profile, task.control, task.load, task.material)
+    outputs = OUTPUTS if task.energy else OUTPUTS[:-1]
+    record: Record = {
+        **_head(task),
         "given": [],
         "regime": [],
         "expected": {name: [] for name in outputs},
@@ -489,16 +496,7 @@ def field_record(job: FieldTask) -> Record:
     task = job.task
     at = reference.setting(task.profile, task.control, task.load, task.material)
     record: Record = {
-        "id": task.name,
-        "equation": task.equation,
-        "tags": task.tags,
-        "profile": task.profile,
-        "e_star": task.material.e_star,
-        "g_star": task.material.g_star,
-        "friction_coefficient": task.material.mu,
-        "control": task.control,
-        "load": task.load,
-        "tangential_control": task.tangential,
+        **_head(task),
         "given": job.given,
         "radius": list(job.radii),
         "expected": {name: [] for name in FIELDS},
