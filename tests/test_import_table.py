@@ -96,12 +96,13 @@ TABLE = (
     Row(
         "mdr_service.problems",
         {"mdr_core.errors"} | SCHEMAS,
-        WEB | {"orjson", "pydantic", "pydantic_core"},
+        {"orjson", "pydantic", "pydantic_core"},
     ),
     Row("mdr_service.wire", WIRE - {"mdr_service.wire"}, {"orjson", "pydantic"}),
     Row("mdr_service.table", set(), {"numpy"}),
     Row("mdr_service.pictures", RESULTS | SOLVED | {"mdr_core.wear"}, {"matplotlib", "numpy"}),
     Row("mdr_service.questions", WRITTEN | SCHEMAS | SOLVED | {"mdr_service.wire"}, {"numpy"}),
+    Row("mdr_service.handlers", {"mdr_service.problems"}, WEB | {"orjson"}),
     Row("mdr_service.body", WIRE, WEB),
     Row("mdr_service.forms", {"mdr_service.problems"}, WEB),
     Row("mdr_service.compute", set(), {"anyio"}),
@@ -116,7 +117,7 @@ TABLE = (
     ),
     Row(
         "mdr_service.app",
-        {"mdr_service.openapi", "mdr_service.problems", "mdr_service.routes"},
+        {"mdr_service.handlers", "mdr_service.openapi", "mdr_service.routes"},
         WEB,
     ),
     Row(

@@ -5,7 +5,7 @@ from importlib.metadata import version
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
-from mdr_service import openapi, problems, routes
+from mdr_service import handlers, openapi, routes
 
 
 def create_app() -> FastAPI:
@@ -18,7 +18,7 @@ def create_app() -> FastAPI:
         redoc_url=None,
         redirect_slashes=False,
     )
-    problems.install(app)
+    handlers.install(app)
     app.state.openapi = openapi.document(version("mdr"), app.routes)
     app.mount("/docs/swagger", StaticFiles(packages=[("fastapi_swagger", "resources")]))
     app.mount("/docs/page", StaticFiles(packages=[("mdr_service", "page")]))

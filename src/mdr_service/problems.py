@@ -1,23 +1,17 @@
 """Every failure as one document, ``application/problem+json`` (RFC 9457).
 
 A document never repeats what the caller sent (but for the names of fields, in pointers) and
-never grows past four kilobytes.
+never grows past four kilobytes. Nothing here knows of HTTP but the numbers of its statuses.
 """
 
 import itertools
-import logging
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
 import orjson
-from fastapi import FastAPI, Request
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
-from starlette.exceptions import HTTPException
-from starlette.requests import ClientDisconnect
-from starlette.responses import Response
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from mdr_core.errors import AccuracyError, InputError
 from mdr_service.schemas.queries import UNION_FIELDS, UNION_ITEMS
@@ -26,9 +20,7 @@ MEDIA_TYPE: Final = "application/problem+json"
 MAX_ERRORS: Final = 20
 # All errors together; what surrounds them fits well into the rest of 4 kB.
 _MAX_ERROR_BYTES: Final = 3000
-_MAX_NAME: Final = 64
-
-_log = logging.getLogger(__name__)
+MAX_NAME: Final = 64
 
 
 @dataclass(frozen=True)
@@ -80,22 +72,32 @@ class ServiceError(Exception):
         self.errors = tuple(errors)
 
 
-def response(
-    kind: Kind,
-    detail: str,
-    errors: Iterable[Error] = (),
-    headers: Mapping[str, str] | None = None,
-) -> Response:
+# What a query may fail by, besides a defect: all of it has a document.
+FAILURES: Final = (ServiceError, InputError, AccuracyError)
+
+
+def told(error: Exception) -> ServiceError:
+    """Return one of the `FAILURES` as the service tells it."""
+    if isinstance(error, InputError):
+        return ServiceError(INVALID_REQUEST, error.detail, [(pointer(error.path), error.detail)])
+    if isinstance(error, AccuracyError):
+        return ServiceError(ACCURACY, str(error), [("/rtol", str(error))])
+    if isinstance(error, ServiceError):
+        return error
+    raise error
+
+
+def document(error: ServiceError) -> dict[str, Any]:
     """Return the document of one failure."""
-    document: dict[str, Any] = {
-        "type": kind.type,
-        "title": kind.title,
-        "status": kind.status,
-        "detail": detail,
+    found: dict[str, Any] = {
+        "type": error.kind.type,
+        "title": error.kind.title,
+        "status": error.kind.status,
+        "detail": error.detail,
     }
-    if listed := _bounded(errors):
-        document["errors"] = listed
-    return Response(orjson.dumps(document), kind.status, headers, MEDIA_TYPE)
+    if listed := _bounded(error.errors):
+        found["errors"] = listed
+    return found
 
 
 def invalid(error: ValidationError) -> ServiceError:
@@ -115,73 +117,8 @@ def pointer(path: Iterable[str | int]) -> str:
 
     A name longer than any of ours is the caller's own text: the pointer ends above it.
     """
-    steps = itertools.takewhile(lambda step: len(step) <= _MAX_NAME, map(str, path))
+    steps = itertools.takewhile(lambda step: len(step) <= MAX_NAME, map(str, path))
     return "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in steps)
-
-
-def install(app: FastAPI) -> None:
-    """Make every failure of `app` answer with its document."""
-    app.exception_handler(ServiceError)(_service_error)
-    app.exception_handler(InputError)(_input_error)
-    app.exception_handler(AccuracyError)(_accuracy_error)
-    app.exception_handler(HTTPException)(_http_exception)
-    app.add_middleware(CatchAll)
-
-
-class CatchAll:
-    """Answers a bug from inside the application.
-
-    An exception that reaches the server makes it drop the connection, and with it the next
-    request of a client that reuses connections.
-    """
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on; answer 500 where nothing has been answered yet."""
-        started = False
-
-        async def watched_send(message: Message) -> None:
-            nonlocal started
-            started = True
-            await send(message)
-
-        try:
-            await self.app(scope, receive, watched_send)
-        except ClientDisconnect:
-            # Nobody is left to answer.
-            return
-        except Exception:
-            if started or scope["type"] != "http":
-                raise
-            _log.exception("a defect, answered with 500")
-            await response(INTERNAL, "the request met a defect of the service")(
-                scope, receive, send
-            )
-
-
-def _service_error(_request: Request, error: ServiceError) -> Response:
-    return response(error.kind, error.detail, error.errors)
-
-
-def _input_error(_request: Request, error: InputError) -> Response:
-    return response(INVALID_REQUEST, error.detail, [(pointer(error.path), error.detail)])
-
-
-def _accuracy_error(_request: Request, error: AccuracyError) -> Response:
-    detail = str(error)
-    return response(ACCURACY, detail, [("/rtol", detail)])
-
-
-def _http_exception(request: Request, error: HTTPException) -> Response:
-    """Return the document of what the framework refuses: an address or a method."""
-    if error.status_code == NOT_FOUND.status:
-        return response(NOT_FOUND, "GET /docs shows the addresses that exist")
-    if error.status_code == METHOD_NOT_ALLOWED.status:
-        detail = f"{request.method[:_MAX_NAME]} is not answered here"
-        return response(METHOD_NOT_ALLOWED, detail, headers=error.headers)
-    raise error
 
 
 def _bounded(errors: Iterable[Error]) -> list[dict[str, str]]:
