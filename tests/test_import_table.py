@@ -62,11 +62,12 @@ TABLE = (
         CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sweeps"},
         NUMBERS,
     ),
+    Row("mdr_core.sensitivity", CONTACT | {"mdr_core.normal"}, NUMBERS),
     Row(
         "mdr_core.tangential",
         CONTACT
         | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.partial_slip"}
-        | {"mdr_core.sweeps", "mdr_core.validity"},
+        | {"mdr_core.sensitivity", "mdr_core.sweeps", "mdr_core.validity"},
         NUMBERS,
     ),
     Row(

@@ -165,7 +165,11 @@ def _by_stick_radius(
         return contact.coordinate, np.ones(shape), all_slips, _NOTHING
     c = np.maximum(radius, least)
     edge = profile.coordinate_from_radius(c)
-    width = profile.coordinate_width(a, c, contact.coordinate, edge)
+    if contact.control == "contact_radius":
+        width = profile.coordinate_width(a, c, contact.coordinate, edge)
+    else:
+        # Of an edge that follows from a load the coordinate has the digits, not the radius.
+        width = np.where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
     return edge, width, all_slips, _NOTHING
 
 

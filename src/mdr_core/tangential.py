@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import annulus
+from mdr_core import annulus, sensitivity
 from mdr_core.checks import require_positive
 from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
@@ -21,6 +21,10 @@ from mdr_core.validity import friction_notices
 
 # Rounding of the steps over the annulus, in units of the profile's own.
 _STEPS: Final = 40.0
+# What the loads, and the moduli and the friction that they are compared by, are known to.
+_ROUNDINGS: Final = 8 * 2.0**-52
+# What an edge that follows from a load is known to.
+_EDGES: Final = 2 * _ROUNDINGS
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,8 @@ class TangentialContact:
     """A single false where nowhere everything slips."""
     excess: Array
     """What the displacement exceeds the one at full slip by [length]; a single 0 for none."""
+    control: str = "tangential_displacement"
+    """Which of the three was given."""
 
     @cached_property
     def _coordinate(self) -> Array:
@@ -167,16 +173,44 @@ class TangentialContact:
         """The dearest route among the answers."""
         return self.normal.profile.tangential_method
 
-    @property
+    @cached_property
     def error_estimate(self) -> float:
-        """Bound on the relative error of each answer."""
-        return _STEPS * self.normal.error_estimate
+        """Bound on the relative error of each answer, what the loads' rounding does included."""
+        known = self.normal.error_estimate
+        felt = _ROUNDINGS * sensitivity.behind_break(self.normal)
+        if self.control != "stick_radius":
+            felt += _ROUNDINGS * self._felt_of_load
+        elif self.normal.control != "contact_radius":
+            felt += _EDGES * sensitivity.narrow_annulus(self._coordinate, self.width)
+        return _STEPS * known + felt
+
+    @property
+    def _felt_of_load(self) -> float:
+        """The most by which an answer changes relatively for a relative change of the load."""
+        by_force = self.control == "tangential_force"
+        size = np.abs(self.tangential_force if by_force else self.tangential_displacement)
+        limit = self.limiting_force if by_force else self._largest_stick
+        profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
+        if profile.slips_at_once:
+            return 1.0 if by_force else sensitivity.excess_of_travel(size, self.excess)
+        ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
+        ends = self._coordinate, self._stick
+        return sensitivity.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
-        """Those of the normal contact, and `friction`."""
-        moduli = self.normal.e_star, self.g_star
-        return (*self.normal.warnings, *friction_notices(self.friction_coefficient, *moduli))
+        """Those of the normal contact, `friction`, and `accuracy` where rtol is missed."""
+        found = [notice for notice in self.normal.warnings if notice.code != "accuracy"]
+        found += friction_notices(self.friction_coefficient, self.normal.e_star, self.g_star)
+        if self.error_estimate > self.normal.rtol:
+            found.append(
+                Notice(
+                    "accuracy",
+                    f"rtol = {self.normal.rtol:.1e} is below what double precision reaches here: "
+                    "see error_estimate",
+                )
+            )
+        return tuple(found)
 
 
 def _partial_force(
@@ -258,6 +292,7 @@ def solve(
         found.sign,
         found.full,
         found.excess,
+        name,
     )
     if given.shape == shape:
         # What was given is answered as given, to the last digit.

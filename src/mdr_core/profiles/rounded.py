@@ -81,7 +81,7 @@ class Spheroid(Profile):
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """artanh of the difference of two tanh, while it is small."""
         big = np.asarray(self.radius)
-        difference = big * (a - c) / (big * big - a * c)
+        difference = big * (a - c) / (big * (big - a) + a * (big - c))
         narrow = np.arctanh(np.minimum(difference, 0.5))
         return np.asarray(np.where(difference < 0.5, narrow, s_a - s_c))
 

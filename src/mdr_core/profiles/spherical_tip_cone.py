@@ -120,10 +120,11 @@ class SphericalTipCone(TippedCone):
         b, start = self.tangent_radius, self.scale
         tip_a, tip_c = np.minimum(s_a, start), np.minimum(s_c, start)
         tip = self._tip.coordinate_width(np.minimum(a, b), np.minimum(c, b), tip_a, tip_c)
-        step = (a - c) * (a + c) / np.square(self._length)
+        # Each side of the tangent radius from the radii, whose digits the coordinate may not have.
+        low, high = np.maximum(c, b), np.maximum(a, b)
+        step = (high - low) * (high + low) / np.square(self._length)
         beyond = self._stretched.width(np.maximum(s_a, start), np.maximum(s_c, start), step)
-        across = (s_a - start) + (start - tip_c)
-        return np.where(s_a <= start, tip, np.where(s_c >= start, beyond, across))
+        return np.where(s_a <= start, tip, np.where(s_c >= start, beyond, beyond + tip))
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         start, low = self.scale, s_a - width
