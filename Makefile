@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
 run: .venv/runtime
-	@exec $(BIN)/python -m mdr_service --host $(HOST) --port $(PORT)
+	@exec $(BIN)/python -m mdr_command serve --host $(HOST) --port $(PORT)
 
 test: .venv/development
 	$(BIN)/python -m pytest
@@ -26,7 +26,7 @@ check: .venv/development
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/python -m mdr_service --openapi | diff openapi.json -
+	$(BIN)/python -m mdr_command openapi | diff openapi.json -
 
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
@@ -35,7 +35,7 @@ figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py
 
 openapi: .venv/development
-	$(BIN)/python -m mdr_service --openapi > openapi.json
+	$(BIN)/python -m mdr_command openapi > openapi.json
 
 # Needs uv on the path; only for those who change a dependency.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \

@@ -33,7 +33,7 @@ def rows() -> list[measure.Row]:
     """The ratio, with the rates and the load generator."""
     body = json.dumps(QUERY)
     with ExitStack() as stack:
-        service = [sys.executable, "-m", "mdr_service", "--port"]
+        service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
         ours, theirs = (
             stack.enter_context(wire_ratio.server(command)) for command in (service, bare)

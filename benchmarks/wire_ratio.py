@@ -34,7 +34,7 @@ CONNECTIONS, ROUND_SECONDS, ROUNDS = 4, 1, 9
 def rows() -> list[measure.Row]:
     """The ratios, with the rates and the load generator."""
     with ExitStack() as stack:
-        service = [sys.executable, "-m", "mdr_service", "--port"]
+        service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
         ours, theirs = (stack.enter_context(server(command)) for command in (service, bare))
         load = stack.enter_context(load_generator(BODY))

@@ -59,4 +59,4 @@ def running(command: list[str], port: int, **environment: str) -> Iterator[subpr
 
 
 def service(port: int) -> list[str]:
-    return [sys.executable, "-m", "mdr_service", "--port", str(port)]
+    return [sys.executable, "-m", "mdr_command", "serve", "--port", str(port)]

@@ -92,6 +92,6 @@ def test_make_run_ends_with_its_service(stop: str) -> None:
 
 
 def test_the_document_is_printed_without_serving() -> None:
-    command = [sys.executable, "-m", "mdr_service", "--openapi"]
+    command = [sys.executable, "-m", "mdr_command", "openapi"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert printed == (ROOT / "openapi.json").read_text("utf-8")
