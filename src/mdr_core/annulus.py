@@ -159,7 +159,7 @@ def _step(
     """function(high) - function(low), by the integral of its slope where they are close."""
     high, width, low = np.broadcast_arrays(*ends)
     below = _break_below(profile, high)
-    limit = _NARROW * high if profile.coordinate_breaks.size < 2 else (high - below[1]) / 2
+    limit = (high - below[1]) / 2 if _has_many_breaks(profile) else _NARROW * high
     narrow = width <= limit
     if narrow.all():
         # An empty annulus may lie on a tip where the slope is infinite.
@@ -173,10 +173,22 @@ def _step(
 
 def _break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
     """The nearest break below each coordinate and the one before; zero where there is none."""
+    if not _has_many_breaks(profile):
+        nothing = np.zeros_like(high)
+        if not profile.coordinate_breaks.size:
+            return nothing, nothing
+        # Of a sweep each scene has its own.
+        own = profile.coordinate_breaks if profile.swept else profile.coordinate_breaks[0]
+        return np.where(high > own, own, 0.0), nothing
     breaks = np.concatenate([[0.0, 0.0], profile.coordinate_breaks])
     index = np.searchsorted(breaks, high, side="left") - 1
     index = np.maximum(index, 1)
     return breaks[index], breaks[index - 1]
+
+
+def _has_many_breaks(profile: Profile) -> bool:
+    """Whether one scene has more than one break: only those do that take no arrays."""
+    return profile.coordinate_breaks.size > 1 and not profile.swept
 
 
 def _narrow_step(slope: Function, high: Array, width: Array, below: Array) -> Array:
@@ -214,10 +226,11 @@ def _summed(weights: Array, values: Array) -> Array:
 def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
     """`slip_moment` by pieces that shrink towards the axis and end on every break."""
     named = profile.parameters
-    swept = [value for value in named.values() if isinstance(value, np.ndarray) and value.ndim]
-    shape = np.broadcast_shapes(coordinate.shape, width.shape, *(part.shape for part in swept))
+    shape = np.broadcast_shapes(
+        coordinate.shape, width.shape, *(np.shape(named[name]) for name in profile.swept)
+    )
     high, width = np.broadcast_to(coordinate, shape), np.broadcast_to(width, shape)
-    if swept:
+    if profile.swept:
         return _moment_of_scenes(type(profile), named, high, width)
     result = np.empty(high.size)
     step = max(

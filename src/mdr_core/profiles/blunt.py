@@ -177,7 +177,7 @@ class RoundedPunch(Blunt):
         require_positive("rounding_radius", self.rounding_radius)
 
     def f(self, radius: Array) -> Array:
-        return np.maximum(radius - self.flat_radius, 0.0) ** 2 / (2 * self.rounding_radius)
+        return np.square(np.maximum(radius - self.flat_radius, 0.0)) / (2 * self.rounding_radius)
 
     def df(self, radius: Array) -> Array:
         return np.maximum(radius - self.flat_radius, 0.0) / self.rounding_radius
@@ -268,7 +268,7 @@ class TruncatedParaboloid(Blunt):
         return (float(np.min(self.flat_radius)),)
 
     def f(self, radius: Array) -> Array:
-        return leg(radius, self.flat_radius) ** 2 / (2 * self.radius)
+        return np.square(leg(radius, self.flat_radius)) / (2 * self.radius)
 
     def df(self, radius: Array) -> Array:
         return np.where(radius < self.flat_radius, 0.0, radius / self.radius)

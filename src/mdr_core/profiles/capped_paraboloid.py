@@ -230,9 +230,10 @@ class CappedParaboloid(Profile):
         def density(s: Array) -> Array:
             return self._force(np.hypot(b, s), s) * self._leg_slope(s)
 
-        cap = 8 / 15 * np.minimum(coordinate, b) ** 5 / np.square(self.tip_radius)
+        inner = np.minimum(coordinate, b)
+        cap = 8 / 15 * (np.square(inner * inner) * inner) / np.square(self.tip_radius)
         outer = self._outer(coordinate)
-        return cap + energy_integral(density, outer, b) if outer.any() else cap
+        return np.asarray(cap + energy_integral(density, outer, b) if outer.any() else cap)
 
     def pressure_kernel(
         self,

@@ -15,6 +15,7 @@ from mdr_core.profiles.power_kernels import (
     power_slope,
     power_step,
     power_stick,
+    raised,
 )
 from mdr_core.profiles.profile import (
     LARGEST_HELD,
@@ -99,7 +100,7 @@ class Power(Profile):
         n = self.exponent
         factor = 2 * n * n / ((n + 1) * (2 * n + 1))
         with np.errstate(over="ignore"):
-            return self.g(coordinate) ** 2 * coordinate * factor
+            return np.square(self.g(coordinate)) * coordinate * factor
 
     def stick_from_force_ratio(
         self, coordinate: Array, ratio: Array, rest: Array
@@ -125,7 +126,7 @@ class Power(Profile):
         """
         n = np.asarray(self.exponent, dtype=float)
         y = np.maximum(stick, 0.0) / np.where(coordinate > 0, coordinate, 1.0)
-        yn = y**n
+        yn = raised(y, n)
         bracket = (1 + yn) * (1 - yn * y) / (n + 1) - (1 - yn * yn * y) / (2 * n + 1)
         moment = np.square(self.g(coordinate)) * coordinate * (bracket - yn * (1 - y))
         narrow = np.maximum(n, 1.0) * (1 - y) < _WIDE

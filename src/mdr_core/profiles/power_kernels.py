@@ -15,18 +15,35 @@ _TINY: Final = 1e-290
 _HUGE: Final = 1e290
 # So small a part of the stick radius is the axis to it: its square is far below rounding.
 _INMOST: Final = 1e-100
+# The exponents for which NumPy does not raise.
+_EXACT: Final = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
+
+
+def raised(base: Parameter, exponent: Parameter) -> Array:
+    """base^exponent, the same for one number as for each of many.
+
+    C's pow and NumPy's round differently, and NumPy squares and takes roots where a single
+    exponent stands for all: here one scene is raised like each scene of a sweep.
+    """
+    result = np.asarray(np.power(base, exponent))
+    if np.ndim(exponent):
+        for special, exact in _EXACT:
+            there = exponent == special
+            if np.any(there):
+                result = np.where(there, exact(base), result)
+    return result
 
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """C r^n, also where r^n alone leaves the range of doubles."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        bare = r**exponent
+        bare = raised(r, exponent)
         extreme = (r > 0) & ((bare < _TINY) | (bare > _HUGE))
         direct = np.asarray(coefficient * np.where(extreme, 1.0, bare))
         if not extreme.any():
             return direct
-        scale = np.abs(coefficient) ** (1 / np.asarray(exponent))
-        scaled = np.sign(coefficient) * (r * scale) ** exponent
+        scale = raised(np.abs(coefficient), 1 / np.asarray(exponent))
+        scaled = np.sign(coefficient) * raised(r * scale, exponent)
     return np.asarray(np.where(extreme, scaled, direct))
 
 
@@ -34,7 +51,7 @@ def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """C n r^(n-1), infinite at r = 0 for n < 1."""
     n = np.asarray(exponent, dtype=float)
     with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
-        bare = r ** (n - 1)
+        bare = raised(r, n - 1)
         extreme = (r > 0) & ((bare < _TINY) | (bare > _HUGE))
         direct = np.asarray(coefficient * n * bare)
         if not extreme.any():
@@ -51,8 +68,8 @@ def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Arr
     n = np.asarray(exponent, dtype=float)
     c = np.asarray(coefficient, dtype=float)
     with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
-        split = value ** (1 / n) / c ** (1 / n)
-        root = np.where(n < 1, (value / c) ** (1 / n), split)
+        split = raised(value, 1 / n) / raised(c, 1 / n)
+        root = np.where(n < 1, raised(value / c, 1 / n), split)
         miss = (value - power(c, root, n)) / np.where(value > 0, value, 1.0)
         polished = root * (1 + miss / n)
     return np.asarray(np.where((value > 0) & np.isfinite(root), polished, root))

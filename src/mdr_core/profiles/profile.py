@@ -77,6 +77,15 @@ class Profile(ABC):
         return {name: getattr(self, name) for name in names}
 
     @property
+    def swept(self) -> tuple[str, ...]:
+        """Names of the parameters that are arrays over the scenes of a sweep."""
+        return tuple(
+            name
+            for name, value in self.parameters.items()
+            if isinstance(value, np.ndarray) and value.ndim
+        )
+
+    @property
     def normal_method(self) -> str:
         """The dearest route among the answers of a normal query."""
         return "closed_form" if set(NORMAL_ANSWERS) <= set(self.closed_forms) else "quadrature"
@@ -168,7 +177,10 @@ class Profile(ABC):
 
     @property
     def coordinate_breaks(self) -> Array:
-        """Contact coordinates inside a contact where the depth's slope is not smooth, ascending."""
+        """Contact coordinates inside a contact where the depth's slope is not smooth, ascending.
+
+        Of a sweep the one of each scene, or none.
+        """
         return _NO_BREAKS
 
     @property
@@ -290,15 +302,22 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
     scale = np.asarray(scale, dtype=float)
     top = np.arcsinh(upper / scale)
     length = np.minimum(top, _DECAY)
-    count = int(np.ceil(np.max(length, initial=0.0) / _PIECE)) or 1
+    # Every load has its own pieces, and its terms are summed in their order: it is answered
+    # alike alone and among others.
+    count = np.maximum(np.ceil(length / _PIECE), 1.0)
     nodes, weights = gauss_legendre(_POINTS)
-    fractions = (np.arange(count)[:, None] + (1 - nodes) / 2).ravel() / count
-    weights = np.tile(weights, count) / (2 * count)
+    most = int(np.max(count, initial=1.0))
+    places = (np.arange(most)[:, None] + (1 - nodes) / 2).ravel()
+    weights = np.tile(weights, most)
     step = max(_BLOCK // max(top.size, 1), 1)
     total = np.zeros_like(top)
-    for start in range(0, fractions.size, step):
+    for start in range(0, places.size, step):
         part = slice(start, start + step)
-        w = top - np.multiply.outer(fractions[part], length)
-        values = density(scale * np.sinh(w)) * np.cosh(w)
-        total += np.einsum("i,i...->...", weights[part], values)
-    return np.asarray(total * scale * length)
+        fraction = np.divide.outer(places[part], count)
+        own = fraction < 1
+        w = top - np.where(own, fraction, 0.0) * length
+        values = np.where(own, density(scale * np.sinh(w)) * np.cosh(w), 0.0)
+        values *= weights[part].reshape(-1, *[1] * top.ndim)
+        values[0] += total
+        total = np.cumsum(values, axis=0)[-1] if len(values) > 1 else values[0]
+    return np.asarray(total * scale * length / (2 * count))

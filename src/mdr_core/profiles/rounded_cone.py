@@ -230,7 +230,8 @@ class RoundedCone(TippedCone):
         return width * (high + low) / (self._outer(high) + self._outer(low))
 
     def _tip_energy(self, coordinate: Array) -> Array:
-        return np.asarray(8 / 15 * coordinate**5 / np.square(self.tip_radius))
+        square = coordinate * coordinate
+        return np.asarray(8 / 15 * (square * square * coordinate) / np.square(self.tip_radius))
 
     def _tip_kernel(
         self, high: Array, r: Array, rtol: float, width: Array, edge: Array, inner: Array

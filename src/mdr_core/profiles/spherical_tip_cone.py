@@ -206,7 +206,7 @@ class SphericalTipCone(TippedCone):
     def _flank_force(self, x: Array, s: Array) -> Array:
         """b^4/(R a + h s) + (R^2 + a^2)(L - tanh L) + t (a^2 phi + b s)."""
         b, big, h = self.tangent_radius, self.tip_radius, self._height
-        sphere = b**4 / (big * x + h * s)
+        sphere = np.square(b * b) / (big * x + h * s)
         sphere = sphere + (big * big + x * x) * tanh_gap(self._turn(x, s))
         return np.asarray(sphere + self.slope * (x * x * np.arctan(s / b) + b * s))
 

@@ -81,6 +81,6 @@ def kappa(exponent: Parameter) -> Array:
     w = np.maximum(n, _GAMMA_LIMIT) / 2 + 0.25
     log_tail = np.zeros_like(w)
     for k, euler in reversed(list(enumerate(_EULER_NUMBERS, start=1))):
-        log_tail = (log_tail - euler / (k * 4.0 ** (2 * k + 1))) / w**2
+        log_tail = (log_tail - euler / (k * 4.0 ** (2 * k + 1))) / (w * w)
     ratio = np.where(n > _GAMMA_LIMIT, np.sqrt(w) * np.exp(log_tail), direct)
     return np.asarray(np.sqrt(np.pi) * ratio)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdr_core.profiles.power_kernels import power_step
+from mdr_core.profiles.power_kernels import power_step, raised
 from mdr_core.typing import Array, Parameter
 
 
@@ -28,14 +28,14 @@ class Stretched:
     def coordinate(self, excess: Array) -> Array:
         """w of an excess; each branch where it has its digits."""
         near = np.exp(np.log1p(np.minimum(excess, 1.0)) / self.power)
-        far = (1 + excess) ** (1 / np.asarray(self.power))
+        far = raised(1 + excess, 1 / np.asarray(self.power))
         return np.asarray(self.start * np.where(excess < 1, near, far))
 
     def excess(self, coordinate: Array) -> Array:
         """e of a coordinate, zero up to the break."""
         past = np.maximum(coordinate - self.start, 0.0) / self.start
         near = np.expm1(self.power * np.log1p(np.minimum(past, 1.0)))
-        far = (np.maximum(coordinate, self.start) / self.start) ** self.power - 1
+        far = raised(np.maximum(coordinate, self.start) / self.start, self.power) - 1
         return np.asarray(np.where(past < 1, near, far))
 
     def slope(self, coordinate: Array) -> Array:
