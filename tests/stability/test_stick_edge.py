@@ -1,0 +1,176 @@
+"""The stick edge, r -> c from both sides: a root in the traction, a power of 3/2 in the slip."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import fields, normal, tangential
+from mdr_core.profiles import Cone, Paraboloid, Profile, Sphere
+from tests.stability.curves import (
+    CLOSED,
+    ROUNDING,
+    RTOL,
+    Array,
+    Curve,
+    attempt,
+    curve,
+    plain_quad,
+    references,
+    steps,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+A, C, SLOPE, BIG = 1.0, 0.625, 0.3, 1.3
+
+
+def pushed(profile: Profile) -> tangential.TangentialContact:
+    contact = normal.solve(profile, 1.0, contact_radius=A, rtol=RTOL)
+    return tangential.solve(contact, 1.0, 1.0, stick_radius=C)
+
+
+def traction(side: str, radii: Array) -> Curve:
+    """(2 mu E*/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)]."""
+
+    def exact(r: mpf) -> mpf:
+        inner = mp.sqrt((C - r) * (C + r)) if r < C else mpf(0)
+        return 2 / (mp.pi * mpf(BIG)) * (mp.sqrt((A - r) * (A + r)) - inner)
+
+    def naive(r: float) -> float:
+        def density(x: float) -> float:
+            return float(2 * x / BIG / np.sqrt(x * x - r * r)) if x > r else 0.0
+
+        return plain_quad(density, max(r, C), A) / pi
+
+    return curve(
+        f"stick-edge-traction-{side}",
+        f"traction of a paraboloid towards c from {side}",
+        "|r/c − 1|",
+        "∫ over the annulus by quad, as it stands",
+        np.abs(radii - C) / C,
+        (
+            fields.shear_stress(pushed(Paraboloid(BIG)), radii, rtol=RTOL),
+            attempt(naive, radii),
+            references(exact, radii),
+        ),
+    )
+
+
+def slip(
+    name: str,
+    profile: Profile,
+    exact: Callable[[mpf], mpf],
+    naive: tuple[str, Callable[[float], float]],
+    bound: float = CLOSED,
+) -> Curve:
+    r = C * (1 + DISTANCES)
+    return curve(
+        f"stick-edge-slip-{name}",
+        f"slip of a {name} towards c",
+        "r/c − 1",
+        naive[0],
+        r / C - 1,
+        (
+            -fields.slip(pushed(profile), r, rtol=RTOL),
+            attempt(naive[1], r),
+            references(exact, r),
+        ),
+        bound,
+    )
+
+
+def cone_slip() -> Curve:
+    """t [sqrt(r^2 - c^2) - c arccos(c/r)]."""
+    return slip(
+        "cone",
+        Cone(SLOPE),
+        lambda r: mpf(SLOPE) * (mp.sqrt((r - C) * (r + C)) - C * mp.acos(C / r)),
+        (
+            "√(r²−c²) − c arccos(c/r)",
+            lambda r: SLOPE * (np.sqrt(r**2 - C**2) - C * np.arccos(C / r)),
+        ),
+    )
+
+
+def paraboloid_slip() -> Curve:
+    """Johnson's form, Eq. (5.41): [(r^2 - 2c^2) arccos(c/r) + c sqrt(r^2 - c^2)]/(pi R)."""
+    return slip(
+        "paraboloid",
+        Paraboloid(BIG),
+        lambda r: (
+            ((r**2 - 2 * mpf(C) ** 2) * mp.acos(C / r) + C * mp.sqrt((r - C) * (r + C)))
+            / (mp.pi * mpf(BIG))
+        ),
+        (
+            "(r²−2c²) arccos(c/r) + c √(r²−c²)",
+            lambda r: (
+                ((r**2 - 2 * C**2) * np.arccos(C / r) + C * np.sqrt(r**2 - C**2)) / (pi * BIG)
+            ),
+        ),
+    )
+
+
+def sphere_slip() -> Curve:
+    """By parts, (2/pi) int_c^r g' arccos(x/r) dx."""
+
+    def exact(r: mpf) -> mpf:
+        big, width = mpf(BIG), r - C
+
+        def density(v: mpf) -> mpf:
+            x = r - width * v * v
+            angle = mp.atan2(mp.sqrt((r - x) * (r + x)), x)
+            return (mp.atanh(x / big) + x * big / (big**2 - x**2)) * angle * 2 * v * width
+
+        return 2 / mp.pi * mp.quad(density, [0, 1])
+
+    def naive(r: float) -> float:
+        def image(x: float) -> float:
+            return float(x * np.arctanh(x / BIG))
+
+        def density(x: float) -> float:
+            return (image(x) - image(C)) / float(np.sqrt(r**2 - x**2)) if x < r else 0.0
+
+        return 2 / pi * plain_quad(density, C, r)
+
+    return slip(
+        "sphere",
+        Sphere(BIG),
+        exact,
+        ("∫ (g − g(c))/√(r²−x²) dx by quad", naive),
+    )
+
+
+DISTANCES = steps(0.5, 1e-15, 40)
+CURVES = {
+    "traction inside": partial(traction, "inside", C * (1 - DISTANCES)),
+    "traction outside": partial(traction, "outside", C * (1 + DISTANCES)),
+    "cone": cone_slip,
+    "paraboloid": paraboloid_slip,
+    "sphere": sphere_slip,
+}
+
+
+def curves() -> list[Curve]:
+    return [make() for make in CURVES.values()]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_towards_the_stick_edge(name: str) -> None:
+    sweep = CURVES[name]()
+    sweep.holds()
+    sweep.naive_dies(1e-12)
+
+
+def test_on_the_stick_edge_itself() -> None:
+    for profile in (Paraboloid(BIG), Cone(SLOPE), Sphere(BIG)):
+        found = pushed(profile)
+        assert fields.slip(found, [C])[0] == 0
+        beside = fields.shear_stress(found, [C * (1 - ROUNDING), C, C * (1 + ROUNDING)], rtol=RTOL)
+        assert beside == pytest.approx(np.full(3, beside[1]), rel=1e-6)
