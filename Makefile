@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test check bench figures openapi lock clean
+.PHONY: run test check bench figures openapi image-check lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -36,6 +36,10 @@ figures: .venv/development
 
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json
+
+# Needs root: it builds the image on a Debian base of its own making, runs, asks and stops it.
+image-check:
+	$(PYTHON) image/check.py
 
 # Needs uv on the path; only for those who change a dependency.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \
