@@ -1,6 +1,7 @@
 """What can go wrong, sorted by what the caller should do about it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 
 class MDRError(Exception):
@@ -11,13 +12,15 @@ class InputError(MDRError, ValueError):
     """Ask for something else: the value at `path` has no answer in this model.
 
     `path` names the value as the request does, for example
-    ``("load", "normal_force", 3)``; indices count from zero.
+    ``("load", "normal_force", 3)``; indices count from zero. `scenes` flags, over the scenes of
+    a sweep, all that are refused for the same reason, where that is known.
     """
 
-    def __init__(self, path: tuple[str | int, ...], detail: str) -> None:
+    def __init__(self, path: tuple[str | int, ...], detail: str, scenes: Any = None) -> None:
         super().__init__(f"{'.'.join(map(str, path))}: {detail}")
         self.path = path
         self.detail = detail
+        self.scenes = scenes
 
 
 class AccuracyError(MDRError):

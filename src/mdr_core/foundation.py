@@ -90,6 +90,7 @@ def _refuse(outside: Flags, profile: Profile, name: str) -> None:
             ("load", name, *first_index(outside)),
             f"the contact would reach past radius {domain}, where the profile ends "
             "or ceases to be admissible",
+            outside,
         )
 
 

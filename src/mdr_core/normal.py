@@ -184,7 +184,8 @@ def _require_load(name: str, load: Array) -> None:
     low, high = (0.0, 0.0) if good else extremes(load)
     if not (low >= 0 and high < inf):
         bad = np.asarray(~((load >= 0) & (load < inf)))
-        raise InputError(("load", name, *first_index(bad)), "must be finite and not negative")
+        detail = "must be finite and not negative"
+        raise InputError(("load", name, *first_index(bad)), detail, bad)
 
 
 def _sweep(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array | None:
@@ -231,6 +232,7 @@ def _require_range(name: str, load: Array, coordinate: Array) -> None:
     raise InputError(
         ("load", name, *(first_index(bad) if load.ndim else ())),
         "the contact that answers this load leaves the range of double precision",
+        bad,
     )
 
 

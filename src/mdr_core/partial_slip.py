@@ -80,8 +80,9 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
     low, high = extremes(given)
     if not (low > -inf and high < inf):
         detail = "must be finite" if given.size else "at least one load is needed"
-        index = first_index(~np.isfinite(given)) if given.size else ()
-        raise InputError(("tangential", name, *index), detail)
+        bad = np.asarray(~np.isfinite(given))
+        index = first_index(bad) if given.size else ()
+        raise InputError(("tangential", name, *index), detail, bad)
     if low >= 0 or name == "stick_radius":
         return np.asarray(1.0), given
     return np.sign(given), np.abs(given)
@@ -98,6 +99,7 @@ def _by_force(
         raise InputError(
             ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
             "no equilibrium: the force exceeds friction_coefficient x normal_force",
+            left < 0,
         )
     if least > 0:
         return *_partial(annulus.stick_from_force, contact, size, left, limit), _NOWHERE, _NOTHING
@@ -159,7 +161,7 @@ def _by_stick_radius(
         detail = "a flat punch sticks wholly under any force below full slip: give the force"
     if bad.any():
         index = first_index(bad) if radius.ndim else ()
-        raise InputError(("tangential", "stick_radius", *index), detail)
+        raise InputError(("tangential", "stick_radius", *index), detail, bad)
     if profile.slips_at_once:
         shape = np.broadcast_shapes(radius.shape, a.shape)
         return contact.coordinate, np.ones(shape), all_slips, _NOTHING

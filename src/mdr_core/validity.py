@@ -56,8 +56,8 @@ def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...
                 "radius: what the body does beyond may matter",
             )
         )
-    singular = profile.infinite_pressure_radii
-    if singular and (radii := [b for b in singular if b <= largest]):
+    least = [float(np.min(b)) for b in profile.infinite_pressure_radii]
+    if radii := [b for b in least if b <= largest]:
         places = ", ".join(f"{b:.12g}" for b in radii)
         found.append(
             Notice(
@@ -67,6 +67,24 @@ def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...
             )
         )
     return tuple(found)
+
+
+def steep(profile: Profile, contact_radius: Array) -> Flags:
+    """Return which contacts of many are too steep: those that `half_space` is about."""
+    largest = top(contact_radius)
+    if profile.slips_at_once or not largest > 0:
+        return np.zeros(contact_radius.shape, dtype=bool)
+    touches = contact_radius > 0
+    slope = profile.df(np.where(touches, contact_radius, largest))
+    return np.asarray(touches & (slope > _STEEPEST))
+
+
+def plastic(profile: Profile, contact_radius: Array) -> Flags:
+    """Return which contacts of many have an infinite pressure somewhere."""
+    found = np.zeros(contact_radius.shape, dtype=bool)
+    for b in profile.infinite_pressure_radii:
+        found |= np.asarray(b <= contact_radius)
+    return found
 
 
 def _steepest(profile: Profile, contact_radius: Array, largest: float) -> float:
@@ -82,6 +100,12 @@ def top(values: Array) -> float:
     return float(values) if values.ndim == 0 else float(values.max())
 
 
+def transverse(friction_coefficient: Parameter, e_star: Parameter, g_star: Parameter) -> Flags:
+    """Return which contacts of many slip across the load: those that `friction` is about."""
+    compressible = np.asarray(e_star) < _INCOMPRESSIBLE * (1 - 1e-9) * np.asarray(g_star)
+    return np.asarray(compressible & (np.asarray(friction_coefficient) >= _LARGE_FRICTION))
+
+
 def friction_notices(
     friction_coefficient: Parameter, e_star: Parameter, g_star: Parameter
 ) -> tuple[Notice, ...]:
@@ -89,8 +113,7 @@ def friction_notices(
 
     There the transverse slip that the model leaves out is felt. Source: notes, §8.
     """
-    compressible = np.asarray(e_star) < _INCOMPRESSIBLE * (1 - 1e-9) * np.asarray(g_star)
-    if not np.any(compressible & (np.asarray(friction_coefficient) >= _LARGE_FRICTION)):
+    if not np.any(transverse(friction_coefficient, e_star, g_star)):
         return ()
     return (
         Notice(

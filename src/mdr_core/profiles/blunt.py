@@ -48,8 +48,8 @@ class FlatPunch(Profile):
         return self.f(x)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        return (float(np.min(self.radius)),)
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return (self.radius,)
 
     @property
     def slips_at_once(self) -> bool:
@@ -221,8 +221,8 @@ class TruncatedCone(Blunt):
         require_positive("slope", self.slope)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        return (float(np.min(self.flat_radius)),)
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return (self.flat_radius,)
 
     def f(self, radius: Array) -> Array:
         return self.slope * np.maximum(radius - self.flat_radius, 0.0)
@@ -264,8 +264,8 @@ class TruncatedParaboloid(Blunt):
         require_positive("radius", self.radius)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        return (float(np.min(self.flat_radius)),)
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return (self.flat_radius,)
 
     def f(self, radius: Array) -> Array:
         return np.square(leg(radius, self.flat_radius)) / (2 * self.radius)

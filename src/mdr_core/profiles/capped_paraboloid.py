@@ -81,8 +81,8 @@ class CappedParaboloid(Profile):
         return np.maximum(self._stretched.power * self._jump / 2, 1.0)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        return (float(np.min(self._break)),)
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return (self._break,)
 
     @property
     def rounding(self) -> float:  # type: ignore[override]

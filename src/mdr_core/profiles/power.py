@@ -133,8 +133,9 @@ class Power(Profile):
         return np.where(narrow & (width > 0), np.nan, moment)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        return (0.0,) if np.min(self.exponent) <= 1 else ()
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        sharp = np.asarray(self.exponent) <= 1
+        return (np.where(sharp, 0.0, np.inf)[()],) if sharp.any() else ()
 
     @property
     def steepness(self) -> float:

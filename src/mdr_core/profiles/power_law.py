@@ -25,7 +25,7 @@ class Cone(Profile):
         require_positive("slope", self.slope)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         return (0.0,)
 
     def f(self, radius: Array) -> Array:

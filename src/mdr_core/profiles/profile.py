@@ -49,6 +49,7 @@ def refuse_load(name: str, bad: Flags) -> None:
         raise InputError(
             ("load", name, *first_index(bad)),
             "the depth or the force that goes with this load leaves the range of double precision",
+            bad,
         )
 
 
@@ -184,8 +185,11 @@ class Profile(ABC):
         return _NO_BREAKS
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
-        """Radii where every contact that reaches them has an infinite pressure [length]."""
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        """Radii where every contact that reaches them has an infinite pressure [length].
+
+        Of a sweep those of each scene; infinite for a scene that has none.
+        """
         return ()
 
     @property

@@ -69,6 +69,7 @@ class Spheroid(Profile):
             raise InputError(
                 ("load", "contact_radius", *first_index(outside)),
                 f"must stay below the body's own radius, {self.radius}",
+                outside,
             )
         return self._rapidity(contact_radius)
 

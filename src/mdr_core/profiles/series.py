@@ -194,7 +194,7 @@ class Series(Profile):
         return min(1.0, self._powers[0][1])
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         return (0.0,) if self._powers[0][1] <= 1 else ()
 
     @property

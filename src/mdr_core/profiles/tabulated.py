@@ -89,7 +89,7 @@ class Tabulated(BehindFlat):
         return float(self.r[np.flatnonzero(self.values == 0)[-1]])
 
     @property
-    def infinite_pressure_radii(self) -> tuple[float, ...]:
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """The tip of a table that starts as a cone, and every kink."""
         slopes = self._slope.coefficients[0]
         tip = (0.0,) if slopes[0] > _TIP * slopes.max() else ()
