@@ -41,7 +41,13 @@ SCHEMAS = {"mdr_service.settings", "mdr_service.schemas"}
 WIRE = SCHEMAS | {"mdr_service.problems", "mdr_service.wire"}
 
 SOLVED = {"mdr_service.convert", "mdr_service.worn", "mdr_service.solve"}
-WRITTEN = {"mdr_service.documents", "mdr_service.pictures", "mdr_service.table"}
+WRITTEN = {"mdr_service.arrays", "mdr_service.pictures", "mdr_service.table"} | {
+    "mdr_service.documents"
+}
+
+ADDRESSED = {"mdr_service.address", "mdr_service.arrays", "mdr_service.forms"} | {
+    "mdr_service.parameters"
+}
 
 # Each row imports only from rows above it.
 TABLE = (
@@ -57,7 +63,12 @@ TABLE = (
     Row("mdr_core.foundation", CONTACT - {"mdr_core.foundation"}, NUMBERS),
     Row("mdr_core.annulus", CONTACT, NUMBERS),
     Row("mdr_core.validity", CONTACT, NUMBERS),
-    Row("mdr_core.normal", CONTACT | {"mdr_core.sweeps", "mdr_core.validity"}, NUMBERS),
+    Row("mdr_core.range", CONTACT, NUMBERS),
+    Row(
+        "mdr_core.normal",
+        CONTACT | {"mdr_core.range", "mdr_core.sweeps", "mdr_core.validity"},
+        NUMBERS,
+    ),
     Row(
         "mdr_core.partial_slip",
         CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sweeps"},
@@ -101,20 +112,40 @@ TABLE = (
         {"orjson", "pydantic", "pydantic_core"},
     ),
     Row("mdr_service.wire", WIRE - {"mdr_service.wire"}, {"orjson", "pydantic"}),
+    Row("mdr_service.arrays", set(), {"numpy"}),
     Row("mdr_service.table", set(), {"numpy"}),
     Row("mdr_service.pictures", RESULTS | SOLVED | {"mdr_core.wear"}, {"matplotlib", "numpy"}),
     Row("mdr_service.questions", WRITTEN | SCHEMAS | SOLVED | {"mdr_service.wire"}, {"numpy"}),
+    Row(
+        "mdr_service.forms",
+        WRITTEN - {"mdr_service.documents"} | {"mdr_service.problems", "mdr_service.wire"},
+        set(),
+    ),
+    Row("mdr_service.parameters", SCHEMAS, set()),
+    Row("mdr_service.address", WIRE | {"mdr_service.parameters"}, {"numpy"}),
+    Row("mdr_service.batch", WIRE | {"mdr_service.questions"}, {"pydantic_core"}),
     Row("mdr_service.handlers", {"mdr_service.problems"}, WEB | {"orjson"}),
     Row("mdr_service.body", WIRE, WEB),
-    Row("mdr_service.forms", {"mdr_service.problems"}, WEB),
     Row("mdr_service.compute", set(), {"anyio"}),
-    Row("mdr_service.openapi", WIRE, WEB | {"pydantic"}),
+    Row("mdr_service.openapi", WIRE | ADDRESSED, WEB | {"pydantic"}),
+    Row(
+        "mdr_service.described",
+        WIRE | WRITTEN | {"mdr_service.openapi", "mdr_service.questions"},
+        set(),
+    ),
+    Row(
+        "mdr_service.asking",
+        WIRE
+        | ADDRESSED
+        | {"mdr_service.batch", "mdr_service.body", "mdr_service.compute"}
+        | {"mdr_service.questions"},
+        WEB,
+    ),
     Row(
         "mdr_service.routes",
         WIRE
-        | {"mdr_service.body", "mdr_service.compute", "mdr_service.convert", "mdr_service.forms"}
-        | {"mdr_service.openapi", "mdr_service.pictures", "mdr_service.questions"}
-        | {"mdr_service.table"},
+        | {"mdr_service.asking", "mdr_service.convert", "mdr_service.described"}
+        | {"mdr_service.openapi", "mdr_service.parameters"},
         WEB,
     ),
     Row(

@@ -16,13 +16,11 @@ from mdr_core.foundation import (
 )
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
+from mdr_core.range import require_range
 from mdr_core.sweeps import BLOCK, in_blocks
 from mdr_core.typing import Array, Parameter
 from mdr_core.validity import normal_notices, top
 
-# Contacts that a double holds, and of which the square does not overflow.
-_SMALLEST: Final = 1e-300
-_LARGEST: Final = 1e140
 _FROM: Final = {
     "indentation_depth": coordinate_from_depth,
     "normal_force": coordinate_from_force,
@@ -164,8 +162,7 @@ def solve(
         require_modulus(e_star)
         _require_load(name, load)
         coordinate = _FROM[name](profile, _amount(e_star, name, spread))
-        if not _in_range(coordinate):
-            _require_range(name, spread, coordinate)
+        require_range(profile, e_star, name, spread, coordinate)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     # What was given is answered as given, to the last digit.
     vars(contact)[name] = spread
@@ -196,12 +193,7 @@ def _sweep(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array
         amount = _amount(moduli, name, loads)
         _require_load(name, loads)
         coordinate = _FROM[name](part, amount)
-        ordinary = _in_range(coordinate)
-        # Under a force an ordinary contact vouches for the modulus: none answers F_N/E* <= 0.
-        if not (ordinary and name == "normal_force"):
-            require_modulus(moduli)
-        if not ordinary:
-            _require_range(name, loads, coordinate)
+        require_range(part, moduli, name, loads, coordinate)
         return (coordinate,)
 
     try:
@@ -215,25 +207,6 @@ def _sweep(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array
 def _amount(e_star: Parameter, name: str, load: Array) -> Array:
     """What determines the contact: the depth, the radius, or F_N/E*."""
     return load / e_star if name == "normal_force" else load
-
-
-def _in_range(coordinate: Array) -> bool:
-    low, high = extremes(coordinate)
-    return high < _LARGEST and low > _SMALLEST
-
-
-def _require_range(name: str, load: Array, coordinate: Array) -> None:
-    """Refuse a load whose contact has no double to describe it."""
-    # A radius is at zero load, as a flat's own one may well be, or it has a double.
-    vanished = (coordinate < _SMALLEST) & (load > 0) & (name != "contact_radius")
-    bad = np.asarray(~(coordinate < _LARGEST) | vanished)
-    if not bad.any():
-        return
-    raise InputError(
-        ("load", name, *(first_index(bad) if load.ndim else ())),
-        "the contact that answers this load leaves the range of double precision",
-        bad,
-    )
 
 
 def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:

@@ -122,11 +122,47 @@ def test_an_inverse_whose_slope_underflows_ends(
     np.testing.assert_allclose(steep.reduced_force(coordinate), reduced_force, rtol=1e-13)
 
 
-def test_an_energy_beyond_the_range_of_doubles_is_infinite() -> None:
+def test_an_energy_beyond_the_range_of_doubles_is_refused() -> None:
     terms = profiles.PowerTerm(5e245, 2.0), profiles.PowerTerm(-9e128, 5.5)
-    with np.errstate(all="ignore"):
-        contact = normal.solve(profiles.Series(terms), 1.0, contact_radius=0.05)
-        assert contact.elastic_energy == np.inf
+    with pytest.raises(InputError, match="range of double precision") as caught:
+        normal.solve(profiles.Series(terms), 1.0, contact_radius=0.05)
+    assert caught.value.path == ("load", "contact_radius")
+
+
+@pytest.mark.parametrize(
+    ("profile", "e_star", "load"),
+    [
+        (profiles.Power(9.69e299, 1.0385), 1e30, {"indentation_depth": 2.19e29}),
+        (profiles.Power(1.0, 1.5), 1.0, {"contact_radius": 1e-160}),
+        (profiles.Power(1.0, 1e4), 1.0, {"contact_radius": 1.2}),
+        (profiles.Series((profiles.PowerTerm(1.0, 1.5),)), 1.0, {"contact_radius": 1e160}),
+        (profiles.Cone(0.3), 1.0, {"indentation_depth": 1e-200}),
+        (profiles.Paraboloid(1.0), 1.0, {"indentation_depth": 1e-299}),
+        (profiles.Paraboloid(1.0), 1e-290, {"indentation_depth": 1e-20}),
+        (profiles.TruncatedCone(0.5, 0.3), 1.0, {"indentation_depth": 1e-200}),
+    ],
+)
+def test_a_contact_whose_squares_are_no_doubles_is_refused(
+    profile: profiles.Profile, e_star: float, load: dict[str, float]
+) -> None:
+    """Pressures in it were NaN, or those of another radius."""
+    with pytest.raises(InputError, match="range of double precision") as caught:
+        normal.solve(profile, e_star, **load)
+    assert caught.value.path == ("load", *load)
+    ((name, value),) = load.items()
+    with pytest.raises(InputError) as caught:
+        normal.solve(profile, e_star, **{name: [0.0, value]})
+    assert caught.value.path == ("load", name, 1)
+
+
+def test_a_term_that_vanishes_is_infinite_on_the_axis_all_the_same() -> None:
+    terms = (25.5, 45.9), (956.4, 45.9), (1e-300, 0.05)
+    steep = profiles.Series(tuple(profiles.PowerTerm(*term) for term in terms))
+    contact = normal.solve(steep, 1e-30, normal_force=956.38)
+    assert np.isposinf(fields.pressure(contact, [0.0]))[0]
+    falling = profiles.Series((profiles.PowerTerm(1.0, 0.3), profiles.PowerTerm(-0.1, 0.8)))
+    contact = normal.solve(falling, 1.0, contact_radius=1.0)
+    assert np.isposinf(fields.pressure(contact, [0.0]))[0]
 
 
 @pytest.mark.parametrize(

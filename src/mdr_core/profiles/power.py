@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from mdr_core.abel.displacement import Branch
 from mdr_core.checks import extremes
 from mdr_core.profiles.power_kernels import (
+    ordinary_radii,
     power,
     power_moment,
     power_root,
@@ -20,6 +21,7 @@ from mdr_core.profiles.power_kernels import (
 from mdr_core.profiles.profile import (
     LARGEST_HELD,
     NORMAL_ANSWERS,
+    ORDINARY,
     SMALLEST_HELD,
     Profile,
     refuse_load,
@@ -54,6 +56,13 @@ class Power(Profile):
     def rounding(self) -> float:  # type: ignore[override]
         # r^n carries n times the rounding of the scaled radius.
         return float(2e-14 + 8e-15 * np.max(self.exponent))
+
+    @property
+    def ordinary_coordinates(self) -> tuple[float, float]:
+        c, n = self.coefficient, self.exponent
+        if isinstance(c, np.ndarray) or isinstance(n, np.ndarray):
+            return ORDINARY
+        return ordinary_radii([(c, n)])
 
     def f(self, radius: Array) -> Array:
         return power(self.coefficient, radius, self.exponent)
@@ -176,6 +185,7 @@ class Power(Profile):
     ) -> Array:
         n = np.asarray(self.exponent, dtype=float)
         scale = modulus * kappa(n) / np.pi * self.df(coordinate)
-        return np.asarray(
-            scale * power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
-        )
+        moment = power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
+        # However small its factor, what is infinite on the axis is infinite there.
+        with np.errstate(invalid="ignore"):
+            return np.where(np.isinf(moment), np.copysign(moment, modulus), scale * moment)

@@ -3,16 +3,20 @@
 Source: notes, §4 and §5.
 """
 
+from collections.abc import Iterable
+from math import exp, log
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.roots import between
+from mdr_core.profiles.profile import NOWHERE, ORDINARY
 from mdr_core.quadrature import Analytic
 from mdr_core.typing import Array, Indices, Parameter
 
 _TINY: Final = 1e-290
 _HUGE: Final = 1e290
+_LOG_ORDINARY: Final = 500.0
 # So small a part of the stick radius is the axis to it: its square is far below rounding.
 _INMOST: Final = 1e-100
 # The exponents for which NumPy does not raise.
@@ -32,6 +36,16 @@ def raised(base: Parameter, exponent: Parameter) -> Array:
             if np.any(there):
                 result = np.where(there, exact(base), result)
     return result
+
+
+def ordinary_radii(powers: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Radii at which the square of each C r^n, times a length or two, is surely a double."""
+    reach = min(
+        (_LOG_ORDINARY - 2 * abs(log(abs(c)))) / (2 * exponent + 2) for c, exponent in powers
+    )
+    if reach <= 0:
+        return NOWHERE
+    return max(exp(-reach), ORDINARY[0]), min(exp(min(reach, _LOG_ORDINARY)), ORDINARY[1])
 
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:

@@ -11,6 +11,7 @@ from mdr_core import checks
 from mdr_core.abel.displacement import Branch, slope_integral
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
+from mdr_core.lazy import cached_property
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -33,6 +34,9 @@ _NO_BREAKS: Final = np.empty(0)
 # Within these a product of a few factors is a double with all its digits.
 SMALLEST_HELD: Final = 1e-300
 LARGEST_HELD: Final = 1e300
+# Of factors within these, some of them cubed or squared, even an energy is a double.
+ORDINARY: Final = (1e-30, 1e30)
+NOWHERE: Final = (inf, 0.0)
 
 
 def require_positive(name: str, value: Parameter) -> None:
@@ -85,6 +89,15 @@ class Profile(ABC):
             for name, value in self.parameters.items()
             if isinstance(value, np.ndarray) and value.ndim
         )
+
+    @cached_property
+    def ordinary_coordinates(self) -> tuple[float, float]:
+        """Contact coordinates between which no answer leaves the range of doubles.
+
+        Parameters that are arrays are taken for ordinary ones.
+        """
+        single = [value for value in self.parameters.values() if isinstance(value, (int, float))]
+        return ORDINARY if all(ORDINARY[0] < one < ORDINARY[1] for one in single) else NOWHERE
 
     @property
     def normal_method(self) -> str:

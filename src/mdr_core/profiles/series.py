@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from mdr_core.abel.displacement import Branch
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
-from mdr_core.profiles.power_kernels import power, power_moment, power_slope
+from mdr_core.profiles.power_kernels import ordinary_radii, power, power_moment, power_slope
 from mdr_core.profiles.profile import LARGEST_HELD, SMALLEST_HELD, Profile, refuse_load
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
@@ -88,6 +88,10 @@ class Series(Profile):
     @property
     def last_coordinate(self) -> float | None:
         return None if self.domain == inf else self.domain
+
+    @cached_property
+    def ordinary_coordinates(self) -> tuple[float, float]:
+        return ordinary_radii(self._powers)
 
     @property
     def rounding(self) -> float:  # type: ignore[override]
@@ -219,7 +223,11 @@ class Series(Profile):
         total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
         for c, n in self._powers:
             scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
-            total += scale * power_moment(n - 1, coordinate, radius, rtol, width, inner)
+            moment = power_moment(n - 1, coordinate, radius, rtol, width, inner)
+            total += scale * np.where(np.isinf(moment), 0.0, moment)
+        if width is None and self.infinite_pressure_radii:
+            # Next to the first term all others are small there, whatever their factors.
+            return np.where(radius == 0, copysign(inf, modulus), total)
         return total
 
 
