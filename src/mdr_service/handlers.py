@@ -2,26 +2,27 @@
 
 import logging
 from collections.abc import Mapping
-from typing import Final
 
 import orjson
 from fastapi import FastAPI, Request
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
+from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from mdr_service import problems
-from mdr_service.problems import INTERNAL, METHOD_NOT_ALLOWED, NOT_FOUND, ServiceError
+from mdr_service.problems import METHOD_NOT_ALLOWED, NOT_FOUND, ServiceError
 
-_DEFECT: Final = ServiceError(INTERNAL, "the request met a defect of the service")
 _log = logging.getLogger(__name__)
 
 
 def response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:
     """Return the answer to a request that failed."""
     text = orjson.dumps(problems.document(error))
-    return Response(text, error.kind.status, headers, problems.MEDIA_TYPE)
+    # What is wrong today may be mended tomorrow.
+    told = {"Cache-Control": "no-store", **(headers or {})}
+    return Response(text, error.kind.status, told, problems.MEDIA_TYPE)
 
 
 def install(app: FastAPI) -> None:
@@ -60,7 +61,7 @@ class CatchAll:
             if started or scope["type"] != "http":
                 raise
             _log.exception("a defect, answered with 500")
-            await response(_DEFECT)(scope, receive, send)
+            await response(problems.DEFECT)(scope, receive, send)
 
 
 def _failure(_request: Request, error: Exception) -> Response:
@@ -73,5 +74,15 @@ def _http_exception(request: Request, error: HTTPException) -> Response:
         return response(ServiceError(NOT_FOUND, "GET /docs shows the addresses that exist"))
     if error.status_code == METHOD_NOT_ALLOWED.status:
         detail = f"{request.method[: problems.MAX_NAME]} is not answered here"
-        return response(ServiceError(METHOD_NOT_ALLOWED, detail), error.headers)
+        return response(ServiceError(METHOD_NOT_ALLOWED, detail), {"Allow": _allowed(request)})
     raise error
+
+
+def _allowed(request: Request) -> str:
+    """Return the methods of all routes at an address; the framework names those of one."""
+    scope = {**request.scope, "method": ""}
+    routes = [route for route in request.app.routes if isinstance(route, Route)]
+    methods = [
+        route.methods or set() for route in routes if route.matches(scope)[0] is not Match.NONE
+    ]
+    return ", ".join(sorted(set().union(*methods)))

@@ -11,7 +11,8 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 from starlette.routing import BaseRoute
 
-from mdr_service import problems, wire
+from mdr_service import address, arrays, forms, problems, wire
+from mdr_service.parameters import KNOWN, Parameter
 from mdr_service.problems import Kind
 from mdr_service.schemas.answers import (
     Catalogue,
@@ -24,8 +25,10 @@ from mdr_service.schemas.answers import (
     TangentialAnswer,
     WearAnswer,
 )
+from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.settings import SETTINGS
 
 _REF: Final = "#/components/schemas/{model}"
 _QUERIES: Final[Sequence[type[BaseModel]]] = (
@@ -35,6 +38,7 @@ _QUERIES: Final[Sequence[type[BaseModel]]] = (
     StressQuery,
     WearQuery,
     EvolutionQuery,
+    BatchQuery,
 )
 _ANSWERS: Final[Sequence[type[BaseModel]]] = (
     NormalAnswer,
@@ -43,11 +47,29 @@ _ANSWERS: Final[Sequence[type[BaseModel]]] = (
     StressAnswer,
     WearAnswer,
     EvolutionAnswer,
+    BatchAnswer,
     Catalogue,
     Health,
     Problem,
 )
 _NO_OTHERS: Final[Mapping[str, str]] = MappingProxyType({})
+
+_TEXT: Final[Mapping[str, str]] = MappingProxyType({"type": "string"})
+_BINARY: Final[Mapping[str, str]] = MappingProxyType({"contentMediaType": arrays.MEDIA_TYPE})
+_OF_RANGES: Final[Mapping[str, Mapping[str, Any]]] = {
+    address.COUNT: {
+        "type": "integer",
+        "minimum": 2,
+        "maximum": max(SETTINGS.max_loads, SETTINGS.max_radii),
+        "description": "How many values a range has, both ends among them",
+    },
+    address.SCALE: {
+        "type": "string",
+        "enum": list(address.SCALES),
+        "default": next(iter(address.SCALES)),
+        "description": "Whether a range goes evenly or by equal ratios",
+    },
+}
 
 _DESCRIPTION: Final = """\
 Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
@@ -59,8 +81,12 @@ converted; each field names its dimension in brackets, `[1]` for a plain number.
 loads. `null` stands for a true infinity only, and a warning with the code `singular` says where
 (of wear without an end, one with the code `endless_wear`).
 
-**Forms.** `Accept: text/csv` asks for a table with a column per quantity, where infinities are
-written `inf`; `Accept: image/svg+xml` for a picture, where there is one. JSON is the default.
+**Forms.** `?format=` or the header `Accept` asks for JSON (the default); `csv`, a table with a
+column per quantity, where infinities are written `inf`; `npz`, an archive of arrays for
+`numpy.load`; or `svg`, a picture, where there is one.
+
+**Addresses.** `GET` asks the same of the four queries by parameters: numbers, and one range, for
+spreadsheets and browsers.
 
 **Errors** are `application/problem+json` (RFC 9457); `errors` points into the request.
 """
@@ -72,6 +98,23 @@ def asks(model: type[BaseModel], examples: Mapping[str, Any]) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {wire.MEDIA_TYPE: content}}}
 
 
+def parameters(question: str, example: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the descriptions of the parameters of a question, filled in with the `example`."""
+    known = [each for one in KNOWN[question].by_name.values() for each in _described(one)]
+    known += [_parameter(name, schema) for name, schema in _OF_RANGES.items()]
+    return [
+        each | ({"example": example[each["name"]]} if each["name"] in example else {})
+        for each in known
+    ]
+
+
+def format_parameter(offered: Sequence[str]) -> dict[str, Any]:
+    """Return the description of the parameter that names the form of the answer."""
+    meaning = "The form of the answer; without it the header `Accept` says which"
+    schema = {"type": "string", "enum": forms.names(offered), "description": meaning}
+    return _parameter(address.FORMAT, schema)
+
+
 def answers(
     model: type[BaseModel], failures: Iterable[Kind] = (), others: Mapping[str, str] = _NO_OTHERS
 ) -> dict[str, Any]:
@@ -81,7 +124,8 @@ def answers(
     """
     content: dict[str, Any] = {wire.MEDIA_TYPE: {"schema": _reference(model)}}
     for media_type, meaning in others.items():
-        content[media_type] = {"schema": {"type": "string", "description": meaning}}
+        schema = _BINARY if media_type == arrays.MEDIA_TYPE else _TEXT
+        content[media_type] = {"schema": {**schema, "description": meaning}}
     responses: dict[str, Any] = {"200": {"description": "The answer", "content": content}}
     by_status: dict[int, list[str]] = {}
     for kind in (*failures, problems.INTERNAL):
@@ -92,6 +136,21 @@ def answers(
             "content": {problems.MEDIA_TYPE: {"schema": _reference(Problem)}},
         }
     return {"responses": responses}
+
+
+def _described(parameter: Parameter) -> list[dict[str, Any]]:
+    """Return a parameter, and those of the ends of its range."""
+    found = [_parameter(parameter.name, parameter.schema)]
+    if parameter.ranges:
+        for end, which in zip(parameter.ends, ("first", "last"), strict=True):
+            meaning = f"The {which} of `n` values of `{parameter.name}`, in its place"
+            found.append(_parameter(end, {**parameter.schema, "description": meaning}))
+    return found
+
+
+def _parameter(name: str, schema: Mapping[str, Any]) -> dict[str, Any]:
+    bare = {key: value for key, value in schema.items() if key != "description"}
+    return {"name": name, "in": "query", "description": schema["description"], "schema": bare}
 
 
 def document(version: str, routes: Sequence[BaseRoute]) -> dict[str, Any]:

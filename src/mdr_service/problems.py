@@ -72,6 +72,7 @@ class ServiceError(Exception):
         self.errors = tuple(errors)
 
 
+DEFECT: Final = ServiceError(INTERNAL, "the request met a defect of the service")
 # What a query may fail by, besides a defect: all of it has a document.
 FAILURES: Final = (ServiceError, InputError, AccuracyError)
 

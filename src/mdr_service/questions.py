@@ -4,13 +4,13 @@ Nothing here knows of HTTP: the endpoints, a compute process and the command lin
 get the same bytes.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from mdr_service import documents, pictures, solve, table, wire, worn
+from mdr_service import arrays, documents, pictures, solve, table, wire, worn
 from mdr_service.schemas.queries import (
     HistoryQuery,
     NormalQuery,
@@ -40,9 +40,14 @@ class Question:
     @property
     def media_types(self) -> tuple[str, ...]:
         """The forms of its answer, the usual one first."""
-        written = (wire.MEDIA_TYPE, table.MEDIA_TYPE)
-        return (*written, pictures.MEDIA_TYPE) if self.draw else written
+        return (*_WRITERS, pictures.MEDIA_TYPE) if self.draw else tuple(_WRITERS)
 
+
+_WRITERS: Final[Mapping[str, Callable[[Mapping[str, Any]], bytes]]] = {
+    wire.MEDIA_TYPE: wire.write,
+    table.MEDIA_TYPE: table.write,
+    arrays.MEDIA_TYPE: arrays.write,
+}
 
 QUESTIONS: Final = {
     "normal": Question(NormalQuery, solve.normal, documents.normal),
@@ -70,5 +75,4 @@ def answer(name: str, query: Query, media_type: str) -> Answer:
         if question.draw and media_type == pictures.MEDIA_TYPE:
             return Answer(question.draw(found), media_type)
         document = question.document(query, found)
-    write = table.write if media_type == table.MEDIA_TYPE else wire.write
-    return Answer(write(document), media_type)
+    return Answer(_WRITERS[media_type](document), media_type)

@@ -1,6 +1,6 @@
 """The endpoints: what is asked is read, answered by the one that knows how, and sent."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from importlib.resources import files
 from typing import Any, Final
 
@@ -9,38 +9,10 @@ from fastapi.routing import APIRoute
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import request_response
 
-from mdr_service import (
-    body,
-    compute,
-    convert,
-    forms,
-    pictures,
-    problems,
-    questions,
-    table,
-    wire,
-)
-from mdr_service.openapi import answers, asks
-from mdr_service.schemas.answers import (
-    Catalogue,
-    EvolutionAnswer,
-    Health,
-    HistoryAnswer,
-    NormalAnswer,
-    StressAnswer,
-    TangentialAnswer,
-    WearAnswer,
-)
-from mdr_service.schemas.examples import (
-    EVOLUTION_EXAMPLES,
-    HISTORY_EXAMPLES,
-    NORMAL_EXAMPLES,
-    STRESS_EXAMPLES,
-    TANGENTIAL_EXAMPLES,
-    WEAR_EXAMPLES,
-)
-from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
-from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service import asking, convert, parameters, wire
+from mdr_service.described import BATCH, QUERIES
+from mdr_service.openapi import answers
+from mdr_service.schemas.answers import Catalogue, Health
 
 
 class DirectRoute(APIRoute):
@@ -60,15 +32,6 @@ class DirectRoute(APIRoute):
 
 router = APIRouter(route_class=DirectRoute)
 
-_QUERY_FAILURES: Final = (
-    problems.MALFORMED_JSON,
-    problems.NOT_ACCEPTABLE,
-    problems.BODY_TOO_LARGE,
-    problems.UNSUPPORTED_MEDIA_TYPE,
-    problems.INVALID_REQUEST,
-    problems.ACCURACY,
-)
-_ROW_PER_LOAD: Final = {table.MEDIA_TYPE: "One column per list, one row per load."}
 _CATALOGUE: Final = convert.catalogue().model_dump()
 _HEALTH: Final = Health(status="ok").model_dump()
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
@@ -85,8 +48,7 @@ _DOCS_HEADERS: Final = {
     operation_id="normal",
     tags=["contact"],
     summary="Depth, force and radius of a normal contact: give one, get the others",
-    openapi_extra=asks(NormalQuery, NORMAL_EXAMPLES)
-    | answers(NormalAnswer, _QUERY_FAILURES, _ROW_PER_LOAD),
+    openapi_extra=QUERIES["normal"].by_body,
 )
 async def normal_contact(request: Request) -> Response:
     """Answer the contact of a profile with an elastic half-space, without friction.
@@ -94,7 +56,7 @@ async def normal_contact(request: Request) -> Response:
     Every list of the answer has one entry per load. `method` names the dearest route that was
     taken, `error_estimate` bounds the relative error of every number.
     """
-    return await _ask(request, "normal")
+    return await asking.posted(request, "normal")
 
 
 @router.post(
@@ -102,13 +64,7 @@ async def normal_contact(request: Request) -> Response:
     operation_id="tangential",
     tags=["contact"],
     summary="Stick and slip under a tangential load: give force, displacement or stick radius",
-    openapi_extra=asks(TangentialQuery, TANGENTIAL_EXAMPLES)
-    | answers(
-        TangentialAnswer,
-        _QUERY_FAILURES,
-        _ROW_PER_LOAD
-        | {pictures.MEDIA_TYPE: "Force over displacement up to full slip, first normal load."},
-    ),
+    openapi_extra=QUERIES["tangential"].by_body,
 )
 async def tangential_contact(request: Request) -> Response:
     """Answer a contact with friction, pressed first and then loaded tangentially once.
@@ -116,7 +72,7 @@ async def tangential_contact(request: Request) -> Response:
     Every list of the answer has one entry per pair of loads. A tangential force beyond µ F_N has
     no equilibrium and is refused; a displacement beyond full slip is answered as `full_slip`.
     """
-    return await _ask(request, "tangential")
+    return await asking.posted(request, "tangential")
 
 
 @router.post(
@@ -124,15 +80,7 @@ async def tangential_contact(request: Request) -> Response:
     operation_id="history",
     tags=["contact"],
     summary="Loads that come and go: any way of normal and tangential load, or equal cycles",
-    openapi_extra=asks(HistoryQuery, HISTORY_EXAMPLES)
-    | answers(
-        HistoryAnswer,
-        _QUERY_FAILURES,
-        {
-            table.MEDIA_TYPE: "One column per list over the samples, one row per sample.",
-            pictures.MEDIA_TYPE: "Force over displacement, with the points that were given.",
-        },
-    ),
+    openapi_extra=QUERIES["history"].by_body,
 )
 async def loading_history(request: Request) -> Response:
     """Follow the loads from the first touch on, and answer at samples on the way.
@@ -147,7 +95,7 @@ async def loading_history(request: Request) -> Response:
     way. `slip_fronts` may be less exact where both loads change on a way that is not straight; a
     warning `accuracy` says so. `energy_per_cycle` and `secant_stiffness` answer `cycles`.
     """
-    return await _ask(request, "history")
+    return await asking.posted(request, "history")
 
 
 @router.post(
@@ -155,23 +103,14 @@ async def loading_history(request: Request) -> Response:
     operation_id="stress",
     tags=["contact"],
     summary="Stresses, slip and displacement over the radius",
-    openapi_extra=asks(StressQuery, STRESS_EXAMPLES)
-    | answers(
-        StressAnswer,
-        _QUERY_FAILURES,
-        {
-            table.MEDIA_TYPE: "One column per field, one row per radius; with several loads the "
-            "index of the load in a first column, and one row per load and radius.",
-            pictures.MEDIA_TYPE: "The fields over the radius, with a, c and the breaks b marked.",
-        },
-    ),
+    openapi_extra=QUERIES["stress"].by_body,
 )
 async def stress_fields(request: Request) -> Response:
     """Answer the fields named in `quantities`, and nothing else, by load and radius.
 
     `error_estimate` bounds the error of each field relative to its largest value.
     """
-    return await _ask(request, "stress")
+    return await asking.posted(request, "stress")
 
 
 @router.post(
@@ -179,17 +118,7 @@ async def stress_fields(request: Request) -> Response:
     operation_id="wear",
     tags=["wear"],
     summary="Fretting wear in the end: the shape that a small oscillation wears no further",
-    openapi_extra=asks(WearQuery, WEAR_EXAMPLES)
-    | answers(
-        WearAnswer,
-        _QUERY_FAILURES,
-        {
-            table.MEDIA_TYPE: "Without radii one column per list, one row per load; with them one "
-            "column per field, one row per radius, and with several loads the index of the load "
-            "in a first column, and one row per load and radius.",
-            pictures.MEDIA_TYPE: "The profile before and in the limit, with c and ã marked.",
-        },
-    ),
+    openapi_extra=QUERIES["wear"].by_body,
 )
 async def wear_limit(request: Request) -> Response:
     """Answer the limit of fretting: the rim outside the stick zone wears until it bears nothing.
@@ -202,7 +131,7 @@ async def wear_limit(request: Request) -> Response:
     Where everything slips, a held force wears without end (`endless_wear`), a held depth until
     nothing touches (`contact_lost`); where nothing slips nothing wears (`no_wear`).
     """
-    return await _ask(request, "wear")
+    return await asking.posted(request, "wear")
 
 
 @router.post(
@@ -210,17 +139,7 @@ async def wear_limit(request: Request) -> Response:
     operation_id="evolution",
     tags=["wear"],
     summary="Fretting wear over the cycles: the shape and the pressure on the way to the limit",
-    openapi_extra=asks(EvolutionQuery, EVOLUTION_EXAMPLES)
-    | answers(
-        EvolutionAnswer,
-        _QUERY_FAILURES,
-        {
-            table.MEDIA_TYPE: "Without radii one column per list, one row per number of cycles; "
-            "with them the cycles, the radius, and one column per field.",
-            pictures.MEDIA_TYPE: "Profiles and pressures over the cycles, with the limiting "
-            "profile where there is one.",
-        },
-    ),
+    openapi_extra=QUERIES["evolution"].by_body,
 )
 async def wear_evolution(request: Request) -> Response:
     """Follow the wear over the cycles, by dV/dN = K W at each place: W is a cycle's friction work.
@@ -229,17 +148,49 @@ async def wear_evolution(request: Request) -> Response:
     cycles; it takes a second or so, more with the resolution, and what takes too long is refused
     beforehand. A warning `limit_reached` says from when on nothing wears any more.
     """
-    return await _ask(request, "evolution")
+    return await asking.posted(request, "evolution")
 
 
-async def _ask(request: Request, name: str) -> Response:
-    """Return the answer to the question `name` that the request holds."""
-    question = questions.QUESTIONS[name]
-    media_type = forms.chosen(request, question.media_types)
-    query = wire.read(question.model, await body.read(request))
-    effort = questions.effort(query, media_type)
-    found = await compute.run(effort, questions.answer, name, query, media_type)
-    return Response(found.content, media_type=found.media_type)
+@router.post(
+    "/v1/batch",
+    operation_id="batch",
+    tags=["batch"],
+    summary="Queries of any kind in one request, each with its own answer or problem",
+    openapi_extra=BATCH,
+)
+async def batch(request: Request) -> Response:
+    """Answer each query as it would be answered on its own, in the same order.
+
+    The status is 200 as soon as the list itself is understood: each entry has its own `status`,
+    and with it the `answer` or else the `problem`, whose pointers are into its own `request`.
+    """
+    return await asking.batched(request)
+
+
+def _ask_by_address(name: str) -> Callable[[Request], Awaitable[Response]]:
+    """Return the endpoint of a query that is asked by parameters."""
+
+    async def endpoint(request: Request) -> Response:
+        return await asking.got(request, name)
+
+    return endpoint
+
+
+_BY_ADDRESS = """Answer the same as `POST`, asked by parameters: numbers, and at most one range.
+
+A range, `..._from`, `..._to` and `n`, stands for a list of `n` numbers, evenly or by equal ratios
+(`scale=log`). A `+` is read as it stands, also where it is not written `%2B`.
+"""
+
+for _name in parameters.KNOWN:
+    router.get(
+        f"/v1/{_name}",
+        operation_id=f"{_name}_by_address",
+        tags=["wear" if _name == "wear" else "contact"],
+        summary=f"The query `{_name}` in an address, for spreadsheets and browsers",
+        description=_BY_ADDRESS,
+        openapi_extra=QUERIES[_name].by_address,
+    )(_ask_by_address(_name))
 
 
 def _said(document: Mapping[str, Any]) -> Response:

@@ -43,6 +43,7 @@ class Settings(BaseModel):
         description="Most values of a profile that following its wear over the cycles takes, as "
         "estimated beforehand; a million take some seconds.",
     )
+    max_batch: int = Field(default=1_000, ge=1, description="Most queries in one batch.")
     max_table_points: int = Field(
         default=2_000, ge=2, description="Most points of a tabulated profile."
     )

@@ -59,7 +59,7 @@ def test_a_bug_is_answered_and_the_connection_stays(
 
     socket = connection.sock
     with monkeypatch.context() as patch:
-        patch.setattr(solve, "normal", broken)
+        patch.setattr(solve.normal_contact, "solve", broken)
         status, media_type, body = ask(connection, BODY)
     assert (status, media_type) == (500, MEDIA_TYPE)
     assert b"secret" not in body

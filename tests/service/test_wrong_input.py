@@ -824,7 +824,8 @@ def test_json_is_read_however_it_is_written(client: Client, media_type: str) -> 
     [
         ("GET", "/nothing", 404),
         ("GET", "/docs/swagger/nothing.js", 404),
-        ("GET", "/v1/normal", 405),
+        ("GET", "/v1/wear/evolution", 405),
+        ("PUT", "/v1/normal", 405),
         ("DELETE", "/health", 405),
         ("POST", "/docs/swagger/swagger-ui.css", 405),
     ],
@@ -836,6 +837,18 @@ def test_a_wrong_address_is_a_problem_too(
     assert answer.status_code == status
     assert ("allow" in answer.headers) == (status == 405)
     problem(answer)
+
+
+@pytest.mark.parametrize(
+    ("path", "methods"),
+    [
+        ("/v1/normal", "GET, HEAD, POST"),
+        ("/v1/wear/evolution", "POST"),
+        ("/health", "GET, HEAD"),
+    ],
+)
+def test_all_methods_of_an_address_are_told(client: Client, path: str, methods: str) -> None:
+    assert client.request("PUT", path).headers["allow"] == methods
 
 
 @pytest.mark.parametrize("path", ["/", "/health", "/docs", "/openapi.json", "/v1/profiles"])

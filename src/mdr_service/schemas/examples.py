@@ -269,3 +269,60 @@ STRESS_EXAMPLES: Final = {
         },
     ),
 }
+
+# In parameters: numbers and one range.
+_BALL_IN_ADDRESS: Final = {
+    "kind": "paraboloid",
+    "radius": 0.01,
+    "e_star": 1.15e11,
+    "g_star": 9.5e10,
+    "friction_coefficient": 0.3,
+}
+
+NORMAL_IN_ADDRESS: Final = {
+    "kind": "paraboloid",
+    "radius": 0.01,
+    "e_star": 1.1e11,
+    "normal_force_from": 1.0,
+    "normal_force_to": 10.0,
+    "n": 10,
+}
+TANGENTIAL_IN_ADDRESS: Final = _BALL_IN_ADDRESS | {
+    "normal_force": 10.0,
+    "tangential_force_from": 0.0,
+    "tangential_force_to": 3.0,
+    "n": 7,
+}
+STRESS_IN_ADDRESS: Final = _BALL_IN_ADDRESS | {
+    "normal_force": 10.0,
+    "tangential_force": 2.0,
+    "r_from": 0.0,
+    "r_to": 1e-4,
+    "n": 11,
+    "quantities": "pressure,shear_stress",
+}
+WEAR_IN_ADDRESS: Final = _BALL_IN_ADDRESS | {
+    "normal_force": 10.0,
+    "tangential_force_from": 0.5,
+    "tangential_force_to": 2.5,
+    "n": 5,
+}
+
+BATCH_EXAMPLES: Final = {
+    "two": _example(
+        "A ball pressed, and a cone that cannot be pulled: an answer and a problem",
+        {
+            "queries": [
+                {"ask": "normal", "request": _BALL},
+                {
+                    "ask": "normal",
+                    "request": {
+                        "profile": {"kind": "cone", "slope": 0.1},
+                        "material": {"e_star": 1e9},
+                        "load": {"normal_force": -1.0},
+                    },
+                },
+            ]
+        },
+    ),
+}

@@ -1,0 +1,80 @@
+"""How a request becomes a question, and the answer a response."""
+
+from hashlib import blake2b
+from typing import Final
+
+from fastapi import Request
+from starlette.responses import Response
+
+from mdr_service import address, batch, body, compute, forms, problems, questions, wire
+from mdr_service.questions import QUESTIONS, Answer
+from mdr_service.schemas.batch import BatchQuery
+from mdr_service.schemas.queries import Query
+
+# What is answered depends on what is asked, and on the version of the service alone.
+_KEPT: Final = "max-age=3600"
+
+
+async def posted(request: Request, name: str) -> Response:
+    """Return the answer to the question `name` that the body holds."""
+    question = QUESTIONS[name]
+    media_type = _form(request, question.media_types, _format(request))
+    query = wire.read(question.model, await body.read(request))
+    return _sent(await _answer(name, query, media_type))
+
+
+async def got(request: Request, name: str) -> Response:
+    """Return the answer to the question `name` that the address holds."""
+    question = QUESTIONS[name]
+    given = address.split(request.url.query)
+    media_type = _form(request, question.media_types, given.get(address.FORMAT))
+    text = address.request(name, given)
+    try:
+        found = await _answer(name, wire.read(question.model, text), media_type)
+    except problems.FAILURES as error:
+        raise address.pointed(problems.told(error), name, given) from None
+    return _kept(request, _sent(found))
+
+
+async def batched(request: Request) -> Response:
+    """Return the answers to all queries of a batch."""
+    _form(request, (wire.MEDIA_TYPE,), _format(request))
+    asked = batch.read(wire.read(BatchQuery, await body.read(request)))
+    content = await compute.run(batch.effort(asked), batch.answer, asked)
+    return _sent(Answer(content, wire.MEDIA_TYPE))
+
+
+async def _answer(name: str, query: Query, media_type: str) -> Answer:
+    effort = questions.effort(query, media_type)
+    return await compute.run(effort, questions.answer, name, query, media_type)
+
+
+def _format(request: Request) -> str | None:
+    query_string = request.url.query
+    return address.only_format(query_string) if query_string else None
+
+
+def _form(request: Request, offered: tuple[str, ...], name: str | None) -> str:
+    """Return the media type that is asked for: by name, or else by what is accepted."""
+    if name is not None:
+        return forms.named(name, offered)
+    return forms.accepted(request.headers.get("accept", "*/*"), offered)
+
+
+def _sent(answer: Answer) -> Response:
+    return Response(answer.content, media_type=answer.media_type)
+
+
+def _kept(request: Request, response: Response) -> Response:
+    """Return the response with what caches need, and without what the client has already.
+
+    The tag is weak: the same numbers may be sent compressed as well.
+    """
+    digest = blake2b(response.body, digest_size=16).hexdigest()
+    headers = {"ETag": f'W/"{digest}"', "Cache-Control": _KEPT, "Vary": "Accept"}
+    known = request.headers.get("if-none-match", "")
+    tags = {tag.strip().removeprefix("W/") for tag in known.split(",")}
+    if tags & {f'"{digest}"', "*"}:
+        return Response(status_code=304, headers=headers)
+    response.headers.update(headers)
+    return response

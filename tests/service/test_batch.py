@@ -1,0 +1,125 @@
+"""A batch answers each query with the bytes it would have had on its own."""
+
+import json
+from collections.abc import Sequence
+
+import httpx
+import pytest
+
+from mdr_service import questions
+from mdr_service.problems import MEDIA_TYPE
+from mdr_service.schemas.batch import BatchAnswer
+from mdr_service.schemas.examples import BATCH_EXAMPLES
+from mdr_service.settings import SETTINGS
+from tests.conftest import Client
+from tests.service.test_forms import BALL, CASES
+from tests.service.test_wrong_input import POINTED, POINTED_ELSEWHERE
+
+ASKS = {
+    "/v1/normal": "normal",
+    "/v1/tangential": "tangential",
+    "/v1/tangential/history": "history",
+    "/v1/stress": "stress",
+    "/v1/wear": "wear",
+    "/v1/wear/evolution": "evolution",
+}
+WRONG = [("/v1/normal", body) for body, _ in POINTED.values() if body.startswith(b"{")] + [
+    (f"/v1/{path}", body) for path, body, _ in POINTED_ELSEWHERE.values()
+]
+
+
+def batch(client: Client, queries: Sequence[tuple[str, bytes]]) -> httpx.Response:
+    entries = [
+        b'{"ask": "%s", "request": %s}' % (ASKS[path].encode(), body) for path, body in queries
+    ]
+    return client.post_text("/v1/batch", b'{"queries": [%s]}' % b",".join(entries))
+
+
+def alone(client: Client, path: str, body: bytes) -> bytes:
+    """Return the entry that holds what a query is answered on its own."""
+    answer = client.post_text(path, body)
+    name = b"answer" if answer.status_code == 200 else b"problem"
+    return b'{"status":%d,"%s":%s}' % (answer.status_code, name, answer.content)
+
+
+def test_every_example_is_answered_as_alone_and_in_order(client: Client) -> None:
+    queries = [(path, json.dumps(query).encode()) for path, _, query in CASES]
+    answer = batch(client, queries)
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "application/json"
+    expected = b",".join(alone(client, *query) for query in queries)
+    assert answer.content == b'{"answers":[%s]}' % expected
+    BatchAnswer.model_validate_json(answer.content)
+
+
+@pytest.mark.parametrize(("path", "body"), WRONG)
+def test_what_is_wrong_with_one_is_its_own_problem(client: Client, path: str, body: bytes) -> None:
+    right = json.dumps(BALL).encode()
+    answer = batch(client, [("/v1/normal", right), (path, body), ("/v1/normal", right)])
+    assert answer.status_code == 200
+    good, bad = alone(client, "/v1/normal", right), alone(client, path, body)
+    assert bad.startswith(b'{"status":422')
+    assert answer.content == b'{"answers":[%s,%s,%s]}' % (good, bad, good)
+
+
+@pytest.mark.parametrize(
+    ("body", "pointer"),
+    [
+        ({}, "/queries"),
+        ({"queries": []}, "/queries"),
+        ({"queries": {}}, "/queries"),
+        ({"queries": [5]}, "/queries/0"),
+        ({"queries": [{"ask": "normal"}]}, "/queries/0/request"),
+        ({"queries": [{"request": BALL}]}, "/queries/0/ask"),
+        ({"queries": [{"ask": "normal", "request": BALL}, {"ask": "x"}]}, "/queries/1/ask"),
+        ({"queries": [{"ask": "normal", "request": [BALL]}]}, "/queries/0/request"),
+        ({"queries": [{"ask": "normal", "request": None}]}, "/queries/0/request"),
+        ({"queries": [{"ask": "normal", "request": BALL, "id": 1}]}, "/queries/0/id"),
+        ({"queries": [{"ask": "normal", "request": BALL}], "n": 1}, "/n"),
+        ({"queries": [{"ask": "normal", "request": {}}] * (SETTINGS.max_batch + 1)}, "/queries"),
+    ],
+    ids=lambda value: str(value)[:60],
+)
+def test_a_list_that_is_not_understood_is_refused_as_a_whole(
+    client: Client, body: object, pointer: str
+) -> None:
+    answer = client.post("/v1/batch", body)
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == MEDIA_TYPE
+    assert answer.json()["errors"][0]["pointer"] == pointer
+
+
+def test_a_batch_is_malformed_like_any_body(client: Client) -> None:
+    assert client.post_text("/v1/batch", b'{"queries": [').status_code == 400
+
+
+@pytest.mark.parametrize("accept", ["text/csv", "image/svg+xml", "application/x-npz"])
+def test_a_batch_is_answered_in_json_alone(client: Client, accept: str) -> None:
+    example = BATCH_EXAMPLES["two"]["value"]
+    headers = {"accept": accept}
+    assert client.request("POST", "/v1/batch", json=example, headers=headers).status_code == 406
+    assert client.request("POST", "/v1/batch?format=csv", json=example).status_code == 406
+    assert client.request("POST", "/v1/batch?format=json", json=example).status_code == 200
+
+
+def test_a_defect_in_one_leaves_the_others(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_query: object) -> object:
+        raise ZeroDivisionError
+
+    cone = questions.QUESTIONS["tangential"]
+    monkeypatch.setitem(
+        questions.QUESTIONS,
+        "tangential",
+        questions.Question(cone.model, broken, cone.document),
+    )
+    path, _, query = next(case for case in CASES if case[0] == "/v1/tangential")
+    queries = [("/v1/normal", json.dumps(BALL).encode()), (path, json.dumps(query).encode())]
+    first, second = batch(client, queries).json()["answers"]
+    assert first["status"] == 200
+    assert second["status"] == second["problem"]["status"] == 500
+    assert set(second["problem"]) == {"type", "title", "status", "detail"}
+
+
+def test_the_example_shows_an_answer_and_a_problem(client: Client) -> None:
+    answers = client.post("/v1/batch", BATCH_EXAMPLES["two"]["value"]).json()["answers"]
+    assert [each["status"] for each in answers] == [200, 422]

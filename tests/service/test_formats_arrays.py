@@ -1,0 +1,108 @@
+"""Answers as arrays of NumPy: the numbers of the document, to the last bit, without pickle."""
+
+import io
+import zipfile
+from math import inf
+
+import httpx
+import numpy as np
+import pytest
+
+from tests.conftest import Client
+from tests.service.test_forms import BALL, EVERY_EXAMPLE, ask
+
+NPZ = "application/x-npz"
+
+
+def arrays(answer: httpx.Response) -> dict[str, np.ndarray]:
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == NPZ
+    with np.load(io.BytesIO(answer.content), allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def infinite(value: object) -> object:
+    """Return a value of a JSON answer with the infinities that `null` stands for."""
+    if isinstance(value, list):
+        return [infinite(each) for each in value]
+    return inf if value is None else value
+
+
+@EVERY_EXAMPLE
+def test_the_arrays_hold_the_bits_of_the_document(
+    client: Client, path: str, query: dict[str, object]
+) -> None:
+    found = arrays(ask(client, path, query, NPZ))
+    document = client.post(path, query).json()
+    assert list(found) == list(document)
+    warnings = document.pop("warnings")
+    told = found.pop("warnings")
+    assert told.dtype.names == ("code", "message")
+    assert [dict(zip(told.dtype.names, each, strict=True)) for each in told.tolist()] == warnings
+    for name, values in document.items():
+        assert found[name].tolist() == infinite(values), name
+        assert found[name].dtype.kind in {"f", "i", "U"}
+
+
+def test_fields_are_arrays_by_load_and_radius(client: Client) -> None:
+    query = {
+        **BALL,
+        "load": {"normal_force": [1.0, 10.0, 20.0]},
+        "radius": [0.0, 1e-5],
+        "quantities": ["pressure"],
+    }
+    found = arrays(ask(client, "/v1/stress", query, NPZ))
+    assert found["pressure"].shape == (3, 2)
+    assert found["pressure"].dtype == np.float64
+    assert found["radius"].shape == (2,)
+    assert found["method"].shape == found["error_estimate"].shape == ()
+
+
+def test_the_same_question_has_the_same_bytes(client: Client) -> None:
+    first, second = (ask(client, "/v1/normal", BALL, NPZ).content for _ in range(2))
+    assert first == second
+    with zipfile.ZipFile(io.BytesIO(first)) as archive:
+        assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+@pytest.mark.parametrize(
+    ("name", "media_type"),
+    [
+        ("json", "application/json"),
+        ("csv", "text/csv"),
+        ("npz", NPZ),
+        ("svg", "image/svg+xml"),
+    ],
+)
+def test_a_form_can_be_asked_for_by_name(client: Client, name: str, media_type: str) -> None:
+    query = {**BALL, "radius": [0.0, 1e-5], "quantities": ["pressure"]}
+    named = ask(client, f"/v1/stress?format={name}", query, "text/html, image/svg+xml;q=0.1")
+    assert named.status_code == 200
+    assert named.headers["content-type"].partition(";")[0] == media_type
+    assert named.content == ask(client, "/v1/stress", query, media_type).content
+
+
+@pytest.mark.parametrize("name", ["xml", "", "JSON", "text/csv", "svg"])
+def test_an_unknown_name_is_refused_with_those_that_are_known(client: Client, name: str) -> None:
+    answer = ask(client, f"/v1/normal?format={name}", BALL, "application/json")
+    assert answer.status_code == 406
+    assert answer.json()["detail"] == (
+        "the answer can be json (application/json), csv (text/csv), npz (application/x-npz)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("query_string", "pointer"),
+    [
+        ("fromat=csv", "/fromat"),
+        ("format=csv&format=json", "/format"),
+        ("rtol=1e-3", "/rtol"),
+        ("&".join(f"u{i}=1" for i in range(101)), "/"),
+    ],
+)
+def test_nothing_else_is_read_from_the_address_of_a_body(
+    client: Client, query_string: str, pointer: str
+) -> None:
+    answer = ask(client, f"/v1/normal?{query_string}", BALL, "*/*")
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == pointer

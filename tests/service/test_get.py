@@ -1,0 +1,390 @@
+"""Queries in an address are answered with the bytes of the request they stand for."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from urllib.parse import urlencode
+
+import numpy as np
+import pytest
+
+from mdr_service import address, parameters
+from mdr_service.schemas import examples
+from mdr_service.settings import SETTINGS
+from tests.conftest import Client
+
+DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
+BALL = {"kind": "paraboloid", "radius": 0.01}
+MODULI = {"e_star": 1.15e11, "g_star": 9.5e10}
+STEEL = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+BODIES = {"youngs_modulus_1": 210e9, "poissons_ratio_1": 0.3}
+FRICTION = {"friction_coefficient": 0.3}
+REQUEST = {"profile": BALL, "material": MODULI}
+RANGE = {"normal_force_from": 1, "normal_force_to": 10, "n": 50}
+NORMAL = {**BALL, "e_star": 1.15e11, "normal_force": 10}
+SAME = {
+    "a range": (
+        "normal",
+        {**BALL, **MODULI, **RANGE},
+        {**REQUEST, "load": {"normal_force": np.linspace(1, 10, 50).tolist()}},
+    ),
+    "equal ratios": (
+        "normal",
+        {**BALL, **MODULI, **RANGE, "scale": "log"},
+        {**REQUEST, "load": {"normal_force": np.geomspace(1, 10, 50).tolist()}},
+    ),
+    "a falling range": (
+        "normal",
+        {**BALL, **MODULI, "indentation_depth_from": 1e-6, "indentation_depth_to": 0, "n": 2},
+        {**REQUEST, "load": {"indentation_depth": [1e-6, 0.0]}},
+    ),
+    "one number, a tolerance and a strength": (
+        "normal",
+        {**BALL, "e_star": 1, "yield_strength": 0.5, "contact_radius": 1e-3, "rtol": 1e-6},
+        {
+            "profile": BALL,
+            "material": {"e_star": 1, "yield_strength": 0.5},
+            "load": {"contact_radius": 1e-3},
+            "rtol": 1e-6,
+        },
+    ),
+    "two bodies": (
+        "normal",
+        {**BALL, **BODIES, "youngs_modulus_2": 5e6, "poissons_ratio_2": 0.5, "normal_force": 1},
+        {
+            "profile": BALL,
+            "material": {"bodies": [STEEL, {"youngs_modulus": 5e6, "poissons_ratio": 0.5}]},
+            "load": {"normal_force": 1},
+        },
+    ),
+    "one body": (
+        "normal",
+        {**BALL, "youngs_modulus_2": 210e9, "poissons_ratio_2": 0.3, "normal_force": 1},
+        {
+            "profile": BALL,
+            "material": {"bodies": ["rigid", STEEL]},
+            "load": {"normal_force": 1},
+        },
+    ),
+    "a tangential range": (
+        "tangential",
+        {
+            **BALL,
+            **MODULI,
+            **FRICTION,
+            "normal_force": 10,
+            "tangential_force_from": -3,
+            "tangential_force_to": 3,
+            "n": 7,
+        },
+        {
+            **REQUEST,
+            **FRICTION,
+            "load": {"normal_force": 10},
+            "tangential": {"tangential_force": np.linspace(-3, 3, 7).tolist()},
+        },
+    ),
+    "stresses at a range of radii": (
+        "stress",
+        {
+            **BALL,
+            **MODULI,
+            **FRICTION,
+            "normal_force": 10,
+            "stick_radius": 5e-5,
+            "r_from": 0,
+            "r_to": 1e-4,
+            "n": 11,
+            "quantities": "pressure,shear_stress,slip",
+        },
+        {
+            **REQUEST,
+            **FRICTION,
+            "load": {"normal_force": 10},
+            "tangential": {"stick_radius": 5e-5},
+            "radius": np.linspace(0, 1e-4, 11).tolist(),
+            "quantities": ["pressure", "shear_stress", "slip"],
+        },
+    ),
+    "stresses at one radius under a range of loads": (
+        "stress",
+        {**BALL, **MODULI, **RANGE, "r": 0, "quantities": "pressure"},
+        {
+            **REQUEST,
+            "load": {"normal_force": np.linspace(1, 10, 50).tolist()},
+            "radius": [0.0],
+            "quantities": ["pressure"],
+        },
+    ),
+    "stresses at points": (
+        "stress",
+        {**BALL, **MODULI, "normal_force": 1, "points": 20, "quantities": "normal_displacement"},
+        {
+            **REQUEST,
+            "load": {"normal_force": 1},
+            "points": 20,
+            "quantities": ["normal_displacement"],
+        },
+    ),
+    "wear by the amplitude": (
+        "wear",
+        {
+            **BALL,
+            **MODULI,
+            **FRICTION,
+            "normal_force": 10,
+            "tangential_force_from": 1,
+            "tangential_force_to": 2.5,
+            "n": 4,
+        },
+        {
+            **REQUEST,
+            **FRICTION,
+            "load": {"normal_force": 10},
+            "oscillation": {"tangential_force": np.linspace(1, 2.5, 4).tolist()},
+        },
+    ),
+    "wear over the radius": (
+        "wear",
+        {
+            **BALL,
+            **MODULI,
+            **FRICTION,
+            "indentation_depth": 1e-6,
+            "tangential_displacement": 2e-7,
+            "points": 9,
+            "quantities": "worn_depth,pressure",
+        },
+        {
+            **REQUEST,
+            **FRICTION,
+            "load": {"indentation_depth": 1e-6},
+            "oscillation": {"tangential_displacement": 2e-7},
+            "points": 9,
+            "quantities": ["worn_depth", "pressure"],
+        },
+    ),
+}
+
+
+def at(question: str, given: Mapping[str, object]) -> str:
+    return f"/v1/{question}?{urlencode(given)}"
+
+
+@pytest.mark.parametrize("form", ["json", "csv", "npz", "svg"])
+@pytest.mark.parametrize("name", SAME)
+def test_an_address_is_answered_as_the_request_it_stands_for(
+    client: Client, name: str, form: str
+) -> None:
+    question, given, request = SAME[name]
+    found = client.get(at(question, {**given, "format": form}))
+    expected = client.post(f"/v1/{question}?format={form}", request)
+    assert (expected.status_code == 200) == (question != "normal" or form != "svg")
+    assert found.status_code == expected.status_code
+    assert found.headers["content-type"] == expected.headers["content-type"]
+    assert found.content == expected.content
+
+
+REFUSED = {
+    "nothing": ("normal", {}, "kind"),
+    "an unknown name": ("normal", {**NORMAL, "colour": "red"}, "colour"),
+    "a name of another query": ("normal", {**NORMAL, "tangential_force": 1}, "tangential_force"),
+    "no number": ("normal", {**NORMAL, "rtol": "exact"}, "rtol"),
+    "no text": ("normal", {**NORMAL, "rtol": ""}, "rtol"),
+    "a decimal comma": ("normal", {**NORMAL, "radius": "0,01"}, "radius"),
+    "an underscore": ("normal", {**NORMAL, "radius": "1_0"}, "radius"),
+    "a space": ("normal", {**NORMAL, "radius": "1 2"}, "radius"),
+    "other digits": ("normal", {**NORMAL, "radius": "٣"}, "radius"),
+    "not a number": ("normal", {**NORMAL, "radius": "nan"}, "radius"),
+    "infinity": ("normal", {**NORMAL, "radius": "inf"}, "radius"),
+    "an overflow": ("normal", {**NORMAL, "radius": "1e999"}, "radius"),
+    "a list": ("normal", {**NORMAL, "normal_force": "1,2"}, "normal_force"),
+    "a number that is out of bounds": ("normal", {**NORMAL, "radius": -1}, "radius"),
+    "a kind that is none": ("normal", {**NORMAL, "kind": "cube"}, "kind"),
+    "a kind of lists": ("normal", {**NORMAL, "kind": "tabulated"}, "kind"),
+    "a field of another kind": ("normal", {**NORMAL, "slope": 1}, "slope"),
+    "no modulus": ("normal", {**BALL, "normal_force": 1}, "e_star"),
+    "half a body": (
+        "normal",
+        {**BALL, "youngs_modulus_1": 1, "normal_force": 1},
+        "poissons_ratio_1",
+    ),
+    "moduli and bodies": ("normal", {**NORMAL, **BODIES}, "e_star"),
+    "no load": ("normal", {**BALL, "e_star": 1}, "indentation_depth"),
+    "two loads": ("normal", {**NORMAL, "contact_radius": 1}, "normal_force"),
+    "a range without an end": (
+        "normal",
+        {**BALL, "e_star": 1, "normal_force_from": 1, "n": 2},
+        "normal_force_to",
+    ),
+    "a range without a count": (
+        "normal",
+        {**BALL, "e_star": 1, "normal_force_from": 1, "normal_force_to": 2},
+        "n",
+    ),
+    "a range of one": ("normal", {**BALL, "e_star": 1, **RANGE, "n": 1}, "n"),
+    "a range of too many": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "n": SETTINGS.max_loads + 1},
+        "n",
+    ),
+    "a count that is not whole": ("normal", {**BALL, "e_star": 1, **RANGE, "n": 2.5}, "n"),
+    "a huge count": ("normal", {**BALL, "e_star": 1, **RANGE, "n": "9" * 5000}, "n"),
+    "an end that is no number": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "normal_force_to": "x"},
+        "normal_force_to",
+    ),
+    "a first end out of bounds": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "normal_force_from": -1},
+        "normal_force_from",
+    ),
+    "a last end out of bounds": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "normal_force_to": -1},
+        "normal_force_to",
+    ),
+    "ends too far apart": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "normal_force_from": 1.7e308, "normal_force_to": -1.7e308},
+        "normal_force_from",
+    ),
+    "a last end past the profile": (
+        "normal",
+        {"kind": "sphere", "radius": 1, "e_star": 1}
+        | {"contact_radius_from": 0.5, "contact_radius_to": 2, "n": 3},
+        "contact_radius_to",
+    ),
+    "a number and a range": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "normal_force": 1},
+        "normal_force",
+    ),
+    "two ranges": (
+        "stress",
+        {**BALL, "e_star": 1, **RANGE, "r_from": 0, "r_to": 1, "quantities": "pressure"},
+        "r_from",
+    ),
+    "a count without a range": ("normal", {**NORMAL, "n": 5}, "n"),
+    "a scale without a range": ("normal", {**NORMAL, "scale": "log"}, "scale"),
+    "a scale that is none": ("normal", {**BALL, "e_star": 1, **RANGE, "scale": "dB"}, "scale"),
+    "equal ratios from nothing": (
+        "normal",
+        {**BALL, "e_star": 1, **RANGE, "normal_force_from": 0, "scale": "log"},
+        "normal_force_from",
+    ),
+    "no friction": (
+        "tangential",
+        {**NORMAL, "g_star": 1, "tangential_force": 1},
+        "friction_coefficient",
+    ),
+    "no shear modulus": ("tangential", {**NORMAL, **FRICTION, "tangential_force": 1}, "g_star"),
+    "no equilibrium": (
+        "tangential",
+        {**NORMAL, **FRICTION, "g_star": 1, "tangential_force": 4},
+        "tangential_force",
+    ),
+    "no radius": ("stress", {**NORMAL, "quantities": "pressure"}, "r"),
+    "radius and points": (
+        "stress",
+        {**NORMAL, "quantities": "pressure", "r": 1, "points": 5},
+        "points",
+    ),
+    "points that are not whole": (
+        "stress",
+        {**NORMAL, "quantities": "pressure", "points": "5.0"},
+        "points",
+    ),
+    "no quantity": ("stress", {**NORMAL, "r": 1}, "quantities"),
+    "a quantity that is none": ("stress", {**NORMAL, "r": 1, "quantities": "heat"}, "quantities"),
+    "a quantity twice": (
+        "stress",
+        {**NORMAL, "r": 1, "quantities": "pressure,pressure"},
+        "quantities",
+    ),
+    "no amplitude": (
+        "wear",
+        {**NORMAL, **FRICTION, "g_star": 1},
+        "tangential_displacement",
+    ),
+    "a held radius": (
+        "wear",
+        {**BALL, **MODULI, **FRICTION, "contact_radius": 1, "tangential_force": 1},
+        "contact_radius",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_wrong_is_told_of_the_parameter(client: Client, name: str) -> None:
+    question, given, pointer = REFUSED[name]
+    answer = client.get(at(question, given))
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert len(answer.content) <= 4096
+    assert f"/{pointer}" in [error["pointer"] for error in answer.json()["errors"]]
+
+
+def test_what_is_given_twice_is_refused(client: Client) -> None:
+    answer = client.get(at("normal", NORMAL) + "&radius=0.01")
+    assert answer.json()["errors"] == [{"pointer": "/radius", "detail": "is given twice"}]
+
+
+@pytest.mark.parametrize(
+    "written", ["1.15E+11", "1.15e%2B11", "%2B1.15e11", "115000000000", "115e9"]
+)
+def test_a_number_may_be_written_as_spreadsheets_do(client: Client, written: str) -> None:
+    plain = {name: value for name, value in NORMAL.items() if name != "e_star"}
+    answer = client.get(f"{at('normal', plain)}&e_star={written}")
+    assert answer.content == client.get(at("normal", NORMAL)).content
+
+
+@pytest.mark.parametrize("question", parameters.KNOWN)
+def test_the_example_in_the_documentation_is_answered(client: Client, question: str) -> None:
+    get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
+    given = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
+    assert given == getattr(examples, f"{question.upper()}_IN_ADDRESS")
+    assert client.get(at(question, given)).status_code == 200
+
+
+@pytest.mark.parametrize("question", parameters.KNOWN)
+def test_every_parameter_is_documented(question: str) -> None:
+    get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
+    known = parameters.KNOWN[question].by_name
+    ends = [end for each in known.values() if each.ranges for end in each.ends]
+    names = [each["name"] for each in get["parameters"]]
+    assert sorted(names) == sorted([*known, *ends, address.COUNT, address.SCALE, address.FORMAT])
+    assert all(each["in"] == "query" and each["description"] for each in get["parameters"])
+    for each in get["parameters"]:
+        if each["schema"]["type"] == "number":
+            assert {"minimum", "exclusiveMinimum", "maximum"} & set(each["schema"])
+
+
+def test_an_answer_that_is_known_is_not_sent_again(client: Client) -> None:
+    answer = client.get(at("normal", NORMAL))
+    tag = answer.headers["etag"]
+    assert tag.startswith('W/"')
+    assert answer.headers["cache-control"] == "max-age=3600"
+    assert "accept" in answer.headers["vary"].lower()
+    for known in (tag, f'"other", {tag}', tag.removeprefix("W/"), "*"):
+        headers = {"if-none-match": known}
+        again = client.request("GET", at("normal", NORMAL), headers=headers)
+        assert again.status_code == 304
+        assert not again.content
+        assert again.headers["etag"] == tag
+    headers = {"if-none-match": '"other"'}
+    assert client.request("GET", at("normal", NORMAL), headers=headers).status_code == 200
+    other = client.get(at("normal", {**NORMAL, "normal_force": 11}))
+    assert other.headers["etag"] != tag
+    assert client.get(at("normal", {**NORMAL, "format": "csv"})).headers["etag"] != tag
+
+
+def test_what_is_refused_is_not_kept(client: Client) -> None:
+    assert client.get("/v1/normal").headers["cache-control"] == "no-store"
+
+
+def test_an_answer_may_be_asked_about(client: Client) -> None:
+    answer, asked = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
+    assert asked.status_code == 200
+    assert asked.headers["etag"] == answer.headers["etag"]
