@@ -48,7 +48,7 @@ def normal_notices(profile: Profile, contact_radius: Array) -> tuple[Notice, ...
                 f"{_STEEPEST} bodies are no flat half-spaces, and the errors are of its square",
             )
         )
-    if profile.kind == "tabulated" and largest > _NEAR_END * float(profile.domain):
+    if near_end(profile, np.asarray(largest)):
         found.append(
             Notice(
                 "table_end",
@@ -77,6 +77,13 @@ def steep(profile: Profile, contact_radius: Array) -> Flags:
     touches = contact_radius > 0
     slope = profile.df(np.where(touches, contact_radius, largest))
     return np.asarray(touches & (slope > _STEEPEST))
+
+
+def near_end(profile: Profile, contact_radius: Array) -> Flags:
+    """Return which contacts of many come near the end of a table."""
+    if profile.kind != "tabulated":
+        return np.zeros(contact_radius.shape, dtype=bool)
+    return np.asarray(contact_radius > _NEAR_END * float(profile.domain))
 
 
 def plastic(profile: Profile, contact_radius: Array) -> Flags:
@@ -153,12 +160,8 @@ def yield_notices(
                 "stress need not lie on the axis",
             ),
         )
-    a = np.asarray(contact_radius, dtype=float)
-    at_axis = profile.pressure_kernel(
-        np.atleast_1d(profile.coordinate_from_radius(a)), np.zeros(a.size), 1e-6
-    )
-    peak = np.asarray(e_star) * at_axis.reshape(a.shape)
-    factor = max(largest_shear(nu) for nu in (poissons_ratios or (_USUAL_RATIO,)))
+    peak = _peak(profile, e_star, contact_radius)
+    factor = _shear_factor(poissons_ratios)
     found = []
     if np.any(2 * factor * peak >= yield_strength):
         found.append(
@@ -176,6 +179,46 @@ def yield_notices(
             Notice("yield", "in full sliding the shear stress exceeds yield at the surface")
         )
     return tuple(found)
+
+
+def yields(
+    profile: Profile,
+    e_star: Parameter,
+    contact_radius: Array,
+    yield_strength: float,
+    *,
+    poissons_ratios: Sequence[float] = (),
+    friction_coefficient: Parameter = 0.0,
+    full_slip: Flags | None = None,
+) -> Flags | None:
+    """Return which contacts of many `yield` is about; None where that is `yield_unknown`.
+
+    Parameters as of `yield_notices`.
+    """
+    shape = contact_radius.shape
+    if profile.infinite_pressure_radii:
+        return np.ones(shape, dtype=bool)
+    if not isinstance(profile, Paraboloid | Spheroid):
+        return None
+    peak = _peak(profile, e_star, contact_radius)
+    found = 2 * _shear_factor(poissons_ratios) * peak >= yield_strength
+    if full_slip is not None:
+        surface = 2 * np.asarray(friction_coefficient) * peak >= yield_strength
+        found = found | (full_slip & surface)
+    return np.broadcast_to(found, shape)
+
+
+def _peak(profile: Profile, e_star: Parameter, contact_radius: Array) -> Array:
+    """The pressure on the axis [pressure]."""
+    a = np.asarray(contact_radius, dtype=float)
+    at_axis = profile.pressure_kernel(
+        np.atleast_1d(profile.coordinate_from_radius(a)), np.zeros(a.size), 1e-6
+    )
+    return np.asarray(e_star) * at_axis.reshape(a.shape)
+
+
+def _shear_factor(poissons_ratios: Sequence[float]) -> float:
+    return max(largest_shear(nu) for nu in (poissons_ratios or (_USUAL_RATIO,)))
 
 
 @lru_cache(maxsize=64)
