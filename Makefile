@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test check bench figures openapi image-check lock clean
+.PHONY: run test check bench charts figures openapi image-check lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -31,6 +31,14 @@ check: .venv/development
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
+# The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
+CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire
+charts:
+	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
+
+chart-%: .venv-bench/peers
+	PYTHONPATH=.:benchmarks .venv-bench/bin/python benchmarks/charts/$*.py
+
 figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py
 
@@ -47,9 +55,10 @@ LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-
 lock:
 	$(LOCK) --extra build --output-file requirements.lock
 	$(LOCK) --all-extras --output-file requirements-dev.lock
+	$(LOCK) --extra build requirements-bench.in --output-file requirements-bench.lock
 
 clean:
-	rm -rf .venv build dist src/*.egg-info src/mdr_core/history/*.so .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf .venv .venv-bench build dist src/*.egg-info src/mdr_core/history/*.so .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 .venv/bin/python:
@@ -63,4 +72,16 @@ clean:
 
 .venv/development: requirements-dev.lock .venv/runtime
 	$(PIP) install --require-hashes --requirement requirements-dev.lock
+	touch $@
+
+# The peers live apart, with the project beside them, so that one process can time both in turn.
+# PyAbel and openAbel are compiled here, against the NumPy and Cython of the lock.
+PEERS := .venv-bench/bin/python -m pip --disable-pip-version-check --quiet install
+.venv-bench/peers: requirements.lock requirements-bench.lock requirements-bench-openabel.lock setup.py $(COMPILED)
+	$(PYTHON) -m venv .venv-bench
+	$(PEERS) --require-hashes --requirement requirements.lock
+	$(PEERS) --require-hashes --no-build-isolation --requirement requirements-bench.lock
+	$(PEERS) --require-hashes --no-build-isolation --no-deps --ignore-requires-python \
+		--requirement requirements-bench-openabel.lock
+	$(PEERS) --no-deps --no-build-isolation --editable .
 	touch $@

@@ -8,10 +8,14 @@ from time import perf_counter_ns
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 # A batch this long is timed to a fraction of a percent, and seldom loses the processor.
 BATCH_SECONDS = 4e-4
+# What takes longer needs no warming up, and is not run for nothing.
+LONG_SECONDS = 0.05
+# So many rounds tell the median of a quick one.
+ROUNDS = 60
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,33 @@ def interleaved(
     while perf_counter_ns() < end or len(rounds) < 9:
         rounds.append((_time(ours, repeats[0]), _time(theirs, repeats[1])))
     return rounds
+
+
+def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[str, float]:
+    """Median seconds per call of each, all of them in turn, for about `seconds` of wall time.
+
+    What takes long is run less often, at least once: its share of the time is that of the others.
+    """
+    fastest = {name: min(_time(run, 1) for _ in range(_tries(run))) for name, run in runs.items()}
+    repeats = {name: max(1, round(BATCH_SECONDS / one)) for name, one in fastest.items()}
+    share = seconds / len(runs)
+    wanted = {name: share / max(one, BATCH_SECONDS) for name, one in fastest.items()}
+    found: dict[str, list[float]] = {name: [] for name in runs}
+    for number in range(ROUNDS):
+        for name, run in runs.items():
+            # Spread over all rounds, so that a busy moment of the machine hits all alike.
+            due = min(1.0, wanted[name] / ROUNDS) * (number + 1)
+            if not found[name] or len(found[name]) < due:
+                if repeats[name] > 1:
+                    # The one before may have taken the caches.
+                    run()
+                found[name].append(_time(run, repeats[name]))
+    return {name: median(times) for name, times in found.items()}
+
+
+def _tries(run: Callable[[], object]) -> int:
+    """What is quick is warmed up."""
+    return 5 if _time(run, 1) < LONG_SECONDS else 1
 
 
 def row(

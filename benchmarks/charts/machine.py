@@ -1,0 +1,28 @@
+"""Where and with what a chart was measured: one line for its foot."""
+
+from __future__ import annotations
+
+import datetime as dt
+import os
+import platform
+from importlib import metadata
+from pathlib import Path
+
+#: Packages that a chart may name, as they are installed.
+PEERS = ("PyAbel", "openabel", "tamaas", "ContactMechanics")
+
+
+def processor() -> str:
+    """The processor's model and the number of cores."""
+    text = Path("/proc/cpuinfo")
+    lines = text.read_text("utf-8").splitlines() if text.exists() else []
+    models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return f"{models[0] if models else platform.machine()}, {os.cpu_count()} cores"
+
+
+def footer(*packages: str) -> str:
+    """Processor, versions and the day, for measurements in one thread."""
+    found = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", *packages)]
+    today = dt.datetime.now(dt.UTC).date().isoformat()
+    python = f"Python {platform.python_version()}"
+    return " · ".join([processor(), "one thread", python, *found, today])

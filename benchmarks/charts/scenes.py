@@ -1,0 +1,216 @@
+"""The contacts of the pressure and traction charts, as every method sees them.
+
+All have a = 1, E* = 1 and, for the traction, friction coefficient 1: then pressure and traction are
+the integrals (1/pi) int g'(x)/sqrt(x^2 - r^2) dx over [r, a] and [max(r, c), a].
+The radii are (2i + 1)/2000: points of the grids that end at a, but never axis, break, c or a.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from mpmath import mp, mpf
+from scipy.interpolate import CubicSpline
+from scipy.special import gamma
+from tests.core.comparison import profile_from
+from tests.oracles import reference
+from tests.oracles.shapes import Shape, shape_of
+from tests.oracles.tables import Table
+
+if TYPE_CHECKING:
+    from mdr_core.profiles import Profile
+
+Array = np.ndarray
+#: A slope g' of x and of x - b, b the break, which is given because its digits are needed.
+Slope = Callable[[Array, Array], Array]
+
+RADII = (2 * np.arange(1000) + 1) / 2000
+EDGE = 1.0
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One contact: what the product is asked, and what a user of a peer would write down."""
+
+    name: str
+    profile: dict[str, Any]
+    stick: float
+    slope: Slope
+    """g' for arrays."""
+    scalar: Callable[[float, float], float] | None
+    """g' for one number, by the functions of `math`; None where it has to be an array's."""
+    image: Callable[[Array], Array]
+    """g."""
+    b: float = 0.0
+    spacing: int = 4
+    """One in so many radii is compared with the reference, and those next to b, c, axis and a."""
+
+    def made(self) -> Profile:
+        """The product's profile."""
+        return profile_from(self.profile)
+
+    def truth(self, quantity: str) -> Array:
+        """Pressure or traction at the checked radii as sums of two doubles."""
+        with mp.workdps(reference.QUAD_DIGITS):
+            found = self._kernels(EDGE)
+            if quantity == "traction":
+                inside = self._kernels(self.stick)
+                found = [high - low for high, low in zip(found, inside, strict=True)]
+            high = [float(value) for value in found]
+            low = [float(value - mpf(top)) for value, top in zip(found, high, strict=True)]
+        return np.array([high, low])
+
+    @cached_property
+    def checked(self) -> Array:
+        """The places of these radii."""
+        places = [
+            0,
+            *(round(1000 * r) + i for r in (self.b, self.stick, EDGE) for i in (-2, -1, 0)),
+        ]
+        inside = [i for i in places if 0 <= i < RADII.size]
+        return np.union1d(np.arange(0, RADII.size, self.spacing), inside)
+
+    @cached_property
+    def _exact(self) -> Shape | Table:
+        if self.profile["kind"] == "tabulated":
+            return Table(self.profile)
+        return shape_of(self.profile)
+
+    def _kernels(self, end: float) -> list[mpf]:
+        """(1/pi) int_r^end g'/sqrt(x^2 - r^2) dx at the checked radii."""
+        edge, shape = mpf(end), self._exact
+        return [
+            mpf(0)
+            if r >= end
+            else shape.pressure(mpf(r), edge)
+            if isinstance(shape, Table)
+            else reference.pressure(shape, mpf(r), edge)
+            for r in RADII[self.checked].tolist()
+        ]
+
+
+def errors(answer: Array, truth: Array, checked: Array) -> tuple[float, float]:
+    """Largest and median relative error at the checked radii."""
+    high, low = truth
+    error = np.abs(((answer[checked] - high) - low) / high)
+    error[~np.isfinite(error)] = np.inf
+    return float(error.max()), float(np.median(error))
+
+
+def _power(n: float) -> tuple[Slope, Callable[[float, float], float], Callable[[Array], Array]]:
+    factor = math.sqrt(math.pi) * float(gamma(n / 2 + 1) / gamma((n + 1) / 2))
+    return (
+        lambda x, _above: factor * n * x ** (n - 1),
+        lambda x, _above: factor * n * x ** (n - 1),
+        lambda x: factor * x**n,
+    )
+
+
+def _rounded(b: float, stick: float) -> Scene:
+    def slope(x: Array, above: Array) -> Array:
+        s = np.sqrt(np.maximum(above, 0.0) * (x + b))
+        return 2 * s - b * np.arctan(s / b)
+
+    def scalar(x: float, above: float) -> float:
+        s = math.sqrt(max(above, 0.0) * (x + b))
+        return 2 * s - b * math.atan(s / b)
+
+    def image(x: Array) -> Array:
+        s = np.sqrt(np.maximum(x - b, 0.0) * (x + b))
+        return x * (s - b * np.arctan(s / b))
+
+    fields = {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": 1.0}
+    return Scene(f"rounded punch b/a = {b}", fields, stick, slope, scalar, image, b)
+
+
+def _sphere(radius: float) -> Scene:
+    def slope(x: Array, _above: Array) -> Array:
+        return np.arctanh(x / radius) + x * radius / ((radius - x) * (radius + x))
+
+    def scalar(x: float, _above: float) -> float:
+        return math.atanh(x / radius) + x * radius / ((radius - x) * (radius + x))
+
+    def image(x: Array) -> Array:
+        return x * np.arctanh(x / radius)
+
+    fields = {"kind": "sphere", "radius": radius}
+    return Scene("exact sphere a/R = 0.5", fields, 0.7, slope, scalar, image)
+
+
+#: Points of the rule by which a user of a peer takes the table's g' from its spline.
+TABLE_RULE = 64
+
+
+def _table(points: int) -> Scene:
+    """A sphere of radius 2, sampled."""
+    r = np.linspace(0.0, 1.25, points)
+    f = r * r / (2 + np.sqrt((2 - r) * (2 + r)))
+    nodes, weights = np.polynomial.legendre.leggauss(TABLE_RULE)
+    angle = math.pi / 4 * (nodes + 1)
+    sine, weights = np.sin(angle), math.pi / 4 * weights
+
+    def slope(x: Array, _above: Array) -> Array:
+        """int_0^(pi/2) (f' + rho f'') dt with rho = x sin t, of the spline through the points."""
+        spline = CubicSpline(r, f)
+        rho = np.multiply.outer(sine, np.ravel(x))
+        values = spline(rho, 1) + rho * spline(rho, 2)
+        return (weights @ values).reshape(np.shape(x))
+
+    def image(x: Array) -> Array:
+        rho = np.multiply.outer(sine, np.ravel(x))
+        return x * (weights @ CubicSpline(r, f)(rho, 1)).reshape(np.shape(x))
+
+    fields = {
+        "kind": "tabulated",
+        "r": r.tolist(),
+        "f": f.tolist(),
+        "interpolation": "cubic",
+        "breaks": [],
+    }
+    # One radius of its reference takes a fifth of a second.
+    return Scene(f"table of {points} points", fields, 0.7, slope, None, image, spacing=25)
+
+
+def _cone() -> Scene:
+    half_pi = math.pi / 2
+    return Scene(
+        "cone",
+        {"kind": "cone", "slope": 1.0},
+        0.7,
+        lambda x, _above: np.full_like(x, half_pi),
+        lambda _x, _above: half_pi,
+        lambda x: half_pi * x,
+    )
+
+
+def scenes() -> list[Scene]:
+    """All seven."""
+    slope, scalar, image = _power(1.5)
+    return [
+        Scene(
+            "paraboloid",
+            {"kind": "paraboloid", "radius": 1.0},
+            0.7,
+            lambda x, _above: 2 * x,
+            lambda x, _above: 2 * x,
+            lambda x: x * x,
+        ),
+        _cone(),
+        _sphere(2.0),
+        _rounded(0.5, 0.75),
+        _rounded(0.95, 0.975),
+        Scene(
+            "power law n = 1.5",
+            {"kind": "power", "coefficient": 1.0, "exponent": 1.5},
+            0.7,
+            slope,
+            scalar,
+            image,
+        ),
+        _table(200),
+    ]
