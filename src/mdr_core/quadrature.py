@@ -27,6 +27,7 @@ _POINTS: Final = (8, 12, 24, 48)
 _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
 _CALL: Final = 2000
+_LOG_LARGEST: Final = 700.0
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
 
@@ -73,14 +74,14 @@ def error_bound(points: int, half_length: float, analytic: Analytic) -> float:
         rho2 = exp(2 * part)
         semi_axis = (exp(part) + exp(-part)) / 2
         log_bound = growth * half_length * (semi_axis - 1) - 2 * points * part
-        best = min(best, exp(log_bound) / (1 - 1 / rho2))
+        best = min(best, exp(min(log_bound, _LOG_LARGEST)) / (1 - 1 / rho2))
     return best * (64 / 15) * (1 + growth * half_length)
 
 
 @lru_cache(maxsize=256)
 def _longest(points: int, decade: int, analytic: Analytic) -> float:
     """Largest half length at which the rule's bound stays below 10^decade."""
-    low, high = 1e-3, 40.0
+    low, high = min(1e-3, 1e-2 / analytic.growth), 40.0
     tolerance = 10.0**decade
     for _ in range(40):
         middle = sqrt(low * high)

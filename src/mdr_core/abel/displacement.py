@@ -24,6 +24,8 @@ _PIECE: Final = 2.0
 _LOG_RANGE: Final = 690.0
 # Power of the radius that one piece resolves.
 _STEEP: Final = 8.0
+# A stretch over which the radius grows by a factor of e takes so many times the pieces.
+_SPARE: Final = 1.5
 # Nodes by the tolerance: pieces have a half length of one in a strip of pi/2.
 _POINTS: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 
@@ -156,7 +158,9 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: f
     # On a stretch too narrow for s itself the legs still tell its ends apart.
     upper = (split < s_high) | (split <= s_low)
     span = np.where(upper, np.arctan2(leg_split, split) - top, 0.0)
-    nodes, weights = _rule(branch, points, highest)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
+    nodes, weights = _rule(branch, points, highest, stretch)
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)
     x = np.hypot(base, s)
@@ -168,9 +172,12 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: f
     return np.asarray(total)
 
 
-def _rule(branch: Branch, points: int, highest: float) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], finer towards 0 where a pole lies close behind it."""
-    pieces = max(ceil(branch.steepness / _STEEP), 1)
+def _rule(branch: Branch, points: int, highest: float, stretch: float) -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1], finer towards 0 where a pole lies close behind it.
+
+    `stretch` is the logarithm of the largest part of the radius that is to be covered.
+    """
+    pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / _STEEP), 1)
     if not branch.pole < inf:
         return composite_rule(points, pieces)
     # In the angle the pole lies at i sqrt(2 (pole/x - 1)).

@@ -6,9 +6,10 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.abel.displacement import Branch
+from mdr_core.abel.displacement import Branch, slope_integral
 from mdr_core.checks import extremes
 from mdr_core.profiles.power_kernels import (
+    felt_from,
     ordinary_radii,
     power,
     power_moment,
@@ -32,6 +33,8 @@ from mdr_core.typing import Array, Flags, Parameter
 
 # From this part of a characteristic annulus on, a/n, the closed energy loses few digits.
 _WIDE: Final = 0.5
+# Of a radius, so small a part that an angle seen from there differs from a right one by rounding.
+_AXIS: Final = 1e-20
 
 
 @dataclass(frozen=True)
@@ -157,7 +160,7 @@ class Power(Profile):
     @property
     def branches(self) -> tuple[Branch, ...]:
         # The lower end holds a part reach^n of the integral.
-        reach = 1e-17 ** max(1.0, 1 / float(np.asarray(self.exponent)))
+        reach = 1e-17 ** (1 / float(np.asarray(self.exponent)))
         return (
             Branch(
                 0.0,
@@ -166,6 +169,19 @@ class Power(Profile):
                 steepness=self.steepness,
             ),
         )
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        n = self.tip_exponent
+        if n == 1:
+            return super().slip_kernel(np.maximum(c, felt_from(r, self.steepness)), r, rtol)
+        # A sharp tip is felt however near the axis; arccos(x/r) is pi/2 there.
+        low = np.maximum(c, _AXIS * r)
+        tip = self.g(low) * power_step(low, low - c, c, np.asarray(n))
+        return super().slip_kernel(low, r, rtol) + tip
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        low = felt_from(a, self.steepness)
+        return 2 / np.pi * slope_integral(self.branches, low, a, r, rtol, outside=True)
 
     @property
     def tip_pressure(self) -> Parameter:

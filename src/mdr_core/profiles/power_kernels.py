@@ -17,6 +17,9 @@ from mdr_core.typing import Array, Indices, Parameter
 _TINY: Final = 1e-290
 _HUGE: Final = 1e290
 _LOG_ORDINARY: Final = 500.0
+# Above this power the integral lies next to the contact's edge: what is exp(-42) of it is lost.
+STEEP: Final = 64.0
+_ROUNDING_LOG: Final = 42.0
 # So small a part of the stick radius is the axis to it: its square is far below rounding.
 _INMOST: Final = 1e-100
 # The exponents for which NumPy does not raise.
@@ -153,6 +156,8 @@ def power_moment(
         return log_ratio(a, r, width, inner)
     if m == 1:
         return root_step(a, r, width, inner) / a
+    if m > STEEP:
+        width, inner = _felt_part(m, a, width, inner)
     on_axis = r == 0
     if width is not None:
         # So far inside c the radius changes nothing, and its square leaves the range of doubles.
@@ -175,6 +180,24 @@ def power_moment(
     if on_axis.any():
         value[on_axis] = np.broadcast_to(_axis_moment(m, a, width), value.shape)[on_axis]
     return value
+
+
+def felt_from(edge: Array, exponent: float) -> Array:
+    """Radius below which nothing is felt of a steep power that ends at the edge; zero if gentle."""
+    if exponent <= STEEP:
+        return np.zeros_like(edge)
+    return np.asarray(edge * np.exp(-(_ROUNDING_LOG + log(exponent)) / exponent))
+
+
+def _felt_part(
+    m: float, a: Array, width: Array | None, inner: Array | None
+) -> tuple[Array, Array | None]:
+    """Width and inner edge of the part of an annulus in which (x/a)^m is more than rounding."""
+    felt = -a * np.expm1(-(_ROUNDING_LOG + log(m)) / m)
+    if width is None:
+        return felt, None
+    c = a - width if inner is None else inner
+    return np.minimum(width, felt), np.where(width < felt, c, a - felt)
 
 
 def _axis_moment(m: float, a: Array, width: Array | None) -> Array:

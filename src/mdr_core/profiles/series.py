@@ -12,7 +12,14 @@ from scipy.optimize import brentq
 from mdr_core.abel.displacement import Branch
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
-from mdr_core.profiles.power_kernels import ordinary_radii, power, power_moment, power_slope
+from mdr_core.profiles.power import Power
+from mdr_core.profiles.power_kernels import (
+    STEEP,
+    ordinary_radii,
+    power,
+    power_moment,
+    power_slope,
+)
 from mdr_core.profiles.profile import LARGEST_HELD, SMALLEST_HELD, Profile, refuse_load
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
@@ -180,6 +187,21 @@ class Series(Profile):
         (c, n), (k, m) = self._powers[0], self._powers[-1]
         crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
         return exp(min(max(crossing, -_FARTHEST), _FARTHEST))
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        if self.steepness <= STEEP and self.tip_exponent == 1:
+            return super().slip_kernel(c, r, rtol)
+        # The gentle ones are felt all over, the steep ones at the edge alone, the sharp at the tip.
+        return self._superposed(lambda term: term.slip_kernel(c, r, rtol))
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        if self.steepness <= STEEP:
+            return super().outer_displacement(a, r, rtol, depth)
+        return self._superposed(lambda term: term.outer_displacement(a, r, rtol, depth))
+
+    def _superposed(self, answer: Callable[[Power], Array]) -> Array:
+        """The sum of what each power answers by itself."""
+        return np.asarray(sum(copysign(1, c) * answer(Power(abs(c), n)) for c, n in self._powers))
 
     @property
     def branches(self) -> tuple[Branch, ...]:

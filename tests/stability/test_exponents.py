@@ -1,0 +1,193 @@
+"""Power laws of small and of large exponents: n -> 0 and n -> infinity."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import gamma, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import fields, normal, tangential
+from mdr_core.profiles import Power
+from tests.stability.curves import (
+    CLOSED,
+    ROUNDING,
+    RTOL,
+    Array,
+    Curve,
+    attempt,
+    curve,
+    plain_quad,
+    references,
+    steps,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: Contact radius, coefficient and a radius of no special value: a^10000 is a double.
+A, C, R = 0.97, 0.7, 0.75
+SMALL, LARGE = steps(0.9, 1e-6), steps(2.0, 2e3)
+
+
+def kappa(n: mpf) -> mpf:
+    return mp.sqrt(mp.pi) * mp.gamma(n / 2 + 1) / mp.gamma((n + 1) / 2)
+
+
+def naive_kappa(n: float) -> float:
+    return np.sqrt(pi) * gamma(n / 2 + 1) / gamma((n + 1) / 2)
+
+
+def contacts(exponents: Array, **load: float) -> list[normal.NormalContact]:
+    return [normal.solve(Power(C, float(n)), 1.0, rtol=RTOL, **load) for n in exponents]
+
+
+def place(name: str, exponents: Array) -> tuple[str, Array]:
+    """Small exponents by themselves, large ones as 1/n: the limit is to the left."""
+    return ("n", exponents) if name == "small" else ("1/n", 1 / exponents)
+
+
+def force(name: str, exponents: Array) -> Curve:
+    """F/E* = (2n/(n+1)) kappa C a^(n+1)."""
+
+    def exact(n: mpf) -> mpf:
+        return 2 * n / (n + 1) * kappa(n) * mpf(C) * mpf(A) ** (n + 1)
+
+    label, distances = place(name, exponents)
+    return curve(
+        f"exponents-force-{name}",
+        f"force of r^n, n → {'0' if name == 'small' else '∞'}",
+        label,
+        "Γ(n/2+1)/Γ((n+1)/2), aⁿ⁺¹",
+        distances,
+        (
+            [float(one.normal_force) for one in contacts(exponents, contact_radius=A)],
+            attempt(lambda n: 2 * n / (n + 1) * naive_kappa(n) * C * A ** (n + 1), exponents),
+            references(exact, exponents),
+        ),
+        CLOSED + ROUNDING * (exponents + 1),
+    )
+
+
+def stick(name: str, exponents: Array) -> Curve:
+    """a - c at a tenth of a thousandth of full slip: 1 - (1 - rho)^(1/(n+1))."""
+    rho = 1e-4
+    found = [
+        tangential.solve(one, 1.0, 1.0, tangential_force=rho * float(one.normal_force))
+        for one in contacts(exponents, contact_radius=A)
+    ]
+    given = [float(one.tangential_force / one.normal.normal_force) for one in found]
+
+    def exact(n: mpf, ratio: mpf) -> mpf:
+        return -mpf(A) * mp.expm1(mp.log1p(-ratio) / (n + 1))
+
+    label, distances = place(name, exponents)
+    return curve(
+        f"exponents-width-{name}",
+        f"slip annulus of r^n, n → {'0' if name == 'small' else '∞'}",
+        label,
+        "a − a (1 − ρ)^(1/(n+1))",
+        distances,
+        (
+            [float(one.slip_width) for one in found],
+            attempt(lambda n, q: A - A * (1 - q) ** (1 / (n + 1)), exponents, given),
+            references(exact, exponents, given),
+        ),
+        # The force is a product of rounded numbers, and so is the ratio known.
+        CLOSED + 4 * ROUNDING,
+    )
+
+
+def pressure(name: str, exponents: Array) -> Curve:
+    """p at r = 0.77 a, by the hypergeometric form; the naive rule is Gauss-Chebyshev's."""
+
+    def exact(n: mpf) -> mpf:
+        a, r = mpf(A), mpf(R)
+        leg2 = (a - r) * (a + r)
+        series = mp.hyp2f1(1, 1 - n / 2, mpf(3) / 2, leg2 / a**2)
+        return n * kappa(n) * mpf(C) / mp.pi * a ** (n - 2) * mp.sqrt(leg2) * series
+
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+
+    def naive(n: float) -> float:
+        top = np.sqrt(A * A - R * R)
+        x = np.sqrt(R * R + (top * (1 + nodes) / 2) ** 2)
+        values = naive_kappa(n) * n * C * x ** (n - 1) / x
+        return float(top / 2 * (weights @ values) / pi)
+
+    label, distances = place(name, exponents)
+    return curve(
+        f"exponents-pressure-{name}",
+        f"pressure of r^n at r = 0.77 a, n → {'0' if name == 'small' else '∞'}",
+        label,
+        "40 Gauss points in √(x²−r²), Γ(n/2+1)/Γ((n+1)/2)",
+        distances,
+        (
+            [
+                float(fields.pressure(one, [R], rtol=RTOL)[0])
+                for one in contacts(exponents, contact_radius=A)
+            ],
+            attempt(naive, exponents),
+            references(exact, exponents),
+        ),
+        CLOSED + ROUNDING * (exponents + 1),
+    )
+
+
+def slip(name: str, exponents: Array) -> Curve:
+    """Slid as a whole, the surface lags by its own shape, C r^n, at r = 0.77 a and E* = G*."""
+    pushed = [
+        tangential.solve(one, 1.0, 1.0, tangential_displacement=float(one.indentation_depth))
+        for one in contacts(exponents, contact_radius=A)
+    ]
+
+    def naive(n: float) -> float:
+        def density(x: float) -> float:
+            return float(naive_kappa(n) * C * x**n / np.sqrt(R * R - x * x))
+
+        return 2 / pi * plain_quad(density, 0.0, R)
+
+    label, distances = place(name, exponents)
+    return curve(
+        f"exponents-slip-{name}",
+        f"slip of r^n as a whole at r = 0.77 a, n → {'0' if name == 'small' else '∞'}",
+        label,
+        "∫ g/√(r²−x²) dx by quad, as it stands",
+        distances,
+        (
+            [-float(fields.slip(one, [R], rtol=RTOL)[0]) for one in pushed],
+            attempt(naive, exponents),
+            references(lambda n: mpf(C) * mpf(R) ** n, exponents),
+        ),
+        CLOSED + ROUNDING * (exponents + 1),
+    )
+
+
+def _pairs(make: Callable[..., Curve]) -> dict[str, Any]:
+    word = make.__name__
+    return {
+        f"{word}, n -> 0": partial(make, "small", SMALL),
+        f"{word}, n -> inf": partial(make, "large", LARGE),
+    }
+
+
+CURVES: dict[str, Callable[[], Curve]] = (
+    _pairs(force) | _pairs(stick) | _pairs(pressure) | _pairs(slip)
+)
+
+
+def curves() -> list[Curve]:
+    return [make() for make in CURVES.values()]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_towards_the_last_exponents(name: str) -> None:
+    CURVES[name]().holds()
+
+
+@pytest.mark.parametrize("name", [name for name in CURVES if "inf" in name])
+def test_the_naive_formula_leaves_the_doubles(name: str) -> None:
+    CURVES[name]().naive_dies(1e-11)
