@@ -26,12 +26,7 @@ class Builder:
     def __init__(self, work: Path) -> None:
         self._work = work
         self._log = work / "log"
-        # Slow, but works on every file system; overlay is faster where there is one.
-        driver = os.environ.get("STORAGE_DRIVER", "vfs")
-        self._store = (
-            *("buildah", "--storage-driver", driver),
-            *("--root", str(work / "storage"), "--runroot", str(work / "run")),
-        )
+        self._store = ("buildah", "--root", str(work / "storage"), "--runroot", str(work / "run"))
 
     def lint(self) -> None:
         """Install hadolint by its hash, and have it read the Dockerfile."""
@@ -89,7 +84,7 @@ class Builder:
         options.write_text(_apt_settings(), "utf-8")
         self._do(
             *("mmdebstrap", "--variant=minbase", f"--include={','.join(packages)}"),
-            f"--aptopt={options}",
+            *(f"--aptopt={options}", "--dpkgopt=force-unsafe-io"),
             '--customize-hook=ln -s /usr/bin/python3 "$1/usr/local/bin/python"',
             *(suite, str(tree), *(["-"] if mirrors else [])),
             text="\n".join(mirrors),
