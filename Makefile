@@ -54,6 +54,7 @@ LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-
 	--python-version 3.11 --universal pyproject.toml
 lock:
 	$(LOCK) --extra build --output-file requirements.lock
+	$(LOCK) --extra build --extra sweep --output-file requirements-sweep.lock
 	$(LOCK) --all-extras --output-file requirements-dev.lock
 	$(LOCK) --extra build requirements-bench.in --output-file requirements-bench.lock
 

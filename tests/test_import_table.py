@@ -49,6 +49,11 @@ ADDRESSED = {"mdr_service.address", "mdr_service.arrays", "mdr_service.forms"} |
     "mdr_service.parameters"
 }
 
+SWEEPS = {
+    f"mdr_sweep.{name}"
+    for name in ("engine", "errors", "grid", "plan", "progress", "requests", "study", "tables")
+} | {"mdr_sweep.work"}
+
 # Each row imports only from rows above it.
 TABLE = (
     Row("mdr_core.errors", set(), set()),
@@ -158,6 +163,46 @@ TABLE = (
     # Loads the module of a command by its name, when it is asked for.
     Row("mdr_command.__main__", set(), set()),
     Row("mdr_command", set(), set()),
+    Row("mdr_sweep.errors", set(), set()),
+    Row("mdr_sweep.requests", set(), set()),
+    Row("mdr_sweep.columns", {"mdr_sweep.requests"}, {"numpy", "pyarrow"}),
+    Row("mdr_sweep.study", SCHEMAS, {"pydantic"}),
+    Row(
+        "mdr_sweep.bounds",
+        SCHEMAS | {"mdr_service.questions", "mdr_sweep.columns"},
+        {"numpy"},
+    ),
+    Row(
+        "mdr_sweep.single",
+        WIRE
+        | {"mdr_service.questions", "mdr_service.solve"}
+        | {"mdr_sweep.requests", "mdr_sweep.study"},
+        {"numpy"},
+    ),
+    Row(
+        "mdr_sweep.closed",
+        PUBLIC | SCHEMAS | {"mdr_service.convert", "mdr_sweep.columns"},
+        {"numpy"},
+    ),
+    Row(
+        "mdr_sweep.chunk",
+        {"mdr_core.sweeps", "mdr_service.problems", "mdr_sweep.bounds", "mdr_sweep.closed"}
+        | {"mdr_sweep.columns", "mdr_sweep.single", "mdr_sweep.study"},
+        {"numpy", "pyarrow"},
+    ),
+    Row("mdr_sweep.grid", {"mdr_sweep.columns", "mdr_sweep.errors"}, {"numpy", "pyarrow"}),
+    Row("mdr_sweep.tables", {"mdr_sweep.columns", "mdr_sweep.errors"}, {"pyarrow"}),
+    Row("mdr_sweep.work", {"mdr_sweep.errors"}, {"pyarrow"}),
+    Row("mdr_sweep.plan", {"mdr_sweep.study", "mdr_sweep.tables"}, set()),
+    Row("mdr_sweep.progress", set(), {"tqdm"}),
+    Row(
+        "mdr_sweep.engine",
+        {"mdr_sweep.chunk", "mdr_sweep.errors", "mdr_sweep.study"},
+        {"dask", "distributed", "pyarrow"},
+    ),
+    Row("mdr_sweep.command", SWEEPS, {"distributed"}),
+    Row("mdr_sweep.__main__", {"mdr_sweep.command"}, set()),
+    Row("mdr_sweep", set(), set()),
     Row("mdr_service", set(), set()),
 )
 

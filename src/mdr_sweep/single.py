@@ -1,0 +1,70 @@
+"""One scene at a time, the way the service goes: for what cannot be answered many at once."""
+
+import json
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mdr_service import problems, solve, wire
+from mdr_service.questions import QUESTIONS
+from mdr_service.schemas.queries import Query
+from mdr_sweep.requests import nested
+from mdr_sweep.study import Study
+
+
+class Told(NamedTuple):
+    """What is said of one scene: its answers, or why there are none."""
+
+    answers: Mapping[str, Any]
+    warning: str | None = None
+    error: str | None = None
+
+
+def answer(study: Study, fields: Mapping[str, Any]) -> Told:
+    """Return what the service answers to one scene, or the sentence that it fails with."""
+    try:
+        with np.errstate(all="ignore"):
+            return _answer(study, read(study.query, fields))
+    except problems.FAILURES as error:
+        return Told({}, error=sentence(problems.told(error)))
+    except Exception:  # noqa: BLE001
+        # What the service would answer: a defect in one scene stops no sweep.
+        return Told({}, error=sentence(problems.DEFECT))
+
+
+def read(query: str, fields: Mapping[str, Any]) -> Query:
+    """Return the request of some fields, checked as the service checks it."""
+    return wire.read(QUESTIONS[query].model, json.dumps(nested(fields)).encode())
+
+
+def sentence(error: problems.ServiceError) -> str:
+    """Return a failure in one line: where the request is wrong, and why."""
+    if not error.errors:
+        return error.detail
+    return "; ".join(f"{pointer} {detail}" for pointer, detail in error.errors)
+
+
+def _answer(study: Study, query: Query) -> Told:
+    question = QUESTIONS[study.query]
+    found = question.solve(query)
+    # The answers of wear come with its fields.
+    result = getattr(found, "result", found)
+    answers = {name: _one(getattr(result, name)) for name in study.answers}
+    notices = solve.notices(query, result)
+    codes = [notice.code for notice in notices]
+    if not all(isinstance(one, str) or np.isfinite(one) for one in answers.values()):
+        # A true infinity, or a number that no double holds: the document knows.
+        document = question.document(query, found)
+        answers = {name: document[name][0] for name in study.answers}
+        codes = [notice["code"] for notice in document["warnings"]]
+    return Told(answers, coded(codes))
+
+
+def coded(codes: list[str]) -> str | None:
+    """Return the codes of warnings in one word each."""
+    return " ".join(dict.fromkeys(codes)) or None
+
+
+def _one(value: Any) -> Any:
+    return np.ravel(value)[0].item()
