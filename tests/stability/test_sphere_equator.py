@@ -1,0 +1,180 @@
+"""A sphere up to its equator, a -> R, and so small a contact that it is a paraboloid's, a -> 0."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import fields, normal
+from mdr_core.profiles import Ellipsoid, Sphere
+from tests.stability.curves import (
+    CLOSED,
+    RTOL,
+    Curve,
+    attempt,
+    curve,
+    plain_quad,
+    references,
+    steps,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+BIG = 1.0
+#: Contact radii next to R, as doubles; the distance is what they are.
+EDGES = BIG - steps(0.5, 1.2e-16, 40)
+SMALL = steps(0.9, 1e-40, 40)
+
+
+def depth(name: str) -> Curve:
+    """d = a artanh(a/R)."""
+    a = EDGES if name == "equator" else SMALL
+    contact = normal.solve(Sphere(BIG), 1.0, contact_radius=a, rtol=RTOL)
+    return curve(
+        f"sphere-depth-{name}",
+        f"depth of a sphere, a → {'R' if name == 'equator' else '0'}",
+        "1 − a/R" if name == "equator" else "a/R",
+        "(a/2) ln((R+a)/(R−a))",
+        BIG - a if name == "equator" else a,
+        (
+            contact.indentation_depth,
+            attempt(lambda a: a / 2 * np.log((BIG + a) / (BIG - a)), a),
+            references(lambda a: a * mp.atanh(a / BIG), a),
+        ),
+    )
+
+
+def force(name: str) -> Curve:
+    """F/E* = (R^2 + a^2) artanh(a/R) - a R: Segedin's, which loses (R/a)^2."""
+    a = EDGES if name == "equator" else SMALL
+    contact = normal.solve(Sphere(BIG), 1.0, contact_radius=a, rtol=RTOL)
+
+    def exact(a: mpf) -> mpf:
+        with mp.workdps(150):
+            return (a * a + BIG) * mp.atanh(a / BIG) - a * BIG
+
+    return curve(
+        f"sphere-force-{name}",
+        f"force on a sphere, a → {'R' if name == 'equator' else '0'}",
+        "1 − a/R" if name == "equator" else "a/R",
+        "(R²+a²) artanh(a/R) − aR",
+        BIG - a if name == "equator" else a,
+        (
+            contact.normal_force,
+            attempt(lambda a: (a**2 + BIG**2) * np.arctanh(a / BIG) - a * BIG, a),
+            references(exact, a),
+        ),
+    )
+
+
+def inverse() -> Curve:
+    """The force at a given depth, up to where no double tells a from R."""
+    depths = BIG * steps(0.5, 16.9)
+    contact = normal.solve(Sphere(BIG), 1.0, indentation_depth=depths, rtol=RTOL)
+
+    def exact(d: mpf) -> mpf:
+        with mp.workdps(300):
+            # v tanh v = d/R, a = R tanh v.
+            v = mp.findroot(lambda v: v * mp.tanh(v) - d, d + mp.exp(-d), tol=mpf(10) ** -590)
+            t = mp.tanh(v)
+            return (1 + t * t) * v - t
+
+    def naive(d: float) -> float:
+        low, high = 0.0, BIG
+        for _ in range(200):
+            middle = (low + high) / 2
+            low, high = (middle, high) if middle * np.arctanh(middle) < d else (low, middle)
+        return float((low**2 + 1) * np.arctanh(low) - low)
+
+    return curve(
+        "sphere-inverse",
+        "force on a sphere at a given depth",
+        "R/d",
+        "bisection for a, then the formula in a",
+        BIG / depths,
+        (contact.normal_force, attempt(naive, depths), references(exact, depths)),
+    )
+
+
+def pressure(part: float) -> Curve:
+    """p at a part of the contact radius, which the pole of g' at the equator comes close to."""
+    ours = [
+        float(
+            fields.pressure(
+                normal.solve(Ellipsoid(BIG, 0.5), 1.0, contact_radius=a, rtol=RTOL),
+                [part * a],
+                rtol=RTOL,
+            )[0]
+        )
+        for a in EDGES
+    ]
+
+    def slope(x: mpf, m: Callable[[mpf], mpf]) -> mpf:
+        return (m(x) + x / ((1 - x) * (1 + x))) / 2
+
+    def exact(a: mpf) -> mpf:
+        r = mpf(float(part * float(a)))
+
+        def density(v: mpf) -> mpf:
+            # The pole in tanh, x = tanh v, the root by w^2 = v - v_r.
+            w = low + v * v
+            x = mp.tanh(w)
+            sech = mp.sech(w)
+            # x^2 - r^2 = sinh(w - low) sinh(w + low) / (cosh^2 w cosh^2 low).
+            leg = mp.sqrt(mp.sinh(v * v) * mp.sinh(w + low)) * sech / mp.cosh(low)
+            return (w + x * mp.cosh(w) ** 2) / 2 * sech**2 / leg * 2 * v
+
+        low, top = mp.atanh(r), mp.atanh(a)
+        end = mp.sqrt(top - low)
+        return mp.quad(density, mp.linspace(0, end, 5)) / mp.pi
+
+    def naive(a: float) -> float:
+        r = part * a
+
+        def density(x: float) -> float:
+            return float(slope(x, np.arctanh) / np.sqrt(x * x - r * r)) if x > r else 0.0
+
+        return plain_quad(density, r, a) / pi
+
+    with mp.workdps(25):
+        truth = [exact(mpf(float(a))) for a in EDGES]
+    return curve(
+        f"sphere-pressure-{part}",
+        f"pressure of an ellipsoid at r = {part} a, a → its radius",
+        "1 − a/R",
+        "∫ g′/√(x²−r²) dx by quad, as it stands",
+        BIG - EDGES,
+        (ours, attempt(naive, EDGES), truth),
+        CLOSED,
+    )
+
+
+CURVES = {
+    "depth, a -> R": partial(depth, "equator"),
+    "depth, a -> 0": partial(depth, "tip"),
+    "force, a -> R": partial(force, "equator"),
+    "force, a -> 0": partial(force, "tip"),
+    "inverse": inverse,
+    "pressure inside": partial(pressure, 0.3),
+    "pressure outside": partial(pressure, 0.95),
+}
+
+
+def curves() -> list[Curve]:
+    return [make() for make in CURVES.values()]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_towards_the_equator_and_the_tip(name: str) -> None:
+    CURVES[name]().holds()
+
+
+@pytest.mark.parametrize("name", ["force, a -> 0", "inverse", "pressure inside"])
+def test_where_the_naive_formula_dies(name: str) -> None:
+    CURVES[name]().naive_dies(1e-6)
