@@ -7,17 +7,21 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.abel.clusters import FAR, Clusters, clusters, masses_at_nodes, pairs
 from mdr_core.abel.displacement import Branch
+from mdr_core.abel.panel_moments import PLACES, PowerPanels, power_panels
 from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import leg, one_sided
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import Analytic, gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
 
-_FAR_NODES: Final = 16
-# A panel is far when the kernel's root is this many panel lengths away from it.
-_FAR: Final = 1.25
-_BLOCK: Final = 64
+# Of a panel's masses, and of a part of a panel that is seen from afar, where 2 x 14 nodes
+# leave 3.4^-28.
+_MASS_NODES: Final = 24
+_FAR_NODES: Final = 14
+# Interpolation errs by 7.3^-12 of the part of a block: below 1e-13 of the whole.
+_CLUSTER_NODES: Final = 12
 # The axis of the first panel: nearer than this nothing changes for a function smooth there.
 _AXIS: Final = 1e-8
 # G(0) below this, relative to the largest G, is what an interpolation leaves of a smooth tip.
@@ -29,35 +33,82 @@ _EPS: Final = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
+class _Annulus:
+    """Where is integrated: c <= x <= a, `width` = a - c with its digits."""
+
+    a: float
+    c: float
+    width: float
+
+
+@dataclass(frozen=True, eq=False)
 class StressPanels:
-    """G = g' on [0, end] as polynomials in s = sqrt(x^2 - b^2), b the panel's own break.
+    """G = g' between `edges` as polynomials in s = sqrt(x^2 - b^2), b the panel's own left edge.
 
     There the root that G carries at b is gone; what remains of a jump, `pole`/s, is kept apart.
-    All arrays have one entry a panel; `coefficients` are Chebyshev, on [start, stop] in s.
+    A panel is one piece or several: all other arrays have one entry a piece; `coefficients` are
+    Chebyshev, on [start, stop] in s.
     """
 
+    edges: Array
     base: Array
     start: Array
     stop: Array
     pole: Array
     coefficients: Array
     error: float
+    accuracy: float
+    """What closed moments next to a point may lose, of the largest value in a panel."""
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        """The panels as stretches for the displacement integrals."""
-        return tuple(self._branch(panel) for panel in range(self.base.size))
+        """The pieces as stretches for the displacement integrals."""
+        return tuple(self._branch(piece) for piece in range(self.base.size))
 
-    def _branch(self, panel: int) -> Branch:
-        base, start, stop = (float(part[panel]) for part in (self.base, self.start, self.stop))
+    def _branch(self, piece: int) -> Branch:
+        base, start, stop = (float(part[piece]) for part in (self.base, self.start, self.stop))
         middle, half = (start + stop) / 2, (stop - start) / 2
-        pole, row = float(self.pole[panel]), self.coefficients[panel]
+        pole, row = float(self.pole[piece]), self.coefficients[piece]
 
         def weight(x: Array, s: Array, _index: Indices) -> Array:
             value = chebyshev.chebval(np.clip((s - middle) / half, -1, 1), row)
             return np.asarray((value * s + pole) / x)
 
         return Branch(base, weight, float(np.hypot(base, stop)), start=float(np.hypot(base, start)))
+
+    @cached_property
+    def _first(self) -> Indices:
+        """First piece of each panel, and the number of all."""
+        return np.append(np.flatnonzero(self.start == 0), self.base.size)
+
+    @cached_property
+    def _powers(self) -> PowerPanels:
+        """The panels in powers of s."""
+        panel = np.arange(self.edges.size - 1)
+        left, right = self.edges[:-1], self.edges[1:]
+        length = leg(right, left)
+        number = np.repeat(panel, np.diff(self._first))
+        at = number + self.start / length[number]
+        piece = np.searchsorted(at, panel[:, None] + PLACES, side="right") - 1
+        s = length[:, None] * PLACES
+        pole, x = self.pole[self._first[:-1]], np.hypot(left[:, None], s)
+        values = (self._regular(piece, s) * s + pole[:, None]) / x
+        on_axis = chebyshev.chebval(-1.0, self.coefficients[0])
+        at_left = np.append(on_axis, pole[1:] / left[1:])
+        return power_panels(left, right, values, at_left, self.accuracy)
+
+    @cached_property
+    def _clusters(self) -> Clusters:
+        """Whole panels, as they are seen from smaller radii afar."""
+        first = self._first
+        pieces = np.arange(self.base.size)
+        steps, masses = self._nodes(pieces, self.start, self.stop - self.start, _MASS_NODES)
+        s = self.start[:, None] + steps
+        square = np.diff(self.edges) * (self.edges[1:] + self.edges[:-1])
+        parts = masses_at_nodes(
+            s * s / np.repeat(square, np.diff(first))[:, None], masses, _CLUSTER_NODES
+        )
+        return clusters(self.edges, np.add.reduceat(parts, first[:-1]), above=False)
 
     def kernel(
         self,
@@ -69,88 +120,165 @@ class StressPanels:
     ) -> Array:
         """Return int_max(r,c)^a G(x)/sqrt(x^2 - r^2) dx, c = a - width.
 
-        a of shape () or (m,), r of shape (m,), r < a. Source: mdr-5, Eqs. (5.68), (5.70).
+        a of shape (1,) or (m,), r of shape (m,), r < a. Source: mdr-5, Eqs. (5.68), (5.70).
         """
-        a = np.broadcast_to(a, r.shape)
-        width = a if width is None else np.broadcast_to(width, r.shape)
-        c = a - width if inner is None else np.broadcast_to(inner, r.shape)
+        width = a if width is None else width
+        c = a - width if inner is None else inner
+        annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width)])
+        if annuli.shape[1] == 1:
+            return self._sorted(_Annulus(*annuli[:, 0].tolist()), r, rtol)
+        different, number = np.unique(annuli, axis=1, return_inverse=True)
         result = np.empty_like(r)
-        for begin in range(0, r.size, _BLOCK):
-            part = slice(begin, begin + _BLOCK)
-            result[part] = self._block(a[part], r[part], c[part], width[part], rtol)
+        for i, column in enumerate(different.T.tolist()):
+            points = np.flatnonzero(number == i)
+            result[points] = self._sorted(_Annulus(*column), r[points], rtol)
         return result
 
-    def _block(self, a: Array, r: Array, c: Array, width: Array, rtol: float) -> Array:
-        base, start, stop = self.base[:, None], self.start[:, None], self.stop[:, None]
-        leg_a, leg_c, leg_r = leg(a, base), leg(c, base), leg(r, base)
+    def _sorted(self, annulus: _Annulus, r: Array, rtol: float) -> Array:
+        if bool((r[1:] >= r[:-1]).all()):
+            return self._over(annulus, r, rtol)
+        order = np.argsort(r)
+        result = np.empty_like(r)
+        result[order] = self._over(annulus, r[order], rtol)
+        return result
+
+    def _over(self, annulus: _Annulus, r: Array, rtol: float) -> Array:
+        """The kernel at ascending radii: whole panels, and those that the annulus cuts."""
+        last = int(np.searchsorted(self.edges, annulus.a)) - 1
+        first = int(np.searchsorted(self.edges, annulus.c))
+        total = self._whole(first, last, r, rtol) if first < last else np.zeros_like(r)
+        for panel in {last, first - 1} - {-1}:
+            total += self._cut(panel, annulus, r, rtol)
+        return total
+
+    def _whole(self, first: int, last: int, r: Array, rtol: float) -> Array:
+        """Panels first <= i < last: afar in clusters, the others one by one."""
+        low, high = self._clusters.far_from(r, self._clusters.usable(first, last))
+        total = self._clusters.sums(r, None, low, high)
+        end = np.searchsorted(r, self.edges[first + 1 : last + 1])
+        for number, point in pairs(np.minimum(high[first:last], end), end):
+            near = self._near(number + first, r[point], rtol)
+            total += np.bincount(point, weights=near, minlength=r.size)
+        return total
+
+    def _near(self, panel: Indices, r: Array, rtol: float) -> Array:
+        """Whole panels, each seen from its own radius."""
+        at, infinite = self._off_axis(panel, r)
+        known = self._powers.known[panel]
+        if known.all():
+            value = self._powers.chosen(panel).integrals(at)
+        else:
+            value = np.empty_like(r)
+            value[known] = self._powers.chosen(panel[known]).integrals(at[known])
+            rest = np.flatnonzero(~known)
+            whole = _Annulus(np.inf, 0.0, np.inf)
+            value[rest] = self._by_rule(panel[rest], at[rest], whole, rtol)
+        value[infinite] = np.inf
+        return value
+
+    def _off_axis(self, panel: Indices, r: Array) -> tuple[Array, Flags]:
+        """Radii moved off the axis, and where a tip makes the integral infinite there.
+
+        G(0) > 0 is a tip, and the integral of G/x over it infinite.
+        """
+        on_axis = (r == 0) & (panel == 0)
+        if not on_axis.any():
+            return r, on_axis
+        row = self.coefficients[0]
+        tip = abs(float(chebyshev.chebval(-1.0, row))) > _TIP * np.abs(self.coefficients).max()
+        return np.where(on_axis, _AXIS * self.stop[0], r), on_axis & tip
+
+    def _cut(self, panel: int, annulus: _Annulus, r: Array, rtol: float) -> Array:
+        """The part of one panel that lies in the annulus."""
+        left = max(float(self.edges[panel]), annulus.c)
+        right = min(float(self.edges[panel + 1]), annulus.a)
+        square = (right - left) * (right + left)
+        above = (left - r) * (left + r)
+        far = int(np.searchsorted(-above, -FAR * square, side="right"))
+        total = np.zeros_like(r)
+        total[:far] = self._by_nodes(panel, annulus, left, above[:far])
+        near = slice(far, int(np.searchsorted(r, right)))
+        if near.start < near.stop:
+            at, infinite = self._off_axis(np.full(near.stop - far, panel), r[near])
+            if self.edges[panel] >= annulus.c and self._powers.known[panel]:
+                powers = self._powers.chosen(np.full(at.size, panel)).cut(right)
+                total[near] = powers.integrals(at)
+            else:
+                total[near] = self._by_rule(np.full(at.size, panel), at, annulus, rtol)
+            total[near][infinite] = np.inf
+        return total
+
+    def _by_nodes(self, panel: int, annulus: _Annulus, left: float, above: Array) -> Array:
+        """Fixed nodes on a part of a panel for all points far below it, `above` = left^2 - r^2."""
+        pieces = np.arange(self._first[panel], self._first[panel + 1])
+        low, _, span, _ = self._part(pieces, annulus)
+        steps, masses = self._nodes(pieces, low, span, _FAR_NODES)
+        bottom = leg(np.asarray(left), self.base[pieces])
+        gaps = ((low - bottom)[:, None] + steps) * ((low + bottom)[:, None] + steps)
+        total = np.zeros_like(above)
+        for piece in np.flatnonzero(span > 0):
+            root = above[:, None] + gaps[piece]
+            np.sqrt(root, out=root)
+            total += np.divide(1.0, root, out=root) @ masses[piece]
+        return total
+
+    def _part(self, piece: Indices, annulus: _Annulus) -> tuple[Array, Array, Array, Array]:
+        """Where the annulus begins and ends in each piece, its length, and its end as a radius."""
+        base, start, stop = self.base[piece], self.start[piece], self.stop[piece]
+        leg_a, leg_c = leg(np.asarray(annulus.a), base), leg(np.asarray(annulus.c), base)
         low, high = np.maximum(start, leg_c), np.minimum(stop, leg_a)
-        used = (high > np.maximum(low, leg_r)) & (a > base)
-        # The root at r inside the panel: the rule starts on it, at y = 0, even in y.
-        on_root = leg_r >= low
-        shift = (base - r) * (base + r)
-        distance = np.where(
-            shift > 0, np.sqrt(start * start + np.maximum(shift, 0.0)), start - leg_r
-        )
-        whole = used & ~on_root & (low == start) & (high == stop)
-        far = whole & (distance > _FAR * (stop - start))
-        total = self._far(r, far)
-        panel, point = np.nonzero(used & ~far)
-        bottom = np.where(on_root, 0.0, low)
+        cut_twice = (low == leg_c) & (high == leg_a) & (leg_c > 0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            annulus = width * (a + c) / (leg_a + leg_c)
-        cut_twice = (low == leg_c) & (high == leg_a) & ~on_root & (leg_c > 0)
-        span = np.where(cut_twice, annulus, high - bottom)
-        edge = np.where(high == leg_a, a, np.hypot(base, stop))
-        near = self._near(
-            panel,
-            r[point],
-            high[panel, point],
-            span[panel, point],
-            edge[panel, point],
-            rtol,
-        )
-        return np.asarray(total + np.bincount(point, weights=near, minlength=r.size))
+            width = annulus.width * (annulus.a + annulus.c) / (leg_a + leg_c)
+        span = np.where(cut_twice, width, np.maximum(high - low, 0.0))
+        return low, high, span, np.where(high == leg_a, annulus.a, np.hypot(base, stop))
 
-    def _far(self, r: Array, far: Array) -> Array:
-        """Fixed nodes, shared by all points, for the panels that the root does not touch."""
-        panels = np.flatnonzero(far.any(axis=1))
-        if not panels.size:
-            return np.zeros_like(r)
-        x, weights = self._fixed
-        x, weights = x[panels][:, :, None], weights[panels][:, :, None]
-        mask = far[panels][:, None, :]
-        gap = np.where(mask, (x - r) * (x + r), 1.0)
-        return np.asarray((np.where(mask, weights, 0.0) / np.sqrt(gap)).sum(axis=(0, 1)))
+    def _nodes(self, piece: Indices, low: Array, span: Array, count: int) -> tuple[Array, Array]:
+        """Gauss' nodes of pieces from `low` on, as steps from there, and the masses G dx."""
+        nodes, weights = gauss_legendre(count)
+        steps = np.multiply.outer(span, (1 + nodes) / 2)
+        s = low[:, None] + steps
+        value = self._regular(piece[:, None], s) * s + self.pole[piece, None]
+        return steps, span[:, None] / 2 * weights * value / np.hypot(self.base[piece, None], s)
 
-    @property
-    def _fixed(self) -> tuple[Array, Array]:
-        """Nodes x and weights G dx of every whole panel, (panels, nodes)."""
-        nodes, weights = gauss_legendre(_FAR_NODES)
-        half = (self.stop - self.start)[:, None] / 2
-        s = self.start[:, None] + half * (1 + nodes)
-        x = np.hypot(self.base[:, None], s)
-        values = chebyshev.chebvander(nodes, self.coefficients.shape[1] - 1)
-        regular = self.coefficients @ values.T
-        return x, half * weights * (regular * s + self.pole[:, None]) / x
+    def _regular(self, piece: Indices, s: Array) -> Array:
+        """G without its pole."""
+        start, stop = self.start[piece], self.stop[piece]
+        u = np.clip((2 * s - start - stop) / (stop - start), -1, 1)
+        rows = np.moveaxis(self.coefficients[piece], -1, 0)
+        return np.asarray(chebyshev.chebval(u, rows, tensor=False))
 
-    def _near(
-        self, panel: Indices, r: Array, high: Array, span: Array, edge: Array, rtol: float
+    def _by_rule(self, panel: Indices, r: Array, annulus: _Annulus, rtol: float) -> Array:
+        """Two-root rule on the part of each panel that lies in the annulus and above its own r."""
+        counts = self._first[panel + 1] - self._first[panel]
+        number = np.repeat(np.arange(panel.size), counts)
+        piece = (self._first[panel] - np.cumsum(counts) + counts)[number] + np.arange(number.size)
+        low, high, span, edge = self._part(piece, annulus)
+        leg_r = leg(r[number], self.base[piece])
+        # The root at r inside the piece: the rule starts on it, at y = 0, even in y.
+        on_root = leg_r >= low
+        span = np.where(on_root, high, span)
+        used = np.flatnonzero((span > 0) & (high > leg_r))
+        piece, number = piece[used], number[used]
+        values = self._rule(piece, r[number], high[used], span[used], edge[used], rtol)
+        return np.bincount(number, weights=values, minlength=r.size).astype(float, copy=False)
+
+    def _rule(
+        self, piece: Indices, r: Array, high: Array, span: Array, edge: Array, rtol: float
     ) -> Array:
-        """Two-root rule on each pair of a panel and a point, from high - span to high in s."""
-        base, start, stop = self.base[panel], self.start[panel], self.stop[panel]
-        middle, half = (start + stop) / 2, (stop - start) / 2
-        pole, rows = self.pole[panel], self.coefficients[panel].T
+        """Two-root rule on each pair of a piece and a point, from high - span to high in s."""
+        start, stop, pole = self.start[piece], self.stop[piece], self.pole[piece]
+        rows = self.coefficients[piece].T
 
         def weight(x: Array, s: Array, index: Indices) -> Array:
-            u = np.clip((s - middle[index]) / half[index], -1, 1)
+            u = np.clip((2 * s - (start + stop)[index]) / (stop - start)[index], -1, 1)
             value = chebyshev.chebval(u, rows[:, None, index], tensor=False)
             return np.asarray((value * s + pole[index]) / x)
 
-        on_axis = (r == 0) & (base == 0)
-        result = one_sided(
+        return one_sided(
             weight,
-            base,
-            np.where(on_axis, _AXIS * high, r),
+            self.base[piece],
+            r,
             high,
             width=span,
             edge=edge,
@@ -158,16 +286,10 @@ class StressPanels:
             rtol=rtol,
             analytic=_POLYNOMIALS,
         )
-        if on_axis.any():
-            # G(0) > 0 is a tip, and the integral of G/x over it infinite.
-            left = np.abs(chebyshev.chebval(-1.0, rows))
-            tip = left > _TIP * np.abs(self.coefficients).max()
-            result[on_axis & tip & (start == 0)] = np.inf
-        return result
 
 
 def stress_panels(
-    slope: Callable[[Array, Array], Array], edges: Array, jumps: Jumps
+    slope: Callable[[Array, Array], Array], edges: Array, jumps: Jumps, accuracy: float = 1e-13
 ) -> StressPanels:
     """Resolve G = g' between the given edges, each panel in s about its own left edge.
 
@@ -179,6 +301,7 @@ def stress_panels(
     ----------
     edges : the ends of the smooth pieces, ascending [length], shape (k + 1,).
     jumps : of f', at some of the edges.
+    accuracy : of a panel's part of the kernel next to the panel; the dearer rule is more accurate.
 
     Raises
     ------
@@ -221,4 +344,6 @@ def stress_panels(
     )
     pole = np.zeros_like(base)
     pole[np.searchsorted(base, jumps.at)] = jumps.at * jumps.size
-    return StressPanels(base[tags], places[:, 0], places[:, 1], pole[tags], coefficients, error)
+    return StressPanels(
+        edges, base[tags], places[:, 0], places[:, 1], pole[tags], coefficients, error, accuracy
+    )

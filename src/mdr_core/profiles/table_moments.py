@@ -6,35 +6,38 @@ moments are elementary. Written in 1 - cos t and t - sin t they do not cancel, h
 panel and however far from the axis. Source: notes, §5.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import factorial
 from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.panels import Jumps
+from mdr_core.abel.clusters import Clusters, clusters, masses_at_nodes, pairs
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 _FORCE_POINTS: Final = 12
-# Points handled at once, neighbours of each other.
-_BLOCK: Final = 64
-# So many panels below its own a point sees by their moments; beyond them six nodes a panel leave
-# an error of (7 + sqrt(48))^-12, the root being seven half panels away.
-_NEAR: Final = 3
-_FAR_POINTS: Final = 6
-# Panels taken at once: their roots at 64 points stay in cache.
-_FAR_BLOCK: Final = 80
+# Of a quadratic, as clusters see it from afar.
+_FAR_POINTS: Final = 24
+# Interpolation errs by 7.3^-18: nothing that a later resolution would mistake for structure.
+_CLUSTER_NODES: Final = 18
+# Rounding of what should be zero, relative to the largest of its kind next to it.
+_NOISE: Final = 256 * float(np.finfo(float).eps)
 _SERIES: Final = 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class TableSlope:
-    """F = c0 + c1 u + c2 u^2, u = r - left edge, between `edges` (k + 1); coefficients (3, k)."""
+    """F = c0 + c1 u + c2 u^2, u = r - left edge, between `edges` (k + 1); coefficients (3, k).
+
+    `jumps` (k,): what F' holds of Dirac's kind at each left edge, times its radius.
+    """
 
     edges: Array
     coefficients: Array
+    jumps: Array | None = None
 
     def at(self, u: Array, panel: Array) -> Array:
         """F at the offset u in the given panel."""
@@ -43,20 +46,22 @@ class TableSlope:
 
     @cached_property
     def source(self) -> "TableSlope":
-        """(r F)' = F + r F', again quadratic in each panel."""
+        """(r F)' = F + r F', again quadratic in each panel but for the jumps of F between them."""
         left = self.edges[:-1]
         c0, c1, c2 = self.coefficients
-        return TableSlope(self.edges, np.stack([c0 + left * c1, 2 * c1 + 2 * left * c2, 3 * c2]))
+        rows = np.stack([c0 + left * c1, 2 * c1 + 2 * left * c2, 3 * c2])
+        return TableSlope(self.edges, rows, self.steps * left)
 
-    def jumps(self, noise: float) -> Jumps:
-        """Jumps of F between the panels, but for rounding."""
+    @cached_property
+    def steps(self) -> Array:
+        """How far F jumps at each left edge, zero where no more than rounding."""
         width = np.diff(self.edges)
         c = self.coefficients
         right = c[0] + width * (c[1] + width * c[2])
-        size = c[0, 1:] - right[:-1]
+        size = np.append(0.0, c[0, 1:] - right[:-1])
         terms = np.abs(c[0]) + width * (np.abs(c[1]) + width * np.abs(c[2]))
-        real = np.abs(size) > noise * np.maximum(terms[1:], terms[:-1])
-        return Jumps(self.edges[1:-1][real], size[real])
+        noise = _NOISE * np.append(0.0, np.maximum(terms[1:], terms[:-1]))
+        return np.where(np.abs(size) > noise, size, 0.0)
 
     def first_negative(self, noise: float) -> float | None:
         """Radius where F first falls below zero, but for rounding."""
@@ -84,85 +89,98 @@ class TableSlope:
     def transform(self, x: Array, offset: Array | None = None, *, weighted: bool = False) -> Array:
         """Return int_0^x F dr/sqrt(x^2 - r^2), at x + offset where an offset is given.
 
-        `weighted`: of r^2 F. The panels next to a point by their moments, those farther below,
-        where the root is smooth, by fixed nodes that all points share.
+        The jump at x itself is left out, whatever the offset. `weighted`: of r^2 F. The panels
+        next to a point by their moments, those farther below in clusters.
         """
         x = np.asarray(x, dtype=float)
         base = x.ravel()
-        off = np.zeros_like(base) if offset is None else offset.ravel()
-        place = base + off
+        shift = None if offset is None else offset.ravel()
+        place = base if shift is None else base + shift
+        if bool((place[1:] >= place[:-1]).all()):
+            return self._ascending(base, shift, place, weighted=weighted).reshape(x.shape)
         order = np.argsort(place)
         result = np.empty_like(base)
-        for start in range(0, order.size, _BLOCK):
-            index = order[start : start + _BLOCK]
-            # From the right: a point may lie above an edge by less than its rounding.
-            first, last = np.searchsorted(self.edges, place[index[[0, -1]]], side="right")
-            near = slice(max(int(first) - 2 - _NEAR, 0), min(int(last), self.edges.size - 1))
-            sums = self._weighted_sums if weighted else self._moment_sums
-            result[index] = sums(base[index], off[index], near)
-            if near.start:
-                result[index] += self._far_sums(place[index], near.start, weighted=weighted)
+        shift = None if shift is None else shift[order]
+        result[order] = self._ascending(base[order], shift, place[order], weighted=weighted)
         return result.reshape(x.shape)
 
-    @cached_property
-    def _fixed(self) -> tuple[Array, Array]:
-        """Nodes and F dr at them, (panels, nodes)."""
-        nodes, weights = gauss_legendre(_FAR_POINTS)
-        width = np.diff(self.edges)[:, None]
-        u = width * (1 + nodes) / 2
-        c0, c1, c2 = self.coefficients[:, :, None]
-        return self.edges[:-1, None] + u, width / 2 * weights * (c0 + u * (c1 + u * c2))
-
-    def _far_sums(self, x: Array, panels: int, *, weighted: bool) -> Array:
-        nodes, values = self._fixed
-        total = np.zeros_like(x)
-        for start in range(0, panels, _FAR_BLOCK):
-            part = slice(start, min(start + _FAR_BLOCK, panels))
-            r, weights = nodes[part].ravel(), values[part].ravel()
-            if weighted:
-                weights = weights * r * r
-            root = x[:, None] - r
-            root *= x[:, None] + r
-            np.sqrt(root, out=root)
-            np.divide(1.0, root, out=root)
-            total += root @ weights
+    def _ascending(
+        self, base: Array, offset: Array | None, place: Array, *, weighted: bool
+    ) -> Array:
+        afar = self._weighted_clusters if weighted else self._clusters
+        low, high = afar.far_from(place, afar.usable(0, self.edges.size))
+        total = afar.sums(base, offset, low, high)
+        moments = self._weighted_moments if weighted else self._moments
+        # A point may lie above an edge by less than the edge's rounding.
+        begin = np.searchsorted(place, self.edges[:-1])
+        end = np.maximum(low[: begin.size], begin)
+        for panel, point in pairs(begin, end):
+            shift = np.zeros(point.size) if offset is None else offset[point]
+            near = moments(panel, base[point], shift)
+            total += np.bincount(point, weights=near, minlength=base.size)
         return total
 
-    def _geometry(self, base: Array, offset: Array, near: slice) -> tuple[Array, Array]:
-        """S and the angle t spanned, (points, near panels)."""
-        left, right = self.edges[:-1][near], self.edges[1:][near]
-        x = (base + offset)[:, None]
-        above = np.maximum((base[:, None] - left) + offset[:, None], 0.0)
-        beyond = np.maximum((base[:, None] - right) + offset[:, None], 0.0)
-        width = np.minimum(right - left, above)
-        high = left + width
-        leg, leg_high = np.sqrt(above * (x + left)), np.sqrt(beyond * (x + high))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            cross = x * (width * (high + left) / (high * leg + left * leg_high))
-            span = np.arctan2(cross, (left * high + leg * leg_high) / x)
-        return leg, np.where(above > 0, span, 0.0)
+    @cached_property
+    def _clusters(self) -> Clusters:
+        return self._seen_from_above(lambda r, values: values)
 
-    def _moment_sums(self, base: Array, offset: Array, near: slice) -> Array:
-        leg, t = self._geometry(base, offset, near)
-        left = self.edges[:-1][near]
-        c0, c1, c2 = self.coefficients[:, near]
+    @cached_property
+    def _weighted_clusters(self) -> Clusters:
+        return self._seen_from_above(lambda r, values: values * r * r)
+
+    def _seen_from_above(self, weigh: Callable[[Array, Array], Array]) -> Clusters:
+        """Whole panels, as they are seen from larger radii afar."""
+        left, right = self.edges[:-1, None], self.edges[1:, None]
+        nodes, weights = gauss_legendre(_FAR_POINTS)
+        width = right - left
+        u = width * (1 + nodes) / 2
+        c0, c1, c2 = self.coefficients[:, :, None]
+        values = weigh(left + u, c0 + u * (c1 + u * c2)) * (width / 2 * weights)
+        v = (width - u) * (right + left + u) / (width * (right + left))
+        if self.jumps is not None and self.jumps.any():
+            v = np.append(v, np.ones_like(left), axis=1)
+            values = np.append(values, self.jumps[:, None], axis=1)
+        return clusters(self.edges, masses_at_nodes(v, values, _CLUSTER_NODES), above=True)
+
+    def _geometry(self, panel: Indices, base: Array, offset: Array) -> tuple[Array, Array, Array]:
+        """Left edge, S and the angle t spanned by each panel, seen from its own point."""
+        left, right = self.edges[panel], self.edges[panel + 1]
+        x = base + offset
+        above = np.maximum((base - left) + offset, 0.0)
+        beyond = np.maximum((base - right) + offset, 0.0)
+        # Over x: the square of a radius may be no double.
+        unit = np.where(x > 0, x, 1.0)
+        low, width = left / unit, np.minimum(right - left, above) / unit
+        high = low + width
+        leg, leg_high = np.sqrt(above / unit * (1 + low)), np.sqrt(beyond / unit * (1 + high))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cross = width * (high + low) / (high * leg + low * leg_high)
+            span = np.arctan2(cross, low * high + leg * leg_high)
+        return left, leg * unit, np.where(above > 0, span, 0.0)
+
+    def _moments(self, panel: Indices, base: Array, offset: Array) -> Array:
+        left, leg, t = self._geometry(panel, base, offset)
+        c0, c1, c2 = self.coefficients[:, panel]
         rise = 2 * np.square(np.sin(t / 2))
         first = leg * rise - left * _lag(t)
         # int sin^2, int sin (1 - cos) and int (1 - cos)^2.
         second = leg * leg * (_lag(2 * t) / 4) - leg * left * rise * rise + left * left * _rise2(t)
-        return np.asarray((c0 * t + c1 * first + c2 * second).sum(axis=1))
+        total = c0 * t + c1 * first + c2 * second
+        if self.jumps is not None and self.jumps.any():
+            seen = (leg > 0) & (base != left)
+            total[seen] += self.jumps[panel[seen]] / leg[seen]
+        return np.asarray(total)
 
-    def _weighted_sums(self, base: Array, offset: Array, near: slice) -> Array:
+    def _weighted_moments(self, panel: Indices, base: Array, offset: Array) -> Array:
         """A trigonometric polynomial of degree four: the rule is exact for it to rounding."""
-        leg, span = self._geometry(base, offset, near)
-        left = self.edges[:-1][near]
-        c0, c1, c2 = self.coefficients[:, near]
+        left, leg, span = self._geometry(panel, base, offset)
+        c0, c1, c2 = self.coefficients[:, panel]
         nodes, weights = gauss_legendre(_FORCE_POINTS)
-        t = span[:, :, None] * (1 + nodes) / 2
-        u = leg[:, :, None] * np.sin(t) - left[:, None] * 2 * np.square(np.sin(t / 2))
-        values = c0[:, None] + u * (c1[:, None] + u * c2[:, None])
-        values *= np.square(left[:, None] + u)
-        return np.asarray((span / 2 * (values @ weights)).sum(axis=1))
+        t = np.multiply.outer((1 + nodes) / 2, span)
+        u = leg * np.sin(t) - left * 2 * np.square(np.sin(t / 2))
+        values = c0 + u * (c1 + u * c2)
+        values *= np.square(left + u)
+        return np.asarray(span / 2 * (weights @ values))
 
 
 def _series(t2: Array, coefficients: tuple[float, ...]) -> Array:

@@ -19,9 +19,6 @@ from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Parameter
 
 Interpolation = Literal["cubic", "pchip", "linear"]
-_EPS: Final = float(np.finfo(float).eps)
-# Rounding of what should be zero, relative to the largest of its kind in the table.
-_NOISE: Final = 256 * _EPS
 # A smooth body's spline rings a little: a slope this much below zero, relative to the
 # steepest, is the interpolation's and not the body's.
 _RINGING: Final = 1e-8
@@ -30,6 +27,8 @@ _LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
 # A slope on the axis below this, relative to the steepest, is the interpolation's.
 _TIP: Final = 1e-6
 _ENERGY_POINTS: Final = 10
+# A bound on what the closed moments of one panel lose; by far not reached.
+_ACCURACY: Final = 1e-11
 
 
 class Tabulated(BehindFlat):
@@ -139,15 +138,17 @@ class Tabulated(BehindFlat):
 
     def depth_slope(self, coordinate: Array) -> Array:
         """g'(a) da/ds, where the pole of g' at the flat's edge cancels."""
-        base, offset = (np.atleast_1d(part).ravel() for part in self._offset(coordinate))
-        slope = self._slope.source.transform(base, offset)
         s = np.atleast_1d(coordinate).ravel()
-        per_leg = s / self.contact_radius(s) if self.flat_radius else np.ones_like(s)
-        # Of the jump at b, J b/s times s/a is left.
-        at_flat = self._jumps.at == self.flat_radius
-        edge = float((self._jumps.at * self._jumps.size)[at_flat].sum())
-        rest = slope + self._jumps.contribution(base, offset)
-        total = rest * per_leg + (edge / self.contact_radius(s) if edge else 0.0)
+        if not self.flat_radius:
+            return self._slope.source.transform(s).reshape(np.shape(coordinate))
+        a = self.contact_radius(s)
+        base, offset = self._offset(s)
+        # On the panel behind the flat, J b/s times s/a is left of the jump at b.
+        behind = np.searchsorted(self.r, self.flat_radius, side="right")
+        first = a <= self.r[behind]
+        slope = self._slope.source.transform(np.where(first, base, a), np.where(first, offset, 0.0))
+        edge = float(self._slope.steps[behind - 1]) * self.flat_radius
+        total = slope * (s / a) + np.where(first, edge / a, 0.0)
         return np.asarray(total.reshape(np.shape(coordinate)))
 
     @cached_property
@@ -168,7 +169,9 @@ class Tabulated(BehindFlat):
 
     @cached_property
     def _jumps(self) -> Jumps:
-        return self._slope.jumps(_NOISE)
+        """Where f' jumps."""
+        steps = self._slope.steps
+        return Jumps(self.r[:-1][steps != 0], steps[steps != 0])
 
     def _check_admissible(self) -> None:
         slope = self._slope
@@ -218,14 +221,7 @@ class Tabulated(BehindFlat):
 
     def dg(self, x: Array) -> Array:
         self._require_inside(x)
-        flat = np.atleast_1d(x).ravel()
-        value = self._regular_slope(flat, np.zeros_like(flat))
-        return value.reshape(np.shape(x))
-
-    def _regular_slope(self, base: Array, offset: Array) -> Array:
-        """g' at x = base + offset, the pole of the jump at `base` left out."""
-        smooth = self._slope.source.transform(base, offset)
-        return smooth + self._jumps.contribution(base, offset)
+        return self._slope.source.transform(np.asarray(x, dtype=float))
 
     def _require_inside(self, radius: Array) -> None:
         if np.any(np.asarray(radius) > self.domain):
@@ -271,7 +267,7 @@ class Tabulated(BehindFlat):
 
     @cached_property
     def _stress(self) -> StressPanels:
-        return stress_panels(self._regular_slope, self.r, self._jumps)
+        return stress_panels(self._slope.source.transform, self.r, self._jumps, _ACCURACY)
 
     def pressure_kernel(
         self,
