@@ -103,6 +103,7 @@ TABLE = (
     Row("mdr_core", set(), set()),
     Row("mdr_service.settings", set(), {"pydantic"}),
     Row("mdr_service.schemas", {"mdr_service.settings"}, {"pydantic", "pydantic_core"}),
+    Row("mdr_service.catalogue", {"mdr_core.errors", "mdr_core.profiles"} | SCHEMAS, set()),
     Row("mdr_service.convert", PUBLIC | SCHEMAS, {"numpy"}),
     Row("mdr_service.worn", PUBLIC | SCHEMAS | {"mdr_service.convert"}, {"numpy"}),
     Row("mdr_service.solve", PUBLIC | SCHEMAS | SOLVED - {"mdr_service.solve"}, {"numpy"}),
@@ -149,7 +150,7 @@ TABLE = (
     Row(
         "mdr_service.routes",
         WIRE
-        | {"mdr_service.asking", "mdr_service.convert", "mdr_service.described"}
+        | {"mdr_service.asking", "mdr_service.catalogue", "mdr_service.described"}
         | {"mdr_service.openapi", "mdr_service.parameters"},
         WEB,
     ),
@@ -157,6 +158,13 @@ TABLE = (
         "mdr_service.app",
         {"mdr_service.handlers", "mdr_service.openapi", "mdr_service.routes"},
         WEB,
+    ),
+    Row("mdr_command.progress", set(), set()),
+    Row(
+        "mdr_command.ask",
+        WIRE
+        | {"mdr_command.progress", "mdr_core.wear", "mdr_service.forms", "mdr_service.questions"},
+        set(),
     ),
     Row("mdr_command.openapi", {"mdr_service.app"}, set()),
     Row("mdr_command.serve", {"mdr_service.app", "mdr_service.settings"}, {"uvicorn"}),

@@ -36,6 +36,12 @@ class Command:
 
 
 COMMANDS: Final = {
+    "normal": Command("answer a contact without friction", "mdr_command.ask"),
+    "tangential": Command("answer a contact with friction", "mdr_command.ask"),
+    "history": Command("follow loads that come and go", "mdr_command.ask"),
+    "stress": Command("answer stresses and displacements over the radius", "mdr_command.ask"),
+    "wear": Command("answer the limit of fretting wear", "mdr_command.ask"),
+    "evolution": Command("follow fretting wear over the cycles", "mdr_command.ask"),
     "serve": Command("start the HTTP service", "mdr_command.serve"),
     "openapi": Command("print the description of the HTTP service", "mdr_command.openapi"),
 }
@@ -86,7 +92,8 @@ def _parser(chosen: str, module: Module | None) -> argparse.ArgumentParser:
 
 class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_others: Any) -> None:
-        parser.exit(message=f"mdr {version('mdr')}\n")
+        sys.stdout.write(f"mdr {version('mdr')}\n")
+        parser.exit()
 
 
 _ABOUT: Final = (

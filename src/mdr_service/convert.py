@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdr_core import materials, profiles
-from mdr_core.errors import DefectError, InputError
+from mdr_core.errors import InputError
 from mdr_core.wear import evolution
-from mdr_service.schemas.answers import Catalogue, ProfileField, ProfileKind
 from mdr_service.schemas.loads import Choice, Cycles, History
-from mdr_service.schemas.profiles import MODELS, Series, Tabulated
 from mdr_service.schemas.profiles import Profile as ProfileModel
+from mdr_service.schemas.profiles import Series, Tabulated
 from mdr_service.schemas.quantities import SMALLEST_LOAD, Strict
 from mdr_service.schemas.queries import (
     SHEAR_FIELDS,
@@ -152,21 +151,6 @@ def poissons_ratios(model: Material) -> list[float]:
     return [body.poissons_ratio for body in model.bodies if isinstance(body, Body)]
 
 
-def catalogue() -> Catalogue:
-    """Return every kind of profile with its formula, its fields and its closed forms."""
-    return Catalogue(
-        profiles=[
-            ProfileKind(
-                kind=kind,
-                formula=known.formula,
-                fields=_profile_fields(model),
-                closed_forms=list(known.closed_forms),
-            )
-            for (kind, known), model in zip(profiles.KINDS.items(), MODELS, strict=True)
-        ]
-    )
-
-
 def _fields(model: Strict) -> dict[str, Any]:
     return {name: value for name, value in vars(model).items() if name != "kind"}
 
@@ -293,22 +277,3 @@ def _controls(path: _Place, given: Choice) -> dict[str, float | Array]:
 def _require_digits(path: _Place, value: float) -> None:
     if 0 < abs(value) < SMALLEST_LOAD:
         raise InputError(path, f"must be 0 or at least {SMALLEST_LOAD}")
-
-
-def _profile_fields(model: type[Strict]) -> list[ProfileField]:
-    return [
-        ProfileField(
-            name=name,
-            dimension=_dimension(field.json_schema_extra),
-            description=str(field.description).rpartition(" [")[0],
-            required=field.is_required(),
-        )
-        for name, field in model.model_fields.items()
-        if name != "kind"
-    ]
-
-
-def _dimension(extra: object) -> str:
-    if not isinstance(extra, Mapping):
-        raise DefectError("a field without a dimension")
-    return str(extra["dimension"])

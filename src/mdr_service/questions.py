@@ -33,7 +33,7 @@ class Question:
     """One kind of query: its model, what solves it, and what writes down what was found."""
 
     model: type[Query]
-    solve: Callable[[Any], Any]
+    solve: Callable[..., Any]
     document: Callable[[Any, Any], dict[str, Any]]
     draw: Callable[[Any], bytes] | None = None
 
@@ -66,12 +66,15 @@ def effort(query: Query, media_type: str) -> int:
     return query.size + (pictures.EFFORT if media_type == pictures.MEDIA_TYPE else 0)
 
 
-def answer(name: str, query: Query, media_type: str) -> Answer:
-    """Return the answer to the question `name`, in one of its forms."""
+def answer(name: str, query: Query, media_type: str, **watched: Callable[[int], None]) -> Answer:
+    """Return the answer to the question `name`, in one of its forms.
+
+    What solves it may be `watched`, as of `worn.evolution`.
+    """
     question = QUESTIONS[name]
     # What is not finite is looked for in the documents, once, instead of at every operation.
     with np.errstate(all="ignore"):
-        found = question.solve(query)
+        found = question.solve(query, **watched)
         if question.draw and media_type == pictures.MEDIA_TYPE:
             return Answer(question.draw(found), media_type)
         document = question.document(query, found)

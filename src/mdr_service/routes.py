@@ -9,7 +9,7 @@ from fastapi.routing import APIRoute
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import request_response
 
-from mdr_service import asking, convert, parameters, wire
+from mdr_service import asking, catalogue, parameters, wire
 from mdr_service.described import BATCH, QUERIES
 from mdr_service.openapi import answers
 from mdr_service.schemas.answers import Catalogue, Health
@@ -32,7 +32,7 @@ class DirectRoute(APIRoute):
 
 router = APIRouter(route_class=DirectRoute)
 
-_CATALOGUE: Final = convert.catalogue().model_dump()
+_CATALOGUE: Final = catalogue.listed().model_dump()
 _HEALTH: Final = Health(status="ok").model_dump()
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
 # Whatever a document shown there says, the browser asks no other host.

@@ -14,6 +14,7 @@ from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
+from mdr_core.wear.course import Progress
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service import convert
@@ -69,12 +70,15 @@ def limit(query: WearQuery) -> Worn[LimitingWear]:
     return Worn(result, radius, _asked(query, result, radius))
 
 
-def evolution(query: EvolutionQuery) -> Worn[WearEvolution]:
-    """Return the wear over the cycles that is asked for, and of its fields nothing else."""
+def evolution(query: EvolutionQuery, progress: Progress | None = None) -> Worn[WearEvolution]:
+    """Return the wear over the cycles that is asked for, and of its fields nothing else.
+
+    `progress` is told how far it has come, as of `mdr_core.wear.evolution.solve`.
+    """
     arguments = convert.evolution_arguments(query)
     contact = normal_contact.solve(**convert.held_arguments(query))
     try:
-        result = wear_evolution.solve(contact, **arguments)
+        result = wear_evolution.solve(contact, **arguments, progress=progress)
     except InputError as error:
         raise _of_oscillation(error) from None
     radius = _places(query, lambda points: grid(result, points))

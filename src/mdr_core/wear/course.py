@@ -24,6 +24,9 @@ _FIRST = 1e-100
 # Some times what the finest resolution takes at the tightest tolerance in use.
 _MOST_CALLS = 40_000
 
+Progress = Callable[[int], None]
+"""Is told of values of the profile's g each time some have been asked for."""
+
 
 @dataclass(frozen=True)
 class Trail:
@@ -58,7 +61,9 @@ class Course:
     """Scaled cycles at which the contact reached the end of the shape, infinite if it did not."""
 
 
-def course(system: System, cycles: Array, rtol: float, stop: float) -> Course:
+def course(
+    system: System, cycles: Array, rtol: float, stop: float, progress: Progress | None = None
+) -> Course:
     """Return the course over ascending scaled cycles, up to contact radius `stop`.
 
     The annulus relaxes to a state without pressure in a few units of scaled cycles; once all
@@ -66,7 +71,7 @@ def course(system: System, cycles: Array, rtol: float, stop: float) -> Course:
 
     Source: notes, §11.
     """
-    run = _Run(system, rtol, stop)
+    run = _Run(system, rtol, stop, progress)
     states = {}
     for number in np.unique(cycles):
         states[float(number)] = State(system, run.to(float(number)))
@@ -93,8 +98,8 @@ class _Event:
 class _Run:
     """The integration as far as it has come."""
 
-    def __init__(self, system: System, rtol: float, stop: float) -> None:
-        self.system, self.rtol, self.stop = system, rtol, stop
+    def __init__(self, system: System, rtol: float, stop: float, progress: Progress | None) -> None:
+        self.system, self.rtol, self.stop, self.progress = system, rtol, stop, progress
         vector = self.vector = system.start
         self.moving = system.control.stick_moves
         self.now = 0.0
@@ -107,7 +112,7 @@ class _Run:
         inner = system.maps.zeta.size - 1
         self.scale[:] = 1 / edge
         self.scale[[inner, inner + 3]] = 1.0
-        self.calls = 0
+        self.calls, self.nodes = 0, inner + 1
 
     def to(self, goal: float) -> Array:
         """Go on to the goal and return the state there."""
@@ -151,6 +156,8 @@ class _Run:
 
     def _rates(self, _time: float, vector: Array, *, moving: bool) -> Array:
         self.calls += 1
+        if self.progress:
+            self.progress(self.nodes)
         if self.calls > _MOST_CALLS:
             raise AccuracyError(
                 "the wear over the cycles was not resolved: the integration takes too many steps"

@@ -15,7 +15,7 @@ from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array
 from mdr_core.wear import readout
-from mdr_core.wear.course import Course, Trail, course
+from mdr_core.wear.course import Course, Progress, Trail, course
 from mdr_core.wear.rates import Control, State
 from mdr_core.wear.scene import Scene
 
@@ -43,6 +43,7 @@ class WearEvolution:
     cycles: Array
     resolution: int
     rtol: float
+    progress: Progress | None = None
 
     @cached_property
     def course(self) -> Course | None:
@@ -55,6 +56,7 @@ class WearEvolution:
             self.cycles / scene.cycle_unit,
             self.rtol,
             scene.stop,
+            self.progress,
         )
         if isfinite(found.left):
             self._refuse(found.left * scene.cycle_unit)
@@ -261,6 +263,7 @@ def solve(
     tangential_force: float | None = None,
     resolution: int = DEFAULT_RESOLUTION,
     rtol: float = 1e-6,
+    progress: Progress | None = None,
 ) -> WearEvolution:
     """Return the wear of a contact that is moved to and fro, over the number of cycles.
 
@@ -280,6 +283,8 @@ def solve(
         [length], [force]; the force only where the normal force is held as well.
     resolution : nodes over the worn annulus, 8 to 96.
     rtol : tolerance of the integration over the cycles, 1e-10 to 1e-3.
+    progress : is told of the values of the profile's g that have been asked for, each time of
+        those since the last; `evaluations` says how many there will be about.
 
     Raises
     ------
@@ -328,6 +333,7 @@ def solve(
         _checked_cycles(cycles),
         int(resolution),
         float(rtol),
+        progress,
     )
     # What cannot be answered is to be refused here.
     _ = found.course
