@@ -6,7 +6,7 @@ PYTHON ?= python3.11
 
 BIN := .venv/bin
 # What is compiled is compiled again when it changes.
-COMPILED := src/mdr_core/history/walk.py src/mdr_core/history/walk.pxd
+COMPILED := src/mdr_core/history/walk.py src/mdr_core/history/walk.pxd src/mdr_core/history/slots.pxd
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.

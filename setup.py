@@ -3,20 +3,13 @@
 from Cython.Build import cythonize
 from setuptools import Extension, setup
 
-GROW = [
-    part
-    for limit in ("large-function-growth", "inline-unit-growth", "large-stack-frame-growth")
-    for part in ("--param", f"{limit}=100000")
-]
-
 setup(
     ext_modules=cythonize(
         Extension(
             "mdr_core.history.walk",
             ["src/mdr_core/history/walk.py"],
-            # Without fused multiply-add the digits are those of the uncompiled text; inlined, the
-            # arrays' descriptions are not copied from function to function.
-            extra_compile_args=["-O3", "-ffp-contract=off", "-finline-limit=20000", *GROW],
+            # Without fused multiply-add the digits are those of the uncompiled text.
+            extra_compile_args=["-O3", "-ffp-contract=off"],
         ),
         build_dir="build",
         compiler_directives={
@@ -24,6 +17,7 @@ setup(
             "boundscheck": False,
             "wraparound": False,
             "cdivision": True,
+            "initializedcheck": False,
             "infer_types": True,
             # The types are those of walk.pxd.
             "annotation_typing": False,

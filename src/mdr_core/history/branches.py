@@ -70,12 +70,12 @@ class Branches:
     @cached_property
     def shear(self) -> Array:
         """F_x/(mu E*) of each vertex as a load point [length^2]."""
-        return total(self.tree, self.tree.slope * self.force_step)
+        return total(self.tree, self.force_step)
 
     @cached_property
     def anchor(self) -> Array:
         """Anchor of each vertex above that of the axis [length]."""
-        return total(self.tree, self.tree.slope * self.depth_step)
+        return total(self.tree, self.depth_step)
 
     @cached_property
     def square(self) -> Array:
@@ -84,7 +84,7 @@ class Branches:
         It grows by 2 M dv + k^2 int (I - I_p) dw over a piece, M = F_x/(2 mu E*) at its lower end.
         """
         slope, below = self.tree.slope, self.shear[self.tree.parent]
-        return total(self.tree, slope * (below * self.depth_step + slope * self._lens))
+        return total(self.tree, below * self.depth_step + slope * self._lens)
 
     @cached_property
     def _lens(self) -> Array:

@@ -21,12 +21,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdr_core.history import slots
 from mdr_core.history import walk as walking
 from mdr_core.lazy import cached_property
 from mdr_core.typing import Array, Flags, Indices
 
-# A step adds at most a touching point, a new bottom, a corner and the load point.
-_VERTICES = 4
+# A step adds at most a touching point, a corner and the load point.
+_VERTICES = 3
 # What a step takes away it takes in pieces: two for each vertex popped, and the slide of all.
 _PIECES = 10
 
@@ -52,21 +53,25 @@ class Tree:
     """All vertices that a walk has made; each knows the one below it."""
 
     parent: Indices
-    """-1 on the axis, where both steps are one: there is no piece below, and its slope is zero."""
-    forward: Array
-    """level + anchor, as rows of (high, low)."""
-    backward: Array
-    forward_step: Array
-    """Growth of `forward` from the parent, >= 0, with its own digits; zero if all slips back."""
-    backward_step: Array
+    """-1 on the axis, where both steps are the same: there is no piece below."""
+    level: Array
+    """Level of each vertex, >= 0."""
+    growth: Array
+    """Growth of `forward` and of `backward` from the parent, >= 0, with its own digits; zero if
+    all slips back. In turn: shape (2 n,)."""
     top: Indices
     """Load point at the end of each step; -1 in a gap."""
     end: Chain
 
-    @cached_property
-    def level(self) -> Array:
-        """Level of each vertex, >= 0."""
-        return np.maximum(self.forward[:, 0] + self.backward[:, 0], 0.0) / 2
+    @property
+    def forward_step(self) -> Array:
+        """Growth of `forward` from the parent."""
+        return self.growth[::2]
+
+    @property
+    def backward_step(self) -> Array:
+        """Growth of `backward` from the parent."""
+        return self.growth[1::2]
 
     @cached_property
     def length(self) -> Array:
@@ -102,24 +107,24 @@ class Pieces(NamedTuple):
     """Where nothing sticks any more, the axis included."""
 
 
-def walk(chain: Chain, level: Array, shift: Array, leg: Indices) -> Tree:
+def walk(chain: Chain, level: Array, shift: Array, goes_on: Flags) -> Tree:
     """Return the vertices of the polyline after each of many straight steps.
 
-    `level` and `shift` are the load points, one a step; steps with the same `leg` continue one
-    straight line. Levels <= 0 are gaps, in which nothing is remembered.
+    `level` and `shift` are the load points, one a step; steps that go on continue the straight
+    line of the one before. Levels <= 0 are gaps, in which nothing is remembered.
     """
-    return _walk(chain, level, shift, leg, record=False)[0]
+    return _walk(chain, level, shift, goes_on, record=False)[0]
 
 
-def slips(chain: Chain, level: Array, shift: Array, leg: Indices) -> tuple[Tree, Pieces]:
+def slips(chain: Chain, level: Array, shift: Array, goes_on: Flags) -> tuple[Tree, Pieces]:
     """Return the same, and what slipped on the way, in the order of the steps."""
-    return _walk(chain, level, shift, leg, record=True)
+    return _walk(chain, level, shift, goes_on, record=True)
 
 
-def total(tree: Tree, increment: Array) -> Array:
-    """Return for each vertex the sum of the increments from the axis up to it."""
-    summed = np.empty_like(increment)
-    walking.accumulate(tree.parent, increment, summed)
+def total(tree: Tree, rise: Array) -> Array:
+    """Return for each vertex the sum of slope x rise from the axis up to it."""
+    summed = np.empty(rise.shape)
+    walking.accumulate(tree.parent, tree.growth, rise, summed)
     return summed
 
 
@@ -151,70 +156,78 @@ def _sums(steps: Array) -> Array:
 def as_tree(chain: Chain) -> Tree:
     """Return the polyline as a tree that never branched."""
     count = len(chain.forward)
-    steps = [np.diff(part, axis=0).sum(axis=1) for part in chain]
-    first = np.ones(1)
+    sums = chain.forward + chain.backward
     return Tree(
         np.arange(count, dtype=np.intp) - 1,
-        chain.forward,
-        chain.backward,
-        np.append(first, steps[0]),
-        np.append(first, steps[1]),
+        np.maximum(sums[:, 0] + sums[:, 1], 0.0) / 2,
+        _growth(chain).ravel(),
         np.array([count - 1], dtype=np.intp),
         chain,
     )
 
 
+def _growth(chain: Chain) -> Array:
+    """What both sums of each vertex exceed those of the one below by; one on the axis."""
+    growth = np.ones((len(chain.forward), 2))
+    for row, part in enumerate(chain):
+        growth[1:, row] = np.diff(part, axis=0).sum(axis=1)
+    return growth
+
+
 def _walk(
-    chain: Chain, level: Array, shift: Array, leg: Indices, *, record: bool
+    chain: Chain, level: Array, shift: Array, goes_on: Flags, *, record: bool
 ) -> tuple[Tree, Pieces]:
-    held = len(chain.forward)
+    held = len(chain.forward) if chain.point[0] > 0 else 0
     room = held + _VERTICES * level.size
-    # Rows as `walk` names them; what it makes it fills.
-    vertices = np.empty((6, room))
-    vertices[0:2, :held], vertices[2:4, :held] = chain.forward.T, chain.backward.T
-    vertices[4:6, 0] = 1.0
-    vertices[4, 1:held] = np.diff(chain.forward, axis=0).sum(axis=1)
-    vertices[5, 1:held] = np.diff(chain.backward, axis=0).sum(axis=1)
-    links = np.empty((2, room), dtype=np.intp)
-    links[0, :held] = np.arange(held) - 1
-    links[1, :held] = -1
-    top = np.empty(level.size, dtype=np.intp)
+    vertices, growth, parent = np.empty(room), np.empty(2 * room), np.empty(room, dtype=np.intp)
     pieces = np.empty((5, 2 * held + _PIECES * level.size if record else 0))
     piece_step = np.empty(pieces.shape[1], dtype=np.intp)
-    counts = np.array([held, 0], dtype=np.intp)
-    walking.run(
-        np.ascontiguousarray(level),
-        np.ascontiguousarray(shift),
-        np.ascontiguousarray(leg),
+    # Each vertex on its place as `slots` names them.
+    stack, marks = np.empty((slots.AXIS + room, 8)), np.empty((slots.AXIS + room, 2), dtype=np.intp)
+    marks[slots.MIRROR, slots.NUMBER] = -1
+    marks[slots.AXIS, slots.STILL] = slots.FORWARD
+    stack[slots.MIRROR] = 0.0
+    if held:
+        own = slice(slots.AXIS, slots.AXIS + held)
+        made = as_tree(chain)
+        steps = made.growth.reshape(held, 2)
+        stack[own, 0:4:2], stack[own, 1:4:2] = chain.forward, chain.backward
+        stack[own, slots.GROWTH : slots.GROWTH + 2] = steps
+        marks[own, slots.NUMBER] = np.arange(held)
+        marks[own, slots.STILL] = np.where(
+            steps[:, 1] == 0,
+            slots.BACKWARD,
+            np.where(steps[:, 0] == 0, slots.FORWARD, slots.NEITHER),
+        )
+        marks[slots.AXIS, slots.STILL] = slots.FORWARD
+        vertices[:held], growth[: 2 * held], parent[:held] = made.level, made.growth, made.parent
+    walker = walking.Walk(
+        stack.ravel(),
+        marks.ravel(),
+        slots.MIRROR + held,
+        held,
         vertices,
-        links,
-        top,
+        growth,
+        parent,
         pieces,
         piece_step,
-        counts,
+    )
+    top = np.empty(level.size, dtype=np.intp)
+    walker.run(
+        np.ascontiguousarray(level),
+        np.ascontiguousarray(shift),
+        goes_on.view(np.uint8),
+        top,
         *chain.point,
         record,
     )
-    used, made = int(counts[0]), int(counts[1])
-    last, parent = int(top[-1]), links[0, :used]
-    end = gap(float(level[-1]), float(shift[-1])) if last < 0 else _live(vertices, parent, last)
-    tree = Tree(
-        parent,
-        vertices[:2, :used].T,
-        vertices[2:4, :used].T,
-        vertices[4, :used],
-        vertices[5, :used],
-        top,
-        end,
+    used, made_pieces = walker.made, walker.noted
+    end = gap(float(level[-1]), float(shift[-1]))
+    if top[-1] >= 0:
+        own = slice(slots.AXIS, walker.top + 1)
+        end = Chain(stack[own, 0:4:2].copy(), stack[own, 1:4:2].copy())
+    tree = Tree(parent[:used], vertices[:used], growth[: 2 * used], top, end)
+    rows = pieces[:, :made_pieces]
+    return tree, Pieces(
+        piece_step[:made_pieces], rows[0], rows[1], rows[2], rows[3], rows[4], rows[0] < 0
     )
-    rows = pieces[:, :made]
-    return tree, Pieces(piece_step[:made], rows[0], rows[1], rows[2], rows[3], rows[4], rows[0] < 0)
-
-
-def _live(vertices: Array, parent: Indices, top: int) -> Chain:
-    """The vertices from the axis to the load point."""
-    rows = [top]
-    while parent[rows[-1]] >= 0:
-        rows.append(int(parent[rows[-1]]))
-    rows.reverse()
-    return Chain(vertices[:2, rows].T.copy(), vertices[2:4, rows].T.copy())

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
 from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
+from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
 
@@ -32,9 +33,19 @@ class Path:
     """Depth or normal force at each sample."""
     tangential: Array
     """Displacement or tangential force at each sample."""
-    step: Indices
-    """Leg to which each sample belongs: that towards the given point of this index."""
     per_step: int
+
+    @cached_property
+    def step(self) -> Indices:
+        """Leg to which each sample belongs: that towards the given point of this index."""
+        return np.repeat(np.arange(self.normal.size // self.per_step), self.per_step)
+
+    @property
+    def goes_on(self) -> Flags:
+        """Samples on the same leg as the one before."""
+        on = np.ones((self.normal.size // self.per_step, self.per_step), dtype=bool)
+        on[:, 0] = False
+        return on.ravel()
 
     @property
     def by_force(self) -> bool:
@@ -74,12 +85,13 @@ def build(
         )
     first, second = np.broadcast_arrays(pressed, pushed)
     share = np.arange(1, samples_per_step + 1) / samples_per_step
-    step = np.repeat(np.arange(first.size), samples_per_step)
     samples = _along(first, share), _along(second, share)
-    return Path(normal[0], tangential[0], *samples, step, samples_per_step)
+    return Path(normal[0], tangential[0], *samples, samples_per_step)
 
 
 def _along(points: Array, share: Array) -> Array:
+    if share.size == 1:
+        return points.copy()
     start = np.append(0.0, points[:-1])
     samples = start[:, None] + (points - start)[:, None] * share
     # The last sample of a leg is its point, to the last digit.
@@ -91,8 +103,8 @@ def _checked(axis: str, name: str, value: ArrayLike) -> Array:
     points = np.atleast_1d(np.asarray(value, dtype=float))
     if points.ndim != 1 or points.size == 0:
         raise InputError(("history", axis, name), "at least one point is needed, in one row")
-    bad = ~np.isfinite(points) | ((points < 0) & (name == "normal_force"))
-    if bad.any():
+    if not np.isfinite(points).all() or (name == "normal_force" and points.min() < 0):
+        bad = ~np.isfinite(points) | ((points < 0) & (name == "normal_force"))
         sign = " and not negative" if name == "normal_force" else ""
         raise InputError(
             ("history", axis, name, int(np.flatnonzero(bad)[0])), f"must be finite{sign}"
@@ -102,11 +114,12 @@ def _checked(axis: str, name: str, value: ArrayLike) -> Array:
 
 @dataclass(frozen=True)
 class Steps:
-    """What is walked: levels and shifts, with the leg and the sample that each belongs to."""
+    """What is walked: levels and shifts."""
 
     level: Array
     shift: Array
-    leg: Indices
+    goes_on: Flags
+    """Steps on the straight line of the one before."""
     last: Indices
     """Index of the step that ends at each sample."""
 
@@ -123,26 +136,27 @@ def steps(path: Path, profile: Profile, e_star: float, scale: float, pieces: int
     divided = path.normal if path.normal_name == "indentation_depth" else path.normal / e_star
     curved = path.curved
     if curved.any():
-        normal, tangential, leg, last = _bent(path, profile, divided, curved, pieces)
+        normal, tangential, goes_on, last = _bent(path, profile, divided, curved, pieces)
     else:
-        normal, tangential, leg = divided, path.tangential, path.step
+        normal, tangential, goes_on = divided, path.tangential, path.goes_on
         last = np.arange(divided.size)
     level = _levels(path, profile, normal)
     shift = tangential / scale
     if path.by_force:
-        shift = _carried(path, level, shift, leg, last)
-    return Steps(level, shift, leg, last)
+        shift = _carried(path, level, shift, last)
+    return Steps(level, shift, goes_on, last)
 
 
 def _bent(
     path: Path, profile: Profile, divided: Array, curved: Flags, pieces: int
-) -> tuple[Array, Array, Indices, Indices]:
-    """Normal and tangential quantity, leg and last step of a path with curved stretches."""
+) -> tuple[Array, Array, Flags, Indices]:
+    """Normal and tangential quantity, what goes on and the last steps, with curved stretches."""
     counts = np.where(curved, pieces, 1)
     normal, tangential = np.repeat(divided, counts), np.repeat(path.tangential, counts)
     inner = np.repeat(curved, counts)
-    leg = np.repeat(path.step, counts)
-    leg[inner] = path.step[-1] + 1 + np.arange(int(inner.sum()))
+    goes_on = np.repeat(path.goes_on, counts) & ~inner
+    # What follows a chord begins a line of its own.
+    goes_on[1:] &= ~inner[:-1]
     shares = _shares(path, profile, divided, curved, pieces)
     for values, samples in ((normal, divided), (tangential, path.tangential)):
         start = np.append(0.0, samples[:-1])[curved]
@@ -150,7 +164,7 @@ def _bent(
         between = start[:, None] + (ends - start)[:, None] * shares
         between[:, -1] = ends
         values[inner] = between.ravel()
-    return normal, tangential, leg, np.cumsum(counts) - 1
+    return normal, tangential, goes_on, np.cumsum(counts) - 1
 
 
 def _find(path: Path, profile: Profile, normal: Array) -> Array:
@@ -182,7 +196,7 @@ def _levels(path: Path, profile: Profile, normal: Array) -> Array:
     return profile.depth(s)
 
 
-def _carried(path: Path, level: Array, shift: Array, leg: Indices, last: Indices) -> Array:
+def _carried(path: Path, level: Array, shift: Array, last: Indices) -> Array:
     """The shifts, refused where they exceed what friction carries."""
     limit = np.maximum(level, 0.0)
     beyond = np.abs(shift) > limit * (1 + _ROUNDING)

@@ -18,7 +18,7 @@ from mdr_core.history.state import State, unloaded
 from mdr_core.lazy import cached_property
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validity import friction_notices
 
 # Steps walked at once: bounds the memory, and keeps what is computed of them in cache.
@@ -199,19 +199,22 @@ class History:
     def _force_scale(self) -> float:
         return self.start.friction_coefficient * self.start.e_star
 
-    def _blocks(self) -> Iterator[tuple[slice, tuple[Array, Array, Indices]]]:
-        """Blocks of steps: their place, levels, shifts and legs."""
+    def _blocks(self) -> Iterator[tuple[slice, tuple[Array, Array, Flags]]]:
+        """Blocks of steps: their place, levels, shifts and which go on."""
         steps = self.steps
         for begin in range(0, steps.level.size, _BLOCK):
             part = slice(begin, begin + _BLOCK)
-            yield part, (steps.level[part], steps.shift[part], steps.leg[part])
+            yield part, (steps.level[part], steps.shift[part], steps.goes_on[part])
 
     def _tops(self) -> Iterator[tuple[slice, Tree, Indices]]:
-        """For each block the samples in it, the vertices, and each sample's load point."""
+        """For each block in which something touches: samples, vertices, their load points."""
         last, chain = self.steps.last, self.start.chain
         for part, walked in self._blocks():
             tree = memory.walk(chain, *walked)
             chain = tree.end
+            if not tree.level.size:
+                # Nothing touches.
+                continue
             samples = slice(*np.searchsorted(last, [part.start, part.stop]))
             yield samples, tree, tree.top[last[samples] - part.start]
 
@@ -219,8 +222,10 @@ class History:
         """An answer of the load points at the samples; zero where nothing touches."""
         result = np.zeros(self.path.normal.shape)
         for samples, tree, top in self._tops():
-            part = Branches(self.start.profile, tree, self.path.by_force)
-            result[samples] = np.where(top >= 0, answer(part)[top], 0.0)
+            part = answer(Branches(self.start.profile, tree, self.path.by_force))
+            found = part[top]
+            found[top < 0] = 0.0
+            result[samples] = found
         return result
 
     def _refined(self, name: str) -> Array:
@@ -343,13 +348,13 @@ def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]
 
 def _require_reach(start: State, way: Path) -> None:
     """Refuse a load past the profile's end: if the largest is not, none is."""
-    name, most = way.normal_name, int(way.normal.argmax())
+    name = way.normal_name
     try:
-        normal.solve(start.profile, start.e_star, **{name: max(float(way.normal[most]), 0.0)})
+        normal.solve(start.profile, start.e_star, **{name: max(float(way.normal.max()), 0.0)})
     except InputError as error:
         if error.path[:1] != ("load",):
             raise
-        at = ("history", "normal", name, int(way.step[most]))
+        at = ("history", "normal", name, int(way.step[way.normal.argmax()]))
         raise InputError(at, error.detail) from None
 
 

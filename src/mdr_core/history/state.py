@@ -160,5 +160,5 @@ def advance(state: State, indentation_depth: float, tangential_displacement: flo
     if not (np.isfinite(depth[0]) and np.isfinite(shift[0])):
         raise InputError(("history",), "must be finite")
     coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
-    tree = memory.walk(state.chain, depth, shift / state.compliance, np.zeros(1, dtype=np.intp))
+    tree = memory.walk(state.chain, depth, shift / state.compliance, np.zeros(1, dtype=bool))
     return replace(state, chain=tree.end)
