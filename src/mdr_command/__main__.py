@@ -42,6 +42,7 @@ COMMANDS: Final = {
     "stress": Command("answer stresses and displacements over the radius", "mdr_command.ask"),
     "wear": Command("answer the limit of fretting wear", "mdr_command.ask"),
     "evolution": Command("follow fretting wear over the cycles", "mdr_command.ask"),
+    "sweep": Command("answer every scene of a table or a grid", "mdr_sweep.command", "sweep"),
     "serve": Command("start the HTTP service", "mdr_command.serve"),
     "openapi": Command("print the description of the HTTP service", "mdr_command.openapi"),
 }
