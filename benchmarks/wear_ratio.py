@@ -58,8 +58,8 @@ class Ours:
 class CycleByCycle:
     """The explicit scheme; its grid and matrices are made once, outside the clock."""
 
-    def __init__(self) -> None:
-        self.r = np.arange(GRID) * (REACH / GRID)
+    def __init__(self, grid: int = GRID) -> None:
+        self.r = np.arange(grid) * (REACH / grid)
         self.scene = Scene(self.r, self.r**2 / 2, 1.0, 1.0, 1.0, WEAR)
 
     def __call__(self) -> State:

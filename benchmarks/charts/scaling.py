@@ -1,0 +1,204 @@
+"""How the time grows with what is asked for, and the memory of a million radii.
+
+`make chart-scaling`. The exponent is fitted to the sizes from 1e3 on; for radii and loads it has to
+be at most 1.05 and the memory of a million radii at most 64 MiB above the answer, or the exit
+status is 1. Python's allocations are counted by tracemalloc, the whole process by its peak
+of resident memory in a fresh process.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+import tracemalloc
+from math import log10
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import history_ratio as paths
+import numpy as np
+from drawing import OURS, panels, save, table
+from machine import footer
+from measure import medians
+
+from mdr_core import fields, history, normal, tangential
+from mdr_core.errors import AccuracyError
+from mdr_core.profiles import Paraboloid, Profile, RoundedPunch, Tabulated
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from mdr_core.normal import NormalContact
+
+Array = np.ndarray
+Runs = dict[int, "Callable[[], object]"]
+SECONDS, FROM, MOST = 6.0, 1000, 1.05
+HEADER = ("time against", "of", "size", "seconds", "seconds / size", "exponent from 1e3 on")
+#: The lines that the bound on the exponent is for.
+BOUND = ("radii", "loads")
+MILLION, MEBIBYTES = 1_000_000, 64.0
+PUNCH, TABLE = RoundedPunch(0.5, 1.0), 200
+
+
+def sizes(low: int, high: int) -> list[int]:
+    """Three sizes to a decade."""
+    count = round(3 * log10(high / low)) + 1
+    return [round(one) for one in np.geomspace(low, high, count)]
+
+
+def sampled(points: int) -> Profile:
+    """A sphere of radius 2 through so many points."""
+    r = np.linspace(0.0, 1.25, points)
+    return Tabulated(r, r * r / (2 + np.sqrt((2 - r) * (2 + r))))
+
+
+def contact(profile: Profile) -> NormalContact:
+    """It has the radius 1."""
+    return normal.solve(profile, 1.0, contact_radius=1.0)
+
+
+def over_radii(profile: Profile, high: int) -> Runs:
+    one = contact(profile)
+    return {
+        n: lambda r=np.linspace(0.0, 1.0, n, endpoint=False): fields.pressure(one, r)
+        for n in sizes(1, high)
+    }
+
+
+def over_loads(profile: Profile, high: int) -> Runs:
+    def run(force: Array) -> object:
+        one = normal.solve(profile, 1.0, normal_force=force)
+        push = tangential.solve(one, 0.8, 0.3, tangential_force=0.1 * force)
+        return push.stick_radius, push.tangential_displacement
+
+    return {n: lambda f=np.linspace(0.1, 0.6, n): run(f) for n in sizes(1, high)}
+
+
+def over_breakpoints(high: int) -> Runs:
+    """Ever smaller swings: every turning point is remembered."""
+
+    def run(turns: int) -> object:
+        swing = 0.8 * paths.MOST * (1 - np.arange(turns) / (turns + 1)) * (-1.0) ** np.arange(turns)
+        return history.solve(
+            Paraboloid(paths.R),
+            paths.E_STAR,
+            paths.G_STAR,
+            paths.MU,
+            indentation_depth=np.full(turns, paths.DEPTH),
+            tangential_displacement=swing,
+        ).tangential_force
+
+    return {n: lambda n=n: run(n) for n in sizes(10, high)}
+
+
+def over_cycles(high: int) -> Runs:
+    def run(count: int) -> object:
+        return history.cycles(
+            Paraboloid(paths.R),
+            paths.E_STAR,
+            paths.G_STAR,
+            paths.MU,
+            indentation_depth=paths.DEPTH,
+            tangential_displacement=0.5 * paths.MOST,
+            count=count,
+        ).energy_per_cycle
+
+    return {n: lambda n=n: run(n) for n in sizes(1, high)}
+
+
+def over_table(high: int) -> Runs:
+    """From the points on: spline, admissibility, panels, pressure at 1000 radii."""
+    r = (np.arange(1000) + 0.5) / 1000
+
+    def run(points: int) -> Array:
+        return fields.pressure(contact(sampled(points)), r)
+
+    def answered(points: int) -> bool:
+        try:
+            run(points)
+        except AccuracyError:
+            print(f"a table of {points} points is refused")
+            return False
+        return True
+
+    return {n: lambda n=n: run(n) for n in sizes(10, high) if answered(n)}
+
+
+def lines() -> Iterator[tuple[str, str, Runs]]:
+    yield "radii", "pressure, paraboloid", over_radii(Paraboloid(1.0), MILLION)
+    yield "radii", "pressure, rounded punch", over_radii(PUNCH, MILLION)
+    yield "radii", f"pressure, table of {TABLE}", over_radii(sampled(TABLE), 100_000)
+    yield "loads", "stick radius, paraboloid", over_loads(Paraboloid(1.0), MILLION)
+    yield "loads", "stick radius, rounded punch", over_loads(PUNCH, 100_000)
+    yield "breakpoints", "history of shrinking swings", over_breakpoints(100_000)
+    yield "cycles", "energy of each cycle", over_cycles(100_000)
+    yield "table points", "pressure at 1000 radii, from the points on", over_table(100_000)
+
+
+def exponent(points: dict[int, float]) -> float:
+    """Slope of log(seconds) over log(size) from 1e3 on."""
+    n, t = np.log([(n, t) for n, t in points.items() if n >= FROM]).T
+    return float(np.polyfit(n, t, 1)[0])
+
+
+def memory(name: str) -> dict[str, float]:
+    """MiB above the answer at a million radii, in this process."""
+    profile = {"paraboloid": Paraboloid(1.0), "rounded punch": PUNCH}.get(name) or sampled(TABLE)
+    r = np.linspace(0.0, 1.0, MILLION, endpoint=False)
+    one = contact(profile)
+    fields.pressure(one, r[:: MILLION // 1000])
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    answer = fields.pressure(one, r)
+    resident = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+    tracemalloc.start()
+    fields.pressure(one, r)
+    traced = tracemalloc.get_traced_memory()[1] / 2**20
+    size = answer.nbytes / 2**20
+    return {"tracemalloc": traced - size, "resident": resident - size}
+
+
+def main() -> int:
+    rows, found = [], {}
+    for against, of, runs in lines():
+        seconds = medians(runs, SECONDS)
+        power = exponent(seconds)
+        found[against, of] = seconds, power
+        rows += [(against, of, n, t, t / n, power) for n, t in seconds.items()]
+    table(HEADER, rows, "scaling")
+    peaks = {}
+    for name in ("paraboloid", "rounded punch", f"table of {TABLE}"):
+        command = [sys.executable, str(Path(__file__)), name]
+        answer = subprocess.run(command, check=True, capture_output=True, text=True)
+        peaks[name] = json.loads(answer.stdout)
+    header = ("pressure at 1e6 radii, MiB above the answer", "tracemalloc", "resident")
+    table(header, [(name, *peak.values()) for name, peak in peaks.items()], "memory")
+    draw(found)
+    high = [f"{key}: {power:.3f}" for key, (_, power) in found.items() if power > MOST]
+    bad = [one for one in high if one.startswith(tuple(f"('{name}'" for name in BOUND))]
+    bad += [name for name, peak in peaks.items() if max(peak.values()) > MEBIBYTES]
+    print("above the bounds:", bad or "nothing")
+    return bool(bad)
+
+
+def draw(found: dict[tuple[str, str], tuple[dict[int, float], float]]) -> None:
+    names = list(dict.fromkeys(against for against, _ in found))
+    figure, axes = panels(2, 3, 3.4, 2.8)
+    for ax, name in zip(axes, names, strict=False):
+        mine = [(of, *rest) for (against, of), rest in found.items() if against == name]
+        for (of, seconds, power), color in zip(mine, (OURS, "#1f5fa8", "#2b8a3e"), strict=False):
+            label = f"{of}: {power:.2f}"
+            ax.loglog(list(seconds), list(seconds.values()), "o-", color=color, label=label)
+        ax.set(xlabel=name, ylabel="seconds")
+        ax.legend(fontsize=6.5, title="exponent from 10³ on", title_fontsize=6.5)
+    for ax in axes[len(names) :]:
+        ax.axis("off")
+    save(figure, "scaling", footer())
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        print(json.dumps(memory(sys.argv[1])))
+    else:
+        sys.exit(main())

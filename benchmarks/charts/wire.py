@@ -1,0 +1,132 @@
+"""Where the time of a request goes, by the length of its lists: `make chart-wire`.
+
+`/v1/stress` answers pressure and shear stress of a paraboloid in partial slip at n radii that the
+request names. Its stages are timed in this process, one after the other, with the functions that
+the service itself calls: reading and validating the text, computing, arranging the answer,
+writing it. The whole is what a client sees over the loopback on one connection kept
+open; what the stages do not explain is HTTP, the framework and the sockets.
+"""
+
+from __future__ import annotations
+
+import json
+import socket
+import sys
+from contextlib import contextmanager
+from statistics import median
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+import stress_wire_ratio
+import wire_ratio
+from drawing import panels, save, table
+from machine import footer
+from measure import medians
+
+from mdr_service import arrays, wire
+from mdr_service import table as csv
+from mdr_service.questions import QUESTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+LENGTHS = (1, 10, 100, 1000, 10_000, 100_000)
+WRITERS = {"JSON": wire, "CSV": csv, "NumPy": arrays}
+SECONDS, SAMPLES = 4.0, 400
+STAGES = ("validation", "compute", "answer arranged", "serialisation", "HTTP")
+HEADER = ("form", "radii", "bytes in", "bytes out", *(f"{name} [us]" for name in STAGES), "all")
+COLORS = ("#1f5fa8", "#c1272d", "#8a6d3b", "#2b8a3e", "0.7")
+
+
+def body(length: int) -> bytes:
+    """The request's text, every radius with all its digits."""
+    radius = (np.linspace(0.0, 1.0, length + 1)[:-1] ** 0.5 * 1e-4).tolist()
+    return json.dumps(stress_wire_ratio.QUERY | {"radius": radius}).encode()
+
+
+def stages(text: bytes, form: str) -> tuple[dict[str, Callable[[], object]], int]:
+    """The service's own functions, and the bytes of the answer."""
+    question, write = QUESTIONS["stress"], WRITERS[form].write
+    query = wire.read(question.model, text)
+    found = question.solve(query)
+    document = question.document(query, found)
+    runs = {
+        "validation": lambda: wire.read(question.model, text),
+        "compute": lambda: question.solve(query),
+        "answer arranged": lambda: question.document(query, found),
+        "serialisation": lambda: write(document),
+    }
+    return runs, len(write(document))
+
+
+@contextmanager
+def connection(port: int) -> Iterator[socket.socket]:
+    """A connection that is kept open."""
+    with socket.create_connection((wire_ratio.HOST, port)) as made:
+        made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        yield made
+
+
+def ask(link: socket.socket, text: bytes, accept: str) -> float:
+    """Seconds from the first byte sent to the last one received."""
+    head = (
+        f"POST /v1/stress HTTP/1.1\r\nHost: {wire_ratio.HOST}\r\nAccept: {accept}\r\n"
+        f"Content-Type: application/json\r\nContent-Length: {len(text)}\r\n\r\n"
+    ).encode()
+    start = perf_counter()
+    link.sendall(head + text)
+    received = bytearray()
+    while b"\r\n\r\n" not in received:
+        received += link.recv(1 << 20)
+    if not received.startswith(b"HTTP/1.1 200"):
+        raise RuntimeError(received[:200].decode())
+    top, rest = received.split(b"\r\n\r\n", 1)
+    left = int(top.lower().split(b"content-length:", 1)[1].split(b"\r\n", 1)[0]) - len(rest)
+    while left > 0:
+        left -= len(link.recv(1 << 20))
+    return perf_counter() - start
+
+
+def main() -> None:
+    rows = []
+    command = [sys.executable, "-m", "mdr_command", "serve", "--port"]
+    with wire_ratio.server(command) as port, connection(port) as link:
+        for form, writer in WRITERS.items():
+            for length in LENGTHS:
+                text = body(length)
+                runs, size = stages(text, form)
+                runs["all"] = lambda text=text, kind=writer.MEDIA_TYPE: ask(link, text, kind)
+                seconds = medians(runs, SECONDS)
+                # One by one: a batch would hide how long a single answer takes.
+                count = max(9, min(SAMPLES, round(SECONDS / 4 / seconds["all"])))
+                whole = median(runs["all"]() for _ in range(count))
+                times = [seconds[name] for name in STAGES[:-1]]
+                times.append(max(whole - sum(times), 0.0))
+                micro = [one * 1e6 for one in (*times, whole)]
+                rows.append((form, length, len(text), size, *micro))
+    table(HEADER, rows, "wire")
+    figure, axes = panels(1, len(WRITERS), 3.4, 3.0)
+    for ax, form in zip(axes, WRITERS, strict=True):
+        mine = [row for row in rows if row[0] == form]
+        parts = np.array([row[4 : 4 + len(STAGES)] for row in mine])
+        share = 100 * parts / parts.sum(axis=1, keepdims=True)
+        bottom = np.zeros(len(mine))
+        for column, name, color in zip(share.T, STAGES, COLORS, strict=True):
+            ax.bar(range(len(mine)), column, bottom=bottom, color=color, label=name)
+            bottom += column
+        labels = [f"{row[1]:,}\n{_readable(row[-1])}" for row in mine]
+        ax.set_xticks(range(len(mine)), labels, fontsize=6.5)
+        ax.set(title=f"answer as {form}", xlabel="radii, and time of the request")
+        ax.grid(visible=False)
+    axes[0].set_ylabel("share of the request's time [%]")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    save(figure, "wire", footer("fastapi", "pydantic", "uvicorn", "orjson"))
+
+
+def _readable(micro: float) -> str:
+    return f"{micro:.0f} µs" if micro < 1000 else f"{micro / 1000:.3g} ms"
+
+
+if __name__ == "__main__":
+    main()
