@@ -1,8 +1,9 @@
 # The bases are pinned by tag. A digest would pin them for good: whoever can ask the registry adds it.
 FROM python:3.11.15-bookworm AS build
 
-# Without the symbols for a debugger, which are most of a compiled module.
-ENV CFLAGS=-g0 \
+# Linked without the symbols for a debugger, which are most of a compiled module. (CFLAGS would take
+# the place of Python's own flags.)
+ENV LDFLAGS=-Wl,--strip-debug \
     PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1
 RUN ["python", "-m", "venv", "/app"]

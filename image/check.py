@@ -96,6 +96,8 @@ def inspect(work: Path, root: Path, config: dict[str, Any]) -> None:
     left = sorted(packages & {"cython", "setuptools", "pip"})
     left += [path.name for path in root.glob("usr/bin/*gcc*")]
     check(not left, f"no compiler or build tool has stayed in it: {left}")
+    compiled = list(site_packages(root).glob("mdr_core/history/walk.*.so"))
+    check(compiled, "what is to be compiled is compiled")
     check(not (root / "etc/pip.conf").exists(), "no setting of this host has stayed in it")
     # With a root that can be written, the files' own permissions decide.
     script = "find / -xdev -writable ! -type l 2>/dev/null"
