@@ -101,7 +101,7 @@ class Clusters:
             root += np.abs(gap)[:, None]
             np.sqrt(root, out=root)
             np.divide(self.masses.take(block, axis=0), root, out=root)
-            total += np.bincount(point, weights=root @ ones, minlength=base.size)
+            add(total, point, root @ ones)
         return total
 
 
@@ -118,6 +118,16 @@ def pairs(low: Indices, high: Indices) -> Iterator[tuple[Indices, Indices]]:
         counts[1:] -= counts[:-1].copy()
         block = np.repeat(np.arange(first, first + counts.size), counts)
         yield block, np.arange(start, start + block.size) + shift[block]
+
+
+def add(total: Array, point: Indices, values: Array) -> None:
+    """Add the values of pairs, some of them at the same point, to the totals of their points."""
+    if total.size <= _PAIRS:
+        total += np.bincount(point, weights=values, minlength=total.size)
+        return
+    # The pairs of a portion are mostly of neighbouring points.
+    low, high = int(point.min()), int(point.max()) + 1
+    total[low:high] += np.bincount(point - low, weights=values)
 
 
 def clusters(edges: Array, masses: Array, *, above: bool) -> Clusters:

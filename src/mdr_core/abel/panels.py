@@ -38,7 +38,7 @@ _RISE: Final = 0.02
 _CARRIES: Final = 3
 # What the axis panel may still hold, relative to the first one looked at.
 _NEGLIGIBLE: Final = 1e-17
-_MOST_PANELS: Final = 4000
+_MOST_CUTS: Final = 4000
 # A panel this narrow, relative to its place, whose tail is this large, holds a jump.
 _NEEDLE: Final = 1e-11
 _UNRESOLVED: Final = 1e-8
@@ -89,7 +89,7 @@ def resolve(function: Function, upper: float, breaks: Sequence[float] = ()) -> P
 
     Raises
     ------
-    AccuracyError : more than 4000 panels would be needed: the function is noise.
+    AccuracyError : more than 4000 cuts would be needed: the function is noise.
 
     Examples
     --------
@@ -187,7 +187,7 @@ def bisect(
     Returns intervals, tags, coefficients and the largest tail kept.
     """
     done: list[tuple[Array, Indices, Array]] = []
-    worst, count = 0.0, 0
+    worst, count, most = 0.0, 0, len(intervals) + _MOST_CUTS
     while len(intervals):
         low, high = intervals[:, 0], intervals[:, 1]
         half = (high - low)[:, None] / 2
@@ -211,9 +211,9 @@ def bisect(
         worst = max(worst, float((tail[seen] / largest[seen]).max(initial=0.0)))
         count += int(good.sum())
         intervals, tags = _split(intervals[~good]), np.tile(tags[~good], 2)
-        if count + len(intervals) > _MOST_PANELS:
+        if count + len(intervals) > most:
             raise AccuracyError(
-                f"the function is not piecewise smooth: it needs more than {_MOST_PANELS} panels"
+                f"the function is not piecewise smooth: it needs more than {most} panels"
             )
     places, kept_tags, kept = (np.concatenate(column) for column in zip(*done, strict=True))
     order = np.lexsort((places[:, 0], kept_tags))

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mdr_core.abel.clusters import FAR, Clusters, clusters, masses_at_nodes, pairs
+from mdr_core.abel.clusters import FAR, Clusters, add, clusters, masses_at_nodes, pairs
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panel_moments import PLACES, PowerPanels, power_panels
 from mdr_core.abel.panels import Jumps, bisect
@@ -157,8 +157,7 @@ class StressPanels:
         total = self._clusters.sums(r, None, low, high)
         end = np.searchsorted(r, self.edges[first + 1 : last + 1])
         for number, point in pairs(np.minimum(high[first:last], end), end):
-            near = self._near(number + first, r[point], rtol)
-            total += np.bincount(point, weights=near, minlength=r.size)
+            add(total, point, self._near(number + first, r[point], rtol))
         return total
 
     def _near(self, panel: Indices, r: Array, rtol: float) -> Array:

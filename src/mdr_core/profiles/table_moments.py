@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.clusters import Clusters, clusters, masses_at_nodes, pairs
+from mdr_core.abel.clusters import Clusters, add, clusters, masses_at_nodes, pairs
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
@@ -116,8 +116,7 @@ class TableSlope:
         end = np.maximum(low[: begin.size], begin)
         for panel, point in pairs(begin, end):
             shift = np.zeros(point.size) if offset is None else offset[point]
-            near = moments(panel, base[point], shift)
-            total += np.bincount(point, weights=near, minlength=base.size)
+            add(total, point, moments(panel, base[point], shift))
         return total
 
     @cached_property
