@@ -190,22 +190,23 @@ def yields(
     poissons_ratios: Sequence[float] = (),
     friction_coefficient: Parameter = 0.0,
     full_slip: Flags | None = None,
-) -> Flags | None:
-    """Return which contacts of many `yield` is about; None where that is `yield_unknown`.
+) -> dict[str, Flags]:
+    """Return which contacts of many `yield` and `yield_unknown` are about, by these codes.
 
     Parameters as of `yield_notices`.
     """
     shape = contact_radius.shape
-    if profile.infinite_pressure_radii:
-        return np.ones(shape, dtype=bool)
     if not isinstance(profile, Paraboloid | Spheroid):
-        return None
+        sharp = np.zeros(shape, dtype=bool)
+        for b in profile.infinite_pressure_radii:
+            sharp |= np.isfinite(b)
+        return {"yield": sharp, "yield_unknown": ~sharp}
     peak = _peak(profile, e_star, contact_radius)
     found = 2 * _shear_factor(poissons_ratios) * peak >= yield_strength
     if full_slip is not None:
         surface = 2 * np.asarray(friction_coefficient) * peak >= yield_strength
         found = found | (full_slip & surface)
-    return np.broadcast_to(found, shape)
+    return {"yield": np.broadcast_to(found, shape)}
 
 
 def _peak(profile: Profile, e_star: Parameter, contact_radius: Array) -> Array:

@@ -167,7 +167,7 @@ def _yields(
             "friction_coefficient": result.friction_coefficient,
             "full_slip": result.full_slip,
         }
-    flags = validity.yields(
+    return validity.yields(
         contact.profile,
         contact.e_star,
         a,
@@ -175,8 +175,6 @@ def _yields(
         poissons_ratios=convert.poissons_ratios(query.material),
         **friction,
     )
-    everywhere = np.ones(a.shape, dtype=bool)
-    return {"yield_unknown": everywhere} if flags is None else {"yield": flags}
 
 
 def _spread(found: Found, rows: np.ndarray[Any, np.dtype[np.intp]], refused: Flags) -> Found:

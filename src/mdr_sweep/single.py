@@ -40,9 +40,10 @@ def read(query: str, fields: Mapping[str, Any]) -> Query:
 
 def sentence(error: problems.ServiceError) -> str:
     """Return a failure in one line: where the request is wrong, and why."""
-    if not error.errors:
+    document = problems.document(error)
+    if "errors" not in document:
         return error.detail
-    return "; ".join(f"{pointer} {detail}" for pointer, detail in error.errors)
+    return "; ".join(f"{each['pointer']} {each['detail']}" for each in document["errors"])
 
 
 def _answer(study: Study, query: Query) -> Told:
@@ -50,9 +51,11 @@ def _answer(study: Study, query: Query) -> Told:
     found = question.solve(query)
     # The answers of wear come with its fields.
     result = getattr(found, "result", found)
-    answers = {name: _one(getattr(result, name)) for name in study.answers}
-    notices = solve.notices(query, result)
-    codes = [notice.code for notice in notices]
+    parts = (result, getattr(result, "normal", result))
+    answers = {name: _one(getattr(_of(parts, name), name)) for name in study.answers}
+    said = (notice.code for notice in solve.notices(query, result))
+    # What is infinite before any wear is none of the answers of wear.
+    codes = [code for code in said if study.query != "wear" or code != "singular"]
     if not all(isinstance(one, str) or np.isfinite(one) for one in answers.values()):
         # A true infinity, or a number that no double holds: the document knows.
         document = question.document(query, found)
@@ -64,6 +67,11 @@ def _answer(study: Study, query: Query) -> Told:
 def coded(codes: list[str]) -> str | None:
     """Return the codes of warnings in one word each."""
     return " ".join(dict.fromkeys(codes)) or None
+
+
+def _of(parts: tuple[Any, Any], name: str) -> Any:
+    """The contact with friction where it knows the answer, else the normal contact."""
+    return next(part for part in parts if hasattr(type(part), name))
 
 
 def _one(value: Any) -> Any:
