@@ -119,7 +119,7 @@ TABLE = (
     ),
     Row("mdr_service.wire", WIRE - {"mdr_service.wire"}, {"orjson", "pydantic"}),
     Row("mdr_service.arrays", set(), {"numpy"}),
-    Row("mdr_service.table", set(), {"numpy"}),
+    Row("mdr_service.table", set(), {"numpy", "orjson"}),
     Row("mdr_service.pictures", RESULTS | SOLVED | {"mdr_core.wear"}, {"matplotlib", "numpy"}),
     Row("mdr_service.questions", WRITTEN | SCHEMAS | SOLVED | {"mdr_service.wire"}, {"numpy"}),
     Row(

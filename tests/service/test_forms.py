@@ -9,6 +9,7 @@ from math import inf
 from xml.etree import ElementTree as ET
 
 import httpx
+import orjson
 import pytest
 
 from mdr_service.schemas.examples import (
@@ -57,8 +58,12 @@ def table(answer: httpx.Response) -> list[dict[str, str]]:
 
 
 def told(value: object) -> str:
-    """Return a value of a JSON answer as the table shows it."""
-    return repr(inf) if value is None else value if isinstance(value, str) else repr(value)
+    """Return a value of a JSON answer as the table shows it: as the answer itself does."""
+    return repr(inf) if value is None else value if isinstance(value, str) else written(value)
+
+
+def written(value: object) -> str:
+    return orjson.dumps(value).decode()
 
 
 OF_NO_LOAD = "initial_profile"
@@ -88,8 +93,8 @@ def test_the_table_holds_the_digits_of_the_document(
     assert ("load" in rows[0]) == (len(loads) > 1 and cycles is None)
     assert ("cycles" in rows[0]) == (cycles is not None)
     expected = [
-        ({"cycles": repr(cycles[load])} if cycles else {"load": str(load)} if loads[1:] else {})
-        | {"radius": repr(r)}
+        ({"cycles": written(cycles[load])} if cycles else {"load": str(load)} if loads[1:] else {})
+        | {"radius": written(r)}
         | {name: told(field[load][at]) for name, field in columns.items()}
         for load in loads
         for at, r in enumerate(radius)
