@@ -120,8 +120,15 @@ class Steps:
     shift: Array
     goes_on: Flags
     """Steps on the straight line of the one before."""
-    last: Indices
-    """Index of the step that ends at each sample."""
+    last: Indices | None
+    """Index of the step that ends at each sample; none given where every step ends at one."""
+
+    def samples(self, part: slice) -> tuple[slice, Indices | slice]:
+        """Samples that a block of steps ends at, and at which of its steps."""
+        if self.last is None:
+            return part, slice(None)
+        samples = slice(*np.searchsorted(self.last, [part.start, part.stop]))
+        return samples, self.last[samples] - part.start
 
 
 def steps(path: Path, profile: Profile, e_star: float, scale: float, pieces: int) -> Steps:
@@ -134,12 +141,13 @@ def steps(path: Path, profile: Profile, e_star: float, scale: float, pieces: int
     InputError : a tangential force that no equilibrium carries, at or before a point.
     """
     divided = path.normal if path.normal_name == "indentation_depth" else path.normal / e_star
+    last: Indices | None
     curved = path.curved
     if curved.any():
         normal, tangential, goes_on, last = _bent(path, profile, divided, curved, pieces)
     else:
         normal, tangential, goes_on = divided, path.tangential, path.goes_on
-        last = np.arange(divided.size)
+        last = None
     level = _levels(path, profile, normal)
     shift = tangential / scale
     if path.by_force:
@@ -196,12 +204,13 @@ def _levels(path: Path, profile: Profile, normal: Array) -> Array:
     return profile.depth(s)
 
 
-def _carried(path: Path, level: Array, shift: Array, last: Indices) -> Array:
+def _carried(path: Path, level: Array, shift: Array, last: Indices | None) -> Array:
     """The shifts, refused where they exceed what friction carries."""
     limit = np.maximum(level, 0.0)
     beyond = np.abs(shift) > limit * (1 + _ROUNDING)
     if beyond.any():
-        sample = int(np.searchsorted(last, int(np.flatnonzero(beyond)[0])))
+        first = int(np.flatnonzero(beyond)[0])
+        sample = first if last is None else int(np.searchsorted(last, first))
         raise InputError(
             ("history", "tangential", path.tangential_name, int(path.step[sample])),
             "no equilibrium: on the way to this point the force exceeds "

@@ -208,24 +208,24 @@ class History:
 
     def _tops(self) -> Iterator[tuple[slice, Tree, Indices]]:
         """For each block in which something touches: samples, vertices, their load points."""
-        last, chain = self.steps.last, self.start.chain
+        chain = self.start.chain
         for part, walked in self._blocks():
             tree = memory.walk(chain, *walked)
             chain = tree.end
             if not tree.level.size:
                 # Nothing touches.
                 continue
-            samples = slice(*np.searchsorted(last, [part.start, part.stop]))
-            yield samples, tree, tree.top[last[samples] - part.start]
+            samples, ends = self.steps.samples(part)
+            yield samples, tree, tree.top[ends]
 
-    def _at_samples(self, answer: Callable[[Branches], Array]) -> Array:
+    def _at_samples(self, scale: float, answer: Callable[[Branches], Array]) -> Array:
         """An answer of the load points at the samples; zero where nothing touches."""
         result = np.zeros(self.path.normal.shape)
         for samples, tree, top in self._tops():
             part = answer(Branches(self.start.profile, tree, self.path.by_force))
             found = part[top]
             found[top < 0] = 0.0
-            result[samples] = found
+            np.multiply(found, scale, out=result[samples])
         return result
 
     def _refined(self, name: str) -> Array:
@@ -235,16 +235,16 @@ class History:
 
     @cached_property
     def _force(self) -> Array:
-        return self._force_scale * self._at_samples(lambda part: part.shear)
+        return self._at_samples(self._force_scale, lambda part: part.shear)
 
     @cached_property
     def _displacement(self) -> Array:
-        return self.start.compliance * self._at_samples(lambda part: part.anchor)
+        return self._at_samples(self.start.compliance, lambda part: part.anchor)
 
     @cached_property
     def _energy(self) -> Array:
         scale = self._force_scale * self.start.compliance
-        return scale * self._at_samples(lambda part: part.square)
+        return self._at_samples(scale, lambda part: part.square)
 
     @cached_property
     def _dissipation(self) -> Array:
@@ -254,9 +254,9 @@ class History:
             chain = tree.end
             each = dissipation.per_piece(self.start.profile, found, by_force=self.path.by_force)
             np.add.at(lost, found.step + part.start, each)
-        before = np.append(-1, self.steps.last[:-1]) + 1
-        scale = self._force_scale * self.start.compliance
-        return np.asarray(scale * np.add.reduceat(lost, before))
+        if self.steps.last is not None:
+            lost = np.add.reduceat(lost, np.append(-1, self.steps.last[:-1]) + 1)
+        return np.asarray(self._force_scale * self.start.compliance * lost)
 
     def _in_depths(self, chain: Chain) -> Chain:
         """A polyline over forces as the one over depths, with the digits of its pieces."""
