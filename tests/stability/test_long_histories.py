@@ -1,0 +1,169 @@
+"""Histories of up to a hundred thousand steps: nothing drifts, whatever came before."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import history
+from mdr_core.profiles import Cone, Paraboloid
+from tests.stability.curves import CLOSED, Array, Curve, curve
+
+MU, DEPTH, SLOPE, BIG = 0.4, 1.0, 0.3, 1.3
+#: Numbers of steps or cycles.
+COUNTS = np.unique(np.round(np.geomspace(1, 1e5, 36)).astype(int))
+SPRINGS = 200
+#: Steps that the springs are given.
+SHORT = 1000
+
+
+def cone_force(u: mpf) -> mpf:
+    """Phi(u) of a cone at depth d: mu [F(a) - F(c)], c = a (1 - u/u_max), E* = G* = 1."""
+    a, reach = mpf(DEPTH) / (mp.pi / 2 * mpf(SLOPE)), mpf(MU) * mpf(DEPTH)
+    c = a * (1 - u / reach)
+    return mpf(MU) * mp.pi / 2 * mpf(SLOPE) * (a - c) * (a + c)
+
+
+def springs(path: Array, dtype: type = np.float64) -> Array:
+    """Independent springs under a cone, step after step, each clipped; F_x at every step."""
+    a = 2 * DEPTH / (np.pi * SLOPE)
+    x = a * (np.arange(SPRINGS) + 0.5) / SPRINGS
+    limit = (MU * (DEPTH - np.pi / 2 * SLOPE * x)).astype(dtype)
+    shear, forces, last = np.zeros(SPRINGS, dtype), np.empty(path.size), 0.0
+    for index, u in enumerate(path):
+        shear = np.clip(shear + dtype(u - last), -limit, limit)
+        forces[index], last = 2 * shear.mean() * a, u
+    return forces
+
+
+def after_random_steps() -> Curve:
+    """Random steps, and at last one that turns back from the largest displacement so far.
+
+    A displacement beyond all before it at a held depth is on the virgin curve: what was before is
+    forgotten; so is its mirror image after the way back through as much.
+    """
+    rng, most = np.random.default_rng(11), int(COUNTS[-1])
+    walk = 0.4 * MU * DEPTH * rng.uniform(-1, 1, most)
+    walk[0] = 0.0
+    turn, back = 0.7 * MU * DEPTH, 0.3 * MU * DEPTH
+    ours, naive = [], []
+    for count in COUNTS:
+        path = np.concatenate([walk[:count], [turn, back]])
+        found = history.solve(
+            Cone(SLOPE),
+            1.0,
+            1.0,
+            MU,
+            indentation_depth=np.full(path.size, DEPTH),
+            tangential_displacement=path,
+        )
+        ours.append(float(found.tangential_force[-1]))
+        naive.append(float(springs(path[-SHORT:], np.float32)[-1]))
+    with mp.workdps(40):
+        exact = cone_force(mpf(turn)) - 2 * cone_force((mpf(turn) - mpf(back)) / 2)
+    return curve(
+        "long-histories-random",
+        "force after random steps and a swing larger than all of them",
+        "1/steps",
+        f"{SPRINGS} springs in single precision, the last {SHORT} steps",
+        1 / COUNTS,
+        (ours, naive, [exact] * COUNTS.size),
+        CLOSED,
+    )
+
+
+def energy_of_cycles() -> Curve:
+    """N cycles under a constant normal force lose N times what Mindlin and Deresiewicz say."""
+    force, part = 1.25, 0.6
+    given = part * MU * force
+    found = history.cycles(
+        Paraboloid(BIG),
+        1.0,
+        1.0,
+        MU,
+        normal_force=force,
+        tangential_force=given,
+        count=int(COUNTS[-1]),
+    )
+    lost = np.cumsum(found.energy_per_cycle)[COUNTS - 1]
+
+    def loop(rest: float, a: float) -> float:
+        braces = 1 - rest ** (5 / 3) - 5 / 6 * (1 - rest) * (1 + rest ** (2 / 3))
+        return 9 * (MU * force) ** 2 / (5 * a) * braces
+
+    radius = np.cbrt(3 * force * BIG / 4)
+    one = np.float32(loop(1 - given / (MU * force), radius))
+    total, naive = np.float32(0), []
+    for count in range(1, int(COUNTS[-1]) + 1):
+        total += one
+        if count in set_of_counts:
+            naive.append(float(total))
+    with mp.workdps(40):
+        a = mp.cbrt(3 * mpf(force) * mpf(BIG) / 4)
+        c = a * mp.cbrt(1 - mpf(given) / (mpf(MU) * mpf(force)))
+        each = 16 * mpf(MU) ** 2 / (15 * mpf(BIG) ** 2) * (a - c) ** 3
+        each *= a * a + 3 * a * c + c * c
+        exact = [each * int(count) for count in COUNTS]
+    return curve(
+        "long-histories-energy",
+        "energy lost in N cycles",
+        "1/N",
+        "Mindlin–Deresiewicz, summed in single precision",
+        1 / COUNTS,
+        (lost, naive, exact),
+        1e-12,
+    )
+
+
+set_of_counts = set(COUNTS.tolist())
+
+
+def small_swing() -> Curve:
+    """A small swing on top of a large one: each turning point is remembered, the least as well."""
+    ratios = np.geomspace(0.9, 1e-12, 36)
+    ours, naive, truth = [], [], []
+    for ratio in ratios:
+        first = 0.5 * MU * DEPTH
+        path = np.array([0.0, first, -first, first * ratio, 0.0])
+        found = history.solve(
+            Cone(SLOPE),
+            1.0,
+            1.0,
+            MU,
+            indentation_depth=np.full(path.size, DEPTH),
+            tangential_displacement=path,
+        )
+        ours.append(float(found.tangential_force[3] - found.tangential_force[4]))
+        forces = springs(path)
+        naive.append(float(forces[3] - forces[4]))
+        with mp.workdps(60):
+            truth.append(2 * cone_force(mpf(float(path[3])) / 2))
+    return curve(
+        "long-histories-small-swing",
+        "force of a small swing on top of a large one",
+        "small over large",
+        f"{SPRINGS} springs",
+        ratios,
+        (ours, naive, truth),
+        # A difference of two forces of the large swing.
+        CLOSED + 8 * 2.0**-52 / ratios,
+    )
+
+
+CURVES = {
+    "random": after_random_steps,
+    "energy": energy_of_cycles,
+    "small swing": small_swing,
+}
+
+
+def curves() -> list[Curve]:
+    return [make() for make in CURVES.values()]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_nothing_drifts(name: str) -> None:
+    sweep = CURVES[name]()
+    sweep.holds()
+    sweep.naive_dies(1e-7)

@@ -1,0 +1,72 @@
+"""Tables from a handful of points to thousands: the sums over the knots keep their digits."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import normal
+from mdr_core.profiles import Tabulated
+from tests.oracles.tables import Table
+from tests.stability.curves import RTOL, Array, Curve, curve
+
+TABLE = 1e-11
+A, BIG = 1.02, 1.3
+#: Numbers of points.
+SIZES = np.unique(np.round(np.geomspace(8, 2000, 33)).astype(int))
+
+
+def points(count: int) -> tuple[Array, Array]:
+    r = 1.2 * np.arange(count) / (count - 1)
+    return r, r * r / (BIG + np.sqrt(BIG**2 - r * r))
+
+
+def trapezoids(r: Array, f: Array, weight: int) -> float:
+    """int f'(r) (r/a)^weight / sqrt(a^2 - r^2) dr as a spreadsheet would have it."""
+    inside = r < A
+    slope = np.gradient(f, r)[inside]
+    x = r[inside]
+    return float(np.trapezoid(slope * x**weight / np.sqrt(A * A - x * x), x))
+
+
+def over_sizes(answer: str) -> Curve:
+    ours, naive, truth = [], [], []
+    for count in SIZES:
+        r, f = points(int(count))
+        contact = normal.solve(Tabulated(r, f), 1.0, contact_radius=A, rtol=RTOL)
+        ours.append(float(getattr(contact, answer)))
+        with mp.workdps(40):
+            exact = Table({"r": list(r), "f": list(f), "interpolation": "cubic", "breaks": ()})
+            depth = answer == "indentation_depth"
+            truth.append(exact.g(mpf(A)) if depth else exact.force(mpf(A)))
+        naive.append(A * trapezoids(r, f, 0) if depth else 2 * trapezoids(r, f, 2))
+    return curve(
+        f"long-tables-{answer.replace('_', '-')}",
+        f"{answer.replace('_', ' ')} of a sphere's table, by its length",
+        "1/points",
+        "trapezoids over the table",
+        1 / SIZES,
+        (ours, naive, truth),
+        TABLE,
+    )
+
+
+CURVES = {
+    "depth": partial(over_sizes, "indentation_depth"),
+    "force": partial(over_sizes, "normal_force"),
+}
+
+
+def curves() -> list[Curve]:
+    return [make() for make in CURVES.values()]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_of_any_length(name: str) -> None:
+    sweep = CURVES[name]()
+    sweep.holds()
+    # Short of a table for every digit the rule never gets there.
+    assert sweep.naive.min() >= 1e-4

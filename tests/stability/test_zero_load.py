@@ -1,0 +1,239 @@
+"""A load that vanishes: every answer keeps its digits, down to where doubles end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import normal
+from mdr_core.profiles import Hyperboloid, RoundedPunch, Series, SphericalTipCone
+from mdr_core.profiles import PowerTerm as Term
+from tests.core.comparison import profile_from
+from tests.stability.curves import (
+    CLOSED,
+    RTOL,
+    Curve,
+    attempt,
+    curve,
+    references,
+    steps,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mdr_core.profiles import Profile
+
+SLOPE, BIG, B = 0.4, 1.3, 0.6
+DEPTHS = steps(0.5, 1e-90, 40)
+
+
+def by_depth(
+    name: str,
+    title: str,
+    profile: Profile,
+    force: Callable[[mpf], mpf],
+    naive: tuple[str, Callable[[float], float]],
+) -> Curve:
+    """The force at a given depth; `force` answers it from the contact radius or leg."""
+    contact = normal.solve(profile, 1.0, indentation_depth=DEPTHS, rtol=RTOL)
+    return curve(
+        f"zero-load-{name}",
+        title,
+        "d",
+        naive[0],
+        DEPTHS,
+        (contact.normal_force, attempt(naive[1], DEPTHS), references(force, DEPTHS)),
+        CLOSED,
+    )
+
+
+def root(function: Callable[[mpf], mpf], goal: mpf, guess: mpf) -> mpf:
+    """x > 0 with function(x) = goal, by Newton's method in the logarithms."""
+    u = mp.log(guess)
+    for _ in range(60):
+        x = mp.exp(u)
+        value = function(x)
+        slope = mp.diff(lambda w: mp.log(function(mp.exp(w))), u, h=mpf(10) ** -30)
+        step = mp.log(goal / value) / slope
+        u += step
+        if abs(step) < mpf(10) ** -45:
+            return mp.exp(u)
+    raise ArithmeticError("no root")
+
+
+def bisected(function: Callable[[float], float], goal: float, high: float) -> float:
+    """The same for the naive formula, in plain doubles."""
+    low = 0.0
+    for _ in range(400):
+        middle = (low + high) / 2
+        low, high = (middle, high) if function(middle) < goal else (low, middle)
+    return high
+
+
+def hyperboloid() -> Curve:
+    """d = t a arctan(a/h), F = t [(a^2 - h^2) arctan(a/h) + a h], h = R t."""
+    h = mpf(BIG) * mpf(SLOPE)
+
+    def exact(d: mpf) -> mpf:
+        with mp.workdps(260):
+            t, low = mpf(SLOPE), mpf(BIG) * mpf(SLOPE)
+            a = mp.findroot(
+                lambda a: t * a * mp.atan(a / low) - d, mp.sqrt(d * low / t), tol=mpf(10) ** -500,
+                verify=False,
+            )  # fmt: skip
+            return t * ((a - low) * (a + low) * mp.atan(a / low) + a * low)
+
+    def naive(d: float) -> float:
+        low = float(h)
+        a = bisected(lambda a: SLOPE * a * np.arctan(a / low), d, 10.0)
+        return float(SLOPE * ((a**2 - low**2) * np.arctan(a / low) + a * low))
+
+    return by_depth(
+        "hyperboloid",
+        "force on a hyperboloid, d → 0",
+        Hyperboloid(SLOPE, BIG),
+        exact,
+        ("(a²−h²) arctan(a/h) + ah", naive),
+    )
+
+
+def rounded_punch() -> Curve:
+    """F/E* = a d + s^3/(3R): of the depth's own order, with s = O(d^(1/3)) beside b."""
+
+    def exact(d: mpf) -> mpf:
+        with mp.workdps(200):
+            b, big = mpf(B), mpf(BIG)
+
+            def depth(s: mpf) -> mpf:
+                return mp.hypot(s, b) / big * (s - b * mp.atan(s / b))
+
+            guess = mp.cbrt(3 * d * big * b)
+            s = mp.findroot(lambda s: depth(s) - d, guess, tol=mpf(10) ** -390, verify=False)
+            return mp.hypot(s, b) * d + s**3 / (3 * big)
+
+    def naive(d: float) -> float:
+        def depth(a: float) -> float:
+            s = np.sqrt(max(a**2 - B**2, 0.0))
+            return float(a / BIG * (s - B * np.arccos(min(B / a, 1.0)))) if a > B else 0.0
+
+        a = bisected(depth, d, 10.0)
+        s = np.sqrt(max(a**2 - B**2, 0.0))
+        return float((s**3 + 3 * a**2 * (s - B * np.arccos(min(B / a, 1.0)))) / (3 * BIG))
+
+    return by_depth(
+        "rounded-punch",
+        "force on a rounded punch, d → 0",
+        RoundedPunch(B, BIG),
+        exact,
+        ("bisection for a; s³ + 3a²(s − b arccos(b/a))", naive),
+    )
+
+
+def series() -> Curve:
+    """f = r^1.5 + r^4: the naive root finder ends at an absolute tolerance."""
+    profile = Series((Term(1.0, 1.5), Term(1.0, 4.0)))
+
+    def image(a: Any, m: Any) -> Any:
+        one = m.sqrt(m.pi) * m.gamma(m.mpf(1.75)) / m.gamma(m.mpf(1.25))
+        return one * a ** m.mpf(1.5) + m.mpf(8) / 3 * a**4
+
+    def exact(d: mpf) -> mpf:
+        one = mp.sqrt(mp.pi) * mp.gamma(mpf(7) / 4) / mp.gamma(mpf(5) / 4)
+        a = root(lambda a: image(a, mp), d, (d / one) ** (mpf(2) / 3))
+        return mpf(6) / 5 * one * a ** mpf(2.5) + mpf(8) / 5 * mpf(8) / 3 * a**5
+
+    one = float(mp.sqrt(mp.pi) * mp.gamma(mpf(7) / 4) / mp.gamma(mpf(5) / 4))
+
+    def naive(d: float) -> float:
+        low, high = 0.0, 10.0
+        while high - low > 1e-12:
+            middle = (low + high) / 2
+            below = one * middle**1.5 + 8 / 3 * middle**4 < d
+            low, high = (middle, high) if below else (low, middle)
+        return 1.2 * one * high**2.5 + 64 / 15 * high**5
+
+    return by_depth(
+        "series",
+        "force on r^1.5 + r^4, d → 0",
+        profile,
+        exact,
+        ("bisection for a to 10⁻¹²", naive),
+    )
+
+
+def spherical_tip() -> Curve:
+    """Inside the tip it is a sphere: F/E* = R^2 [(1 + t^2) v - t], v tanh v = d/R."""
+
+    def exact(d: mpf) -> mpf:
+        with mp.workdps(260):
+            goal = d / mpf(BIG)
+            v = mp.findroot(
+                lambda v: v * mp.tanh(v) - goal, mp.sqrt(goal), tol=mpf(10) ** -500, verify=False
+            )
+            t = mp.tanh(v)
+            return mpf(BIG) ** 2 * ((1 + t * t) * v - t)
+
+    def naive(d: float) -> float:
+        a = bisected(lambda a: a * np.arctanh(a / BIG), d, BIG * (1 - 1e-12))
+        return float((a**2 + BIG**2) * np.arctanh(a / BIG) - a * BIG)
+
+    # The tip ends at b = R t/sqrt(1 + t^2).
+    profile = SphericalTipCone(2.0, BIG)
+    return by_depth(
+        "spherical-tip",
+        "force on a cone with a spherical tip, d → 0",
+        profile,
+        exact,
+        ("(R²+a²) artanh(a/R) − aR", naive),
+    )
+
+
+CURVES = {
+    "hyperboloid": hyperboloid,
+    "rounded punch": rounded_punch,
+    "series": series,
+    "spherical tip": spherical_tip,
+}
+
+
+def curves() -> list[Curve]:
+    return [make() for make in CURVES.values()]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_towards_no_load(name: str) -> None:
+    sweep = CURVES[name]()
+    sweep.holds()
+    sweep.naive_dies(1e-2)
+
+
+KINDS: dict[str, dict[str, Any]] = {
+    "flat_punch": {"radius": 1.0},
+    "cone": {"slope": 0.3},
+    "paraboloid": {"radius": 1.0},
+    "sphere": {"radius": 1.0},
+    "ellipsoid": {"radius": 1.0, "height": 0.5},
+    "power": {"coefficient": 1.0, "exponent": 1.5},
+    "rounded_punch": {"flat_radius": 0.5, "rounding_radius": 1.0},
+    "truncated_cone": {"flat_radius": 0.5, "slope": 0.3},
+    "truncated_paraboloid": {"flat_radius": 0.5, "radius": 1.0},
+    "rounded_cone": {"slope": 0.3, "tip_radius": 1.0},
+    "spherical_tip_cone": {"slope": 0.3, "tip_radius": 1.0},
+    "hyperboloid": {"slope": 0.3, "tip_radius": 1.0},
+    "capped_paraboloid": {"cap_radius": 0.5, "tip_radius": 2.0, "radius": 1.0},
+}
+
+
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_load_is_answered_by_nothing(kind: str, control: str) -> None:
+    contact = normal.solve(profile_from({"kind": kind, **KINDS[kind]}), 1.0, **{control: 0.0})
+    for name in ("indentation_depth", "normal_force", "elastic_energy"):
+        assert getattr(contact, name) == 0, name
+    flat = "radius" if kind == "flat_punch" else "flat_radius"
+    assert contact.contact_radius == KINDS[kind].get(flat, 0.0)
+    assert np.isfinite(contact.normal_stiffness)
