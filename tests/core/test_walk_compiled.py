@@ -2,19 +2,27 @@
 
 import importlib.machinery
 import importlib.util
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from mdr_core.history import memory, walk
+from mdr_core.history import memory, slots, walk
 
 TEXT = Path(memory.__file__).with_name("walk.py")
 
 
 def test_the_loop_is_compiled() -> None:
     assert Path(walk.__file__).suffix in importlib.machinery.EXTENSION_SUFFIXES[-1]
+
+
+def test_the_compiler_is_told_the_same_places() -> None:
+    text = Path(slots.__file__).with_suffix(".pxd").read_text()
+    told = dict(re.findall(r"^ +([A-Z_]+) = (\d+)$", text, re.MULTILINE))
+    read = {name: str(value) for name, value in vars(slots).items() if name.isupper()}
+    assert told == read
 
 
 @pytest.mark.parametrize("record", [memory.walk, memory.slips])
