@@ -22,7 +22,7 @@ from mdr_core.typing import Array, Indices
 Integrand = Callable[[Array, Indices], Array]
 
 # Number of nodes of the rules on offer, as points of the full rule on [-H, H].
-_POINTS: Final = (8, 12, 24, 48)
+_POINTS: Final = (4, 8, 12, 24, 48)
 # Longest piece of an integral that is cut: the cheapest nodes per unit length.
 _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
