@@ -28,7 +28,12 @@ from scipy.integrate import quad_vec
 
 from mdr_core import fields, tangential
 from mdr_core.normal import NormalContact, solve
-from mdr_core.profiles import Paraboloid, RoundedPunch
+from mdr_core.profiles import Paraboloid, RoundedPunch, Tabulated
+
+# The references of the tests stand outside the package.
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.oracles.tables import TABLE_DIGITS, Table
 
 FRESH, KEPT = "fresh pages", "kept memory"
 _KEEP = {"MALLOC_MMAP_THRESHOLD_": str(1 << 30), "MALLOC_TRIM_THRESHOLD_": str(1 << 30)}
@@ -173,6 +178,36 @@ def _punch_truth(
         return mpmath.mpf(e_star) * value / (mpmath.pi * mpmath.mpf(R))
 
 
+def table_pressure(state: str) -> list[measure.Row]:
+    """p(r) of a table of 200 points at 1000 radii, against the transform of its interpolant."""
+    radii = np.linspace(0.0, 0.6, 200)
+    a = 0.5
+    r = np.linspace(0.0, a, 1000, endpoint=False)
+    found = []
+    for interpolation in ("cubic", "pchip", "linear"):
+        profile = Tabulated(radii, radii**2 / (1 + np.sqrt(1 - radii**2)), interpolation)
+        contact = solve(profile, 1.0, contact_radius=a, rtol=1e-11)
+
+        def ours(contact: NormalContact = contact) -> Array:
+            return fields.pressure(contact, r, rtol=1e-11)
+
+        def hertz() -> Array:
+            return 2 / np.pi * np.sqrt(a * a - r * r)
+
+        p, checked = ours(), [1, 5, 6, 300, 603, 700, 950, 994, 995, 997, 999]
+        with mpmath.workdps(TABLE_DIGITS):
+            scene = {"r": radii.tolist(), "f": profile.values.tolist()}
+            exact = Table({**scene, "interpolation": interpolation})
+            truth = [exact.pressure(mpmath.mpf(float(r[i])), mpmath.mpf(a)) for i in checked]
+        pairs = zip(checked, truth, strict=True)
+        error = max(float(abs(mpmath.mpf(float(p[i])) / true - 1)) for i, true in pairs)
+        name = f"p(r), {interpolation} table of 200 points, 1000 radii / bare Hertz"
+        detail = f"true error {error:.1e} at {len(checked)} radii"
+        rounds = measure.interleaved(ours, hertz, 2.0)
+        found.append(measure.row(name, state, rounds, "<= 300", detail))
+    return found
+
+
 def hertz_scenes(state: str) -> list[measure.Row]:
     """A million scenes of Hertz in one call."""
     random = np.random.default_rng(5)
@@ -284,6 +319,7 @@ MEASUREMENTS = {
     for run in (
         paraboloid_pressure,
         punch_pressure,
+        table_pressure,
         hertz_scenes,
         punch_traction,
         mindlin_scenes,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from statistics import median
-from time import perf_counter_ns
+from time import perf_counter_ns, thread_time_ns
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -47,11 +47,16 @@ def interleaved(
 
 
 def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[str, float]:
-    """Median seconds per call of each, all of them in turn, for about `seconds` of wall time.
+    """Median seconds per call of each, all of them in turn, for about `seconds` in all.
 
-    What takes long is run less often, at least once: its share of the time is that of the others.
+    Seconds of this thread on the processor: what takes longer than a slice of time would else be
+    charged with whatever else the machine does. What takes long is run less often, at least once:
+    its share of the time is that of the others.
     """
-    fastest = {name: min(_time(run, 1) for _ in range(_tries(run))) for name, run in runs.items()}
+    fastest = {
+        name: min(_time(run, 1, thread_time_ns) for _ in range(_tries(run)))
+        for name, run in runs.items()
+    }
     repeats = {name: max(1, round(BATCH_SECONDS / one)) for name, one in fastest.items()}
     share = seconds / len(runs)
     wanted = {name: share / max(one, BATCH_SECONDS) for name, one in fastest.items()}
@@ -64,7 +69,7 @@ def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[st
                 if repeats[name] > 1:
                     # The one before may have taken the caches.
                     run()
-                found[name].append(_time(run, repeats[name]))
+                found[name].append(_time(run, repeats[name], thread_time_ns))
     return {name: median(times) for name, times in found.items()}
 
 
@@ -94,11 +99,13 @@ def spread(rounds: list[tuple[float, float]]) -> tuple[float, float, float]:
     return median(ratios), ratios[quarter], ratios[-1 - quarter]
 
 
-def _time(run: Callable[[], object], repeats: int) -> float:
-    start = perf_counter_ns()
+def _time(
+    run: Callable[[], object], repeats: int, clock: Callable[[], int] = perf_counter_ns
+) -> float:
+    start = clock()
     for _ in range(repeats):
         run()
-    return (perf_counter_ns() - start) / repeats / 1e9
+    return max(clock() - start, 1) / repeats / 1e9
 
 
 def _readable(seconds: float) -> str:

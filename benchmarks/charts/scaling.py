@@ -61,10 +61,8 @@ def contact(profile: Profile) -> NormalContact:
 
 def over_radii(profile: Profile, high: int) -> Runs:
     one = contact(profile)
-    return {
-        n: lambda r=np.linspace(0.0, 1.0, n, endpoint=False): fields.pressure(one, r)
-        for n in sizes(1, high)
-    }
+    radii = {n: np.linspace(0.0, 1.0, n, endpoint=False) for n in sizes(1, high)}
+    return {n: lambda r=r: fields.pressure(one, r) for n, r in radii.items()}
 
 
 def over_loads(profile: Profile, high: int) -> Runs:
@@ -73,7 +71,8 @@ def over_loads(profile: Profile, high: int) -> Runs:
         push = tangential.solve(one, 0.8, 0.3, tangential_force=0.1 * force)
         return push.stick_radius, push.tangential_displacement
 
-    return {n: lambda f=np.linspace(0.1, 0.6, n): run(f) for n in sizes(1, high)}
+    forces = {n: np.linspace(0.1, 0.6, n) for n in sizes(1, high)}
+    return {n: lambda f=f: run(f) for n, f in forces.items()}
 
 
 def over_breakpoints(high: int) -> Runs:
@@ -190,7 +189,7 @@ def draw(found: dict[tuple[str, str], tuple[dict[int, float], float]]) -> None:
         for (of, seconds, power), color in zip(mine, (OURS, "#1f5fa8", "#2b8a3e"), strict=False):
             label = f"{of}: {power:.2f}"
             ax.loglog(list(seconds), list(seconds.values()), "o-", color=color, label=label)
-        ax.set(xlabel=name, ylabel="seconds")
+        ax.set(xlabel=name, ylabel="processor seconds")
         ax.legend(fontsize=6.5, title="exponent from 10³ on", title_fontsize=6.5)
     for ax in axes[len(names) :]:
         ax.axis("off")

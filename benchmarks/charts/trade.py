@@ -88,7 +88,7 @@ def _draw(ax: Axes, title: str, found: Found) -> None:
         )
         ax.plot(seconds, np.maximum(median, FLOOR), style, color=color, alpha=0.25, linewidth=width)
     ax.set(xscale="log", yscale="log", ylim=(FLOOR / 2, 3), title=title)
-    ax.set_xlabel("seconds")
+    ax.set_xlabel("processor seconds")
     ax.set_ylabel("relative error: largest (dark), median (pale)")
 
 
