@@ -4,8 +4,11 @@ import contextlib
 import csv
 import io
 import json
+import os
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import httpx
@@ -37,7 +40,7 @@ def same(found: object, shown: object, rel: float = 1e-12) -> None:
             # The estimate of an error is good for its size.
             loose = name == "error_estimate" and rel > 1e-12
             same(found[name], shown[name], 0.5 if loose else rel)
-    elif isinstance(shown, list) and shown and isinstance(shown[0], list):
+    elif isinstance(shown, list) and shown and isinstance(shown[0], list | dict):
         assert isinstance(found, list)
         for one, other in zip(found, shown, strict=True):
             same(one, other, rel)
@@ -54,6 +57,9 @@ def asked(client: Client, command: str) -> httpx.Response:
     curl, silent, address, *options = shlex.split(command)
     assert (curl, silent) == ("curl", "-s")
     assert address.startswith(ADDRESS)
+    path = address.removeprefix(ADDRESS)
+    if not options:
+        return client.get(path)
     headers = {}
     while options[0] == "-H":
         name, _, value = options[1].partition(": ")
@@ -62,28 +68,42 @@ def asked(client: Client, command: str) -> httpx.Response:
     data, body = options
     assert data == "-d"
     assert headers["Content-Type"] == "application/json"
-    path = address.removeprefix(ADDRESS)
     return client.request("POST", path, content=body.encode(), headers=headers)
+
+
+def printed(client: Client, command: str) -> str:
+    """Return what a command of the shell prints: the service's own, or curl in its place."""
+    if command.startswith("curl"):
+        return asked(client, command).text
+    path = {"PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
+    shell = ["sh", "-c", command]
+    told = subprocess.run(shell, env=os.environ | path, capture_output=True, check=True)
+    return told.stdout.decode()
+
+
+def test_the_shell_is_shown_the_command_line() -> None:
+    assert any("| mdr " in command for command, _ in examples("sh", "csv"))
 
 
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "json"))
 def test_curl_shows_the_real_answer(client: Client, command: str, shown: str) -> None:
-    same(asked(client, command).json(), json.loads(shown), 1e-3 if FOLLOWED in command else 1e-12)
+    tolerance = 1e-3 if FOLLOWED in command else 1e-12
+    same(json.loads(printed(client, command)), json.loads(shown), tolerance)
 
 
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "csv"))
 def test_curl_shows_the_real_table(client: Client, command: str, shown: str) -> None:
     found, expected = (
         list(csv.reader(io.StringIO(text, newline="")))
-        for text in (asked(client, command).text, shown)
+        for text in (printed(client, command), shown)
     )
     assert found[0] == expected[0]
     for one, other in zip(found[1:], expected[1:], strict=True):
         assert list(map(float, one)) == pytest.approx(list(map(float, other)), rel=1e-12)
 
 
-def test_python_prints_what_is_shown() -> None:
-    ((code, shown),) = examples("python", "text")
+@pytest.mark.parametrize(("code", "shown"), examples("python", "text"))
+def test_python_prints_what_is_shown(code: str, shown: str) -> None:
     port = free_port()
     output = io.StringIO()
     with running(service(port), port), contextlib.redirect_stdout(output):
@@ -98,4 +118,4 @@ def test_every_limit_is_shown_with_its_default() -> None:
 
 def test_nothing_shown_is_left_untried() -> None:
     tried = [*examples("sh", "json"), *examples("sh", "csv"), *examples("python", "text")]
-    assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 8
+    assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 12
