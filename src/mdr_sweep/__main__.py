@@ -2,15 +2,22 @@
 
 import argparse
 import sys
+from typing import Final
 
 from mdr_sweep import command
+
+# As a shell shows a program that was ended by SIGINT.
+_INTERRUPTED: Final = 130
 
 
 def main() -> int:
     """Do what the command line says and return the exit status."""
     parser = argparse.ArgumentParser(prog="mdr sweep", description=command.__doc__)
     command.declare(parser)
-    return command.run(parser.parse_args())
+    try:
+        return command.run(parser.parse_args())
+    except KeyboardInterrupt:
+        return _INTERRUPTED
 
 
 if __name__ == "__main__":

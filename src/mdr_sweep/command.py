@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from typing import Any, Final
@@ -47,6 +48,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
     add("--restart", action="store_true", help="forget what another sweep has left")
     add("--scheduler", metavar="ADDRESS", help="a Dask scheduler, like tcp://host:8786")
     add("--workers", type=int, default=_cores(), help="processes on this machine (%(default)s)")
+    add("--chunk", type=int, help="scenes in a chunk (by what they cost)")
     add("--plan", action="store_true", help="print what it would cost, and compute nothing")
 
 
@@ -70,7 +72,7 @@ def _say(what: object, status: int) -> int:
 def _run(arguments: argparse.Namespace) -> int:
     study, source = _asked(arguments)
     _check_target(arguments)
-    estimate = _estimate(study, source, max(arguments.workers, 1))
+    estimate = _estimate(arguments, study, source)
     if arguments.plan:
         sys.stdout.write("".join(f"{line}\n" for line in estimate.lines))
         return 0
@@ -172,10 +174,15 @@ def _check_target(arguments: argparse.Namespace) -> None:
         raise UsageError(f"{target} is there already: --overwrite replaces it")
 
 
-def _estimate(study: Study, source: Source, count: int) -> Plan:
+def _estimate(arguments: argparse.Namespace, study: Study, source: Source) -> Plan:
     kinds = source.kinds(_KIND) or [str(study.constants.get(_KIND))]
     columns = len(source.schema.names) + len(study.answers)
-    return plan(study, kinds, source.rows, columns, count)
+    found = plan(study, kinds, source.rows, columns, max(arguments.workers, 1))
+    if arguments.chunk is None:
+        return found
+    if arguments.chunk < 1:
+        raise UsageError("--chunk: at least one scene is needed")
+    return replace(found, chunk=arguments.chunk)
 
 
 @contextmanager
