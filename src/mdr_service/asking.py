@@ -26,7 +26,7 @@ async def posted(request: Request, name: str) -> Response:
 async def got(request: Request, name: str) -> Response:
     """Return the answer to the question `name` that the address holds."""
     question = QUESTIONS[name]
-    given = address.split(request.url.query)
+    given = address.split(_query_string(request))
     media_type = _form(request, question.media_types, given.get(address.FORMAT))
     text = address.request(name, given)
     try:
@@ -50,8 +50,14 @@ async def _answer(name: str, query: Query, media_type: str) -> Answer:
 
 
 def _format(request: Request) -> str | None:
-    query_string = request.url.query
+    query_string = _query_string(request)
     return address.only_format(query_string) if query_string else None
+
+
+def _query_string(request: Request) -> str:
+    # The request's `url` puts the whole address together first.
+    found: bytes = request.scope["query_string"]
+    return found.decode("latin-1")
 
 
 def _form(request: Request, offered: tuple[str, ...], name: str | None) -> str:
