@@ -1,0 +1,133 @@
+"""How many values an answer takes: of integrands, and of a profile's own functions.
+
+Counted, not timed: a count is the same on every machine.
+"""
+
+from __future__ import annotations
+
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+from unittest.mock import patch
+
+import numpy as np
+
+from mdr_core import fields, normal, quadrature, tangential
+from mdr_core.abel import displacement
+from mdr_core.profiles import KINDS, PowerTerm
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from mdr_core.profiles import Profile
+
+#: One profile of every kind; the contact of radius 1 lies well inside, its break too.
+PROFILES: dict[str, dict[str, Any]] = {
+    "paraboloid": {"radius": 1.3},
+    "cone": {"slope": 0.3},
+    "power": {"coefficient": 0.7, "exponent": 1.5},
+    "series": {"terms": [{"coefficient": 0.4, "exponent": 2}, {"coefficient": 0.1, "exponent": 4}]},
+    "flat_punch": {"radius": 1.0},
+    "sphere": {"radius": 2.0},
+    "ellipsoid": {"radius": 2.0, "height": 1.0},
+    "hyperboloid": {"slope": 0.4, "tip_radius": 1.3},
+    "rounded_punch": {"flat_radius": 0.5, "rounding_radius": 2.0},
+    "truncated_cone": {"flat_radius": 0.5, "slope": 0.3},
+    "truncated_paraboloid": {"flat_radius": 0.5, "radius": 2.0},
+    "rounded_cone": {"slope": 0.4, "tip_radius": 1.5},
+    "spherical_tip_cone": {"slope": 0.5, "tip_radius": 1.0},
+    "capped_paraboloid": {"cap_radius": 0.5, "tip_radius": 3.0, "radius": 1.1},
+    "tabulated": {
+        "r": np.linspace(0.0, 1.25, 40).tolist(),
+        "f": (np.linspace(0.0, 1.25, 40) ** 2 / 4).tolist(),
+    },
+}
+FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement")
+RADII = (np.arange(200) + 0.5) / 200
+#: Outside the contact, where the surface is displaced by an integral.
+BEYOND = 1.0 + RADII
+FRICTION, STICK = 0.3, 0.8
+#: A profile's functions of a radius or a contact coordinate.
+_FUNCTIONS = ("f", "df", "g", "dg", "depth", "depth_slope", "reduced_force")
+
+
+@dataclass
+class Count:
+    """Values that were taken."""
+
+    integrand: int = 0
+    profile: int = 0
+
+
+@contextmanager
+def counted(kind: type[Profile] | None = None) -> Iterator[Count]:
+    """Count values of integrands, and of the functions of one kind of profile."""
+    count = Count()
+    apply, branch_integral = quadrature._apply, displacement._branch
+
+    def counting_apply(
+        h: Callable[..., Any], rule: Any, lower: Any, length: Any, index: Any
+    ) -> Any:
+        count.integrand += rule[0].size * length.size
+        return apply(h, rule, lower, length, index)
+
+    def counting_branch(branch: displacement.Branch, *rest: Any) -> Any:
+        def weight(x: Any, s: Any, index: Any) -> Any:
+            count.integrand += np.size(x)
+            return branch.weight(x, s, index)
+
+        return branch_integral(replace(branch, weight=weight), *rest)
+
+    with ExitStack() as stack:
+        stack.enter_context(patch.object(quadrature, "_apply", counting_apply))
+        stack.enter_context(patch.object(displacement, "_branch", counting_branch))
+        for name in _FUNCTIONS if kind else ():
+            stack.enter_context(patch.object(kind, name, _counting(kind, name, count)))
+        yield count
+
+
+def _counting(kind: type[Profile], name: str, count: Count) -> Callable[..., Any]:
+    inner = getattr(kind, name)
+
+    def values(self: Profile, x: Any) -> Any:
+        count.profile += np.size(x)
+        return inner(self, x)
+
+    return values
+
+
+def made(kind: str) -> Profile:
+    """The profile of that kind."""
+    given = dict(PROFILES[kind])
+    if kind == "series":
+        given["terms"] = tuple(PowerTerm(**term) for term in given["terms"])
+    return KINDS[kind](**given)
+
+
+def solved(profile: Profile, rtol: float) -> tangential.TangentialContact:
+    """Its contact of radius 1, sticking up to 0.8; a flat punch is given forces."""
+    if profile.slips_at_once:
+        pressed = normal.solve(profile, 1.0, normal_force=1.0, rtol=rtol)
+        return tangential.solve(pressed, 0.8, FRICTION, tangential_force=0.5 * FRICTION)
+    pressed = normal.solve(profile, 1.0, contact_radius=1.0, rtol=rtol)
+    return tangential.solve(pressed, 0.8, FRICTION, stick_radius=STICK)
+
+
+def field(name: str, pushed: tangential.TangentialContact, rtol: float) -> np.ndarray:
+    """One field: of the displacement, the part outside the contact."""
+    if name == "normal_displacement":
+        return fields.normal_displacement(pushed.normal, BEYOND, rtol=rtol)
+    if name == "pressure":
+        return fields.pressure(pushed.normal, RADII, rtol=rtol)
+    return getattr(fields, name)(pushed, RADII, rtol=rtol)
+
+
+def cost(kind: str, name: str, rtol: float) -> int:
+    """Values of the integrand that a field takes at all radii together."""
+    profile = made(kind)
+    pushed = solved(profile, rtol)
+    # What a table resolves once is not the field's own.
+    field(name, pushed, rtol)
+    with counted() as count:
+        field(name, pushed, rtol)
+    return count.integrand
