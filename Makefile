@@ -32,12 +32,16 @@ bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
-CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire
+CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 
 chart-%: .venv-bench/peers
 	PYTHONPATH=.:benchmarks .venv-bench/bin/python benchmarks/charts/$*.py
+
+# Its curves are those of the tests, which have no peers.
+chart-stability: .venv/development
+	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/stability.py
 
 figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py

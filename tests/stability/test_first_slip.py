@@ -89,7 +89,7 @@ def energy() -> Curve:
     def naive(force: float) -> float:
         rest, a = 1 - force / (MU * FORCE), naive_edges(force)[0]
         braces = 1 - rest ** (5 / 3) - 5 / 6 * (1 - rest) * (1 + rest ** (2 / 3))
-        return float(9 * (MU * FORCE) ** 2 / (20 * a) * braces)
+        return float(9 * (MU * FORCE) ** 2 / (10 * a) * braces)
 
     formula = "1 − q^(5/3) − (5/6)(1 − q)(1 + q^(2/3)), q = 1 − F_x/µF_N"
     title = "energy lost on the way (Mindlin–Deresiewicz)"

@@ -90,7 +90,7 @@ def energy_of_cycles() -> Curve:
 
     def loop(rest: float, a: float) -> float:
         braces = 1 - rest ** (5 / 3) - 5 / 6 * (1 - rest) * (1 + rest ** (2 / 3))
-        return 9 * (MU * force) ** 2 / (5 * a) * braces
+        return 18 * (MU * force) ** 2 / (5 * a) * braces
 
     radius = np.cbrt(3 * force * BIG / 4)
     one = np.float32(loop(1 - given / (MU * force), radius))
