@@ -7,11 +7,14 @@ from urllib.parse import urlencode
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from mdr_service import address, parameters
 from mdr_service.schemas import examples
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
+from tests.contract import strict_json
 
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
 BALL = {"kind": "paraboloid", "radius": 0.01}
@@ -167,8 +170,8 @@ SAME = {
 }
 
 
-def at(question: str, given: Mapping[str, object]) -> str:
-    return f"/v1/{question}?{urlencode(given)}"
+def at(question: str, asked: Mapping[str, object]) -> str:
+    return f"/v1/{question}?{urlencode(asked)}"
 
 
 @pytest.mark.parametrize("form", ["json", "csv", "npz", "svg"])
@@ -176,8 +179,8 @@ def at(question: str, given: Mapping[str, object]) -> str:
 def test_an_address_is_answered_as_the_request_it_stands_for(
     client: Client, name: str, form: str
 ) -> None:
-    question, given, request = SAME[name]
-    found = client.get(at(question, {**given, "format": form}))
+    question, asked, request = SAME[name]
+    found = client.get(at(question, {**asked, "format": form}))
     expected = client.post(f"/v1/{question}?format={form}", request)
     assert (expected.status_code == 200) == (question != "normal" or form != "svg")
     assert found.status_code == expected.status_code
@@ -318,8 +321,8 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_wrong_is_told_of_the_parameter(client: Client, name: str) -> None:
-    question, given, pointer = REFUSED[name]
-    answer = client.get(at(question, given))
+    question, asked, pointer = REFUSED[name]
+    answer = client.get(at(question, asked))
     assert answer.status_code == 422
     assert answer.headers["content-type"] == "application/problem+json"
     assert len(answer.content) <= 4096
@@ -343,9 +346,9 @@ def test_a_number_may_be_written_as_spreadsheets_do(client: Client, written: str
 @pytest.mark.parametrize("question", parameters.KNOWN)
 def test_the_example_in_the_documentation_is_answered(client: Client, question: str) -> None:
     get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
-    given = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
-    assert given == getattr(examples, f"{question.upper()}_IN_ADDRESS")
-    assert client.get(at(question, given)).status_code == 200
+    shown = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
+    assert shown == getattr(examples, f"{question.upper()}_IN_ADDRESS")
+    assert client.get(at(question, shown)).status_code == 200
 
 
 @pytest.mark.parametrize("question", parameters.KNOWN)
@@ -388,3 +391,46 @@ def test_an_answer_may_be_asked_about(client: Client) -> None:
     answer, asked = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
     assert asked.status_code == 200
     assert asked.headers["etag"] == answer.headers["etag"]
+
+
+NAMES = sorted({name for known in parameters.KNOWN.values() for name in known.by_name})
+ENDS = [f"{name}{end}" for name in NAMES for end in ("_from", "_to")]
+TEXTS = (
+    st.text(max_size=8)
+    | st.floats().map(repr)
+    | st.integers(-3, 40).map(str)
+    | st.sampled_from(["log", "linear", "pressure", "pressure,slip", "csv", "npz", "cone", ""])
+)
+ADDRESSES = st.builds(
+    lambda right, others: right | others,
+    st.sampled_from([{}, NORMAL, *(asked for _, asked, _ in SAME.values())]),
+    st.dictionaries(st.sampled_from([*NAMES, *ENDS, "n", "scale", "format"]), TEXTS, max_size=3),
+)
+
+
+@settings(
+    max_examples=600,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(question=st.sampled_from(list(parameters.KNOWN)), asked=ADDRESSES)
+def test_whatever_is_asked_is_answered_or_refused_with_a_pointer(
+    client: Client, question: str, asked: dict[str, object]
+) -> None:
+    answer = client.get(at(question, asked))
+    assert answer.status_code in {200, 406, 422}
+    if answer.status_code == 422:
+        document = strict_json.loads(answer.content)
+        assert isinstance(document, dict)
+        known = parameters.KNOWN[question].by_name
+        pointers = [error["pointer"].removeprefix("/") for error in document["errors"]]
+        assert pointers
+        assert {*pointers} <= {*asked, *known, *ENDS, "n"}
+
+
+@pytest.mark.parametrize(
+    "query_string", ["%", "%ff=%ff", "=", "&&", "a", "%00=1", "kind=%F0%9F%98%80", "kind", "?", "#"]
+)
+def test_no_query_string_is_a_defect(client: Client, query_string: str) -> None:
+    assert client.get(f"/v1/normal?{query_string}").status_code == 422
