@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -102,6 +102,7 @@ def inverse() -> Curve:
     )
 
 
+@cache
 def pressure(part: float) -> Curve:
     """p at a part of the contact radius, which the pole of g' at the equator comes close to."""
     ours = [
