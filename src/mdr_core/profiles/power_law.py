@@ -1,7 +1,7 @@
 """Cone and paraboloid: the powers of the radius of which everything is closed."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -9,6 +9,8 @@ from mdr_core.profiles.power_kernels import log_ratio, root_step
 from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
 from mdr_core.profiles.stable import atan_gap
 from mdr_core.typing import Array, Parameter
+
+_EVERYTHING: Final = (*NORMAL_ANSWERS, "pressure", "shear_stress", "slip", "normal_displacement")
 
 
 @dataclass(frozen=True)
@@ -19,7 +21,7 @@ class Cone(Profile):
 
     kind: ClassVar[str] = "cone"
     formula: ClassVar[str] = "slope·r"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure", "shear_stress", "slip")
+    closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
 
     def __post_init__(self) -> None:
         require_positive("slope", self.slope)
@@ -82,6 +84,11 @@ class Cone(Profile):
         leg = np.sqrt((r - c) * (r + c))
         return np.asarray(self.slope * np.where(c > 0, atan_gap(leg, np.where(c > 0, c, 1.0)), r))
 
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))]. Source: notes, §7."""
+        half = a / (r + np.sqrt((r - a) * (r + a)))
+        return np.asarray(self.slope * a * (2 * np.arctan(half) - half))
+
     @property
     def tip_pressure(self) -> Parameter:
         return self.slope / 2
@@ -108,7 +115,7 @@ class Paraboloid(Profile):
 
     kind: ClassVar[str] = "paraboloid"
     formula: ClassVar[str] = "r²/(2·radius)"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure", "shear_stress", "slip")
+    closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
 
     def __post_init__(self) -> None:
         require_positive("radius", self.radius)
@@ -196,6 +203,15 @@ class Paraboloid(Profile):
         leg = np.sqrt(leg2)
         gap = atan_gap(leg, np.where(c > 0, c, 1.0))
         return np.asarray((c * gap + leg2 * np.arctan2(leg, c)) / (np.pi * self.radius))
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).
+
+        Source: johnson, Eq. (3.42a); notes, §7.
+        """
+        leg = np.sqrt((r - a) * (r + a))
+        gap = atan_gap(a, np.where(leg > 0, leg, 1.0))
+        return np.asarray((a * a * np.arctan2(a, leg) + leg * gap) / (np.pi * self.radius))
 
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2). Source: mdr-5, section 5.2; notes, §6."""
