@@ -85,6 +85,8 @@ def request(question: str, given: Given) -> bytes:
 
 def pointed(failure: problems.ServiceError, question: str, given: Given) -> problems.ServiceError:
     """Return the failure of a request, pointing at the parameters that it was made from."""
+    if not failure.errors:
+        return failure
     errors = [(_pointer(where, question, given), detail) for where, detail in failure.errors]
     return problems.ServiceError(failure.kind, failure.detail, errors)
 

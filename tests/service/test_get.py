@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mdr_service import address, parameters
+from mdr_service import address, parameters, problems
 from mdr_service.schemas import examples
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
@@ -391,6 +391,10 @@ def test_an_answer_may_be_asked_about(client: Client) -> None:
     answer, asked = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
     assert asked.status_code == 200
     assert asked.headers["etag"] == answer.headers["etag"]
+
+
+def test_a_failure_that_points_nowhere_stays_what_it_is() -> None:
+    assert address.pointed(problems.DEFECT, "normal", NORMAL) is problems.DEFECT
 
 
 NAMES = sorted({name for known in parameters.KNOWN.values() for name in known.by_name})
