@@ -32,7 +32,7 @@ bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
-CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability
+CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability routes
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 
