@@ -21,7 +21,7 @@ from mdr_core.validity import friction_notices
 
 # Rounding of the steps over the annulus, in units of the profile's own.
 _STEPS: Final = 40.0
-# What the loads, and the moduli and the friction that they are compared by, are known to.
+# What a load is known to.
 _ROUNDINGS: Final = 8 * 2.0**-52
 # What an edge that follows from a load is known to.
 _EDGES: Final = 2 * _ROUNDINGS
@@ -179,7 +179,8 @@ class TangentialContact:
         known = self.normal.error_estimate
         felt = _ROUNDINGS * sensitivity.behind_break(self.normal)
         if self.control != "stick_radius":
-            felt += _ROUNDINGS * self._felt_of_load
+            # What is left to full slip is as exact as the normal contact's force or depth.
+            felt += known * self._felt_of_load
         elif self.normal.control != "contact_radius":
             felt += _EDGES * sensitivity.narrow_annulus(self._coordinate, self.width)
         return _STEPS * known + felt
