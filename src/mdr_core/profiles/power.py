@@ -200,7 +200,7 @@ class Power(Profile):
         inner: Array | None = None,
     ) -> Array:
         n = np.asarray(self.exponent, dtype=float)
-        scale = modulus * kappa(n) / np.pi * self.df(coordinate)
+        scale = modulus * kappa(self.exponent) / np.pi * self.df(coordinate)
         moment = power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
         # However small its factor, what is infinite on the axis is infinite there.
         with np.errstate(invalid="ignore"):

@@ -3,6 +3,7 @@
 Source: notes, §4.
 """
 
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -74,6 +75,18 @@ def kappa(exponent: Parameter) -> Array:
 
     Source: mdr-5, Eq. (5.25).
     """
+    return _single_kappa(exponent) if isinstance(exponent, float) else _kappa(exponent)
+
+
+@lru_cache(maxsize=256)
+def _single_kappa(exponent: float) -> Array:
+    """Computed once: it takes as long as the stress at a hundred radii."""
+    value = _kappa(exponent)
+    value.flags.writeable = False
+    return value
+
+
+def _kappa(exponent: Parameter) -> Array:
     n = np.asarray(exponent, dtype=float)
     small = np.minimum(n, _GAMMA_LIMIT)
     direct = gamma(small / 2 + 1) / gamma((small + 1) / 2)
