@@ -14,7 +14,7 @@ from mdr_sweep.columns import copied, written
 from mdr_sweep.errors import UsageError
 
 # Rows of a group of the Parquet file that is written: some tens of megabytes.
-ROW_GROUP: Final = 131_072
+ROW_GROUP: Final = 65_536
 # Bytes of text that are parsed at once.
 _BLOCK: Final = 4 * 1024**2
 SUFFIXES: Final = (".parquet", ".csv")
@@ -94,7 +94,8 @@ class Table:
 
     def _read(self, names: list[str] | None = None) -> Iterator[pa.RecordBatch]:
         if self.path.suffix == ".parquet":
-            with pq.ParquetFile(self.path) as file:
+            # Buffered ahead, all that was read would be held to the end.
+            with pq.ParquetFile(self.path, pre_buffer=False) as file:
                 yield from file.iter_batches(batch_size=ROW_GROUP, columns=names, use_threads=False)
         else:
             with self._csv(names) as reader:

@@ -1,0 +1,62 @@
+"""The most memory that all processes of a sweep hold at once, pages that they share counted twice.
+
+python benchmarks/sweep_memory.py [scenes]
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter, sleep
+
+import psutil
+import pyarrow.parquet as pq
+from sweep_ratio import mindlin
+
+SCENES = 10_000_000
+PART = 1_000_000
+TARGET = 1024.0
+MIB = 1024**2
+
+
+def held(process: psutil.Process) -> float:
+    """MiB of a process and all its children."""
+    total = 0.0
+    for one in (process, *process.children(recursive=True)):
+        try:
+            total += one.memory_info().rss / MIB
+        except psutil.NoSuchProcess:
+            continue
+    return total
+
+
+def write_scenes(path: Path, scenes: int) -> None:
+    part = mindlin(min(scenes, PART))
+    with pq.ParquetWriter(path, part.schema) as writer:
+        for start in range(0, scenes, PART):
+            writer.write_table(part.slice(0, min(PART, scenes - start)))
+
+
+def main() -> None:
+    scenes = int(float(sys.argv[1])) if sys.argv[1:] else SCENES
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        write_scenes(folder / "scenes.parquet", scenes)
+        (folder / "template.json").write_text('{"profile": {"kind": "paraboloid"}}')
+        command = [sys.executable, "-m", "mdr_sweep", "tangential", "--workers", "2"]
+        command += ["--table", "scenes.parquet", "--template", "template.json"]
+        start = perf_counter()
+        process = psutil.Popen([*command, "--out", "answers.parquet"], cwd=folder)
+        most = 0.0
+        while process.poll() is None:
+            most = max(most, held(process))
+            sleep(0.05)
+        seconds = perf_counter() - start
+        size = (folder / "answers.parquet").stat().st_size / MIB
+    print(f"{scenes} scenes in {seconds:.0f} s, {size:.0f} MiB of answers")
+    print(f"at most {most:.0f} MiB in all processes, target <= {TARGET:.0f}")
+
+
+if __name__ == "__main__":
+    main()
