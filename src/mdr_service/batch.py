@@ -9,7 +9,9 @@ from pydantic_core import to_json
 from mdr_service import problems, questions, wire
 from mdr_service.problems import ServiceError
 from mdr_service.schemas.batch import BatchItem, BatchQuery
-from mdr_service.schemas.queries import Query
+from mdr_service.schemas.queries import HistoryQuery, NormalQuery, Query, StressQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.settings import SETTINGS
 
 # A query with the question that it asks, or the text of the entry that says why it is none.
 Asked = tuple[str, Query] | bytes
@@ -18,8 +20,21 @@ _logger: Final = logging.getLogger(__name__)
 
 
 def read(batch: BatchQuery) -> list[Asked]:
-    """Return the queries of a batch; what is wrong with one of them is its own problem."""
-    return [_read(item) for item in batch.queries]
+    """Return the queries of a batch; what is wrong with one of them is its own problem.
+
+    Raises ServiceError where they ask together for more numbers than one request may.
+    """
+    asked = [_read(item) for item in batch.queries]
+    numbers = 0
+    for index, each in enumerate(asked):
+        own = 0 if isinstance(each, bytes) else _numbers(each[1])
+        # What is too much alone is refused alone.
+        numbers += own if own <= SETTINGS.max_numbers else 0
+        if numbers > SETTINGS.max_numbers:
+            detail = f"at most {SETTINGS.max_numbers} loads times radii are answered at once"
+            place = problems.pointer(("queries", index))
+            raise ServiceError(problems.INVALID_REQUEST, detail, [(place, detail)])
+    return asked
 
 
 def effort(asked: Sequence[Asked]) -> int:
@@ -32,6 +47,16 @@ def answer(asked: Sequence[Asked]) -> bytes:
     """Return the text of all answers, in their order."""
     entries = [each if isinstance(each, bytes) else _entry(*each) for each in asked]
     return b'{"answers":[' + b",".join(entries) + b"]}"
+
+
+def _numbers(query: Query) -> int:
+    """Return how many loads, or numbers of cycles, times radii, or else samples it is about."""
+    if isinstance(query, StressQuery | WearQuery | EvolutionQuery):
+        return query.loads * max(query.radii, 1)
+    if isinstance(query, HistoryQuery):
+        ways = {"history": query.history, "cycles": query.cycles}
+        return sum(ways[name].samples for name in ways.keys() & query.model_fields_set)
+    return query.loads if isinstance(query, NormalQuery) else 0
 
 
 def _read(item: BatchItem) -> Asked:

@@ -23,6 +23,8 @@ ASKS = {
     "/v1/wear": "wear",
     "/v1/wear/evolution": "evolution",
 }
+LOADS = [1.0 + load for load in range(100)]
+FOLLOWED = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
 WRONG = [("/v1/normal", body) for body, _ in POINTED.values() if body.startswith(b"{")] + [
     (f"/v1/{path}", body) for path, body, _ in POINTED_ELSEWHERE.values()
 ]
@@ -87,6 +89,25 @@ def test_a_list_that_is_not_understood_is_refused_as_a_whole(
     assert answer.status_code == 422
     assert answer.headers["content-type"] == MEDIA_TYPE
     assert answer.json()["errors"][0]["pointer"] == pointer
+
+
+def test_the_numbers_of_all_count_together(client: Client) -> None:
+    half = SETTINGS.max_numbers // 2 // len(LOADS) + 1
+    fields = BALL | {"load": {"normal_force": LOADS}, "quantities": ["foundation_load"]}
+    few, many, too_many = (
+        {"ask": "stress", "request": fields | {"points": n}} for n in (300, half, 3 * half)
+    )
+    many_samples = {
+        "ask": "history",
+        "request": FOLLOWED
+        | {"cycles": FOLLOWED["cycles"] | {"count": SETTINGS.max_samples // 4 - 1}},
+    }
+    for queries, index in (([few, many, few, many], 3), ([many_samples] * 99, 10)):
+        answer = client.post("/v1/batch", {"queries": queries})
+        assert answer.status_code == 422
+        assert [error["pointer"] for error in answer.json()["errors"]] == [f"/queries/{index}"]
+    answers = client.post("/v1/batch", {"queries": [few, too_many]}).json()["answers"]
+    assert [each["status"] for each in answers] == [200, 422]
 
 
 def test_a_batch_is_malformed_like_any_body(client: Client) -> None:
