@@ -9,9 +9,11 @@ from math import inf
 from xml.etree import ElementTree as ET
 
 import httpx
+import numpy as np
 import orjson
 import pytest
 
+from mdr_service import table as table_of
 from mdr_service.schemas.examples import (
     EVOLUTION_EXAMPLES,
     HISTORY_EXAMPLES,
@@ -116,6 +118,16 @@ def test_infinity_is_written_inf(client: Client) -> None:
     }
     (row,) = table(ask(client, "/v1/normal", query, "text/csv"))
     assert row["mean_pressure"] == "inf"
+
+
+def test_numbers_are_written_with_their_sign_and_all_their_digits() -> None:
+    numbers = np.array([inf, -inf, -0.0, 1e-300, 0.1 + 0.2])
+    text = table_of.write({"number": numbers, "regime": ["a", "b", "c", "d", "e"]}).decode()
+    assert text.split("\r\n") == [
+        "number,regime",
+        *("inf,a", "-inf,b", "-0.0,c", "1e-300,d", "0.30000000000000004,e"),
+        "",
+    ]
 
 
 @pytest.mark.parametrize(
