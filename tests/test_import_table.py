@@ -12,6 +12,7 @@ import pytest
 SOURCE = Path(__file__).parents[1] / "src"
 NUMBERS = {"numpy", "scipy"}
 WEB = {"fastapi", "starlette"}
+ANSWERING = {"anyio", "orjson"}
 OURS = {path.name for path in SOURCE.iterdir() if path.joinpath("__init__.py").exists()}
 
 
@@ -66,7 +67,7 @@ TABLE = (
     Row("mdr_core.profiles", CORE | TRANSFORMS, NUMBERS),
     Row("mdr_core.sweeps", CORE | {"mdr_core.profiles"}, NUMBERS),
     Row("mdr_core.foundation", CONTACT - {"mdr_core.foundation"}, NUMBERS),
-    Row("mdr_core.annulus", CONTACT, NUMBERS),
+    Row("mdr_core.annulus", CONTACT | {"mdr_core.sweeps"}, NUMBERS),
     Row("mdr_core.validity", CONTACT, NUMBERS),
     Row("mdr_core.range", CONTACT, NUMBERS),
     Row(
@@ -79,7 +80,7 @@ TABLE = (
         CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sweeps"},
         NUMBERS,
     ),
-    Row("mdr_core.sensitivity", CONTACT | {"mdr_core.normal"}, NUMBERS),
+    Row("mdr_core.sensitivity", CONTACT | {"mdr_core.annulus", "mdr_core.normal"}, NUMBERS),
     Row(
         "mdr_core.tangential",
         CONTACT
@@ -89,7 +90,9 @@ TABLE = (
     ),
     Row(
         "mdr_core.history",
-        CONTACT | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.validity"},
+        CONTACT
+        | {"mdr_core.annulus", "mdr_core.normal", "mdr_core.sensitivity"}
+        | {"mdr_core.validity"},
         NUMBERS,
     ),
     Row(
@@ -101,7 +104,7 @@ TABLE = (
     ),
     Row("mdr_core.wear", CONTACT | RESULTS | {"mdr_core.annulus", "mdr_core.fields"}, NUMBERS),
     Row("mdr_core", set(), set()),
-    Row("mdr_service.settings", set(), {"pydantic"}),
+    Row("mdr_service.settings", set(), {"pydantic", "pydantic_core"}),
     Row("mdr_service.schemas", {"mdr_service.settings"}, {"pydantic", "pydantic_core"}),
     Row("mdr_service.catalogue", {"mdr_core.errors", "mdr_core.profiles"} | SCHEMAS, set()),
     Row("mdr_service.convert", PUBLIC | SCHEMAS, {"numpy"}),
@@ -129,10 +132,28 @@ TABLE = (
     ),
     Row("mdr_service.parameters", SCHEMAS, set()),
     Row("mdr_service.address", WIRE | {"mdr_service.parameters"}, {"numpy"}),
-    Row("mdr_service.batch", WIRE | {"mdr_service.questions"}, {"pydantic_core"}),
-    Row("mdr_service.handlers", {"mdr_service.problems"}, WEB | {"orjson"}),
-    Row("mdr_service.body", WIRE, WEB),
-    Row("mdr_service.compute", set(), {"anyio"}),
+    Row("mdr_service.sizes", SCHEMAS | WRITTEN | {"mdr_service.wire"}, set()),
+    Row("mdr_service.cost", WIRE | {"mdr_service.sizes"}, {"orjson"}),
+    Row(
+        "mdr_service.batch",
+        WIRE | {"mdr_service.cost", "mdr_service.questions"},
+        {"pydantic_core"},
+    ),
+    Row("mdr_service.watch", set(), {"orjson", "prometheus_client"}),
+    Row("mdr_service.handlers", {"mdr_service.problems", "mdr_service.watch"}, WEB | ANSWERING),
+    Row("mdr_service.body", WIRE, WEB | {"anyio"}),
+    Row("mdr_service.apart", WIRE | {"mdr_service.cost", "mdr_service.questions"}, set()),
+    Row(
+        "mdr_service.compute",
+        {"mdr_core.errors", "mdr_service.apart", "mdr_service.problems"}
+        | {"mdr_service.settings", "mdr_service.watch"},
+        {"anyio"},
+    ),
+    Row(
+        "mdr_service.health",
+        {"mdr_service.compute", "mdr_service.questions"} | WIRE,
+        {"orjson"},
+    ),
     Row("mdr_service.openapi", WIRE | ADDRESSED, WEB | {"pydantic"}),
     Row(
         "mdr_service.described",
@@ -143,7 +164,7 @@ TABLE = (
         "mdr_service.asking",
         WIRE
         | ADDRESSED
-        | {"mdr_service.batch", "mdr_service.body", "mdr_service.compute"}
+        | {"mdr_service.batch", "mdr_service.body", "mdr_service.compute", "mdr_service.cost"}
         | {"mdr_service.questions"},
         WEB,
     ),
@@ -151,12 +172,14 @@ TABLE = (
         "mdr_service.routes",
         WIRE
         | {"mdr_service.asking", "mdr_service.catalogue", "mdr_service.described"}
-        | {"mdr_service.openapi", "mdr_service.parameters"},
+        | {"mdr_service.health", "mdr_service.openapi", "mdr_service.parameters"}
+        | {"mdr_service.watch"},
         WEB,
     ),
     Row(
         "mdr_service.app",
-        {"mdr_service.handlers", "mdr_service.openapi", "mdr_service.routes"},
+        {"mdr_service.compute", "mdr_service.handlers", "mdr_service.openapi"}
+        | {"mdr_service.routes"},
         WEB,
     ),
     Row("mdr_command.progress", set(), set()),
@@ -167,7 +190,7 @@ TABLE = (
         set(),
     ),
     Row("mdr_command.openapi", {"mdr_service.app"}, set()),
-    Row("mdr_command.serve", {"mdr_service.app", "mdr_service.settings"}, {"uvicorn"}),
+    Row("mdr_command.serve", {"mdr_service.settings", "mdr_service.watch"}, {"uvicorn"}),
     # Loads the module of a command by its name, when it is asked for.
     Row("mdr_command.__main__", set(), set()),
     Row("mdr_command", set(), set()),

@@ -4,10 +4,12 @@ A double stands for its neighbourhood. Where answers differ much between neighbo
 the stick radius does next to full slip, that is a part of their error.
 """
 
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 
+from mdr_core.annulus import stick_from_force
 from mdr_core.foundation import Function, force_slope
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -21,6 +23,8 @@ _TINY: Final = float(np.finfo(float).tiny)
 _CUBE: Final = 3.0
 # Up to this part of full slip nothing feels more than some times what it is given.
 _LATE: Final = 0.9
+# A force so near to its limit slides.
+_SLIDING: Final = 1e-12
 
 
 def near_full_slip(
@@ -30,26 +34,52 @@ def near_full_slip(
     partial: Flags,
     *,
     by_force: bool,
+    edges: bool = True,
 ) -> float:
     """Return the most that an answer feels of the load: large where little is left to full slip.
 
     `ends` are a and c in the contact coordinate, `ratio` the load in parts of full slip. What is
     left is F_N(c) under a force and d(c) under a displacement: c feels it by one over its
-    elasticity, and by c all else.
+    elasticity, and by c all else; without `edges`, forces, displacements and energies alone.
     """
     late = partial & (ratio > _LATE)
     if profile.slips_at_once or not late.any():
-        return 1.0
+        return 0.0
     high, low = ends[0], np.maximum(ends[1], _TINY)
     load, slope = _load(profile, by_force=by_force)
     other, other_slope = _load(profile, by_force=not by_force)
     with np.errstate(all="ignore"):
         moved = load(low) / (slope(low) * np.maximum(1 - ratio, _EPS / 2))
-        radial = moved * profile.radius_slope(low)
-        c, a = profile.contact_radius(low), profile.contact_radius(high)
-        follows = _CUBE * moved * other_slope(low) / (other(high) - other(low))
-        felt = np.stack(np.broadcast_arrays(radial / c, radial / (a - c), follows))
-    return float(np.max(np.where(late & np.isfinite(felt), felt, 0.0), initial=1.0))
+        felt = _CUBE * moved * other_slope(low) / (other(high) - other(low))
+        if edges:
+            radial = moved * profile.radius_slope(low)
+            c, a = profile.contact_radius(low), profile.contact_radius(high)
+            felt = np.stack(np.broadcast_arrays(radial / c, radial / (a - c), felt))
+    return float(np.max(np.where(late & np.isfinite(felt), felt, 0.0)))
+
+
+def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
+    """Return the most that a way given by forces feels of them, next to full slip."""
+    partial = (limit > 0) & (size < limit)
+    ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
+    worst = np.argmax(ratio)
+    if contact.profile.slips_at_once or not ratio[worst] > _LATE:
+        return 0.0
+    given = contact.coordinate[worst], ratio[worst], 1 - ratio[worst]
+    edge, _ = stick_from_force(contact.profile, *map(np.asarray, given))
+    ends = np.asarray(given[0]), edge
+    part = ratio[worst], partial[worst]
+    return near_full_slip(contact.profile, ends, *part, by_force=True, edges=False)
+
+
+def of_travel(travel: Array, force: Array, limit: Array, lost: Callable[[], Array]) -> float:
+    """Return the most that the energy lost on a way feels of its travel, beyond full slip."""
+    slides = (limit > 0) & (np.abs(force) >= limit * (1 - _SLIDING))
+    if not slides.any():
+        return 0.0
+    most = float(np.max(lost()))
+    felt = np.max(np.where(slides, limit * np.abs(travel), 0.0))
+    return float(felt) / most if most > 0 else 0.0
 
 
 def narrow_annulus(coordinate: Array, width: Array) -> float:

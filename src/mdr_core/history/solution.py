@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import normal
+from mdr_core import normal, sensitivity
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import dissipation, memory, path
 from mdr_core.history.branches import Branches
@@ -173,7 +173,16 @@ class History:
     @property
     def error_estimate(self) -> float:
         """Bound on the error of each answer, relative to its largest value on the way."""
-        return _SUMS * self.contact.error_estimate + self.deviation
+        return (_SUMS + self._felt) * self.contact.error_estimate + self.deviation
+
+    @cached_property
+    def _felt(self) -> float:
+        """The most by which an answer changes relatively for a relative change of the loads."""
+        limit = self.start.friction_coefficient * np.asarray(self.normal_force)
+        if self.path.by_force:
+            return sensitivity.of_forces(self.contact, np.abs(self.path.tangential), limit)
+        way = self.path.tangential, self.tangential_force, limit
+        return sensitivity.of_travel(*way, lambda: self.dissipation)
 
     @property
     def state_error_estimate(self) -> float:
