@@ -168,7 +168,16 @@ class Table:
         """(s, weight, dg/ds) on a panel; the same for every r far below it."""
         key = (i, top)
         if key not in self._slopes:
-            self._slopes[key] = [(top * u, top * w, self._slope(i, top * u)) for u, w in self.rule]
+            # The root at the knot before lies this far from the panel's beginning.
+            near = mp.sqrt(self.knots[i] ** 2 - self.knots[i - 1] ** 2) if i else top
+            ends = [top]
+            while ends[-1] > 2 * near:
+                ends.append(ends[-1] / 4)
+            self._slopes[key] = [
+                (low + (high - low) * u, (high - low) * w, self._slope(i, low + (high - low) * u))
+                for high, low in itertools.pairwise([*ends, mpf(0)])
+                for u, w in self.rule
+            ]
         return self._slopes[key]
 
     def _slope(self, i: int, s: mpf) -> mpf:

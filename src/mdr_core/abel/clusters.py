@@ -22,7 +22,7 @@ FAR: Final = 0.5
 _BEYOND: Final = 1 + 2 * FAR + 2 * np.sqrt(FAR + FAR * FAR)
 _SHIFT: Final = (_BEYOND - 1) / 2
 # Pairs of a block and a point handled at once: their roots stay in cache.
-_PAIRS: Final = 1024
+_PAIRS: Final = 2048
 
 
 @lru_cache(maxsize=8)
@@ -87,7 +87,8 @@ class Clusters:
         total = np.zeros_like(base)
         count = self.masses.shape[1]
         nodes, _ = _interpolation(count)
-        room, ones = np.empty((_PAIRS, count)), np.ones(count)
+        room, taken = np.empty((2, _PAIRS, count))
+        ones = np.ones(count)
         for block, point in pairs(low, high):
             at, edge = base[point], self.edge[block]
             gap = at - edge
@@ -100,7 +101,9 @@ class Clusters:
             np.multiply(self.length[block, None], nodes, out=root)
             root += np.abs(gap)[:, None]
             np.sqrt(root, out=root)
-            np.divide(self.masses.take(block, axis=0), root, out=root)
+            # Without a mode the rows would be copied once more.
+            masses = self.masses.take(block, axis=0, out=taken[: block.size], mode="clip")
+            np.divide(masses, root, out=root)
             add(total, point, root @ ones)
         return total
 

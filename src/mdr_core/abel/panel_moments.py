@@ -98,19 +98,25 @@ class PowerPanels:
         return np.asarray(even + odd + t * (_OF_ROOT[: c.shape[0]] @ c))
 
 
+def interpolated(values: Array, places: Array) -> Array:
+    """The polynomials through the values (panels, places) at `PLACES`, at other places."""
+    basis = chebyshev.chebvander(2 * places - 1, _DEGREE)
+    return np.asarray(values @ _TO_COEFFICIENTS.T @ basis.T)
+
+
 def power_panels(
     left: Array, right: Array, values: Array, at_left: Array, accuracy: float
 ) -> PowerPanels:
     """Expand W in powers from its values (panels, places) at `PLACES`, and that at s = 0.
 
-    Known are panels where the last coefficients, and the rounding of powers, stay below
+    Known are panels where a dozen of the last coefficients, and the rounding, stay below
     `accuracy` of the largest value.
     """
     length = np.sqrt((right - left) * (right + left))
     chebyshev_ = values @ _TO_COEFFICIENTS.T
     largest = np.abs(values).max(axis=1)
     sizes = np.abs(chebyshev_)
-    good = sizes[:, -2:].max(axis=1) <= accuracy / 4 * largest
+    good = sizes[:, -2:].max(axis=1) <= accuracy / 12 * largest
     real = sizes > _NOISE * largest[:, None]
     needed = np.flip(np.maximum.accumulate(np.flip(real, axis=1), axis=1), axis=1)
     kept = np.where(needed, chebyshev_, 0.0)

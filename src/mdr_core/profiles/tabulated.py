@@ -26,6 +26,9 @@ _RINGING: Final = 1e-8
 _LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
 # A slope on the axis below this, relative to the steepest, is the interpolation's.
 _TIP: Final = 1e-6
+# Nearer to each other than this part of the radius, two points tell no slope or curvature that
+# the stress next to them could be had from.
+_CLOSEST: Final = 9e-6
 _ENERGY_POINTS: Final = 10
 # A bound on what the closed moments of one panel lose; by far not reached.
 _ACCURACY: Final = 1e-11
@@ -267,6 +270,10 @@ class Tabulated(BehindFlat):
 
     @cached_property
     def _stress(self) -> StressPanels:
+        close = np.append(False, np.diff(self.r) < _CLOSEST * self.r[1:])
+        told = f"at {self.r[np.argmax(close)]:.12g} closer than {_CLOSEST:g} of the radius to"
+        detail = f"{told} the one before: the stress next to them has no digits, leave one out"
+        _refuse_first("r", close, detail)
         return stress_panels(self._slope.source.transform, self.r, self._jumps, _ACCURACY)
 
     def pressure_kernel(

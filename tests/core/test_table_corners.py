@@ -1,0 +1,110 @@
+"""Tables where they are hard: next to a node, at nearly equal radii, with kinks, and long ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import fields
+from mdr_core.errors import InputError
+from mdr_core.normal import NormalContact, solve
+from mdr_core.profiles import Tabulated
+from tests.oracles.tables import TABLE_DIGITS, Table
+
+INTERPOLANT = 1e-11
+INTERPOLATIONS = ("cubic", "pchip", "linear")
+END, EDGE = 0.6, 0.5
+#: A step of h = 1e-4 leaves h^3, h^2 and h of the slope, and half an order less of its transforms.
+SAMPLED = {"cubic": 1e-9, "pchip": 1e-6, "linear": 1e-4}
+
+
+def sphere(r: np.ndarray) -> np.ndarray:
+    return r * r / (1 + np.sqrt(1 - r * r))
+
+
+def worst_pressure(r: np.ndarray, kind: Any, a: float, radii: list[float]) -> float:
+    """Largest error of p relative to the transform of the interpolant, radius by radius."""
+    f = sphere(r)
+    contact = solve(Tabulated(r, f, kind), 1.0, contact_radius=a, rtol=1e-11)
+    found = fields.pressure(contact, radii, rtol=1e-11)
+    with mp.workdps(TABLE_DIGITS):
+        exact = Table({"r": r.tolist(), "f": f.tolist(), "interpolation": kind})
+        truth = [exact.pressure(mpf(x), mpf(a)) for x in radii]
+        return max(
+            float(abs(mpf(float(p)) / true - 1)) for p, true in zip(found, truth, strict=True)
+        )
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
+@pytest.mark.parametrize("grading", [1, 2])
+@pytest.mark.parametrize("a", [EDGE, 0.0301])
+def test_pressure_next_to_nodes_and_edge(kind: Any, grading: int, a: float) -> None:
+    r = END * np.linspace(0, 1, 22) ** grading
+    # Of a cubic the slope on the axis is rounding, and with it the pressure close to it.
+    inner = r[(r > 0.02) & (r < a)][[0, -1]] if a == EDGE else np.array([])
+    radii = [float(np.nextafter(x, side)) for x in inner for side in (0.0, 1.0)]
+    radii += [x * (1 + step) for x in inner.tolist() for step in (-1e-6, 1e-6, 1e-9)]
+    radii += [a * part for part in (0.7123, 0.91, 1 - 1e-3, 1 - 1e-9)]
+    assert worst_pressure(r, kind, a, radii) <= INTERPOLANT
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
+@pytest.mark.parametrize("gap", [1e-5, 1e-4, 1e-2])
+def test_pressure_where_two_radii_nearly_agree(kind: Any, gap: float) -> None:
+    r = np.linspace(0, END, 22)
+    twin = r[10] * (1 + gap)
+    r = np.sort(np.append(r, twin))
+    radii = [0.1, 0.2, r[10] * (1 - gap / 3), r[10] * (1 + gap / 3), twin * (1 + gap / 3), 0.47]
+    assert worst_pressure(r, kind, EDGE, [float(x) for x in radii]) <= INTERPOLANT
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
+@pytest.mark.parametrize("gap", [1e-12, 1e-10, 1e-8])
+def test_the_stress_next_to_radii_too_close_to_each_other_is_refused(kind: Any, gap: float) -> None:
+    r = np.linspace(0, END, 22)
+    r = np.sort(np.append(r, np.nextafter(r[10] * (1 + gap), 1)))
+    contact = solve(Tabulated(r, sphere(r), kind), 1.0, contact_radius=EDGE)
+    with pytest.raises(InputError, match="closer than") as refused:
+        fields.pressure(contact, [0.1])
+    assert refused.value.path == ("profile", "r", 11)
+
+
+def long_contact(points: int, kind: Any) -> NormalContact:
+    r = np.linspace(0, END, points)
+    return solve(Tabulated(r, sphere(r), kind), 1.0, contact_radius=EDGE, rtol=1e-10)
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
+def test_a_long_table_is_the_body_that_it_samples(kind: Any) -> None:
+    contact = long_contact(6001, kind)
+    # The exact sphere: g = x artanh(x).
+    assert contact.indentation_depth == pytest.approx(EDGE * np.arctanh(EDGE), rel=SAMPLED[kind])
+    radii = np.linspace(0.001, 0.45, 7) + 1e-5
+    pressure = fields.pressure(contact, radii)
+    with mp.workdps(30):
+        truth = [
+            mp.quad(
+                lambda u, r=r: mp.atanh(mp.hypot(r, u)) / mp.hypot(r, u) + 1 / (1 - r * r - u * u),
+                [0, mp.sqrt((EDGE - r) * (EDGE + r))],
+            )
+            / mp.pi
+            for r in map(mpf, radii.tolist())
+        ]
+    error = np.abs(pressure / np.array([float(p) for p in truth]) - 1)
+    # On the first points a table's pressure has the weak infinity of a slope that is not zero.
+    assert error[1:].max() <= SAMPLED[kind]
+
+
+def test_far_panels_are_not_looked_at_one_by_one() -> None:
+    """Pairs of a block and a radius grow with the logarithm of the number of points."""
+    counts = []
+    for points in (201, 3201):
+        profile = Tabulated(np.linspace(0, END, points), np.linspace(0, END, points) ** 2)
+        blocks = profile._stress._clusters
+        place = np.linspace(0, EDGE, 1000, endpoint=False)
+        low, high = blocks.far_from(place, blocks.usable(0, points))
+        counts.append(int((high - low).sum()))
+    assert counts[1] <= 2 * counts[0]
