@@ -16,10 +16,10 @@ from typing import Final
 import numpy as np
 from scipy.special import roots_legendre
 
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Chosen, Indices
 
 # h(y, index): y has shape (nodes, m), index (m,) says which integrals they belong to.
-Integrand = Callable[[Array, Indices], Array]
+Integrand = Callable[[Array, Chosen], Array]
 
 # Number of nodes of the rules on offer, as points of the full rule on [-H, H].
 _POINTS: Final = (4, 8, 12, 24, 48)
@@ -144,8 +144,8 @@ def integrate_plain(
     return result
 
 
-def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Indices, int]]:
-    """Indices of the integrals that share a rule, with its points; 0 where none suffices.
+def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Chosen, int]]:
+    """The integrals that share a rule, with its points; 0 where none suffices.
 
     A few integrals join those of the next finer rule: no call is worth making for them.
     """
@@ -159,12 +159,18 @@ def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[I
             counts[number], counts[finer] = 0, counts[number] + counts[finer]
     groups = [(number, points) for number, points in enumerate((*_POINTS, 0)) if counts[number]]
     if len(groups) == 1:
-        return [(np.arange(choice.size), groups[0][1])]
-    return [(np.flatnonzero(choice == number), points) for number, points in groups]
+        return [(slice(0, choice.size), groups[0][1])]
+    return [(_chosen(np.flatnonzero(choice == number)), points) for number, points in groups]
+
+
+def _chosen(index: Indices) -> Chosen:
+    """The ascending indices, as a slice where they are neighbours, as of sorted radii they are."""
+    first, last = int(index[0]), int(index[-1])
+    return slice(first, last + 1) if last - first + 1 == index.size else index
 
 
 def _pieces(
-    h: Integrand, lower: Array, length: Array, index: Indices, rtol: float, analytic: Analytic
+    h: Integrand, lower: Array, length: Array, index: Chosen, rtol: float, analytic: Analytic
 ) -> Array:
     """Cut [lower, lower + length] into equal pieces that one rule carries."""
     half = float(length.max()) / 2
@@ -173,18 +179,22 @@ def _pieces(
 
 
 def _apply(
-    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Indices
+    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
 ) -> Array:
     """Apply a rule on [0, 1] to [lower, lower + length], in blocks that stay in cache."""
     nodes, weights = rule
     step = max(_BLOCK // nodes.size, 1)
     result = np.empty_like(length)
     for start in range(0, length.size, step):
-        block = slice(start, start + step)
+        block = slice(start, min(start + step, length.size))
         y = nodes[:, None] * length[block]
         if lower is not None:
             y += lower[block]
-        result[block] = length[block] * (weights @ h(y, index[block]))
+        if isinstance(index, slice):
+            part: Chosen = slice(index.start + block.start, index.start + block.stop)
+        else:
+            part = index[block]
+        result[block] = length[block] * (weights @ h(y, part))
     return result
 
 

@@ -23,11 +23,11 @@ from mdr_core.quadrature import (
     integrate_even,
     integrate_plain,
 )
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 
 # weight(x, s, index) = F(x) s / x with s = sqrt(x^2 - b^2): free of the root that F carries at b.
 # x and s have shape (nodes, k), index (k,) says to which integrals they belong.
-Weight = Callable[[Array, Array, Indices], Array]
+Weight = Callable[[Array, Array, Chosen], Array]
 
 # Where evenness would help no more than one integral in so many, it is not worth a call.
 _FEW: Final = 8
@@ -94,7 +94,9 @@ def one_sided(
     1.31696
     """
     problem = _OneSided(weight, upper, width, edge, inner, odd, rtol, analytic)
-    on_break = (r == b) & (r > 0)
+    on_break = r == b
+    if on_break.any():
+        on_break &= r > 0
     if not on_break.any():
         return _two_roots(problem, b, r)
     # The few points on the break have a rule of their own; elsewhere stands in for them meanwhile.
@@ -147,7 +149,7 @@ def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     if index.size:
         low = (upper - width)[index]
 
-        def over_annulus(t: Array, chosen: Indices) -> Array:
+        def over_annulus(t: Array, chosen: Chosen) -> Array:
             s = np.exp(t)
             return weight(np.hypot(r[index[chosen]], s), s, index[chosen])
 
@@ -158,7 +160,7 @@ def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     index = np.flatnonzero(~apart)
     if index.size:
 
-        def from_break(y: Array, chosen: Indices) -> Array:
+        def from_break(y: Array, chosen: Chosen) -> Array:
             at = r[index[chosen]]
             x, s = at * np.cosh(y), at * np.sinh(y)
             return np.asarray(weight(x, s, index[chosen]) * x / s)
@@ -181,7 +183,7 @@ def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     base2 = np.where(above, r * r, np.square(b))
     epsilon = np.sqrt(distance2)
 
-    def h(y: Array, index: Indices) -> Array:
+    def h(y: Array, index: Chosen) -> Array:
         leg = np.sinh(y)
         leg *= epsilon[index]
         leg *= leg

@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.abel.roots import between
 from mdr_core.profiles.profile import NOWHERE, ORDINARY
 from mdr_core.quadrature import Analytic
-from mdr_core.typing import Array, Indices, Parameter
+from mdr_core.typing import Array, Chosen, Parameter
 
 _TINY: Final = 1e-290
 _HUGE: Final = 1e290
@@ -167,7 +167,7 @@ def power_moment(
     top = np.sqrt((a - safe) * (a + safe)) / safe
     analytic = Analytic(growth=max(abs(m), 1.0))
 
-    def h(y: Array, index: Indices) -> Array:
+    def h(y: Array, index: Chosen) -> Array:
         return np.asarray((ratio[index] * np.cosh(y)) ** m)
 
     if width is None:

@@ -12,7 +12,7 @@ from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, require_positive
 from mdr_core.profiles.stable import atan_gap, tanh_gap
-from mdr_core.typing import Array, Indices, Parameter
+from mdr_core.typing import Array, Chosen, Parameter
 
 _EQUATOR: Final = 17.0
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
@@ -142,7 +142,7 @@ def sphere_kernel(
     tilt2 = np.square(stretch * (r / big_radius))
     top = _sphere_leg(big_radius, v, r, edge)
 
-    def h(y: Array, index: Indices) -> Array:
+    def h(y: Array, index: Chosen) -> Array:
         cosh = np.cosh(y)
         z = np.sqrt(tilt2[index] + np.square(stretch[index] * np.sinh(y)))
         return np.asarray(np.arcsinh(z) / (z * cosh))
@@ -259,7 +259,7 @@ class Hyperboloid(Profile):
         top = leg / rho
         r2 = r * r
 
-        def integrand(y: Array, index: Indices) -> Array:
+        def integrand(y: Array, index: Chosen) -> Array:
             x = np.sqrt(r2[index] + np.square(rho[index] * np.sinh(y)))
             return np.asarray(rho[index] * np.cosh(y) * np.arctan(x / h) / x)
 
