@@ -22,7 +22,7 @@ SAMPLED = {"cubic": 1e-9, "pchip": 1e-6, "linear": 1e-4}
 
 
 def sphere(r: np.ndarray) -> np.ndarray:
-    return r * r / (1 + np.sqrt(1 - r * r))
+    return np.asarray(r * r / (1 + np.sqrt(1 - r * r)))
 
 
 def worst_pressure(r: np.ndarray, kind: Any, a: float, radii: list[float]) -> float:
