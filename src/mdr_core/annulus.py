@@ -22,7 +22,8 @@ from mdr_core.foundation import (
 )
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array, Parameter
+from mdr_core.sweeps import alike_with
+from mdr_core.typing import Array
 
 # Up to this part of the contact an annulus is narrow; beyond, a difference keeps its digits.
 _NARROW: Final = 0.05
@@ -108,9 +109,14 @@ def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array)
     missing = np.isnan(closed)
     if not missing.any():
         return closed
-    high, span = np.broadcast_arrays(coordinate, width)
-    filled = _moment(profile, np.where(missing, high, 0.0), np.where(missing, span, 0.0))
-    return np.where(missing, filled, closed)
+    high, span = (np.broadcast_to(part, closed.shape)[missing] for part in (coordinate, width))
+    named = (
+        (name, np.broadcast_to(value, closed.shape)[missing] if name in profile.swept else value)
+        for name, value in profile.parameters.items()
+    )
+    filled = np.array(closed)
+    filled[missing] = _moment(alike_with(profile, named), high, span)
+    return filled
 
 
 def _stick(
@@ -231,7 +237,7 @@ def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
     )
     high, width = np.broadcast_to(coordinate, shape), np.broadcast_to(width, shape)
     if profile.swept:
-        return _moment_of_scenes(type(profile), named, high, width)
+        return _moment_of_scenes(profile, high, width)
     result = np.empty(high.size)
     step = max(
         _MOMENT_BLOCK // ((profile.coordinate_breaks.size + 4 * _PIECES) * _MOMENT_POINTS), 1
@@ -242,20 +248,26 @@ def _moment(profile: Profile, coordinate: Array, width: Array) -> Array:
     return result.reshape(shape)
 
 
-def _moment_of_scenes(
-    kind: type[Profile], named: dict[str, Parameter], high: Array, width: Array
-) -> Array:
-    """The same where every scene has its own profile, and with it its own pieces."""
-    columns = {name: np.broadcast_to(value, high.shape) for name, value in named.items()}
-    result = np.empty(high.shape)
-    for index in np.ndindex(high.shape):
-        alone = kind(**{name: float(column[index]) for name, column in columns.items()})
-        result[index] = _moment(alone, high[index], width[index])
-    return result
+def _moment_of_scenes(profile: Profile, high: Array, width: Array) -> Array:
+    """The same where every scene has its own profile, in blocks that fit into the cache."""
+    named = {
+        name: np.broadcast_to(value, high.shape).ravel()
+        for name, value in profile.parameters.items()
+    }
+    # Steep scenes and sharp tips have other pieces than the rest.
+    plain = profile.steepness <= _STEEP and profile.tip_exponent >= 1
+    step = max(_MOMENT_BLOCK // (4 * _PIECES * _MOMENT_POINTS), 1) if plain else 1
+    result = np.empty(high.size)
+    for start in range(0, high.size, step):
+        part = slice(start, start + step)
+        block = alike_with(profile, ((name, value[part]) for name, value in named.items()))
+        result[part] = _moment_block(block, high.ravel()[part], width.ravel()[part])
+    return result.reshape(high.shape)
 
 
 def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     breaks = profile.coordinate_breaks
+    own = bool(breaks.size) and not _has_many_breaks(profile)
     # Ends of the pieces as distances below the contact's edge, where they have their digits.
     powers = np.arange(1, _PIECES)
     to_tip = np.arange(1, ceil(_PIECES / profile.tip_exponent))
@@ -264,10 +276,10 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
         parts.append(np.exp(-_RESOLVED / profile.steepness) ** powers)
     shrinking = np.concatenate(parts)
     halves = high - np.multiply.outer(shrinking, high)
-    if breaks.size == 1:
+    if own:
         # Below its own break a profile may be steep as well.
         halves = np.concatenate([halves, high - np.multiply.outer(shrinking, breaks + 0 * high)])
-    at_breaks = high - breaks[:, None]
+    at_breaks = high - (breaks[None] if own else breaks[:, None])
     ends = np.sort(np.clip(np.concatenate([halves, at_breaks]), 0.0, width), axis=0)
     ends = np.concatenate([np.zeros_like(high)[None], ends, width[None]])
     length, low = np.diff(ends, axis=0), high - ends[1:]
@@ -279,9 +291,10 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
         half = np.where(length > 0, length / (top + bottom), 0.0)[..., None] / 2
     v = bottom[..., None] + half * (1 + nodes)
     s = below[..., None] + v * v
+    at_nodes = _over_nodes(profile)
     with np.errstate(all="ignore"):
-        rise = np.where(half > 0, 2 * v * half * profile.depth_slope(s), 0.0)
-        run = np.where(half > 0, 2 * v * half * profile.radius_slope(s), 0.0)
+        rise = np.where(half > 0, 2 * v * half * at_nodes.depth_slope(s), 0.0)
+        run = np.where(half > 0, 2 * v * half * at_nodes.radius_slope(s), 0.0)
     piece = (rise * weights).sum(axis=-1)
     # Rows run from the contact's edge inwards.
     above = _before(piece)
@@ -292,6 +305,13 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     to_stick = inside[..., None] + climbed
     rows = (to_edge * to_stick * run * weights).sum(axis=-1)
     return _summed(np.ones(len(rows)), rows)
+
+
+def _over_nodes(profile: Profile) -> Profile:
+    """The profile whose scenes are the last axis but one."""
+    if not profile.swept:
+        return profile
+    return alike_with(profile, ((n, value[:, None]) for n, value in profile.parameters.items()))
 
 
 def _before(rows: Array) -> Array:

@@ -57,7 +57,7 @@ def in_blocks(
         start = place.stop
         for i, part in zip(swept, block, strict=True):
             columns[i] = part
-        alike = profile if same_profile else _alike(profile, zip(named, columns, strict=False))
+        alike = profile if same_profile else alike_with(profile, zip(named, columns, strict=False))
         answers = solve(alike, *columns[len(named) :])
         gathered = gathered or [_Gathered(answer, size) for answer in answers]
         for whole, answer in zip(gathered, answers, strict=True):
@@ -66,8 +66,8 @@ def in_blocks(
     return [whole.shaped(shape) for whole in gathered]
 
 
-def _alike(profile: Profile, named: Iterable[tuple[str, Any]]) -> Profile:
-    """The profile with other parameters, parts of those that it has checked."""
+def alike_with(profile: Profile, named: Iterable[tuple[str, Any]]) -> Profile:
+    """Return the profile with other parameters, parts of those that it has checked."""
     part = object.__new__(type(profile))
     vars(part).update(named)
     return part
