@@ -24,7 +24,14 @@ class InputError(MDRError, ValueError):
 
 
 class AccuracyError(MDRError):
-    """Loosen: the tolerance asked for cannot be reached with this input."""
+    """Loosen: the tolerance asked for cannot be reached with this input.
+
+    `path` names what to change, as the request does: the tolerance, if nothing else.
+    """
+
+    def __init__(self, detail: str, path: tuple[str | int, ...] = ("rtol",)) -> None:
+        super().__init__(detail)
+        self.path = path
 
 
 class DefectError(MDRError):

@@ -82,7 +82,7 @@ def told(error: Exception) -> ServiceError:
     if isinstance(error, InputError):
         return ServiceError(INVALID_REQUEST, error.detail, [(pointer(error.path), error.detail)])
     if isinstance(error, AccuracyError):
-        return ServiceError(ACCURACY, str(error), [("/rtol", str(error))])
+        return ServiceError(ACCURACY, str(error), [(pointer(error.path), str(error))])
     if isinstance(error, ServiceError):
         return error
     raise error

@@ -8,10 +8,14 @@ from mdr_core.profiles import Paraboloid, Power
 from mdr_core.wear import evolution, limit
 
 
-@pytest.mark.parametrize(("shift", "cycles"), [(1e-30, 1e6), (1e-5, 2e-309), (1e-5, 1e-250)])
-def test_what_cannot_be_resolved_is_refused(shift: float, cycles: float) -> None:
+@pytest.mark.parametrize(
+    ("shift", "cycles", "place"),
+    [(1e-30, 1e6, "oscillation"), (1e-5, 2e-309, "cycles"), (1e-5, 1e-250, "cycles")],
+)
+def test_what_cannot_be_resolved_is_refused(shift: float, cycles: float, place: str) -> None:
+    """And what would have to change is pointed at."""
     contact = normal.solve(Paraboloid(2.0), 2.3e9, normal_force=1e5)
-    with pytest.raises(AccuracyError):
+    with pytest.raises(AccuracyError) as caught:
         _ = evolution.solve(
             contact,
             1.9e9,
@@ -21,6 +25,23 @@ def test_what_cannot_be_resolved_is_refused(shift: float, cycles: float) -> None
             tangential_displacement=shift,
             resolution=8,
         ).worn_volume
+    assert caught.value.path == (place,)
+
+
+def test_an_annulus_that_is_not_resolved_asks_for_more_nodes() -> None:
+    contact = normal.solve(Paraboloid(1.0), 1.0, indentation_depth=1.0)
+    found = evolution.solve(
+        contact,
+        1.0,
+        0.4,
+        wear_coefficient=1e-4,
+        cycles=[1e7],
+        tangential_displacement=0.4 * (1 - 1e-7),
+        resolution=8,
+    )
+    with pytest.raises(AccuracyError) as caught:
+        _ = found.error_estimate
+    assert caught.value.path == ("resolution",)
 
 
 def test_a_rim_beyond_the_range_of_doubles_is_refused() -> None:

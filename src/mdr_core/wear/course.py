@@ -117,7 +117,8 @@ class _Run:
     def to(self, goal: float) -> Array:
         """Go on to the goal and return the state there."""
         if 0 < goal < _FIRST:
-            raise AccuracyError("so few cycles wear less than the integrator can tell from none")
+            detail = "so few cycles wear less than the integrator can tell from none"
+            raise AccuracyError(detail, ("cycles",))
         while goal - self.now > _SPAN * goal and isinf(self.settled) and isinf(self.left):
             # What little has worn after few cycles is to have digits of its own.
             end = min(goal, _DECADE * self.now) if 0 < self.now < 1 else goal

@@ -65,7 +65,8 @@ class WearEvolution:
     def _refuse(self, left: float) -> None:
         scene = self.scene
         if scene.stop * scene.length_unit < scene.domain:
-            raise AccuracyError("the worn contact grows further than this method carries it")
+            detail = "the worn contact grows further than this method carries it"
+            raise AccuracyError(detail, ("cycles",))
         raise InputError(
             ("cycles", int(np.searchsorted(self.cycles, left))),
             f"after {left:.3g} cycles the worn contact reaches radius {scene.domain:.6g}, where "
@@ -207,7 +208,8 @@ class WearEvolution:
         if estimate > _UNRESOLVED:
             raise AccuracyError(
                 "the worn annulus is not resolved: ask for a finer resolution, or for an "
-                "amplitude further from full slip"
+                "amplitude further from full slip",
+                ("resolution",),
             )
         return estimate
 

@@ -75,7 +75,8 @@ class Outside:
     def _range(self) -> float:
         length = 1 / self.start - 1 / self.stop
         if not length > 0:
-            raise AccuracyError("the slip annulus is narrower than the rounding of its radius")
+            detail = "the slip annulus is narrower than the rounding of its radius"
+            raise AccuracyError(detail, ("oscillation",))
         return length
 
     @cached_property
