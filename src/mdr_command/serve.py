@@ -8,7 +8,7 @@ from typing import Final
 
 import uvicorn
 
-from mdr_service.app import create_app
+from mdr_service import watch
 from mdr_service.settings import SETTINGS
 
 _LAST_PORT: Final = 65535
@@ -18,6 +18,13 @@ def declare(parser: argparse.ArgumentParser) -> None:
     """Take the address."""
     parser.add_argument("--host", default="127.0.0.1", help="address to listen at (%(default)s)")
     parser.add_argument("--port", default=8000, type=_port, help="port (%(default)s)")
+    parser.add_argument(
+        "--workers",
+        default=1,
+        type=_workers,
+        help="processes that serve, each with compute processes of its own; one that ends is "
+        "replaced (%(default)s)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -31,7 +38,11 @@ def run(arguments: argparse.Namespace) -> int:
     sys.stdout.write(f"MDR: the documentation is at http://{place}:{port}/docs\n")
     sys.stdout.flush()
     uvicorn.run(
-        create_app(),
+        # Several workers each import it by its name.
+        "mdr_service.app:create_app",
+        factory=True,
+        workers=arguments.workers,
+        log_config=dict(watch.LOGGING),
         host=host,
         port=port,
         loop="uvloop",
@@ -40,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
         timeout_graceful_shutdown=SETTINGS.shutdown_seconds,
         server_header=False,
         access_log=False,
-        lifespan="off",
+        lifespan="on",
         ws="none",
     )
     return 0
@@ -50,6 +61,13 @@ def _port(text: str) -> int:
     number = int(text)
     # The system would serve at the remainder by 65536, and nobody know.
     if not 0 <= number <= _LAST_PORT:
+        raise ValueError
+    return number
+
+
+def _workers(text: str) -> int:
+    number = int(text)
+    if number < 1:
         raise ValueError
     return number
 

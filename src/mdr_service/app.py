@@ -1,11 +1,20 @@
 """The application, put together."""
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from importlib.metadata import version
 
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
 from mdr_service import handlers, openapi, routes
+from mdr_service.compute import COMPUTE
+
+
+@asynccontextmanager
+async def _lifespan(_app: FastAPI) -> AsyncIterator[None]:
+    async with COMPUTE.ready():
+        yield
 
 
 def create_app() -> FastAPI:
@@ -17,6 +26,7 @@ def create_app() -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
+        lifespan=_lifespan,
     )
     handlers.install(app)
     app.state.openapi = openapi.document(version("mdr"), app.routes)

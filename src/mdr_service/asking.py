@@ -6,7 +6,8 @@ from typing import Final
 from fastapi import Request
 from starlette.responses import Response
 
-from mdr_service import address, batch, body, compute, forms, problems, questions, wire
+from mdr_service import address, batch, body, cost, forms, problems, questions, wire
+from mdr_service.compute import COMPUTE
 from mdr_service.questions import QUESTIONS, Answer
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.queries import Query
@@ -40,13 +41,16 @@ async def batched(request: Request) -> Response:
     """Return the answers to all queries of a batch."""
     _form(request, (wire.MEDIA_TYPE,), _format(request))
     asked = batch.read(wire.read(BatchQuery, await body.read(request)))
-    content = await compute.run(batch.effort(asked), batch.answer, asked)
+    tried, seconds = batch.priced(asked, COMPUTE.most_seconds, COMPUTE.slowness)
+    content = await COMPUTE.run(seconds, batch.answer, tried)
     return _sent(Answer(content, wire.MEDIA_TYPE))
 
 
 async def _answer(name: str, query: Query, media_type: str) -> Answer:
-    effort = questions.effort(query, media_type)
-    return await compute.run(effort, questions.answer, name, query, media_type)
+    seconds = cost.seconds(name, query, media_type)
+    if seconds > COMPUTE.most_seconds:
+        raise cost.too_costly(name, query, media_type, COMPUTE.most_seconds, COMPUTE.slowness)
+    return await COMPUTE.run(seconds, questions.answer, name, query, media_type)
 
 
 def _format(request: Request) -> str | None:

@@ -1,12 +1,14 @@
 """Many queries in one request, each answered as it would be on its own."""
 
+import itertools
 import logging
+from bisect import bisect
 from collections.abc import Sequence
 from typing import Final
 
 from pydantic_core import to_json
 
-from mdr_service import problems, questions, wire
+from mdr_service import cost, problems, questions, wire
 from mdr_service.problems import ServiceError
 from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, Query, StressQuery
@@ -37,16 +39,36 @@ def read(batch: BatchQuery) -> list[Asked]:
     return asked
 
 
-def effort(asked: Sequence[Asked]) -> int:
-    """Return what the answers cost together, as of `questions.effort`."""
-    queries = [each[1] for each in asked if not isinstance(each, bytes)]
-    return sum(questions.effort(query, wire.MEDIA_TYPE) for query in queries)
+def priced(asked: Sequence[Asked], most: float, slowness: float) -> tuple[list[Asked], float]:
+    """Return the queries, of which none takes more than `most` seconds, and what they take.
+
+    Raises ServiceError where that is too much for all of them together.
+    """
+    found = [_tried(each, most, slowness) for each in asked]
+    seconds = [0.0 if isinstance(each, bytes) else _seconds(each) for each in found]
+    together = list(itertools.accumulate(seconds))
+    if together[-1] > most:
+        fitting = bisect(together, most)
+        told = [(f"/queries/{fitting}", f"the first {fitting} queries would fit")]
+        raise cost.beyond(together[-1] * slowness, most * slowness, told)
+    return found, together[-1]
 
 
 def answer(asked: Sequence[Asked]) -> bytes:
     """Return the text of all answers, in their order."""
     entries = [each if isinstance(each, bytes) else _entry(*each) for each in asked]
     return b'{"answers":[' + b",".join(entries) + b"]}"
+
+
+def _tried(asked: Asked, most: float, slowness: float) -> Asked:
+    """Return the query, or the text of its refusal where it alone takes too long."""
+    if isinstance(asked, bytes) or _seconds(asked) <= most:
+        return asked
+    return _problem(cost.too_costly(*asked, wire.MEDIA_TYPE, most, slowness))
+
+
+def _seconds(asked: tuple[str, Query]) -> float:
+    return cost.seconds(*asked, wire.MEDIA_TYPE)
 
 
 def _numbers(query: Query) -> int:

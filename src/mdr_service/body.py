@@ -1,5 +1,6 @@
 """The body of a request, as long as it may be and of the type that is understood."""
 
+from anyio import fail_after
 from fastapi import Request
 
 from mdr_service import problems, wire
@@ -7,7 +8,7 @@ from mdr_service.settings import SETTINGS
 
 
 async def read(request: Request) -> bytes:
-    """Return the body, refusing it as soon as it is known to be too long."""
+    """Return the body, refusing it as soon as it is known to be too long or too slow."""
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type != wire.MEDIA_TYPE:
         raise problems.ServiceError(
@@ -16,6 +17,15 @@ async def read(request: Request) -> bytes:
     announced = request.headers.get("content-length", "")
     if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:
         raise _too_large()
+    try:
+        with fail_after(SETTINGS.body_seconds):
+            return await _received(request)
+    except TimeoutError:
+        detail = f"it is waited for {SETTINGS.body_seconds:g} s"
+        raise problems.ServiceError(problems.BODY_TOO_SLOW, detail) from None
+
+
+async def _received(request: Request) -> bytes:
     chunks: list[bytes] = []
     size = 0
     async for chunk in request.stream():

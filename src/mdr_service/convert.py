@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from mdr_core import materials, profiles
 from mdr_core.errors import InputError
-from mdr_core.wear import evolution
 from mdr_service.schemas.loads import Choice, Cycles, History
 from mdr_service.schemas.profiles import Profile as ProfileModel
 from mdr_service.schemas.profiles import Series, Tabulated
@@ -30,8 +29,6 @@ from mdr_service.settings import SETTINGS
 Array = NDArray[np.float64]
 _Arguments = Callable[[Any], dict[str, Any]]
 _Place = tuple[str | int, ...]
-# What it costs to halt at a number of cycles, in values of the profile for each node.
-_HALT: Final = 40
 
 
 def normal_arguments(query: NormalQuery | WearQuery) -> dict[str, Any]:
@@ -53,7 +50,6 @@ def wear_arguments(query: WearQuery) -> dict[str, Any]:
 def evolution_arguments(query: EvolutionQuery) -> dict[str, Any]:
     """Return the arguments of `mdr_core.wear.evolution.solve`, besides the normal contact."""
     _require_places(query)
-    _require_budget(query)
     return _rubbed(query) | {
         "wear_coefficient": query.wear_coefficient,
         "cycles": np.array(query.cycles, dtype=float),
@@ -225,40 +221,11 @@ def _require_few_numbers(query: StressQuery | WearQuery | EvolutionQuery) -> Non
         raise InputError((place,), detail)
 
 
-def _require_budget(query: EvolutionQuery) -> None:
-    """Raise InputError where following the wear takes too long, with what would not."""
-    budget = SETTINGS.max_evaluations / query.weight
-
-    def cost(resolution: int, cycles: int) -> int:
-        halts = _HALT * resolution * cycles
-        return evolution.evaluations(resolution, cycles, query.radii) + halts
-
-    asked = cost(query.resolution, query.loads)
-    if asked <= budget:
-        return
-    start = cost(query.resolution, 0)
-    cycles = int((budget - start) * query.loads / (asked - start))
-    finest = [
-        n for n in range(evolution.COARSEST, query.resolution) if cost(n, query.loads) <= budget
-    ]
-    fits = [f"a resolution of {n}" for n in finest[-1:]]
-    fits += [f"{cycles} numbers of cycles"] * (cycles > 0)
-    raise InputError(
-        ("resolution" if finest else "cycles",),
-        f"this takes about {asked * query.weight:.0f} values of the profile, and at most "
-        f"{SETTINGS.max_evaluations} are answered; {' or '.join(fits) or 'a simpler profile'} "
-        "would fit",
-    )
-
-
 def _require_few(name: str, way: History | Cycles) -> None:
-    for samples, most, where in (
-        (way.samples, SETTINGS.max_samples, ""),
-        (way.curved, SETTINGS.max_curved_samples, " on ways that are not straight"),
-    ):
-        if samples > most:
-            place = ("samples_per_step",) if way.samples_per_step > 1 else ()
-            raise InputError((name, *place), f"at most {most} samples{where} are answered at once")
+    if way.samples > SETTINGS.max_samples:
+        place = ("samples_per_step",) if way.samples_per_step > 1 else ()
+        detail = f"at most {SETTINGS.max_samples} samples are answered at once"
+        raise InputError((name, *place), detail)
 
 
 def _controls(path: _Place, given: Choice) -> dict[str, float | Array]:

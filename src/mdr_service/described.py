@@ -8,13 +8,21 @@ from mdr_service import arrays, openapi, pictures, problems, table
 from mdr_service.questions import QUESTIONS
 from mdr_service.schemas import answers, batch, examples
 
+_WORK_FAILURES: Final = (
+    problems.TOO_COSTLY,
+    problems.BUSY,
+    problems.LOST,
+    problems.TIME_EXCEEDED,
+)
 _ADDRESS_FAILURES: Final = (
     problems.NOT_ACCEPTABLE,
     problems.INVALID_REQUEST,
+    *_WORK_FAILURES,
     problems.ACCURACY,
 )
 _BODY_FAILURES: Final = (
     problems.MALFORMED_JSON,
+    problems.BODY_TOO_SLOW,
     problems.BODY_TOO_LARGE,
     problems.UNSUPPORTED_MEDIA_TYPE,
 )
@@ -118,5 +126,5 @@ QUERIES: Final = {
 
 BATCH: Final = openapi.asks(batch.BatchQuery, examples.BATCH_EXAMPLES) | openapi.answers(
     batch.BatchAnswer,
-    (*_BODY_FAILURES, problems.NOT_ACCEPTABLE, problems.INVALID_REQUEST),
+    (*_BODY_FAILURES, problems.NOT_ACCEPTABLE, problems.INVALID_REQUEST, *_WORK_FAILURES),
 )

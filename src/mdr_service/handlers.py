@@ -2,8 +2,10 @@
 
 import logging
 from collections.abc import Mapping
+from typing import Final
 
 import orjson
+from anyio import move_on_after
 from fastapi import FastAPI, Request
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
@@ -11,18 +13,35 @@ from starlette.responses import Response
 from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from mdr_service import problems
+from mdr_service import problems, watch
 from mdr_service.problems import METHOD_NOT_ALLOWED, NOT_FOUND, ServiceError
+
+# Of the service, not of the request.
+_OURS: Final = 500
+# What a client that went before it was answered is logged as.
+_GONE: Final = 499
+# Answers to bodies that were not read to their end.
+_UNREAD: Final = frozenset({problems.BODY_TOO_SLOW.status, problems.BODY_TOO_LARGE.status})
+_LINGER_SECONDS: Final = 1.0
+_CLOSE: Final = ((b"connection", b"close"),)
+_ALWAYS: Final = ((b"x-content-type-options", b"nosniff"),)
 
 _log = logging.getLogger(__name__)
 
 
 def response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:
     """Return the answer to a request that failed."""
-    text = orjson.dumps(problems.document(error))
+    watch.PROBLEMS.labels(error.kind.name).inc()
+    document = problems.document(error)
+    watched = watch.current()
+    if watched and error.kind.status >= _OURS:
+        # A fault of the request is found again by asking again; one of the service in its log.
+        document["instance"] = f"urn:mdr:request:{watched.id}"
     # What is wrong today may be mended tomorrow.
     told = {"Cache-Control": "no-store", **(headers or {})}
-    return Response(text, error.kind.status, told, problems.MEDIA_TYPE)
+    if error.retry_after is not None:
+        told["Retry-After"] = str(error.retry_after)
+    return Response(orjson.dumps(document), error.kind.status, told, problems.MEDIA_TYPE)
 
 
 def install(app: FastAPI) -> None:
@@ -30,11 +49,11 @@ def install(app: FastAPI) -> None:
     for kind in problems.FAILURES:
         app.exception_handler(kind)(_failure)
     app.exception_handler(HTTPException)(_http_exception)
-    app.add_middleware(CatchAll)
+    app.add_middleware(Watching)
 
 
-class CatchAll:
-    """Answers a bug from inside the application.
+class Watching:
+    """Watches every request, and answers a bug from inside the application.
 
     An exception that reaches the server makes it drop the connection, and with it the next
     request of a client that reuses connections.
@@ -45,23 +64,51 @@ class CatchAll:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on; answer 500 where nothing has been answered yet."""
-        started = False
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        watched = watch.begin(scope["method"], _given_id(scope))
+        marks = [(b"x-request-id", watched.id.encode("ascii")), *_ALWAYS]
 
-        async def watched_send(message: Message) -> None:
-            nonlocal started
-            started = True
+        async def told(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                watched.status = message["status"]
+                closing = _CLOSE if watched.status in _UNREAD else ()
+                message["headers"] = [*message["headers"], *marks, *closing]
+            elif watched.status in _UNREAD and not message.get("more_body"):
+                await _linger(message, receive, send)
+                message = {"type": "http.response.body"}
             await send(message)
 
         try:
-            await self.app(scope, receive, watched_send)
+            await self.app(scope, receive, told)
         except ClientDisconnect:
             # Nobody is left to answer.
-            return
+            watched.status = _GONE
         except Exception:
-            if started or scope["type"] != "http":
+            if watched.status:
                 raise
             _log.exception("a defect, answered with 500")
-            await response(problems.DEFECT)(scope, receive, send)
+            await response(problems.DEFECT)(scope, receive, told)
+        finally:
+            route = scope.get("route")
+            watch.end(watched, route.path if isinstance(route, Route) else None)
+
+
+def _given_id(scope: Scope) -> bytes | None:
+    return next((value for name, value in scope["headers"] if name == b"x-request-id"), None)
+
+
+async def _linger(message: Message, receive: Receive, send: Send) -> None:
+    """Send the whole answer, then read on for a while.
+
+    A connection that is closed with something unread is reset, and what was sent last is lost on
+    its way.
+    """
+    await send({**message, "more_body": True})
+    with move_on_after(_LINGER_SECONDS):
+        while (await receive()).get("more_body"):
+            pass
 
 
 def _failure(_request: Request, error: Exception) -> Response:

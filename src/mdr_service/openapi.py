@@ -28,7 +28,7 @@ from mdr_service.schemas.answers import (
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, StressQuery, TangentialQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-from mdr_service.settings import SETTINGS
+from mdr_service.settings import SETTINGS, Settings
 
 _REF: Final = "#/components/schemas/{model}"
 _QUERIES: Final[Sequence[type[BaseModel]]] = (
@@ -50,6 +50,7 @@ _ANSWERS: Final[Sequence[type[BaseModel]]] = (
     BatchAnswer,
     Catalogue,
     Health,
+    Settings,
     Problem,
 )
 _NO_OTHERS: Final[Mapping[str, str]] = MappingProxyType({})
@@ -136,6 +137,14 @@ def answers(
             "content": {problems.MEDIA_TYPE: {"schema": _reference(Problem)}},
         }
     return {"responses": responses}
+
+
+def answers_text(meaning: str) -> dict[str, Any]:
+    """Return what describes an operation that answers plain text."""
+    described = answers(Health)
+    content = {"text/plain": {"schema": {**_TEXT, "description": meaning}}}
+    described["responses"]["200"]["content"] = content
+    return described
 
 
 def _described(parameter: Parameter) -> list[dict[str, Any]]:

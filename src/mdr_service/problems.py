@@ -41,35 +41,53 @@ MALFORMED_JSON = Kind("malformed-json", 400, "The body is not JSON")
 NOT_FOUND = Kind("not-found", 404, "There is nothing at this address")
 METHOD_NOT_ALLOWED = Kind("method-not-allowed", 405, "This address knows other methods")
 NOT_ACCEPTABLE = Kind("not-acceptable", 406, "The answer has no such form")
+BODY_TOO_SLOW = Kind("body-too-slow", 408, "The body did not arrive in time")
 BODY_TOO_LARGE = Kind("body-too-large", 413, "The body is too long")
 UNSUPPORTED_MEDIA_TYPE = Kind("unsupported-media-type", 415, "The body must be JSON")
 INVALID_REQUEST = Kind("invalid-request", 422, "The request cannot be answered as it stands")
+TOO_COSTLY = Kind("too-costly", 422, "The answer takes longer than is given to one request")
 ACCURACY = Kind("accuracy-not-reachable", 422, "The tolerance cannot be reached")
 INTERNAL = Kind("internal-error", 500, "The service is at fault")
+BUSY = Kind("busy", 503, "The service has more to do than it can answer soon")
+LOST = Kind("process-lost", 503, "The process that worked on the answer has ended")
+NOT_READY = Kind("not-ready", 503, "The service does not get a known answer right")
+TIME_EXCEEDED = Kind("time-exceeded", 504, "The answer took longer than is given to one request")
 
 KINDS: Final = (
     MALFORMED_JSON,
     NOT_FOUND,
     METHOD_NOT_ALLOWED,
     NOT_ACCEPTABLE,
+    BODY_TOO_SLOW,
     BODY_TOO_LARGE,
     UNSUPPORTED_MEDIA_TYPE,
     INVALID_REQUEST,
+    TOO_COSTLY,
     ACCURACY,
     INTERNAL,
+    BUSY,
+    LOST,
+    NOT_READY,
+    TIME_EXCEEDED,
 )
 
 Error = tuple[str, str]
 
 
 class ServiceError(Exception):
-    """A failure that the service itself found; `errors` are pairs of pointer and detail."""
+    """A failure that the service itself found; `errors` are pairs of pointer and detail.
 
-    def __init__(self, kind: Kind, detail: str, errors: Iterable[Error] = ()) -> None:
+    Where the same request may be answered later, `retry_after` says in how many seconds.
+    """
+
+    def __init__(
+        self, kind: Kind, detail: str, errors: Iterable[Error] = (), retry_after: int | None = None
+    ) -> None:
         super().__init__(detail)
         self.kind = kind
         self.detail = detail
         self.errors = tuple(errors)
+        self.retry_after = retry_after
 
 
 DEFECT: Final = ServiceError(INTERNAL, "the request met a defect of the service")

@@ -61,11 +61,6 @@ QUESTIONS: Final = {
 }
 
 
-def effort(query: Query, media_type: str) -> int:
-    """Return what an answer costs, in numbers that could be answered in that time."""
-    return query.size + (pictures.EFFORT if media_type == pictures.MEDIA_TYPE else 0)
-
-
 def answer(name: str, query: Query, media_type: str, **watched: Callable[[int], None]) -> Answer:
     """Return the answer to the question `name`, in one of its forms.
 

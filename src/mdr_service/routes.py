@@ -9,10 +9,11 @@ from fastapi.routing import APIRoute
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import request_response
 
-from mdr_service import asking, catalogue, parameters, wire
+from mdr_service import asking, catalogue, health, parameters, problems, watch, wire
 from mdr_service.described import BATCH, QUERIES
-from mdr_service.openapi import answers
+from mdr_service.openapi import answers, answers_text
 from mdr_service.schemas.answers import Catalogue, Health
+from mdr_service.settings import SETTINGS, Settings
 
 
 class DirectRoute(APIRoute):
@@ -33,6 +34,7 @@ class DirectRoute(APIRoute):
 router = APIRouter(route_class=DirectRoute)
 
 _CATALOGUE: Final = catalogue.listed().model_dump()
+_LIMITS: Final = SETTINGS.model_dump()
 _HEALTH: Final = Health(status="ok").model_dump()
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
 # Whatever a document shown there says, the browser asks no other host.
@@ -216,9 +218,61 @@ async def profile_catalogue(_request: Request) -> Response:
     summary="Whether the service is ready",
     openapi_extra=answers(Health),
 )
-async def health(_request: Request) -> Response:
+async def served(_request: Request) -> Response:
     """Answer 200 as soon as requests are served."""
     return _said(_HEALTH)
+
+
+@router.get(
+    "/health/live",
+    operation_id="live",
+    tags=["operation"],
+    summary="Whether the service answers at all",
+    openapi_extra=answers(Health),
+)
+async def live(_request: Request) -> Response:
+    """Answer 200 without any work: what does not answer this is to be started again."""
+    return _said(_HEALTH)
+
+
+@router.get(
+    "/health/ready",
+    operation_id="ready",
+    tags=["operation"],
+    summary="Whether the service answers, and answers right",
+    openapi_extra=answers(Health, (problems.BUSY, *health.FAILURES)),
+)
+async def ready(_request: Request) -> Response:
+    """Have a compute process answer a Hertzian contact, and compare it with the closed form.
+
+    A service that is ready but has too much to do is not, for the moment.
+    """
+    await health.check()
+    return _said(_HEALTH)
+
+
+@router.get(
+    "/metrics",
+    operation_id="metrics",
+    tags=["operation"],
+    summary="Counts and times of this process, for Prometheus",
+    openapi_extra=answers_text("Prometheus' text format."),
+)
+async def metrics(_request: Request) -> Response:
+    """Answer requests and latencies by route, problems by kind, the queue and the processes."""
+    return Response(watch.metrics(), media_type=watch.METRICS_MEDIA_TYPE)
+
+
+@router.get(
+    "/v1/limits",
+    operation_id="limits",
+    tags=["operation"],
+    summary="What one request may ask for, and how long it may take",
+    openapi_extra=answers(Settings),
+)
+async def limits(_request: Request) -> Response:
+    """Answer the limits of this process, so that a client can send what fits."""
+    return _said(_LIMITS)
 
 
 @router.get("/", include_in_schema=False)

@@ -6,9 +6,10 @@ parsed, and OpenAPI shows the bound), so they are fixed when the service starts.
 
 import os
 from collections.abc import Mapping
-from typing import Final
+from typing import Final, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
 PREFIX: Final = "MDR_"
 
@@ -31,26 +32,51 @@ class Settings(BaseModel):
     max_samples: int = Field(
         default=100_000, ge=1, description="Most points times samples_per_step of a history."
     )
-    max_curved_samples: int = Field(
-        default=1_000,
-        ge=1,
-        description="Most of them where a depth and a tangential force change, or a normal force "
-        "and a displacement.",
-    )
-    max_evaluations: int = Field(
-        default=2_000_000,
-        ge=100_000,
-        description="Most values of a profile that following its wear over the cycles takes, as "
-        "estimated beforehand; a million take some seconds.",
+    max_cycles: int = Field(
+        default=100_000, ge=1, description="Most cycles of a history, or numbers of cycles of wear."
     )
     max_batch: int = Field(default=1_000, ge=1, description="Most queries in one batch.")
     max_table_points: int = Field(
         default=2_000, ge=2, description="Most points of a tabulated profile."
     )
     max_series_terms: int = Field(default=100, ge=1, description="Most terms of a series profile.")
-    shutdown_seconds: int = Field(
-        default=15, ge=1, description="How long requests in flight may take after SIGTERM."
+    compute_processes: int = Field(
+        default=2, ge=1, le=1_000, description="Processes that longer queries are answered by."
     )
+    budget_seconds: float = Field(
+        default=10.0,
+        gt=0,
+        le=86_400,
+        description="How long one request may be worked on; what is estimated to take more than "
+        "half of it is refused beforehand.",
+    )
+    queue_length: int = Field(
+        default=16, ge=0, description="Most requests that wait for a process."
+    )
+    queue_seconds: float = Field(
+        default=4.0,
+        gt=0,
+        le=86_400,
+        description="How long one request may wait for a process; what is estimated to wait more "
+        "than half of it is refused beforehand.",
+    )
+    body_seconds: float = Field(
+        default=10.0, gt=0, le=86_400, description="How long a request's body may take to arrive."
+    )
+    shutdown_seconds: int = Field(
+        default=15,
+        ge=1,
+        description="How long requests in flight may take after SIGTERM; more than waiting and "
+        "work together.",
+    )
+
+    @model_validator(mode="after")
+    def _ends_in_time(self) -> Self:
+        if self.shutdown_seconds <= self.budget_seconds + self.queue_seconds:
+            raise PydanticCustomError(
+                "shutdown", "must be more than MDR_BUDGET_SECONDS and MDR_QUEUE_SECONDS together"
+            )
+        return self
 
 
 def from_environment(environment: Mapping[str, str]) -> Settings:
@@ -70,8 +96,9 @@ def from_environment(environment: Mapping[str, str]) -> Settings:
 
 
 def _complaint(error: ValidationError) -> str:
-    faults = error.errors(include_url=False)
-    return "\n".join(f"{PREFIX}{str(fault['loc'][0]).upper()}: {fault['msg']}" for fault in faults)
+    # What is about no single setting is about the last one of them, which has to follow the others.
+    faults = [((*fault["loc"], "shutdown_seconds")[0], fault["msg"]) for fault in error.errors()]
+    return "\n".join(f"{PREFIX}{str(name).upper()}: {message}" for name, message in faults)
 
 
 SETTINGS: Final = from_environment(os.environ)

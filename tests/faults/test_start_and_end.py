@@ -28,10 +28,17 @@ def test_a_signal_ends_it_cleanly(stop: signal.Signals) -> None:
     assert not is_served(port)
 
 
+BRIEF = {
+    "MDR_SHUTDOWN_SECONDS": "1",
+    "MDR_BUDGET_SECONDS": "0.4",
+    "MDR_QUEUE_SECONDS": "0.4",
+}
+
+
 def test_a_half_sent_request_does_not_keep_it_from_ending() -> None:
     port = free_port()
     with (
-        running(service(port), port, MDR_SHUTDOWN_SECONDS="1") as process,
+        running(service(port), port, **BRIEF) as process,
         socket.create_connection(("127.0.0.1", port)) as half_sent,
     ):
         half_sent.sendall(
@@ -53,16 +60,19 @@ def test_a_port_that_is_none_is_refused() -> None:
     assert not told.stdout
 
 
-def test_a_senseless_limit_is_told_in_a_sentence() -> None:
+@pytest.mark.parametrize(
+    ("name", "value"), [("MDR_MAX_LOADS", "many"), ("MDR_SHUTDOWN_SECONDS", "14")]
+)
+def test_a_senseless_limit_is_told_in_a_sentence(name: str, value: str) -> None:
     told = subprocess.run(
         service(free_port()),
-        env=os.environ | {"MDR_MAX_LOADS": "many"},
+        env=os.environ | {name: value},
         capture_output=True,
         text=True,
         check=False,
     )
     assert told.returncode == 1
-    assert told.stderr.startswith("MDR_MAX_LOADS: ")
+    assert told.stderr.startswith(f"{name}: ")
     assert len(told.stderr.splitlines()) == 1
 
 

@@ -7,8 +7,6 @@ import pytest
 
 from mdr_core import normal
 from mdr_core.wear import evolution, limit
-from mdr_service import convert
-from mdr_service.schemas.wear import EvolutionQuery
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_normal import E_STAR, PROFILES
@@ -194,59 +192,6 @@ def refused(client: Client, path: str, asked: object) -> tuple[str, str]:
     assert answer.status_code == 422
     ((error),) = answer.json()["errors"]
     return error["pointer"], error["detail"]
-
-
-def long_table() -> dict[str, object]:
-    r = np.linspace(0.0, 2.0, SETTINGS.max_table_points)
-    return {"profile": {"kind": "tabulated", "r": r.tolist(), "f": (r * r / 4).tolist()}}
-
-
-@pytest.mark.parametrize(
-    ("more", "pointer", "way_out"),
-    [
-        ({"resolution": 96, **long_table()}, "/resolution", "a resolution of"),
-        ({"cycles": [1.0] * 5_000}, "/resolution", "numbers of cycles would fit"),
-        ({"cycles": [1.0] * 50_000}, "/cycles", "numbers of cycles would fit"),
-        (
-            {
-                "profile": {
-                    "kind": "series",
-                    "terms": [{"coefficient": 1.0, "exponent": 2.0}] * SETTINGS.max_series_terms,
-                },
-                "resolution": 96,
-                "cycles": [1.0] * 5_000,
-            },
-            "/cycles",
-            "",
-        ),
-    ],
-    ids=["resolution", "cycles", "very many cycles", "all at once"],
-)
-def test_what_takes_too_long_is_refused_with_what_would_not(
-    client: Client, more: dict[str, object], pointer: str, way_out: str
-) -> None:
-    found, detail = refused(client, EVOLUTION, followed(**more))
-    assert found == pointer
-    assert str(SETTINGS.max_evaluations) in detail
-    assert way_out in detail
-
-
-def test_what_is_said_to_fit_does(client: Client) -> None:
-    asked = followed(**long_table(), resolution=96)
-    _, detail = refused(client, EVOLUTION, asked)
-    finest = int(detail.partition("a resolution of ")[2].split()[0])
-    assert evolution.COARSEST < finest < 96
-    let_in(asked | {"resolution": finest})
-    refused(client, EVOLUTION, asked | {"resolution": finest + 1})
-    _, detail = refused(client, EVOLUTION, followed(cycles=[1.0] * 50_000))
-    most = int(detail.partition(" numbers of")[0].split()[-1])
-    let_in(followed(cycles=[1.0] * most))
-    refused(client, EVOLUTION, followed(cycles=[1.0] * (most + 1)))
-
-
-def let_in(asked: dict[str, object]) -> None:
-    """Only let it in: to follow it takes some seconds."""
-    convert.evolution_arguments(EvolutionQuery.model_validate(asked))
 
 
 def test_too_many_numbers_are_refused(client: Client) -> None:

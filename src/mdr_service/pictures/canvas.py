@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MEDIA_TYPE: Final = "image/svg+xml"
-# What a picture costs, in numbers that could be answered meanwhile.
-EFFORT: Final = 10_000
 UNITS: Final = "in the units of the request"
 
 _WIDTH, _PANEL = 7.2, 2.6

@@ -260,6 +260,11 @@ class Problem(Answer):
     title: str = Field(description="The kind of failure in words; the same for all of a type.")
     status: int = Field(description="The HTTP status.")
     detail: str = Field(description="What went wrong this time.")
+    instance: str = Field(
+        default="",
+        description="Of a failure of the service the name of the request, a URI with its "
+        "`X-Request-Id`.",
+    )
     errors: list[ProblemError] = Field(
         default=[], max_length=20, description="The values at fault, the first twenty of them."
     )

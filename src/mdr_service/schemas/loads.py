@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from itertools import pairwise
-from typing import Any, ClassVar, Final, Self
+from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -168,10 +168,6 @@ def _samples_per_step() -> Any:
     )
 
 
-# A curved way is followed in many steps.
-_CURVED: Final = 100
-
-
 class _Way(Strict):
     normal: Choice
     tangential: Choice
@@ -202,11 +198,6 @@ class _Way(Strict):
     @abstractmethod
     def _changes(self) -> int:
         """On how many legs both loads change."""
-
-    @property
-    def effort(self) -> int:
-        """What it costs, in samples of straight ways."""
-        return self.samples + _CURVED * self.curved
 
     def place(self, axis: str, step: int) -> tuple[str | int, ...]:
         """Return the path from here to what says where a leg goes."""
@@ -253,7 +244,7 @@ class Cycles(_Way):
     tangential: TangentialSwing = Field(
         description="Exactly one control: the amplitude of displacement or tangential force."
     )
-    count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_samples)
+    count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_cycles)
     samples_per_step: int = _samples_per_step()
 
     @property

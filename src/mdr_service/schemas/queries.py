@@ -6,7 +6,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
 from mdr_service.schemas.loads import Choice, Cycles, History, Load, Tangential
-from mdr_service.schemas.profiles import Profile, Tabulated
+from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
     Size,
     Strict,
@@ -80,20 +80,11 @@ class Query(Strict):
         "1", "Relative accuracy that is needed", default=1e-10, ge=1e-13, le=1e-3
     )
 
-    @property
-    def size(self) -> int:
-        """How many numbers it is about."""
-        return len(self.profile.r) if isinstance(self.profile, Tabulated) else 0
-
 
 class NormalQuery(Query):
     """A profile pressed into an elastic half-space without friction."""
 
     load: Load = Field(description="Exactly one control: depth, force or contact radius.")
-
-    @property
-    def size(self) -> int:
-        return super().size + self.loads
 
     @property
     def loads(self) -> int:
@@ -164,12 +155,6 @@ class HistoryQuery(Query, json_schema_extra=_describe_history):
     friction_coefficient: float = friction()
     history: History = left_out("The points that the loads go through.")
     cycles: Cycles = left_out("In place of `history`: equal cycles of the tangential load.")
-
-    @property
-    def size(self) -> int:
-        """How many numbers it is about, also where both or neither way to say so was taken."""
-        ways = {"history": self.history, "cycles": self.cycles}
-        return super().size + sum(ways[name].effort for name in ways.keys() & self.model_fields_set)
 
     @property
     def has_cycles(self) -> bool:
@@ -261,11 +246,6 @@ class StressQuery(NormalQuery, json_schema_extra=_describe_stress):
     def radii(self) -> int:
         """How many radii it is about, also where both or neither way to say so was taken."""
         return len(self.radius or ()) + (self.points or 0)
-
-    @property
-    def size(self) -> int:
-        effort = self.history.effort if self.has_history else 0
-        return super().size + effort + self.loads * self.radii
 
     def place(self, index: int) -> tuple[str | int, ...]:
         if self.has_history:

@@ -5,7 +5,6 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import AfterValidator, Field
 
 from mdr_service.schemas.loads import HeldLoad, HeldPoint, Oscillation, TangentialSwing
-from mdr_service.schemas.profiles import Series, Tabulated
 from mdr_service.schemas.quantities import Size, drop_null_defaults, positive, quantity
 from mdr_service.schemas.queries import (
     Query,
@@ -20,11 +19,6 @@ WearField = Literal["initial_profile", "limiting_profile", "worn_depth", "pressu
 EvolutionField = Literal["profile", "worn_depth", "pressure"]
 
 _MOST_CYCLES: Final = 1e12
-# Values of a table cost so many of a formula, and more the longer it is.
-_TABLE: Final = 8
-_POINTS: Final = 500
-# A stick edge that moves is followed as well.
-_MOVING: Final = 2
 
 
 def _describe(schema: dict[str, Any]) -> None:
@@ -70,10 +64,6 @@ class WearQuery(_Wearing):
         """How many pairs of load and amplitude it is about."""
         return max(self.load.count, self.oscillation.count)
 
-    @property
-    def size(self) -> int:
-        return super().size + self.loads * (1 + self.radii)
-
     def place(self, index: int) -> tuple[str | int, ...]:
         """Return the path to one of the loads."""
         return ("load", *self.load.place(index))
@@ -94,7 +84,7 @@ class EvolutionQuery(_Wearing):
         "1",
         "Numbers of cycles at which to answer, ascending, up to 1e12",
         min_length=1,
-        max_length=SETTINGS.max_samples,
+        max_length=SETTINGS.max_cycles,
         fail_fast=True,
     )
     resolution: int = quantity(
@@ -119,24 +109,6 @@ class EvolutionQuery(_Wearing):
     def loads(self) -> int:
         """How many numbers of cycles it is about."""
         return len(self.cycles)
-
-    @property
-    def weight(self) -> float:
-        """What a value of its profile costs, in values of a formula."""
-        moves = (self.load.control, self.oscillation.control) == (
-            "normal_force",
-            "tangential_displacement",
-        )
-        if isinstance(self.profile, Tabulated):
-            weight = _TABLE + len(self.profile.r) / _POINTS
-        else:
-            weight = len(self.profile.terms) if isinstance(self.profile, Series) else 1
-        return weight * _MOVING if moves else weight
-
-    @property
-    def size(self) -> int:
-        # The shortest run takes longer than handing it to a thread.
-        return SETTINGS.max_evaluations
 
     def place(self, _index: int) -> tuple[str | int, ...]:
         """Return the path to the load."""

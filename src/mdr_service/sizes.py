@@ -1,0 +1,195 @@
+"""What the cost of a query depends on, and what is counted of it."""
+
+from collections.abc import Callable, Iterator, Mapping
+from math import log10
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from mdr_service import pictures, table, wire
+from mdr_service.schemas.profiles import Series, Tabulated
+from mdr_service.schemas.queries import HistoryQuery, NormalQuery, Query, StressQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+
+if TYPE_CHECKING:
+    from mdr_service.schemas.loads import Cycles, History
+
+Counts = Iterator[tuple[str, float]]
+
+_FORMS: Final = {wire.MEDIA_TYPE: "json", table.MEDIA_TYPE: "csv", pictures.MEDIA_TYPE: "svg"}
+_OTHER_FORM: Final = "npz"
+# Numbers of an answer for each load, sample or number of cycles.
+_COLUMNS: Final = {"normal": 6, "tangential": 12, "history": 9, "wear": 6, "evolution": 7}
+
+# Chords of a curved leg over all halvings, at the loosest tolerance, how they grow with the digits,
+# and how many there are at most, in a leg and in all: as of `mdr_core.history`.
+_CHORDS, _LOOSEST, _GROWTH = 64, 3, 0.3
+_FEWEST_IN_A_LEG, _MOST_IN_A_LEG = 128, 32_768
+_MOST_IN_ALL, _MOST_OF_DEAR_ONES = 600_000, 60_000
+_CHEAP: Final = frozenset({"cone", "flat_punch", "paraboloid"})
+
+
+class Sizes(NamedTuple):
+    """What the cost of a query depends on."""
+
+    question: str
+    profile: str
+    form: str
+    digits: float
+    length: int = 0
+    """Points of a table, or terms of a series."""
+    loads: int = 1
+    """Or numbers of cycles."""
+    radii: int = 0
+    quantities: tuple[str, ...] = ()
+    rubbed: bool = False
+    samples: int = 0
+    curved: int = 0
+    """How many of the samples end a leg that is not straight."""
+    nodes: int = 0
+    moving: bool = False
+    """Whether the stick edge moves as it wears."""
+
+
+def of(question: str, query: Query, media_type: str) -> Sizes:
+    """Return the sizes of a query, also of one that is to be refused."""
+    found = Sizes(
+        question,
+        query.profile.kind,
+        _FORMS.get(media_type, _OTHER_FORM),
+        -log10(query.rtol),
+        _length(query),
+    )
+    return found._replace(**_MORE[question](query))
+
+
+def counts(sizes: Sizes) -> Counts:
+    """Yield what is counted of the work, by names of which each kind of profile has rates."""
+    yield from _COUNTS[sizes.question](sizes)
+
+
+def written(sizes: Sizes) -> Counts:
+    """Yield what is counted of the writing, whatever the profile."""
+    numbers = sizes.loads * sizes.radii * len(sizes.quantities)
+    rows = sizes.samples or sizes.loads
+    yield sizes.form, 1
+    yield f"{sizes.form}/number", numbers + rows * _COLUMNS.get(sizes.question, 0)
+
+
+def _length(query: Query) -> int:
+    if isinstance(query.profile, Tabulated):
+        return len(query.profile.r)
+    return len(query.profile.terms) if isinstance(query.profile, Series) else 0
+
+
+def _of_loads(query: NormalQuery) -> dict[str, Any]:
+    return {"loads": query.loads}
+
+
+def _of_history(query: HistoryQuery) -> dict[str, Any]:
+    # Both or neither may be there; that is found out where it is solved.
+    ways: dict[str, History | Cycles] = {"history": query.history, "cycles": query.cycles}
+    given = [ways[name] for name in ways.keys() & query.model_fields_set]
+    return {
+        "rubbed": True,
+        "samples": sum(way.samples for way in given),
+        "curved": sum(way.curved for way in given),
+    }
+
+
+def _of_stress(query: StressQuery) -> dict[str, Any]:
+    followed = query.has_history
+    return {
+        "loads": query.loads,
+        "radii": query.radii,
+        "quantities": tuple(query.quantities),
+        "rubbed": query.has_friction,
+        "samples": query.history.samples if followed else 0,
+        "curved": query.history.curved if followed else 0,
+    }
+
+
+def _of_wear(query: WearQuery | EvolutionQuery) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "loads": query.loads,
+        "radii": query.radii,
+        "quantities": tuple(query.quantities),
+    }
+    if isinstance(query, EvolutionQuery):
+        held = (query.load.control, query.oscillation.control)
+        found["nodes"] = query.resolution
+        found["moving"] = held == ("normal_force", "tangential_displacement")
+    return found
+
+
+_MORE: Final[Mapping[str, Callable[[Any], dict[str, Any]]]] = {
+    "normal": _of_loads,
+    "tangential": _of_loads,
+    "history": _of_history,
+    "stress": _of_stress,
+    "wear": _of_wear,
+    "evolution": _of_wear,
+}
+
+
+def _normal(sizes: Sizes) -> Counts:
+    yield "normal", 1
+    yield "normal/load", sizes.loads
+
+
+def _tangential(sizes: Sizes) -> Counts:
+    yield "tangential", 1
+    yield "tangential/load", sizes.loads
+
+
+def _history(sizes: Sizes) -> Counts:
+    yield "history", 1
+    yield "history/sample", sizes.samples
+    yield "history/chord", _chords(sizes)
+
+
+def _chords(sizes: Sizes) -> float:
+    if not sizes.curved:
+        return 0
+    wanted = _CHORDS * 10 ** (_GROWTH * (sizes.digits - _LOOSEST))
+    in_all = _MOST_IN_ALL if sizes.profile in _CHEAP else _MOST_OF_DEAR_ONES
+    most = min(_MOST_IN_A_LEG, max(in_all / sizes.curved, _FEWEST_IN_A_LEG))
+    return sizes.curved * min(wanted, most)
+
+
+def _stress(sizes: Sizes) -> Counts:
+    if sizes.samples:
+        yield from _history(sizes)
+    elif sizes.rubbed:
+        yield from _tangential(sizes)
+    else:
+        yield from _normal(sizes)
+    for name in sizes.quantities:
+        yield name, 1
+        # Alone among them this one takes nodes by the digits, everywhere.
+        digits = sizes.digits if name == "normal_displacement" else 1
+        yield f"{name}/number", sizes.loads * sizes.radii * digits
+
+
+def _wear(sizes: Sizes) -> Counts:
+    yield "wear", 1
+    yield "wear/load", sizes.loads
+    yield "wear/number", sizes.loads * sizes.radii * len(sizes.quantities)
+
+
+def _evolution(sizes: Sizes) -> Counts:
+    # A stick edge that moves is followed as well.
+    times = sizes.digits * (2 if sizes.moving else 1)
+    yield "evolution", times
+    yield "evolution/node", times * sizes.nodes
+    yield "evolution/node^2", times * sizes.nodes**2
+    yield "evolution/halt", sizes.loads * sizes.nodes
+    yield "evolution/number", sizes.loads * sizes.radii * len(sizes.quantities)
+
+
+_COUNTS: Final[Mapping[str, Callable[[Sizes], Counts]]] = {
+    "normal": _normal,
+    "tangential": _tangential,
+    "history": _history,
+    "stress": _stress,
+    "wear": _wear,
+    "evolution": _evolution,
+}
