@@ -12,6 +12,7 @@ the elementary moments I_k = int_{x_j}^x r^k/sqrt(x^2 - r^2) dr.
 from __future__ import annotations
 
 import bisect
+import functools
 import itertools
 from typing import TYPE_CHECKING, Any
 
@@ -82,7 +83,7 @@ class Table:
         self.kinks = [
             a + b * x + c * x**2 for x, (a, b, c) in zip(self.knots, self.jumps, strict=False)
         ]
-        self.rule = _legendre(POINTS)
+        self.rule = _legendre(POINTS, mp.dps)
         self._slopes: dict[tuple[int, mpf], list[tuple[mpf, mpf, mpf]]] = {}
 
     def panel(self, x: mpf) -> int:
@@ -214,7 +215,8 @@ class Table:
         return total
 
 
-def _legendre(count: int) -> list[tuple[mpf, mpf]]:
+@functools.cache
+def _legendre(count: int, digits: int) -> list[tuple[mpf, mpf]]:
     """Gauss-Legendre nodes and weights on [0, 1], by Newton's method from numpy's."""
     rule = []
     for start in np.polynomial.legendre.leggauss(count)[0].tolist():
