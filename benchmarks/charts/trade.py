@@ -89,7 +89,8 @@ def _draw(ax: Axes, title: str, found: Found) -> None:
         ax.plot(seconds, np.maximum(median, FLOOR), style, color=color, alpha=0.25, linewidth=width)
     ax.set(xscale="log", yscale="log", ylim=(FLOOR / 2, 3), title=title)
     ax.set_xlabel("processor seconds")
-    ax.set_ylabel("relative error: largest (dark), median (pale)")
+    if ax.get_subplotspec().is_first_col():
+        ax.set_ylabel("relative error: largest (dark), median (pale)")
 
 
 #: One colour for a family, one mark for a member.
