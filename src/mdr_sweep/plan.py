@@ -25,7 +25,7 @@ _BASE: Final = {
     "tabulated": 3000.0,
 }
 _CLOSED_LOSS: Final = frozenset({"cone", "paraboloid", "flat_punch", "power"})
-_LOSS: Final = 250.0
+_LOSS: Final = 50.0
 _WEAR: Final = 2500.0
 _DEAREST: Final = 5.0
 # A chunk takes about this long, so that little is lost with a worker, but no longer than its
