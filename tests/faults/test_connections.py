@@ -1,6 +1,9 @@
 """What a client's connection survives."""
 
 import http.client
+import logging
+import re
+import socket as sockets
 import threading
 import time
 from collections.abc import Iterator
@@ -8,7 +11,7 @@ from collections.abc import Iterator
 import pytest
 import uvicorn
 
-from mdr_service import solve
+from mdr_service import body, solve, watch
 from mdr_service.app import create_app
 from mdr_service.problems import MEDIA_TYPE
 from mdr_service.settings import SETTINGS
@@ -52,8 +55,19 @@ def ask(connection: http.client.HTTPConnection, body: bytes) -> tuple[int, str |
 
 
 def test_a_bug_is_answered_and_the_connection_stays(
-    connection: http.client.HTTPConnection, monkeypatch: pytest.MonkeyPatch
+    connection: http.client.HTTPConnection,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
+    lines: list[str] = []
+    formatter = watch.JsonLines()
+    # Where the request is answered, as a handler of the service formats it.
+    monkeypatch.setattr(
+        logging.getLogger("mdr_service.handlers"),
+        "handle",
+        lambda record: (lines.append(formatter.format(record)), caplog.handler.handle(record)),
+    )
+
     def broken(*_arguments: object, **_options: object) -> None:
         raise RuntimeError("a secret of the implementation")
 
@@ -64,14 +78,20 @@ def test_a_bug_is_answered_and_the_connection_stays(
     assert (status, media_type) == (500, MEDIA_TYPE)
     assert b"secret" not in body
     assert b"Traceback" not in body
+    # The id in the body is that of the line in the log, where the trace is.
+    (instance,) = re.findall(rb'"urn:mdr:request:([0-9a-f]+)"', body)
+    (record,) = [each for each in caplog.records if each.exc_info]
+    assert record.name == "mdr_service.handlers"
+    assert f'"id":"{instance.decode()}"' in lines[-1]
+    assert "a secret of the implementation" in lines[-1]
     assert ask(connection, BODY)[0] == 200
     assert connection.sock is socket
 
 
 def test_wrong_input_leaves_the_connection_alone(connection: http.client.HTTPConnection) -> None:
     socket = connection.sock
-    for body in (b"{", b"{}", BODY.replace(b"cone", b"pyramid"), b"[" * 10_000):
-        assert ask(connection, body)[0] in {400, 422}
+    for wrong in (b"{", b"{}", BODY.replace(b"cone", b"pyramid"), b"[" * 10_000):
+        assert ask(connection, wrong)[0] in {400, 422}
     assert ask(connection, BODY)[0] == 200
     assert connection.sock is socket
 
@@ -83,6 +103,83 @@ def test_a_long_body_is_refused_before_it_is_sent(connection: http.client.HTTPCo
     connection.endheaders()
     answer = connection.getresponse()
     assert (answer.status, answer.getheader("content-type")) == (413, MEDIA_TYPE)
+    assert answer.getheader("connection") == "close"
+
+
+def test_a_long_body_that_is_sent_whatever_comes_is_answered(port: int) -> None:
+    """A client that writes all before it reads anything gets the answer, not a reset."""
+    length = 8 * SETTINGS.max_body_bytes
+    head = (
+        "POST /v1/normal HTTP/1.1\r\nHost: service\r\nContent-Type: application/json\r\n"
+        f"Content-Length: {length}\r\n\r\n"
+    )
+    with sockets.create_connection(("127.0.0.1", port), timeout=PATIENCE) as client:
+        client.sendall(head.encode())
+        client.sendall(b" " * length)
+        answer = b""
+        while piece := client.recv(65_536):
+            answer += piece
+    assert answer.startswith(b"HTTP/1.1 413 ")
+    assert b"urn:mdr:problem:body-too-large" in answer
+
+
+def test_a_body_shorter_than_it_says_is_waited_for_and_answered(
+    port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(body, "SETTINGS", SETTINGS.model_copy(update={"body_seconds": 0.3}))
+    with sockets.create_connection(("127.0.0.1", port), timeout=PATIENCE) as client:
+        client.sendall(
+            b"POST /v1/normal HTTP/1.1\r\nHost: service\r\nContent-Type: application/json\r\n"
+            b"Content-Length: 100\r\n\r\n{"
+        )
+        answer = b""
+        while piece := client.recv(65_536):
+            answer += piece
+    assert answer.startswith(b"HTTP/1.1 408 ")
+    assert b"connection: close" in answer
+    assert b"urn:mdr:problem:body-too-slow" in answer
+
+
+def test_many_bad_elements_get_a_short_answer(connection: http.client.HTTPConnection) -> None:
+    elements = b",".join([b'"a"'] * 10_000)
+    status, _, answer = ask(connection, BODY.replace(b"1}}", b"[" + elements + b"]}}"))
+    assert status == 422
+    assert len(answer) <= 4096
+
+
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [
+        ("abc-123_~.+/=", True),
+        ("x" * 64, True),
+        ("x" * 65, False),
+        ("two words", False),
+        ('"quoted"', False),
+        ("\xe9", False),
+        ("", False),
+    ],
+)
+def test_an_id_is_taken_over_if_it_is_one(
+    connection: http.client.HTTPConnection, given: str, *, kept: bool
+) -> None:
+    for path in ("/health", "/nowhere"):
+        connection.request("GET", path, headers={"X-Request-Id": given})
+        answer = connection.getresponse()
+        answer.read()
+        found = answer.getheader("x-request-id")
+        assert found is not None
+        assert (found == given) == kept
+        assert kept or re.fullmatch("[0-9a-f]{16}", found)
+        assert answer.getheader("x-content-type-options") == "nosniff"
+        assert answer.getheader("access-control-allow-origin") is None
+
+
+def test_head_is_answered_wherever_get_is(connection: http.client.HTTPConnection) -> None:
+    for path in ("/health", "/health/live", "/metrics", "/v1/limits", "/v1/profiles", "/docs"):
+        connection.request("HEAD", path)
+        answer = connection.getresponse()
+        assert (answer.status, answer.read()) == (200, b"")
+        assert int(answer.getheader("content-length", "0")) > 0
 
 
 def test_a_long_body_in_chunks_is_refused(connection: http.client.HTTPConnection) -> None:

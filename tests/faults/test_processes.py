@@ -1,0 +1,172 @@
+"""Processes that end, on purpose or not, while requests are in flight."""
+
+import http.client
+import json
+import os
+import signal
+import socket
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import psutil
+
+from tests.faults.server import PATIENCE, free_port, is_served, running, service
+
+SMALL = {
+    "profile": {"kind": "cone", "slope": 0.1},
+    "material": {"e_star": 1.0, "g_star": 0.8},
+    "load": {"normal_force": 1.0},
+}
+# Some hundred milliseconds of work.
+LONGER = {
+    "profile": {"kind": "sphere", "radius": 10.0},
+    "material": {"e_star": 1.0, "g_star": 0.8},
+    "load": {"indentation_depth": 0.05},
+    "friction_coefficient": 0.3,
+    "tangential": {"tangential_force": np.linspace(0.0, 8e-4, 8000).tolist()},
+}
+PATIENT = {
+    "MDR_QUEUE_SECONDS": "100",
+    "MDR_BUDGET_SECONDS": "100",
+    "MDR_SHUTDOWN_SECONDS": "250",
+}
+
+
+def ask(port: int, path: str, query: object) -> tuple[int, bytes]:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=4 * PATIENCE)
+    try:
+        connection.request("POST", path, json.dumps(query), {"Content-Type": "application/json"})
+        answer = connection.getresponse()
+        return answer.status, answer.read()
+    finally:
+        connection.close()
+
+
+def computing(server: int) -> list[psutil.Process]:
+    """Return the compute processes below a server."""
+    found = []
+    for process in psutil.Process(server).children(recursive=True):
+        try:
+            if "anyio.to_process" in process.cmdline():
+                found.append(process)
+        except psutil.Error:
+            continue
+    return found
+
+
+def busy(server: int) -> psutil.Process:
+    """Return a compute process once it is at work."""
+    found: list[psutil.Process] = []
+
+    def is_busy() -> bool:
+        before = {each: sum(each.cpu_times()[:2]) for each in computing(server)}
+        time.sleep(0.05)
+        found[:] = [each for each, spent in before.items() if sum(each.cpu_times()[:2]) > spent]
+        return bool(found)
+
+    wait_for(is_busy)
+    return found[0]
+
+
+def wait_for(happened: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not happened():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def asked(port: int, clients: int) -> tuple[ThreadPoolExecutor, list[Future[tuple[int, bytes]]]]:
+    pool = ThreadPoolExecutor(clients)
+    return pool, [pool.submit(ask, port, "/v1/tangential", LONGER) for _ in range(clients)]
+
+
+def test_all_in_flight_are_answered_after_sigterm_in_the_stated_time() -> None:
+    port = free_port()
+    environment = PATIENT | {
+        "MDR_BUDGET_SECONDS": "20",
+        "MDR_QUEUE_SECONDS": "20",
+        "MDR_SHUTDOWN_SECONDS": "41",
+        "MDR_BODY_SECONDS": "1",
+    }
+    with (
+        running(service(port), port, **environment) as process,
+        socket.create_connection(("127.0.0.1", port)) as half_sent,
+    ):
+        expected = ask(port, "/v1/tangential", LONGER)
+        children = computing(process.pid)
+        half_sent.sendall(
+            b"POST /v1/normal HTTP/1.1\r\nHost: service\r\n"
+            b"Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
+        )
+        pool, answers = asked(port, 8)
+        with pool:
+            busy(process.pid)
+            time.sleep(0.2)
+            process.send_signal(signal.SIGTERM)
+            told = time.monotonic()
+            wait_for(lambda: not is_served(port))
+            found = [each.result() for each in answers]
+        process.communicate(timeout=60)
+        assert time.monotonic() - told < 41 + PATIENCE
+    assert process.returncode == 0
+    assert found == [expected] * 8
+    assert expected[0] == 200
+    assert not any(child.is_running() for child in children)
+
+
+def test_a_compute_process_that_is_killed_loses_its_own_work() -> None:
+    port = free_port()
+    with running(service(port), port, **PATIENT) as process:
+        expected = ask(port, "/v1/tangential", LONGER)
+        assert expected[0] == 200
+        pool, answers = asked(port, 4)
+        with pool:
+            busy(process.pid).kill()
+            found = [each.result() for each in answers]
+        assert sorted(status for status, _ in found) == [200, 200, 200, 503]
+        assert b"urn:mdr:problem:process-lost" in min(found, key=lambda each: len(each[1]))[1]
+        assert [each for each in found if each[0] == 200] == [expected] * 3
+        assert ask(port, "/v1/tangential", LONGER) == expected
+        assert ask(port, "/v1/normal", SMALL)[0] == 200
+        wait_for(lambda: len(computing(process.pid)) == 2)
+
+
+def test_compute_processes_end_with_a_server_that_is_killed() -> None:
+    port = free_port()
+    with running(service(port), port, **PATIENT) as process:
+        children = computing(process.pid)
+        assert len(children) == 2
+        pool, answers = asked(port, 2)
+        busy(process.pid)
+        process.kill()
+        process.wait(PATIENCE)
+        wait_for(lambda: not any(Path(f"/proc/{child.pid}").exists() for child in children))
+        pool.shutdown(wait=True)
+        assert all(each.exception() for each in answers)
+
+
+def test_a_worker_that_is_killed_is_replaced() -> None:
+    port = free_port()
+    command = [*service(port), "--workers", "2"]
+    with running(command, port, **PATIENT) as process:
+        expected = ask(port, "/v1/normal", SMALL)
+        wait_for(lambda: len(computing(process.pid)) == 4)
+        workers = {each.ppid() for each in computing(process.pid)}
+        assert len(workers) == 2
+        killed = min(workers)
+        orphans = [each for each in computing(process.pid) if each.ppid() == killed]
+        os.kill(killed, signal.SIGKILL)
+        # The other one answers meanwhile.
+        for _ in range(50):
+            assert ask(port, "/v1/normal", SMALL) == expected
+        wait_for(lambda: not any(each.is_running() for each in orphans))
+        wait_for(lambda: len({each.ppid() for each in computing(process.pid)} - {killed}) == 2)
+        children = computing(process.pid)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        wait_for(lambda: not any(each.is_running() for each in children))
+    assert process.returncode == 0
+    assert not is_served(port)
