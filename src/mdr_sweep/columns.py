@@ -40,7 +40,7 @@ def columns(batch: pa.RecordBatch) -> dict[str, Column]:
 
 
 def written(name: str, kind: pa.DataType) -> pa.DataType:
-    """Return the type in which a column of the input is answered: numbers are doubles."""
+    """Return the type in which a field of the input is answered: numbers are doubles."""
     if pa.types.is_dictionary(kind):
         return written(name, kind.value_type)
     numeric = pa.types.is_floating(kind) or pa.types.is_integer(kind)

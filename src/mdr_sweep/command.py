@@ -101,7 +101,7 @@ def sweep(
         with progress(sys.stderr, source.rows, before) as told:
             batches = source.batches(cut.chunk, done)
             for index, batch, answers in engine.answered(client, study, batches):
-                work.put(index, joined(batch, answers))
+                work.put(index, joined(batch, answers, study.kept))
                 told.done(batch.num_rows)
         rows = work.chunks(cut.chunks)
         first = next(rows)
@@ -123,6 +123,8 @@ def _asked(arguments: argparse.Namespace) -> tuple[Study, Source]:
     strange = set(kept) - set(names)
     if strange:
         raise UsageError(f"--keep: there is no column {min(strange)}")
+    if twice := set(names) & {*ANSWERS[arguments.query], "warning", "error"}:
+        raise UsageError(f"an input cannot be called {min(twice)}: that is an answer")
     if source.rows == 0:
         raise UsageError("there are no scenes")
     fields = {*constants, *names} - set(kept)

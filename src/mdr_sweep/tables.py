@@ -1,6 +1,6 @@
 """Tables of scenes, read in batches, whatever their length, and written so that bytes repeat."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from hashlib import file_digest
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 import pyarrow.csv as pv
 import pyarrow.parquet as pq
 
-from mdr_sweep.columns import copied, written
+from mdr_sweep.columns import copied
 from mdr_sweep.errors import UsageError
 
 # Rows of a group of the Parquet file that is written: some tens of megabytes.
@@ -136,22 +136,15 @@ def _one(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
     return whole
 
 
-def output_schema(source: pa.Schema, answers: pa.Schema) -> pa.Schema:
-    """Return the columns of the result: the inputs, and then the answers."""
-    inputs = [pa.field(field.name, written(field.name, field.type)) for field in source]
-    return pa.schema([*inputs, *answers])
-
-
-def joined(batch: pa.RecordBatch, answers: pa.RecordBatch) -> pa.RecordBatch:
-    """Return the rows of the result: the inputs, and then the answers."""
+def joined(
+    batch: pa.RecordBatch, answers: pa.RecordBatch, kept: Collection[str] = ()
+) -> pa.RecordBatch:
+    """Return the rows of the result: the inputs, some kept as they are, and the answers."""
     arrays = {
-        name: copied(name, array)
+        name: array if name in kept else copied(name, array)
         for name, array in zip(batch.schema.names, batch.columns, strict=True)
     }
-    return pa.record_batch(
-        arrays | dict(zip(answers.schema.names, answers.columns, strict=True)),
-        schema=output_schema(batch.schema, answers.schema),
-    )
+    return pa.record_batch(arrays | dict(zip(answers.schema.names, answers.columns, strict=True)))
 
 
 def write(path: Path, target: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatch]) -> None:
