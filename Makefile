@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test check bench charts figures openapi image-check lock clean
+.PHONY: run test check bench sweeps charts figures openapi image-check lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -30,6 +30,13 @@ check: .venv/development
 
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
+
+# Full-size figures of sweeps, for a machine that does nothing else: some minutes.
+sweeps: .venv/development
+	$(BIN)/python benchmarks/sweep_ratio.py
+	$(BIN)/python benchmarks/sweep_memory.py
+	$(BIN)/python benchmarks/sweep_scaling.py
+	$(BIN)/python docs/figures/sweep_map.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
 CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability routes
