@@ -25,6 +25,7 @@ import measure
 import mpmath
 import numpy as np
 from scipy.integrate import quad_vec
+from substitutions import Slope, both_roots_removed, one_root_removed
 
 from mdr_core import fields, tangential
 from mdr_core.normal import NormalContact, solve
@@ -39,7 +40,7 @@ FRESH, KEPT = "fresh pages", "kept memory"
 _KEEP = {"MALLOC_MMAP_THRESHOLD_": str(1 << 30), "MALLOC_TRIM_THRESHOLD_": str(1 << 30)}
 
 Array = np.ndarray
-Form = Callable[[Array, float, float], Callable[[float], Array]]
+Form = Callable[[Slope, Array, float, float], Callable[[float], Array]]
 
 
 def paraboloid_pressure(state: str) -> list[measure.Row]:
@@ -94,7 +95,8 @@ def punch_pressure(state: str) -> list[measure.Row]:
     for substitution, (form, target) in _SUBSTITUTIONS.items():
 
         def scipy(epsrel: float, form: Form = form) -> Array:
-            integral, _ = quad_vec(form(r, a, b), 0.0, 1.0, epsabs=0.0, epsrel=epsrel, norm="max")
+            integrand = form(_punch_slope(b), r, a, b)
+            integral, _ = quad_vec(integrand, 0.0, 1.0, epsabs=0.0, epsrel=epsrel, norm="max")
             return e_star / (np.pi * R) * integral
 
         # SciPy is asked for no more than it needs to be as good as what ours is held to.
@@ -112,43 +114,20 @@ def punch_pressure(state: str) -> list[measure.Row]:
     return found
 
 
-def _one_root_removed(r: Array, a: float, b: float) -> Callable[[float], Array]:
-    """The usual substitution, t = sqrt(x^2 - r^2), from the break on."""
-    low2 = np.maximum(b * b - r * r, 0.0)
-    start = np.sqrt(low2)
-    length = np.sqrt((a - r) * (a + r)) - start
-
-    def integrand(u: float) -> Array:
-        t = start + length * u
-        x = np.sqrt(t * t + r * r)
-        return _punch_slope(np.sqrt(np.maximum(x - b, 0.0) * (x + b)), b) * length / x
-
-    return integrand
-
-
-def _both_roots_removed(r: Array, a: float, b: float) -> Callable[[float], Array]:
-    """The best that SciPy can be handed: x = max(r, b) + (a - max(r, b)) u^2."""
-    low = np.maximum(r, b)
-    length, gap = a - low, low - r
-
-    def integrand(u: float) -> Array:
-        step = length * (u * u)
-        x = low + step
-        slope = _punch_slope(np.sqrt((x - b) * (x + b)), b)
-        return slope * (2 * u) * length / np.sqrt((gap + step) * (x + r))
-
-    return integrand
-
-
 _SUBSTITUTIONS: dict[str, tuple[Form, str]] = {
-    "t^2 = x^2 - r^2": (_one_root_removed, ">= 50"),
-    "x - max(r, b) ~ u^2": (_both_roots_removed, ""),
+    "t^2 = x^2 - r^2": (one_root_removed, ">= 50"),
+    "x - max(r, b) ~ u^2": (both_roots_removed, ""),
 }
 
 
-def _punch_slope(leg: Array, b: float) -> Array:
-    """R g'(x), leg = sqrt(x^2 - b^2)."""
-    return 2 * leg - b * np.arctan(leg / b)
+def _punch_slope(b: float) -> Slope:
+    """R g'(x), of x and x - b."""
+
+    def slope(x: Array, above: Array) -> Array:
+        leg = np.sqrt(above * (x + b))
+        return 2 * leg - b * np.arctan(leg / b)
+
+    return slope
 
 
 def _punch_truth(
