@@ -40,12 +40,17 @@ def is_served(port: int) -> bool:
 
 
 @contextmanager
-def running(command: list[str], port: int, **environment: str) -> Iterator[subprocess.Popen[str]]:
-    """Start `command`, wait until it serves at `port`, and leave no process behind."""
+def running(
+    command: list[str], port: int, output: int = subprocess.PIPE, **environment: str
+) -> Iterator[subprocess.Popen[str]]:
+    """Start `command`, wait until it serves at `port`, and leave no process behind.
+
+    A pipe that nobody reads holds the lines of some hundred requests.
+    """
     process = subprocess.Popen(
         command,
         env=os.environ | environment,
-        stdout=subprocess.PIPE,
+        stdout=output,
         stderr=subprocess.STDOUT,
         text=True,
         start_new_session=True,
