@@ -206,13 +206,15 @@ TABLE = (
     Row(
         "mdr_sweep.single",
         WIRE
-        | {"mdr_service.questions", "mdr_service.solve"}
+        | {"mdr_core.fields", "mdr_service.questions", "mdr_service.solve"}
         | {"mdr_sweep.requests", "mdr_sweep.study"},
         {"numpy"},
     ),
     Row(
         "mdr_sweep.closed",
-        PUBLIC | SCHEMAS | {"mdr_service.convert", "mdr_sweep.columns"},
+        PUBLIC
+        | SCHEMAS
+        | {"mdr_service.convert", "mdr_sweep.columns", "mdr_sweep.single", "mdr_sweep.study"},
         {"numpy"},
     ),
     Row(

@@ -20,8 +20,6 @@ Rows = NDArray[np.intp]
 # Fewer scenes take longer together than one by one.
 _FEW: Final = 4
 _KIND: Final = "profile.kind"
-# Queries that the core answers for many scenes at once.
-_AT_ONCE: Final = frozenset({"normal", "tangential"})
 _WORDS: Final = frozenset({"regime"})
 WARNING, ERROR = "warning", "error"
 
@@ -102,7 +100,7 @@ def _groups(study: Study, given: Mapping[str, Column], rows: Rows) -> Iterator[R
 
 
 def _alike(study: Study, given: Mapping[str, Column], rows: Rows, kind: str) -> Iterator[Rows]:
-    spread = study.query in _AT_ONCE
+    spread = closed.together(study, kind)
     fixed, sparse = [], []
     for name, column in given.items():
         if spread and closed.spreads(kind, name):
@@ -143,7 +141,7 @@ def _codes(column: Column, rows: Rows) -> NDArray[np.intp]:
 def _answer(study: Study, given: Mapping[str, Column], rows: Rows, found: Answers) -> None:
     """Answer the rows of one group: at once as far as that goes, the others one by one."""
     together = rows[:0]
-    if study.query in _AT_ONCE and rows.size >= _FEW:
+    if rows.size >= _FEW and closed.together(study, _kind(study, given, rows)):
         together = _checked(study, given, rows)
     left = rows
     if together.size >= _FEW:

@@ -13,11 +13,15 @@ from mdr_core.profiles import KINDS, Profile
 from mdr_core.tangential import TangentialContact
 from mdr_service import convert
 from mdr_service.schemas.queries import Moduli, NormalQuery, TangentialQuery
+from mdr_sweep import single
 from mdr_sweep.columns import Flags, Values
+from mdr_sweep.study import Study
 
 # What may differ from scene to scene in one call.
 _NUMBERS: Final = ("load.", "tangential.", "friction_coefficient", "material.")
 _MODULI: Final = frozenset({"material.e_star", "material.g_star"})
+# Queries that the core answers for many scenes at once.
+_AT_ONCE: Final = frozenset({"normal", "tangential"})
 # Their parameters are no numbers: one profile a call.
 _SINGLE_KINDS: Final = frozenset({"series", "tabulated"})
 
@@ -40,6 +44,14 @@ def spreads(kind: str, name: str) -> bool:
     if name.startswith("material."):
         return name in _MODULI
     return name.startswith(_NUMBERS)
+
+
+def together(study: Study, kind: str) -> bool:
+    """Whether many scenes of a kind are answered by one call."""
+    if study.query not in _AT_ONCE:
+        return False
+    # Of other kinds the largest values are looked for.
+    return not study.largest or kind == "paraboloid"
 
 
 def solve(
@@ -128,6 +140,8 @@ def _control(
 def _answer(
     result: NormalContact | TangentialContact, contact: NormalContact, name: str, size: int
 ) -> np.ndarray[Any, np.dtype[Any]]:
+    if name.startswith("maximum_"):
+        return np.broadcast_to(single.largest(name, result, contact.rtol), (size,))
     own = result if hasattr(type(result), name) else contact
     return np.broadcast_to(getattr(own, name), (size,))
 

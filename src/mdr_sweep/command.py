@@ -19,7 +19,7 @@ from mdr_sweep.grid import Axis, Grid, axis, is_axis
 from mdr_sweep.plan import Plan, plan
 from mdr_sweep.progress import progress
 from mdr_sweep.requests import clash, flat
-from mdr_sweep.study import ANSWERS, Study, versions
+from mdr_sweep.study import ANSWERS, LARGEST, Study, versions
 from mdr_sweep.tables import SUFFIXES, Source, Table, joined, write
 from mdr_sweep.work import Work
 
@@ -123,7 +123,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[Study, Source]:
     strange = set(kept) - set(names)
     if strange:
         raise UsageError(f"--keep: there is no column {min(strange)}")
-    if twice := set(names) & {*ANSWERS[arguments.query], "warning", "error"}:
+    if twice := set(names) & {*_known(arguments.query), "warning", "error"}:
         raise UsageError(f"an input cannot be called {min(twice)}: that is an answer")
     if source.rows == 0:
         raise UsageError("there are no scenes")
@@ -136,12 +136,16 @@ def _asked(arguments: argparse.Namespace) -> tuple[Study, Source]:
 
 
 def _answers(query: str, wanted: Sequence[str]) -> tuple[str, ...]:
-    known = ANSWERS[query]
+    known = _known(query)
     strange = set(wanted) - set(known)
     if strange:
         told = ", ".join(known)
         raise UsageError(f"--answers: there is no {min(strange)}; {query} answers {told}")
-    return tuple(name for name in known if name in wanted or not wanted)
+    return tuple(name for name in known if name in (wanted or ANSWERS[query]))
+
+
+def _known(query: str) -> tuple[str, ...]:
+    return (*ANSWERS[query], *LARGEST[query])
 
 
 def _template(path: Path | None) -> dict[str, Any]:

@@ -26,6 +26,7 @@ _BASE: Final = {
 }
 _CLOSED_LOSS: Final = frozenset({"cone", "paraboloid", "flat_punch", "power"})
 _LOSS: Final = 50.0
+_PEAK: Final = 1500.0
 _WEAR: Final = 2500.0
 _DEAREST: Final = 5.0
 # A chunk takes about this long, so that little is lost with a worker, but no longer than its
@@ -96,6 +97,8 @@ def seconds(study: Study, kind: str) -> float:
     cost = _BASE.get(kind, _SOLVED)
     if "dissipated_energy" in study.answers and kind not in _CLOSED_LOSS:
         cost += _LOSS * dearest
+    if kind != "paraboloid":
+        cost += _PEAK * len(study.largest)
     return cost * 1e-6
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdr_core import fields
 from mdr_service import problems, solve, wire
 from mdr_service.questions import QUESTIONS
 from mdr_service.schemas.queries import Query
@@ -21,11 +22,11 @@ class Told(NamedTuple):
     error: str | None = None
 
 
-def answer(study: Study, fields: Mapping[str, Any]) -> Told:
+def answer(study: Study, given: Mapping[str, Any]) -> Told:
     """Return what the service answers to one scene, or the sentence that it fails with."""
     try:
         with np.errstate(all="ignore"):
-            return _answer(study, read(study.query, fields))
+            return _answer(study, read(study.query, given))
     except problems.FAILURES as error:
         return Told({}, error=sentence(problems.told(error)))
     except Exception:  # noqa: BLE001
@@ -33,9 +34,9 @@ def answer(study: Study, fields: Mapping[str, Any]) -> Told:
         return Told({}, error=sentence(problems.DEFECT))
 
 
-def read(query: str, fields: Mapping[str, Any]) -> Query:
+def read(query: str, given: Mapping[str, Any]) -> Query:
     """Return the request of some fields, checked as the service checks it."""
-    return wire.read(QUESTIONS[query].model, json.dumps(nested(fields)).encode())
+    return wire.read(QUESTIONS[query].model, json.dumps(nested(given)).encode())
 
 
 def sentence(error: problems.ServiceError) -> str:
@@ -52,16 +53,26 @@ def _answer(study: Study, query: Query) -> Told:
     # The answers of wear come with its fields.
     result = getattr(found, "result", found)
     parts = (result, getattr(result, "normal", result))
-    answers = {name: _one(getattr(_of(parts, name), name)) for name in study.answers}
+    plain = [name for name in study.answers if name not in study.largest]
+    answers = {name: _one(getattr(_of(parts, name), name)) for name in plain}
     said = (notice.code for notice in solve.notices(query, result))
     # What is infinite before any wear is none of the answers of wear.
     codes = [code for code in said if study.query != "wear" or code != "singular"]
     if not all(isinstance(one, str) or np.isfinite(one) for one in answers.values()):
         # A true infinity, or a number that no double holds: the document knows.
         document = question.document(query, found)
-        answers = {name: document[name][0] for name in study.answers}
+        answers = {name: document[name][0] for name in plain}
         codes = [notice["code"] for notice in document["warnings"]]
+    # Infinite under tips, kinks and edges, as the warning `plastic` says.
+    answers |= {name: _one(largest(name, result, query.rtol)) for name in study.largest}
     return Told(answers, coded(codes))
+
+
+def largest(name: str, result: Any, rtol: float) -> Any:
+    """Return the largest value of a field of a contact, with friction or without."""
+    if name == "maximum_shear_stress":
+        return fields.largest_shear_stress(result, rtol=rtol)
+    return fields.largest_pressure(getattr(result, "normal", result), rtol=rtol)
 
 
 def coded(codes: list[str]) -> str | None:

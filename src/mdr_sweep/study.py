@@ -23,6 +23,12 @@ ANSWERS: Final[Mapping[str, tuple[str, ...]]] = {
     query: tuple(name for name in model.model_fields if name not in _NOT_OF_SCENES)
     for query, model in _OF_QUERY.items()
 }
+# What a field is at the most: dear where it has to be looked for, and answered if asked by name.
+LARGEST: Final[Mapping[str, tuple[str, ...]]] = {
+    "normal": ("maximum_pressure",),
+    "tangential": ("maximum_pressure", "maximum_shear_stress"),
+    "wear": (),
+}
 # Whose versions the last digits depend on.
 _PACKAGES: Final = ("mdr", "numpy", "scipy", "pyarrow")
 
@@ -44,3 +50,8 @@ class Study:
     """Columns that are copied and not read."""
     versions: Mapping[str, str] | None = None
     """What the workers have to run."""
+
+    @property
+    def largest(self) -> tuple[str, ...]:
+        """The answers that are the largest values of fields."""
+        return tuple(name for name in self.answers if name in LARGEST[self.query])

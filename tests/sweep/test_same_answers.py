@@ -6,8 +6,12 @@ from typing import Any
 
 import pytest
 
+from mdr_core import fields
+from mdr_service import solve
+from mdr_sweep import chunk, single
+from mdr_sweep.study import Study
 from tests.conftest import Client
-from tests.sweep.scenes import KINDS, Row, scenes, served, swept
+from tests.sweep.scenes import KINDS, Row, scenes, served, swept, table
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -110,3 +114,21 @@ def test_a_wrong_row_says_what_is_wrong(client: Client, sort: str) -> None:
 def test_a_table_in_which_all_is_wrong(client: Client, rows: int) -> None:
     wrong = [row | {"profile.radius": -1.0} for row in with_wrong_rows(9, rows)]
     assert swept("tangential", wrong) == [served(client, "tangential", row) for row in wrong]
+
+
+@pytest.mark.parametrize("kind", ["paraboloid", "cone", "rounded_punch"])
+def test_largest_stresses_are_those_of_the_fields(kind: str) -> None:
+    names = ("contact_radius", "maximum_pressure", "maximum_shear_stress")
+    rows = scenes(kind, "tangential", 12, seed=4)
+    found = chunk.answer(Study("tangential", {}, names), table(rows)).to_pylist()
+    for row, told in zip(rows, found, strict=True):
+        if told["error"]:
+            continue
+        query: Any = single.read("tangential", row)
+        pushed = solve.tangential(query)
+        expected = (
+            float(pushed.normal.contact_radius),
+            float(fields.largest_pressure(pushed.normal)),
+            float(fields.largest_shear_stress(pushed)),
+        )
+        assert tuple(told[name] for name in names) == expected

@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike
 from mdr_core.fields import contact as _contact
 from mdr_core.fields import remembered
 from mdr_core.fields.contact import foundation_load, normal_displacement, pressure
+from mdr_core.fields.largest import largest_pressure, largest_shear_stress
 from mdr_core.fields.rows import graded
 from mdr_core.history import State
 from mdr_core.normal import NormalContact
@@ -47,6 +48,8 @@ __all__ = [
     "foundation_shear",
     "graded",
     "grid",
+    "largest_pressure",
+    "largest_shear_stress",
     "normal_displacement",
     "pressure",
     "shear_stress",

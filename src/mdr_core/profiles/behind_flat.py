@@ -23,6 +23,7 @@ class BehindFlat(Profile):
             raise InputError(
                 ("load", "contact_radius", *first_index(inside)),
                 f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
+                inside,
             )
         return leg(contact_radius, self.flat_radius)
 
