@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test check bench sweeps charts figures openapi image-check lock clean
+.PHONY: run test check bench costs rates faults sweeps charts figures openapi image-check lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -49,6 +49,18 @@ chart-%: .venv-bench/peers
 # Its curves are those of the tests, which have no peers.
 chart-stability: .venv/development
 	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/stability.py
+
+# What queries cost: how far the estimates are off, and the rates of this machine in their place.
+costs: .venv/development
+	$(BIN)/python benchmarks/cost_bank.py
+
+rates: .venv/development
+	$(BIN)/python benchmarks/cost_bank.py --write
+
+# What the service stands, over real sockets of this machine: a quarter of an hour.
+faults: .venv/development
+	$(BIN)/python -m pytest tests/faults tests/service/test_compute.py
+	$(BIN)/python -m tests.faults.campaign
 
 figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py

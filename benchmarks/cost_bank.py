@@ -25,7 +25,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 import mdr_service
-from mdr_core.errors import AccuracyError, InputError
+from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_service import arrays, cost, pictures, problems, questions, sizes, table, wire
 
 if TYPE_CHECKING:
@@ -245,7 +245,11 @@ def timed(found: Iterator[Case]) -> list[tuple[sizes.Sizes, float, str]]:
     rows = []
     for question, given, media_type in found:
         query = questions.QUESTIONS[question].model.model_validate(given)
-        taken = measured(question, query, media_type)
+        try:
+            taken = measured(question, query, media_type)
+        except DefectError as error:
+            print(f"! {error}: {question} {json.dumps(given)[:600]}", flush=True)
+            continue
         if taken is not None:
             rows.append((sizes.of(question, query, media_type), taken, json.dumps(given)[:600]))
     return rows

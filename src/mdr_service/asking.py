@@ -14,13 +14,14 @@ from mdr_service.schemas.queries import Query
 
 # What is answered depends on what is asked, and on the version of the service alone.
 _KEPT: Final = "max-age=3600"
+_LONG_BODY: Final = 200_000
 
 
 async def posted(request: Request, name: str) -> Response:
     """Return the answer to the question `name` that the body holds."""
     question = QUESTIONS[name]
     media_type = _form(request, question.media_types, _format(request))
-    query = wire.read(question.model, await body.read(request))
+    query = wire.read(question.model, await _body(request))
     return _sent(await _answer(name, query, media_type))
 
 
@@ -40,10 +41,18 @@ async def got(request: Request, name: str) -> Response:
 async def batched(request: Request) -> Response:
     """Return the answers to all queries of a batch."""
     _form(request, (wire.MEDIA_TYPE,), _format(request))
-    asked = batch.read(wire.read(BatchQuery, await body.read(request)))
+    asked = batch.read(wire.read(BatchQuery, await _body(request)))
     tried, seconds = batch.priced(asked, COMPUTE.most_seconds, COMPUTE.slowness)
     content = await COMPUTE.run(seconds, batch.answer, tried)
     return _sent(Answer(content, wire.MEDIA_TYPE))
+
+
+async def _body(request: Request) -> bytes:
+    text = await body.read(request)
+    # What is this long is not answered at once, and takes milliseconds to be parsed.
+    if len(text) > _LONG_BODY:
+        COMPUTE.require_room()
+    return text
 
 
 async def _answer(name: str, query: Query, media_type: str) -> Answer:

@@ -44,6 +44,8 @@ _Result = TypeVar("_Result")
 AT_ONCE_SECONDS: Final = 2e-3
 # Estimates are good to a factor: this much of a clock is kept for those that are too low.
 _MARGIN: Final = 2
+# Of the last one, beside those before.
+_FORGETTING: Final = 0.2
 # A process without work for some minutes would be ended, and be missed later.
 _WARM_SECONDS: Final = 60
 
@@ -62,6 +64,9 @@ class Compute:
         """Seconds of work, by who waits."""
         self._ends: dict[object, float] = {}
         """When work is expected to end, by who has a slot."""
+        self._pace = 1.0
+        """How many times as long as estimated the slowest of the last took: others may use the
+        machine."""
         self._tasks: TaskGroup | None = None
         self.slowness = 1.0
         """How many times as long this machine takes as that of the rates."""
@@ -108,6 +113,14 @@ class Compute:
             return work(*arguments)
         return await self.run_apart(expected, work, *arguments)
 
+    def require_room(self) -> None:
+        """Raise ServiceError where no process and no place in the queue is free.
+
+        What is certain to need one is refused before anything is done about it.
+        """
+        if not self._slots.available_tokens and len(self._waiting) >= self._settings.queue_length:
+            raise _busy(self._expected_wait())
+
     async def run_apart(
         self,
         expected: float,
@@ -146,7 +159,9 @@ class Compute:
         except BrokenWorkerProcess:
             watch.RESTARTS.labels("ended").inc()
             raise ServiceError(problems.LOST, "try again", retry_after=1) from None
-        watch.ESTIMATES.observe((monotonic() - start) / expected)
+        ratio = (monotonic() - start) / expected
+        watch.ESTIMATES.observe(ratio)
+        self._pace = max(ratio, self._pace + _FORGETTING * (ratio - self._pace))
         return found
 
     async def _apart(
@@ -187,7 +202,8 @@ class Compute:
         """Return how long the work ahead is expected to take."""
         now = monotonic()
         running = sum(max(end - now, 0.0) for end in self._ends.values())
-        return (running + sum(self._waiting.values())) / self._settings.compute_processes
+        ahead = running + sum(self._waiting.values())
+        return ahead * max(self._pace, 1.0) / self._settings.compute_processes
 
     def _leave(self, holder: object, *, lost: bool) -> None:
         """Give the slot to the next, with a process that is ready."""

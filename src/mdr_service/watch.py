@@ -14,22 +14,13 @@ from time import perf_counter
 from typing import Any, Final
 
 import orjson
-from prometheus_client import (
-    CollectorRegistry,
-    Counter,
-    Gauge,
-    Histogram,
-    disable_created_metrics,
-    generate_latest,
-)
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 METRICS_MEDIA_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
 _ID: Final = re.compile(rb"[A-Za-z0-9._~+/=-]{1,64}")
 _OTHER: Final = "other"
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 
-# When each was counted first is of no use to anybody.
-disable_created_metrics()
 REGISTRY: Final = CollectorRegistry()
 REQUESTS: Final = Counter(
     "mdr_requests", "Requests answered.", ("route", "status"), registry=REGISTRY
