@@ -141,7 +141,7 @@ TABLE = (
     ),
     Row("mdr_service.watch", set(), {"orjson", "prometheus_client"}),
     Row("mdr_service.handlers", {"mdr_service.problems", "mdr_service.watch"}, WEB | ANSWERING),
-    Row("mdr_service.body", WIRE, WEB | {"anyio"}),
+    Row("mdr_service.body", WIRE, WEB),
     Row("mdr_service.apart", WIRE | {"mdr_service.cost", "mdr_service.questions"}, set()),
     Row(
         "mdr_service.compute",

@@ -14,7 +14,7 @@ from mdr_service.schemas.queries import Query
 
 # What is answered depends on what is asked, and on the version of the service alone.
 _KEPT: Final = "max-age=3600"
-_LONG_BODY: Final = 200_000
+_LONG_BODY: Final = 500_000
 
 
 async def posted(request: Request, name: str) -> Response:

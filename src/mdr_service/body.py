@@ -1,7 +1,9 @@
 """The body of a request, as long as it may be and of the type that is understood."""
 
-from anyio import fail_after
+from asyncio import timeout
+
 from fastapi import Request
+from starlette.requests import ClientDisconnect
 
 from mdr_service import problems, wire
 from mdr_service.settings import SETTINGS
@@ -18,7 +20,7 @@ async def read(request: Request) -> bytes:
     if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:
         raise _too_large()
     try:
-        with fail_after(SETTINGS.body_seconds):
+        async with timeout(SETTINGS.body_seconds):
             return await _received(request)
     except TimeoutError:
         detail = f"it is waited for {SETTINGS.body_seconds:g} s"
@@ -28,11 +30,17 @@ async def read(request: Request) -> bytes:
 async def _received(request: Request) -> bytes:
     chunks: list[bytes] = []
     size = 0
-    async for chunk in request.stream():
+    more = True
+    while more:
+        message = await request.receive()
+        if message["type"] == "http.disconnect":
+            raise ClientDisconnect
+        chunk = message.get("body", b"")
         size += len(chunk)
         if size > SETTINGS.max_body_bytes:
             raise _too_large()
         chunks.append(chunk)
+        more = message.get("more_body", False)
     return b"".join(chunks)
 
 
