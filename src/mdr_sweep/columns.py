@@ -43,9 +43,8 @@ def written(name: str, kind: pa.DataType) -> pa.DataType:
     """Return the type in which a field of the input is answered: numbers are doubles."""
     if pa.types.is_dictionary(kind):
         return written(name, kind.value_type)
-    numeric = pa.types.is_floating(kind) or pa.types.is_integer(kind)
     texts = pa.types.is_string(kind) or pa.types.is_large_string(kind)
-    if numeric or pa.types.is_null(kind) or (texts and not is_word(name)):
+    if _is_number(kind) or pa.types.is_null(kind) or (texts and not is_word(name)):
         return pa.float64()
     return pa.string() if texts else kind
 
@@ -72,7 +71,7 @@ def _column(name: str, array: Cells) -> Column:
     if pa.types.is_dictionary(kind):
         array = pc.cast(array, kind.value_type)
         kind = array.type
-    if pa.types.is_floating(kind) or pa.types.is_integer(kind):
+    if _is_number(kind):
         return Column(_doubles(array), given)
     if pa.types.is_null(kind):
         return Column(np.zeros(len(array)), given)
@@ -87,6 +86,10 @@ def _column(name: str, array: Cells) -> Column:
         given,
         {row: value for row, value in enumerate(array.to_pylist()) if value is not None},
     )
+
+
+def _is_number(kind: pa.DataType) -> bool:
+    return pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_decimal(kind)
 
 
 def _doubles(array: Cells) -> Values:

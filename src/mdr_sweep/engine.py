@@ -1,6 +1,8 @@
 """Chunks to workers and back, on this machine or on a cluster, by Dask."""
 
+import asyncio
 from collections.abc import Iterable, Iterator
+from concurrent import futures
 from contextlib import contextmanager
 from typing import Final
 
@@ -90,6 +92,10 @@ def _done(
             raise SweepError(
                 f"chunk {index} ended worker after worker: they may have too little memory"
             ) from None
+        except ImportError as error:
+            raise SweepError(f"the workers have not all that they need: {error}") from None
+        except (asyncio.CancelledError, futures.CancelledError):
+            raise SweepError("the scheduler is gone; what is done is kept") from None
         yield index, batch, found
 
 

@@ -36,7 +36,9 @@ def answer(study: Study, given: Mapping[str, Any]) -> Told:
 
 def read(query: str, given: Mapping[str, Any]) -> Query:
     """Return the request of some fields, checked as the service checks it."""
-    return wire.read(QUESTIONS[query].model, json.dumps(nested(given)).encode())
+    # What has no JSON is no number either, and is refused where it stands.
+    text = json.dumps(nested(given), default=str)
+    return wire.read(QUESTIONS[query].model, text.encode())
 
 
 def sentence(error: problems.ServiceError) -> str:

@@ -48,14 +48,14 @@ class Work:
 
     def _begin(self, manifest: str, *, restart: bool) -> None:
         known = self.folder / _MANIFEST
-        if known.exists() and known.read_text() != manifest:
-            if not restart:
-                raise UsageError(
-                    f"{self.folder} holds chunks of another sweep, or of another version: "
-                    "--restart begins anew"
-                )
-            restart = True
-        if restart:
+        of_this = known.exists() and known.read_text() == manifest
+        if known.exists() and not (of_this or restart):
+            raise UsageError(
+                f"{self.folder} holds chunks of another sweep, or of another version: "
+                "--restart begins anew"
+            )
+        # Without a manifest they are of a sweep that was ended while it was tidied up.
+        if restart or not of_this:
             for path in self.folder.glob("*.arrow"):
                 path.unlink()
         with self._whole(known) as path:

@@ -1,11 +1,13 @@
 """What a sweep is told on the command line, and what it reads and writes."""
 
 import csv
+import datetime as dt
 import io
 import json
 import subprocess
 import sys
 from argparse import ArgumentParser
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,7 @@ import pyarrow.csv as pv
 import pyarrow.parquet as pq
 import pytest
 
-from mdr_sweep import command
+from mdr_sweep import chunk, command
 from mdr_sweep.errors import UsageError
 from mdr_sweep.grid import Axis, axis
 from mdr_sweep.plan import plan
@@ -200,6 +202,28 @@ def test_the_work_of_another_sweep_is_not_taken_for_ones_own(tmp_path: Path) -> 
         pass
     with work.opened({"chunk": 2}, restart=True) as done:
         assert done == set()
+        work.put(5, batch)
+    (work.folder / "manifest.json").unlink()
+    with work.opened({"chunk": 2}, restart=False) as done:
+        assert done == set()
+
+
+def test_what_is_no_number_in_a_table_is_told_by_its_row() -> None:
+    day = dt.date(1882, 1, 1)
+    rows = [{"profile.kind": "cone", "profile.slope": slope} for slope in (0.1, 0.2)]
+    for column, valid in (
+        (pa.array([day, day]), False),
+        (pa.array([True, False]), False),
+        (pa.array([[1.0], []]), False),
+        (pa.array([Decimal("1e9"), Decimal("2e9")]), True),
+        (pa.array([1, 2], pa.int64()), True),
+    ):
+        batch = table(rows).append_column("material.e_star", column)
+        batch = batch.append_column("load.normal_force", pa.array([1.0, 2.0]))
+        study = Study("normal", {}, ("contact_radius",))
+        for row in chunk.answer(study, batch).to_pylist():
+            assert (row["error"] is None) == valid
+            assert valid or row["error"].startswith("/material/e_star")
 
 
 def test_batches_of_any_size_hold_the_same_rows(tmp_path: Path) -> None:
