@@ -211,8 +211,10 @@ def _narrow_step(slope: Function, high: Array, width: Array, below: Array) -> Ar
     with np.errstate(invalid="ignore"):
         half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
     v = bottom + np.multiply.outer(1 + nodes, half)
+    # Rounding must not carry a node beyond the edge: a break may lie there.
+    at = np.minimum(below + v * v, high)
     with np.errstate(invalid="ignore"):
-        total = half * _summed(weights, 2 * v * slope(below + v * v))
+        total = half * _summed(weights, 2 * v * slope(at))
     outer = width - inner
     if np.any(outer > 0):
         s = low + np.multiply.outer(1 + nodes, outer / 2)
@@ -290,7 +292,7 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     with np.errstate(invalid="ignore"):
         half = np.where(length > 0, length / (top + bottom), 0.0)[..., None] / 2
     v = bottom[..., None] + half * (1 + nodes)
-    s = below[..., None] + v * v
+    s = np.minimum(below[..., None] + v * v, high[..., None])
     at_nodes = _over_nodes(profile)
     with np.errstate(all="ignore"):
         rise = np.where(half > 0, 2 * v * half * at_nodes.depth_slope(s), 0.0)

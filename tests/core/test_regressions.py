@@ -313,3 +313,26 @@ def test_the_loss_keeps_its_digits_where_a_steep_flank_carries_most_of_the_rise(
         moment = mpmath.quad(lambda x: (g(high) - g(x)) * (g(x) - g(low)), [low, edge, high])
         expected = float(2 * mpmath.mpf(0.3) ** 2 * moment)
     assert float(lost) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        profiles.RoundedCone(0.8884695252708683, 1.6191688208283352),
+        profiles.SphericalTipCone(0.8884695252708683, 1.6191688208283352),
+        profiles.CappedParaboloid(0.7, 2.0, 0.3),
+    ],
+)
+def test_first_slip_of_a_contact_that_ends_on_a_break(profile: profiles.Profile) -> None:
+    """A ring of force F_x at the edge: tau(0) = F_x/(2 pi a^2), and F_x = 2 mu E* a g'(a) width.
+
+    g'(a) is the slope below the break: what slips lies there.
+    """
+    a = float(profile.breaks[0])
+    contact = normal.solve(profile, 1.0, contact_radius=a)
+    force = 1e-200 * float(contact.normal_force)
+    found = tangential.solve(contact, 0.8, 0.5, tangential_force=force)
+    slope = float(profile.dg(np.array([a * (1 - 2e-16)]))[0])
+    assert float(found.slip_width) == pytest.approx(force / (a * slope), rel=1e-14, abs=0)
+    stress = float(fields.shear_stress(found, [0.0])[0])
+    assert stress == pytest.approx(force / (2 * np.pi * a * a), rel=1e-10, abs=0)

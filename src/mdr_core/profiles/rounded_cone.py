@@ -129,7 +129,8 @@ class TippedCone(Profile):
         c = np.broadcast_to(self.contact_radius(low) if inner is None else inner, high.shape)
         total = np.zeros(high.shape)
         flank = high > start
-        inside = (r < b) & (low < start)
+        # A narrow annulus that ends on b lies in the tip, though low is b but for rounding.
+        inside = (r < b) & ((low < start) | ~flank)
         if inside.any():
             # Of a contact that ends on the flank the tip's part ends at b.
             top = np.where(flank, start, high)[inside]
