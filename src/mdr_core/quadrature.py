@@ -6,27 +6,30 @@ functions the error of a rule is known beforehand, so that each integral gets ju
 its length and the asked tolerance need, and is evaluated once.
 """
 
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from math import ceil, exp, floor, inf, log, log10, pi, sqrt
 from typing import Final
 
 import numpy as np
 from scipy.special import roots_legendre
 
+from mdr_core.checks import extremes
 from mdr_core.typing import Array, Chosen, Indices
 
-# h(y, index): y has shape (nodes, m), index (m,) says which integrals they belong to.
+# h(y, index): y has shape (nodes, m), index (m,) says which integrals they belong to. y is the
+# integrand's own, to be overwritten as it likes.
 Integrand = Callable[[Array, Chosen], Array]
 
-# Number of nodes of the rules on offer, as points of the full rule on [-H, H].
-_POINTS: Final = (4, 8, 12, 24, 48)
+# Points of the rules on offer: of any integral, and on [-H, H] of an even one over [0, H].
+_POINTS: Final = (2, 3, 4, 5, 6, 8, 12, 16, 24, 48)
+_EVEN_POINTS: Final = (4, 6, 8, 12, 16, 24, 48)
 # Longest piece of an integral that is cut: the cheapest nodes per unit length.
 _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
-_CALL: Final = 2000
+_CALL: Final = 4000
 _LOG_LARGEST: Final = 700.0
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
@@ -91,14 +94,11 @@ def _longest(points: int, decade: int, analytic: Analytic) -> float:
     return low
 
 
-@lru_cache(maxsize=64)
-def _limits(decade: int, analytic: Analytic) -> Array:
-    """Half lengths up to which each rule of `_POINTS` suffices."""
-    return np.array(
-        [
-            _longest(points, decade, analytic) if points >= analytic.fewest else 0.0
-            for points in _POINTS
-        ]
+@lru_cache(maxsize=128)
+def _limits(decade: int, analytic: Analytic, rules: tuple[int, ...]) -> tuple[float, ...]:
+    """Half lengths up to which each of the rules suffices."""
+    return tuple(
+        _longest(points, decade, analytic) if points >= analytic.fewest else 0.0 for points in rules
     )
 
 
@@ -114,14 +114,15 @@ def integrate_even(h: Integrand, upper: Array, rtol: float, analytic: Analytic =
     `upper` has shape (m,); what is too long for one rule is cut into pieces.
     Source: notes, §5; trefethen, Thm 19.3.
     """
-    result = np.empty_like(upper)
-    for index, points in _groups(upper, rtol, analytic):
+
+    def by_rule(points: int, index: Chosen) -> Array:
         length = upper[index]
         if points:
-            result[index] = _apply(h, _half_rule(points), None, length, index)
-        else:
-            result[index] = _pieces(h, np.zeros_like(length), length, index, rtol, analytic)
-    return result
+            return _apply(h, _half_rule(points), None, length, index)
+        return _pieces(h, np.zeros_like(length), length, index, rtol, analytic)
+
+    limits = _limits(_decade(rtol), analytic, _EVEN_POINTS)
+    return _by_groups(by_rule, upper, limits, _EVEN_POINTS, 2)
 
 
 def integrate_plain(
@@ -134,33 +135,51 @@ def integrate_plain(
 
     Source: notes, §5; trefethen, Thm 19.3.
     """
-    result = np.empty_like(lower)
-    for index, points in _groups(length / 2, rtol, analytic):
+
+    def by_rule(points: int, index: Chosen) -> Array:
         start, span = lower[index], length[index]
         if points:
-            result[index] = _apply(h, composite_rule(points, 1), start, span, index)
-        else:
-            result[index] = _pieces(h, start, span, index, rtol, analytic)
-    return result
+            return _apply(h, composite_rule(points, 1), start, span, index)
+        return _pieces(h, start, span, index, rtol, analytic)
+
+    limits = _limits(_decade(rtol), analytic, _POINTS)
+    return _by_groups(by_rule, length / 2, limits, _POINTS, 1)
 
 
-def _groups(half_length: Array, rtol: float, analytic: Analytic) -> list[tuple[Chosen, int]]:
-    """The integrals that share a rule, with its points; 0 where none suffices.
+def _by_groups(
+    by_rule: Callable[[int, Chosen], Array],
+    half_length: Array,
+    limits: tuple[float, ...],
+    rules: tuple[int, ...],
+    points_a_node: int,
+) -> Array:
+    """Integrate together those that share a rule; of 0 points where none suffices.
 
     A few integrals join those of the next finer rule: no call is worth making for them.
     """
-    choice = np.searchsorted(_limits(_decade(rtol), analytic), half_length)
-    counts = np.bincount(choice, minlength=len(_POINTS) + 1).tolist()
-    present = [number for number, count in enumerate(counts) if count]
-    for number, finer in pairwise(present):
-        more = counts[number] * (_POINTS[finer] - _POINTS[number]) if finer < len(_POINTS) else inf
-        if more <= _CALL:
-            choice[choice == number] = finer
-            counts[number], counts[finer] = 0, counts[number] + counts[finer]
-    groups = [(number, points) for number, points in enumerate((*_POINTS, 0)) if counts[number]]
-    if len(groups) == 1:
-        return [(slice(0, choice.size), groups[0][1])]
-    return [(_chosen(np.flatnonzero(choice == number)), points) for number, points in groups]
+    count = half_length.size
+    worth = _CALL * points_a_node
+    low, high = (bisect_left(limits, end) for end in extremes(half_length))
+    if low == high or (high < len(rules) and count * (rules[high] - rules[low]) <= worth):
+        return by_rule((*rules, 0)[high], slice(0, count))
+    # For each rule, and for none before the first, the integrals for which it suffices.
+    suffice = [half_length <= limits[number] for number in range(low, high)]
+    none = np.zeros(count, bool)
+    enough = [none, *suffice, ~none]
+    counts = [int(np.count_nonzero(part)) for part in enough]
+    present = [i for i in range(1, len(enough)) if counts[i] > counts[i - 1]]
+    points = (0, *(*rules, 0)[low : high + 1])
+    result = np.empty_like(half_length)
+    more, done = 0, 0
+    for this, finer in zip(present, [*present[1:], 0], strict=True):
+        if points[finer]:
+            more += (counts[this] - counts[done]) * (points[finer] - points[this])
+            if more <= worth:
+                continue
+        index = _chosen((enough[this] ^ enough[done]).nonzero()[0])
+        result[index] = by_rule(points[this], index)
+        more, done = 0, this
+    return result
 
 
 def _chosen(index: Indices) -> Chosen:
@@ -182,19 +201,30 @@ def _apply(
     h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
 ) -> Array:
     """Apply a rule on [0, 1] to [lower, lower + length], in blocks that stay in cache."""
-    nodes, weights = rule
-    step = max(_BLOCK // nodes.size, 1)
+    step = max(_BLOCK // rule[0].size, 1)
+    if length.size <= step:
+        return _at_once(h, rule, lower, length, index)
     result = np.empty_like(length)
     for start in range(0, length.size, step):
         block = slice(start, min(start + step, length.size))
-        y = nodes[:, None] * length[block]
-        if lower is not None:
-            y += lower[block]
         if isinstance(index, slice):
             part: Chosen = slice(index.start + block.start, index.start + block.stop)
         else:
             part = index[block]
-        result[block] = length[block] * (weights @ h(y, part))
+        low = None if lower is None else lower[block]
+        result[block] = _at_once(h, rule, low, length[block], part)
+    return result
+
+
+def _at_once(
+    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
+) -> Array:
+    nodes, weights = rule
+    y = nodes[:, None] * length
+    if lower is not None:
+        y += lower
+    result: Array = weights @ h(y, index)
+    result *= length
     return result
 
 

@@ -12,14 +12,14 @@ from mdr_core.abel.panels import (
     resolve,
     slope_source,
 )
-from mdr_core.abel.roots import asinh_difference, between, one_sided
+from mdr_core.abel.roots import arc, between, one_sided
 from mdr_core.abel.stress import StressPanels, stress_panels
 
 __all__ = [
     "Jumps",
     "Panels",
     "StressPanels",
-    "asinh_difference",
+    "arc",
     "back",
     "between",
     "find_breaks",

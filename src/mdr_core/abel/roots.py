@@ -11,8 +11,7 @@ Source: notes, §5.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -29,8 +28,9 @@ from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 # x and s have shape (nodes, k), index (k,) says to which integrals they belong.
 Weight = Callable[[Array, Array, Chosen], Array]
 
-# Where evenness would help no more than one integral in so many, it is not worth a call.
-_FEW: Final = 8
+# Evenness of no more integrals than these is not worth a call.
+_FEW: Final = 400
+_TINY: Final = float(np.finfo(float).tiny)
 
 
 def leg(x: Array, b: Parameter) -> Array:
@@ -42,12 +42,18 @@ def leg(x: Array, b: Parameter) -> Array:
     return np.asarray(np.sqrt(np.maximum(x - b, 0.0) * (x + b)))
 
 
-def asinh_difference(high: Array, low: Array, square_difference: Array) -> Array:
-    """arcsinh(high) - arcsinh(low), given high^2 - low^2 with its digits. Source: notes, §4."""
-    denominator = high * np.hypot(1.0, low) + low * np.hypot(1.0, high)
-    with np.errstate(invalid="ignore"):
-        ratio = square_difference / denominator
-    return np.asarray(np.arcsinh(np.where(denominator > 0, ratio, 0.0)))
+def arc(
+    top: Array, cosh_top: Array, bottom: Array, cosh_bottom: Array, square_difference: Array
+) -> tuple[Array, Array]:
+    """arcsinh(bottom) and arcsinh(top) - arcsinh(bottom), with the digits of a short arc.
+
+    The cosines of both ends are known to whoever asks, and top^2 - bottom^2 with its digits; it
+    may be larger where bottom = 0. Source: notes, §4.
+    """
+    gap2 = np.minimum(square_difference, top * top)
+    # Both ends are zero together only.
+    denominator = np.maximum(top * cosh_bottom + bottom * cosh_top, _TINY)
+    return np.arcsinh(bottom), np.arcsinh(np.divide(gap2, denominator, out=denominator))
 
 
 def one_sided(
@@ -95,9 +101,9 @@ def one_sided(
     """
     problem = _OneSided(weight, upper, width, edge, inner, odd, rtol, analytic)
     on_break = r == b
-    if on_break.any():
+    if np.count_nonzero(on_break):
         on_break &= r > 0
-    if not on_break.any():
+    if not np.count_nonzero(on_break):
         return _two_roots(problem, b, r)
     # The few points on the break have a rule of their own; elsewhere stands in for them meanwhile.
     result = _two_roots(problem, b, np.where(on_break, np.asarray(b) / 2, r))
@@ -107,8 +113,7 @@ def one_sided(
     return result
 
 
-@dataclass(frozen=True)
-class _OneSided:
+class _OneSided(NamedTuple):
     """What `one_sided` was asked, but for the break and the points."""
 
     weight: Weight
@@ -126,8 +131,7 @@ class _OneSided:
         def pick(part: Array | None) -> Array | None:
             return None if part is None else np.broadcast_to(part, shape)[index]
 
-        return replace(
-            self,
+        return self._replace(
             weight=lambda x, s, chosen: self.weight(x, s, index[chosen]),
             upper=np.broadcast_to(self.upper, shape)[index],
             width=pick(self.width),
@@ -176,72 +180,75 @@ def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
 def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
     """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
     weight, upper, width, edge = problem.weight, problem.upper, problem.width, problem.edge
-    rtol, analytic = problem.rtol, problem.analytic
-    distance2 = np.abs(r - b) * (r + b)
-    above = r > b
-    shift = np.where(above, distance2, 0.0)
-    base2 = np.where(above, r * r, np.square(b))
+    signed2 = (b - r) * (b + r)
+    above = signed2 < 0
+    distance2 = np.abs(signed2)
+    shift = distance2 * above
     epsilon = np.sqrt(distance2)
+    base2 = np.asarray(b * b)
+    each = base2.size > 1
 
     def h(y: Array, index: Chosen) -> Array:
-        leg = np.sinh(y)
-        leg *= epsilon[index]
-        leg *= leg
-        x = np.sqrt(leg + base2[index])
-        leg += shift[index]
-        return weight(x, np.sqrt(leg, out=leg), index)
+        # s^2 = |r^2 - b^2| (sinh^2 y + 1) above the break, without the 1 below it.
+        s = np.sinh(y, out=y)
+        s *= epsilon[index]
+        s *= s
+        s += shift[index]
+        x = s + (base2[index] if each else base2)
+        return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
-    if edge is None:
-        top2 = np.maximum(upper * upper - shift, 0.0)
-    else:
-        top2 = np.where(above, (edge - r) * (edge + r), upper * upper)
-    top = np.sqrt(top2) / epsilon
-    even = problem.odd | above
+    even: Flags | bool = problem.odd or above
+    upper2 = upper * upper
+    # a^2 - r^2, and c^2 - r^2 below: above the break they are the lesser legs, as r is than b.
+    edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
     if width is None:
-        return between(h, top, even, rtol, analytic=analytic)
+        top = np.sqrt(np.minimum(edge2, upper2)) / epsilon
+        return between(h, np.arcsinh(top), problem.rtol, even=even, analytic=problem.analytic)
     lower = upper - width
     if problem.inner is None:
-        bottom2 = np.maximum(lower * lower - shift, 0.0)
+        inner2 = lower * lower + signed2
     else:
-        c = problem.inner
-        bottom2 = np.where(above, np.maximum(c - r, 0.0) * (c + r), lower * lower)
-    bottom = np.sqrt(bottom2) / epsilon
-    square_difference = width * (upper + lower) / distance2
-    return between(h, top, even, rtol, bottom, square_difference, analytic)
+        c = np.maximum(problem.inner, b)
+        inner2 = (c - r) * (c + r)
+    root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
+    start = np.arcsinh(np.minimum(root, lower) / epsilon)
+    # a^2 less the larger of c^2 and r^2, and its arc: the cosines are the other legs.
+    on_root = above & (inner2 == 0)
+    gap2 = np.minimum(edge2, width * (upper + lower))
+    legs = np.sqrt(edge2) * np.where(on_root, epsilon, lower) + root * upper
+    length = np.arcsinh(gap2 / np.maximum(legs, _TINY))
+    return between(h, length, problem.rtol, start, even=even, analytic=problem.analytic)
 
 
 def between(
     h: Integrand,
-    top: Array,
-    even: Flags,
+    length: Array,
     rtol: float,
-    bottom: Array | None = None,
-    square_difference: Array | None = None,
+    lower: Array | None = None,
+    *,
+    even: Flags | bool = True,
     analytic: Analytic = DEFAULT,
 ) -> Array:
-    """Return the integrals of h over [arcsinh(bottom), arcsinh(top)].
+    """Return the integrals of h over [lower, lower + length]; from zero where no `lower` is given.
 
     h is analytic in the strip, and even where `even` says so: there an integral from zero
-    takes half the nodes. `square_difference` = top^2 - bottom^2, with its digits, is needed
-    with `bottom`; both are left out for integrals from zero.
+    takes half the nodes.
 
     Source: notes, §5.
     """
-    upper = np.arcsinh(top)
-    whole = even if bottom is None else even & (bottom == 0)
+    whole = even if lower is None else even & (lower == 0)
+    if whole is True:
+        return integrate_even(h, length, rtol, analytic)
     count = np.count_nonzero(whole)
-    if count == whole.size:
-        return integrate_even(h, upper, rtol, analytic)
-    if bottom is None or square_difference is None:
-        lower, length = np.zeros_like(upper), upper
-    else:
-        gap2 = np.where(bottom > 0, square_difference, top * top)
-        lower, length = np.arcsinh(bottom), asinh_difference(top, bottom, gap2)
-    if count * _FEW <= whole.size:
+    if count == length.size:
+        return integrate_even(h, length, rtol, analytic)
+    if lower is None:
+        lower = np.zeros_like(length)
+    if count <= _FEW:
         return integrate_plain(h, lower, length, rtol, analytic)
-    result = np.empty_like(top)
+    result = np.empty_like(length)
     index = np.flatnonzero(whole)
-    result[index] = integrate_even(_chosen(h, index), upper[index], rtol, analytic)
+    result[index] = integrate_even(_chosen(h, index), length[index], rtol, analytic)
     index = np.flatnonzero(~whole)
     rest = lower[index], length[index]
     result[index] = integrate_plain(_chosen(h, index), *rest, rtol, analytic)

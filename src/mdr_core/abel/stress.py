@@ -14,7 +14,7 @@ from mdr_core.abel.panels import Jumps, bisect
 from mdr_core.abel.roots import leg, one_sided
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import Analytic, gauss_legendre
-from mdr_core.typing import Array, Flags, Indices
+from mdr_core.typing import Array, Chosen, Flags, Indices
 
 # Of a panel's masses, and of a part of a panel that is seen from afar, where 2 x 14 nodes
 # leave 3.4^-28.
@@ -70,7 +70,7 @@ class StressPanels:
         middle, half = (start + stop) / 2, (stop - start) / 2
         pole, row = float(self.pole[piece]), self.coefficients[piece]
 
-        def weight(x: Array, s: Array, _index: Indices) -> Array:
+        def weight(x: Array, s: Array, _index: Chosen) -> Array:
             value = chebyshev.chebval(np.clip((s - middle) / half, -1, 1), row)
             return np.asarray((value * s + pole) / x)
 
@@ -282,7 +282,7 @@ class StressPanels:
         start, stop, pole = self.start[piece], self.stop[piece], self.pole[piece]
         rows = self.coefficients[piece].T
 
-        def weight(x: Array, s: Array, index: Indices) -> Array:
+        def weight(x: Array, s: Array, index: Chosen) -> Array:
             u = np.clip((2 * s - (start + stop)[index]) / (stop - start)[index], -1, 1)
             value = chebyshev.chebval(u, rows[:, None, index], tensor=False)
             return np.asarray((value * s + pole[index]) / x)

@@ -129,9 +129,18 @@ class Blunt(BehindFlat):
     def depth_slope(self, coordinate: Array) -> Array:
         return self._weight(self.contact_radius(coordinate), coordinate)
 
-    @abstractmethod
     def _weight(self, x: Array, s: Array) -> Array:
         """g'(x) s/x = dg/ds [1], analytic and even in s."""
+        return self._bare_weight(x, s) * self._factor
+
+    @property
+    @abstractmethod
+    def _factor(self) -> Parameter:
+        """What of the weight depends on nothing."""
+
+    @abstractmethod
+    def _bare_weight(self, x: Array, s: Array) -> Array:
+        """The weight without its factor."""
 
     def pressure_kernel(
         self,
@@ -144,7 +153,7 @@ class Blunt(BehindFlat):
         inner: Array | None = None,
     ) -> Array:
         value = one_sided(
-            lambda x, s, _: self._weight(x, s),
+            lambda x, s, _: self._bare_weight(x, s),
             self.flat_radius,
             radius,
             coordinate,
@@ -154,7 +163,7 @@ class Blunt(BehindFlat):
             odd=True,
             rtol=rtol,
         )
-        value *= modulus / np.pi
+        value *= modulus * self._factor / np.pi
         return value
 
 
@@ -197,9 +206,19 @@ class RoundedPunch(Blunt):
         edge = self.contact_radius(coordinate)
         return edge * self.depth(coordinate) + cube / (3 * self.rounding_radius)
 
-    def _weight(self, x: Array, s: Array) -> Array:
-        b = self.flat_radius
-        return (2 * s - b * np.arctan(s / b)) * s / (x * self.rounding_radius)
+    @property
+    def _factor(self) -> Parameter:
+        return self.flat_radius / self.rounding_radius
+
+    def _bare_weight(self, x: Array, s: Array) -> Array:
+        """(2 s/b - arctan(s/b)) s/x."""
+        value = np.asarray(s / self.flat_radius)
+        angle = np.arctan(value)
+        value += value
+        value -= angle
+        value *= s
+        value /= x
+        return value
 
 
 @dataclass(frozen=True)
@@ -240,9 +259,13 @@ class TruncatedCone(Blunt):
         b, edge = self.flat_radius, self.contact_radius(coordinate)
         return self.slope * (edge * edge * np.arctan(coordinate / b) + b * coordinate)
 
-    def _weight(self, x: Array, s: Array) -> Array:
+    @property
+    def _factor(self) -> Parameter:
+        return self.slope
+
+    def _bare_weight(self, x: Array, s: Array) -> Array:
         b = self.flat_radius
-        return self.slope * (np.arctan(s / b) * s + b) / x
+        return (np.arctan(s / b) * s + b) / x
 
 
 @dataclass(frozen=True)
@@ -306,5 +329,9 @@ class TruncatedParaboloid(Blunt):
         outer = s2 * s2 * cubic / (15 * np.square(a + b))
         return np.asarray((a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius))
 
-    def _weight(self, x: Array, s: Array) -> Array:
-        return (x * x + s * s) / (x * self.radius)
+    @property
+    def _factor(self) -> Parameter:
+        return 1 / np.asarray(self.radius)[()]
+
+    def _bare_weight(self, x: Array, s: Array) -> Array:
+        return (x * x + s * s) / x

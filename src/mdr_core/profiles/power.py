@@ -202,6 +202,9 @@ class Power(Profile):
         n = np.asarray(self.exponent, dtype=float)
         scale = modulus * kappa(self.exponent) / np.pi * self.df(coordinate)
         moment = power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
+        if n > 1:
+            moment *= scale
+            return moment
         # However small its factor, what is infinite on the axis is infinite there.
         with np.errstate(invalid="ignore"):
             return np.where(np.isinf(moment), np.copysign(moment, modulus), scale * moment)

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.roots import between
+from mdr_core.profiles.moment_series import moment_series
 from mdr_core.profiles.profile import NOWHERE, ORDINARY
 from mdr_core.quadrature import Analytic
 from mdr_core.typing import Array, Chosen, Parameter
@@ -69,6 +70,8 @@ def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     n = np.asarray(exponent, dtype=float)
     with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
         bare = raised(r, n - 1)
+        if bare.size == 1 and _TINY <= bare.item() <= _HUGE:
+            return np.asarray(coefficient * n * bare)
         extreme = (r > 0) & ((bare < _TINY) | (bare > _HUGE))
         direct = np.asarray(coefficient * n * bare)
         if not extreme.any():
@@ -150,34 +153,42 @@ def power_moment(
 ) -> Array:
     """int_max(r,c)^a (x/a)^m / sqrt(x^2 - r^2) dx [1], c = a - width.
 
-    x = r cosh(y) leaves (cosh y)^m, smooth in the strip; on the axis the integral is elementary.
+    All of it is a hypergeometric function; over an annulus x = r cosh(y) leaves (cosh y)^m, smooth
+    in the strip, and on the axis the integral is elementary.
     """
     if m == 0:
         return log_ratio(a, r, width, inner)
     if m == 1:
         return root_step(a, r, width, inner) / a
+    series = moment_series(m, rtol) if width is None else None
+    if series is not None:
+        return series.at(a, r)
     if m > STEEP:
         width, inner = _felt_part(m, a, width, inner)
-    on_axis = r == 0
-    if width is not None:
-        # So far inside c the radius changes nothing, and its square leaves the range of doubles.
-        on_axis = on_axis | (r < _INMOST * (a - width if inner is None else inner))
-    safe = np.where(on_axis, a, r)
+    c = None if width is None else a - width if inner is None else inner
+    # So far inside c the radius changes nothing, and its square leaves the range of doubles.
+    on_axis = r == 0 if c is None else r <= _INMOST * c
+    any_on_axis = np.count_nonzero(on_axis) > 0
+    safe = np.where(on_axis, a / 2, r) if any_on_axis else r
     ratio = safe / a
-    top = np.sqrt((a - safe) * (a + safe)) / safe
     analytic = Analytic(growth=max(abs(m), 1.0))
 
     def h(y: Array, index: Chosen) -> Array:
-        return np.asarray((ratio[index] * np.cosh(y)) ** m)
+        np.cosh(y, out=y)
+        y *= ratio[index]
+        y **= m
+        return y
 
-    if width is None:
-        value = between(h, top, np.ones(top.shape, bool), rtol, analytic=analytic)
+    leg2 = (a - safe) * (a + safe)
+    if width is None or c is None:
+        value = between(h, np.arcsinh(np.sqrt(leg2) / safe), rtol, analytic=analytic)
     else:
-        c = np.maximum(a - width if inner is None else inner, safe)
-        bottom = np.sqrt((c - safe) * (c + safe)) / safe
-        difference = width * (2 * a - width) / safe**2
-        value = between(h, top, np.ones(top.shape, bool), rtol, bottom, difference, analytic)
-    if on_axis.any():
+        low = np.maximum(c, safe)
+        root = np.sqrt((low - safe) * (low + safe))
+        gap2 = np.minimum(width * (2 * a - width), leg2)
+        length = np.arcsinh(gap2 / (np.sqrt(leg2) * low + root * a))
+        value = between(h, length, rtol, np.arcsinh(root / safe), analytic=analytic)
+    if any_on_axis:
         value[on_axis] = np.broadcast_to(_axis_moment(m, a, width), value.shape)[on_axis]
     return value
 

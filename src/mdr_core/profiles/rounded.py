@@ -6,7 +6,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.roots import asinh_difference, between
+from mdr_core.abel.roots import arc, between
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import root_step
@@ -138,31 +138,50 @@ def sphere_kernel(
     at R are gone; what g' carries as a pole is elementary:
     P = (1/pi) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
     """
-    stretch = big_radius / np.sqrt((big_radius - r) * (big_radius + r))
-    tilt2 = np.square(stretch * (r / big_radius))
-    top = _sphere_leg(big_radius, v, r, edge)
+    square = (big_radius - r) * (big_radius + r)
+    tilt2 = r * r / square
+    stretch = big_radius / np.sqrt(square)
 
     def h(y: Array, index: Chosen) -> Array:
-        cosh = np.cosh(y)
-        z = np.sqrt(tilt2[index] + np.square(stretch[index] * np.sinh(y)))
-        return np.asarray(np.arcsinh(z) / (z * cosh))
+        z = np.sinh(y)
+        z *= stretch[index]
+        z *= z
+        z += tilt2[index]
+        np.sqrt(z, out=z)
+        np.cosh(y, out=y)
+        y *= z
+        np.arcsinh(z, out=z)
+        z /= y
+        return z
 
-    even = np.ones(top.shape, bool)
+    top = _sphere_leg(big_radius, v, r, edge)
     if width is None:
-        smooth = between(h, top, even, rtol)
-        return np.asarray((stretch * np.arcsinh(top) + smooth) / np.pi)
-    bottom = _sphere_leg(big_radius, v - width, r, inner)
-    difference = np.sinh(width) * np.sinh(2 * v - width) / np.square(stretch)
-    smooth = between(h, top, even, rtol, bottom, difference)
-    difference = np.where(bottom > 0, difference, top * top)
-    length = asinh_difference(top, bottom, difference)
-    return np.asarray((stretch * length + smooth) / np.pi)
+        length = np.arcsinh(top)
+        smooth = between(h, length, rtol)
+    else:
+        inmost = v - width
+        lower, length = arc(
+            top,
+            np.cosh(v) / stretch,
+            _sphere_leg(big_radius, inmost, r, inner),
+            np.maximum(np.cosh(inmost) / stretch, 1.0),
+            np.sinh(width) * np.sinh(2 * v - width) / (stretch * stretch),
+        )
+        smooth = between(h, length, rtol, lower)
+    stretch *= length
+    smooth += stretch
+    smooth /= np.pi
+    return smooth
 
 
-def _sphere_leg(big_radius: Parameter, v: Array, r: Array, edge: Array | None = None) -> Array:
+def _sphere_leg(big_radius: Parameter, v: Array, r: Array, edge: Array | None) -> Array:
     """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
     a = big_radius * np.tanh(v) if edge is None else edge
-    return np.asarray(np.sqrt(np.maximum(a - r, 0.0) * (a + r)) * np.cosh(v) / big_radius)
+    root = np.maximum(a - r, 0.0)
+    root *= a + r
+    np.sqrt(root, out=root)
+    root *= np.cosh(v) / big_radius
+    return root
 
 
 @dataclass(frozen=True)
@@ -260,18 +279,29 @@ class Hyperboloid(Profile):
         r2 = r * r
 
         def integrand(y: Array, index: Chosen) -> Array:
-            x = np.sqrt(r2[index] + np.square(rho[index] * np.sinh(y)))
-            return np.asarray(rho[index] * np.cosh(y) * np.arctan(x / h) / x)
+            x = np.sinh(y)
+            x *= rho[index]
+            x *= x
+            x += r2[index]
+            np.sqrt(x, out=x)
+            np.cosh(y, out=y)
+            y *= rho[index]
+            y /= x
+            x /= h
+            y *= np.arctan(x, out=x)
+            return y
 
-        even = np.ones(top.shape, bool)
         if width is None:
-            smooth = between(integrand, top, even, rtol)
+            smooth = between(integrand, np.arcsinh(top), rtol)
             pole = np.arctan(top)
         else:
             step = root_step(a, r, width, inner)
             bottom = np.maximum(leg - step, 0.0) / rho
             difference = width * (2 * a - width) / (rho * rho)
-            smooth = between(integrand, top, even, rtol, bottom, difference)
+            c = np.maximum(a - width if inner is None else inner, r)
+            cosh_top, cosh_bottom = np.hypot(h, a) / rho, np.hypot(h, c) / rho
+            lower, length = arc(top, cosh_top, bottom, cosh_bottom, difference)
+            smooth = between(integrand, length, rtol, lower)
             pole = np.arctan2(step / rho, 1 + top * bottom)
         smooth += h / rho * pole
         smooth *= modulus * self.slope / np.pi
