@@ -375,7 +375,7 @@ async def schema(port: int, _server: psutil.Process) -> list[Row]:
     command = [
         str(Path(sys.executable).with_name("schemathesis")),
         *("run", f"http://127.0.0.1:{port}/openapi.json", "--no-color", "--continue-on-failure"),
-        *("--phases", "examples,coverage,fuzzing", "--max-examples", "250", "--checks", "all"),
+        *("--phases", "examples,coverage,fuzzing", "--max-examples", "350", "--checks", "all"),
         # What fits the schema may have no answer for all that: friction beyond its limit, say.
         *("--exclude-checks", "positive_data_acceptance", "--seed", "1"),
     ]
