@@ -29,7 +29,7 @@ _EVEN_POINTS: Final = (4, 6, 8, 12, 16, 24, 48)
 # Longest piece of an integral that is cut: the cheapest nodes per unit length.
 _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
-_CALL: Final = 4000
+_CALL: Final = 2000
 _LOG_LARGEST: Final = 700.0
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
