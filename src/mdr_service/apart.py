@@ -15,6 +15,7 @@ from mdr_service.problems import Error, Kind
 # How soon it notices that its parent is gone, whatever it is at.
 _PARENT_SECONDS: Final = 0.5
 _TRIES: Final = 7
+_POLITE: Final = 5
 
 
 class Outcome(NamedTuple):
@@ -43,6 +44,8 @@ def prepare() -> None:
     # A terminal, or whoever ends a whole group, means the server: it ends once all is answered.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    # Where there are fewer processors than processes, the loop that serves all goes first.
+    os.nice(_POLITE)
     threading.Thread(target=_follow, args=(os.getppid(),), daemon=True).start()
 
 
