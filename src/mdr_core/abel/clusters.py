@@ -8,6 +8,7 @@ is interpolated there. Blocks are doubled as long as the point is far from them.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -22,28 +23,46 @@ FAR: Final = 0.5
 _BEYOND: Final = 1 + 2 * FAR + 2 * np.sqrt(FAR + FAR * FAR)
 _SHIFT: Final = (_BEYOND - 1) / 2
 # Pairs of a block and a point handled at once: their roots stay in cache.
-_PAIRS: Final = 2048
+_PAIRS: Final = 4096
+# Blocks whose interpolation is at hand at once.
+_BLOCKS: Final = 512
+# Added to a distance from a node, which may be none at all.
+_TOUCHING: Final = 1e-290
 
 
 @lru_cache(maxsize=8)
-def _interpolation(count: int) -> tuple[Array, Array]:
-    """Nodes of a block of length one, and values at them to Chebyshev coefficients in w."""
+def _interpolation(count: int) -> tuple[Array, Array, Array]:
+    """Nodes of a block of length one, the same in w, and their barycentric weights."""
     points = np.asarray(chebyshev.chebpts1(count), dtype=float)
-    inverse: Array = np.linalg.inv(chebyshev.chebvander(points, count - 1))
+    weights = np.sqrt((1 - points) * (1 + points)) * (-1.0) ** np.arange(count)
     nodes = _SHIFT * (1 + points) / (_BEYOND - points)
-    return nodes, inverse
+    return nodes, points, weights
+
+
+def _shares(v: Array, count: int) -> tuple[Array, Array]:
+    """How masses at v of blocks of length one are shared among the nodes.
+
+    Barycentric: shares of shape (*v, nodes), to be divided by their sum, shape of v.
+    """
+    _, points, weights = _interpolation(count)
+    w = (_BEYOND * v - _SHIFT) / (v + _SHIFT)
+    share: Array = np.subtract(w[..., None], points)
+    share += _TOUCHING
+    np.divide(weights, share, out=share)
+    return share, share @ np.ones(count)
 
 
 def masses_at_nodes(v: Array, masses: Array, count: int) -> Array:
     """Replace masses at v (blocks, k) of blocks of length one by masses at their nodes."""
-    w = (_BEYOND * v - _SHIFT) / (v + _SHIFT)
-    before, now = np.ones_like(w), w
-    moments = np.empty((v.shape[0], count))
-    moments[:, 0] = masses.sum(axis=1)
-    for degree in range(1, count):
-        moments[:, degree] = np.einsum("bk,bk->b", masses, now)
-        before, now = now, 2 * w * now - before
-    return np.asarray(moments @ _interpolation(count)[1])
+    result = np.empty((v.shape[0], count))
+    for start in range(0, v.shape[0], _BLOCKS):
+        part = slice(start, start + _BLOCKS)
+        result[part] = _shared(masses[part], *_shares(v[part], count))
+    return result
+
+
+def _shared(masses: Array, shares: Array, total: Array) -> Array:
+    return np.asarray(np.matmul((masses / total)[:, None], shares)[:, 0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +105,7 @@ class Clusters:
         """Sum of int mu(dx)/sqrt(|x^2 - t^2|) over each block and its range of points."""
         total = np.zeros_like(base)
         count = self.masses.shape[1]
-        nodes, _ = _interpolation(count)
+        nodes = _interpolation(count)[0]
         room, taken = np.empty((2, _PAIRS, count))
         ones = np.ones(count)
         for block, point in pairs(low, high):
@@ -138,50 +157,56 @@ def clusters(edges: Array, masses: Array, *, above: bool) -> Clusters:
 
     `above`: the points lie above the panels, and the nodes count from each right end.
     """
-    count = edges.size - 1
-    size, level = 1, masses
-    starts, all_masses, parents, done = [np.arange(count)], [masses], [], 0
-    sizes = [np.ones(count, int)]
-    while level.shape[0] > 1:
-        whole = level.shape[0] // 2
-        parent = done + level.shape[0] + np.arange(level.shape[0]) // 2
-        parent[2 * whole :] = -1
-        parents.append(parent)
-        done += level.shape[0]
-        level = _joined(edges, level[: 2 * whole], size, above=above)
-        size *= 2
-        starts.append(np.arange(whole) * size)
-        sizes.append(np.full(whole, size))
-        all_masses.append(level)
-    parents.append(np.array([-1]))
-    first = np.concatenate(starts)
-    last = first + np.concatenate(sizes)
+    counts = [edges.size - 1]
+    while counts[-1] > 1:
+        counts.append(counts[-1] // 2)
+    begin = np.concatenate([[0], np.cumsum(counts)])
+    level = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(level.size) - begin[level]
+    first = number << level
+    last = (number + 1) << level
+    # Of an odd number of blocks the last one has no parent, nor has the largest.
+    parent = begin[level + 1] + number // 2
+    alone = np.append(begin[2:], 0)[level] <= parent
+    parent[alone] = -1
     low, high = edges[first], edges[last]
-    return Clusters(
-        high if above else low,
-        (high - low) * (high + low),
-        np.concatenate(all_masses),
-        first,
-        last,
-        np.concatenate(parents),
-        above,
-    )
+    length = (high - low) * (high + low)
+    joined = slice(counts[0], None)
+    middle = edges[(first + last)[joined] // 2]
+    v = _places_in_pairs(low[joined], middle, high[joined], masses.shape[1], above=above)
+    total = np.empty((level.size, masses.shape[1]))
+    total[: counts[0]] = masses
+    _gather(total, v, counts, above=above)
+    return Clusters(high if above else low, length, total, first, last, parent, above)
 
 
-def _joined(edges: Array, masses: Array, size: int, *, above: bool) -> Array:
-    """Masses of the blocks of 2 `size` panels from those of `size`."""
-    blocks = masses.shape[0] // 2
-    ends = edges[: 2 * blocks * size + 1 : size]
-    low, middle, high = ends[:-1:2], ends[1::2], ends[2::2]
+def _places_in_pairs(low: Array, middle: Array, high: Array, count: int, *, above: bool) -> Array:
+    """Where the nodes of two neighbouring blocks lie in the block of both, the near one first."""
     lower, upper = (middle - low) * (middle + low), (high - middle) * (high + middle)
-    near, far = (upper, lower) if above else (lower, upper)
     length = lower + upper
-    part = masses.reshape(blocks, 2, -1)
-    if above:
-        part = part[:, ::-1]
-    count = masses.shape[1]
-    nodes, _ = _interpolation(count)
-    v_near = np.multiply.outer(near / length, nodes)
-    v_far = (near / length)[:, None] + np.multiply.outer(far / length, nodes)
-    v = np.concatenate([v_near, v_far], axis=1)
-    return masses_at_nodes(v, part.reshape(blocks, -1), count)
+    near = (upper if above else lower) / length
+    nodes = _interpolation(count)[0]
+    rest = (lower if above else upper) / length
+    v_far = near[:, None] + np.multiply.outer(rest, nodes)
+    return np.concatenate([np.multiply.outer(near, nodes), v_far], axis=1)
+
+
+def _gather(total: Array, v: Array, counts: list[int], *, above: bool) -> None:
+    """Fill in the masses of joined blocks, size after size, from those of the panels."""
+    count, done, before = total.shape[1], 0, 0
+    known: tuple[Array, Array] | None = None
+    start = 0
+    for size, whole in pairwise(counts):
+        two = total[before : before + 2 * whole].reshape(whole, 2, count)
+        rows = (two[:, ::-1] if above else two).reshape(whole, 2 * count)
+        here = slice(done, done + whole)
+        before += size
+        if whole > _BLOCKS:
+            total[before : before + whole] = masses_at_nodes(v[here], rows, count)
+        else:
+            # All smaller numbers of blocks together are no more than twice this one.
+            if known is None:
+                known, start = _shares(v[done:], count), done
+            part = slice(done - start, done - start + whole)
+            total[before : before + whole] = _shared(rows, known[0][part], known[1][part])
+        done += whole

@@ -1,6 +1,5 @@
 """The two-limit stress kernel of functions known as panels."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,7 +9,8 @@ from numpy.polynomial import chebyshev
 from mdr_core.abel.clusters import FAR, Clusters, add, clusters, masses_at_nodes, pairs
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panel_moments import PLACES, PowerPanels, interpolated, power_panels
-from mdr_core.abel.panels import Jumps, bisect
+from mdr_core.abel.panels import Jumps
+from mdr_core.abel.pieces import DEGREE, Slope, pieces_behind
 from mdr_core.abel.roots import leg, one_sided
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import Analytic, gauss_legendre
@@ -18,7 +18,7 @@ from mdr_core.typing import Array, Chosen, Flags, Indices
 
 # Of a panel's masses, and of a part of a panel that is seen from afar, where 2 x 14 nodes
 # leave 3.4^-28.
-_MASS_NODES: Final = 24
+_MASS_NODES: Final = 16
 _FAR_NODES: Final = 14
 # Interpolation errs by 7.3^-12 of the part of a block: below 1e-13 of the whole.
 _CLUSTER_NODES: Final = 12
@@ -28,8 +28,6 @@ _AXIS: Final = 1e-8
 _TIP: Final = 1e-6
 # The panels' polynomials have degree 23.
 _POLYNOMIALS: Final = Analytic(growth=12.0, fewest=24)
-_NEGLIGIBLE: Final = 1e-16
-_EPS: Final = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -93,6 +91,8 @@ class StressPanels:
         powers = power_panels(left, right, values, at_left, self.accuracy)
         # One piece is resolved; of several, one polynomial may miss what lies between its places.
         cut = np.flatnonzero((np.diff(self._first) > 1) & powers.known)
+        if not cut.size:
+            return powers
         between = (PLACES[1:] + PLACES[:-1]) / 2
         between = np.concatenate([PLACES[:1] * [0.03, 0.3], between])
         fitted = interpolated(values[cut], between)
@@ -104,19 +104,31 @@ class StressPanels:
         """W = (G s + pole)/x at places in panels of length one (panels, places)."""
         left = self.edges[panel, None]
         length = leg(self.edges[panel + 1], left[:, 0])[:, None]
+        s = length * places
+        first = self._first[panel]
+        value = self.coefficients[first] @ _basis(2 * places - 1)
+        cut = np.flatnonzero(np.diff(self._first)[panel] > 1)
+        if cut.size:
+            value[cut] = self._from_pieces(panel[cut], places, s[cut])
+        return np.asarray((value * s + self.pole[first, None]) / np.hypot(left, s))
+
+    def _from_pieces(self, panel: Indices, places: Array, s: Array) -> Array:
+        """G without its pole, in panels of several pieces."""
         number = np.repeat(np.arange(self.edges.size - 1), np.diff(self._first))
         at = number + self.start / leg(self.edges[1:], self.edges[:-1])[number]
         piece = np.searchsorted(at, panel[:, None] + places, side="right") - 1
-        s = length * places
-        return (self._regular(piece, s) * s + self.pole[piece]) / np.hypot(left, s)
+        return self._regular(piece, s)
 
     @cached_property
     def _clusters(self) -> Clusters:
         """Whole panels, as they are seen from smaller radii afar."""
         first = self._first
-        pieces = np.arange(self.base.size)
-        steps, masses = self._nodes(pieces, self.start, self.stop - self.start, _MASS_NODES)
-        s = self.start[:, None] + steps
+        nodes, weights = gauss_legendre(_MASS_NODES)
+        span = self.stop - self.start
+        s = self.start[:, None] + np.multiply.outer(span, (1 + nodes) / 2)
+        # The nodes are in the same places of all pieces.
+        value = self.coefficients @ _basis(nodes) * s + self.pole[:, None]
+        masses = span[:, None] / 2 * weights * value / np.hypot(self.base[:, None], s)
         square = np.diff(self.edges) * (self.edges[1:] + self.edges[:-1])
         parts = masses_at_nodes(
             s * s / np.repeat(square, np.diff(first))[:, None], masses, _CLUSTER_NODES
@@ -300,8 +312,17 @@ class StressPanels:
         )
 
 
+def _basis(points: Array) -> Array:
+    """The polynomials of a piece at points between -1 and 1 (degree + 1, points)."""
+    return np.asarray(chebyshev.chebvander(points, DEGREE).T, dtype=float)
+
+
 def stress_panels(
-    slope: Callable[[Array, Array], Array], edges: Array, jumps: Jumps, accuracy: float = 1e-13
+    slope: Slope,
+    edges: Array,
+    jumps: Jumps,
+    accuracy: float = 1e-13,
+    kinks: Array | None = None,
 ) -> StressPanels:
     """Resolve G = g' between the given edges, each panel in s about its own left edge.
 
@@ -314,6 +335,8 @@ def stress_panels(
     edges : the ends of the smooth pieces, ascending [length], shape (k + 1,).
     jumps : of f', at some of the edges.
     accuracy : of a panel's part of the kernel next to the panel; the dearer rule is more accurate.
+    kinks : parts of G that begin at each edge, relative to G, from which follows how many nodes a
+        panel needs; without them each takes 24.
 
     Raises
     ------
@@ -329,33 +352,16 @@ def stress_panels(
     >>> [float(f"{each:.6g}") for each in value]
     [2.0, 1.6]
     """
-    base = edges[:-1]
-    last = leg(edges[1:], base)
-    intervals = np.stack([np.zeros_like(last), last], axis=1)
-
-    def in_s(s: Array, tags: Indices) -> Array:
-        b = base[tags]
-        offset: Array = s * s / (b + np.hypot(b, s))
-        return slope(b, offset)
-
-    def blur(s: Array, tags: Indices) -> Array:
-        # x = sqrt(b^2 + s^2) is rounded to eps x, its root s to eps x^2/s.
-        return np.asarray(_EPS * (np.square(base[tags]) / s + s))
-
-    # The pressure on the axis holds int G/x and feels G itself there; where G grows towards the
-    # axis that pressure is infinite, and elsewhere int G is what counts.
-    at_edge = float(np.abs(slope(base[-1:], edges[-1:] - base[-1:]))[0])
-    at_tip = float(np.abs(slope(base[:1], edges[1:2]))[0] * edges[1])
-
-    def tip_is_done(high: Array, largest: Array) -> Flags:
-        steep = (largest > at_edge) & (high * largest <= _NEGLIGIBLE * at_tip)
-        return np.asarray(steep | (largest <= _NEGLIGIBLE * at_edge))
-
-    places, tags, coefficients, error = bisect(
-        in_s, intervals, np.arange(base.size), blur, tip_is_done
-    )
-    pole = np.zeros_like(base)
-    pole[np.searchsorted(base, jumps.at)] = jumps.at * jumps.size
+    pieces = pieces_behind(slope, edges, kinks, accuracy / 5)
+    pole = np.zeros(edges.size - 1)
+    pole[np.searchsorted(edges[:-1], jumps.at)] = jumps.at * jumps.size
     return StressPanels(
-        edges, base[tags], places[:, 0], places[:, 1], pole[tags], coefficients, error, accuracy
+        edges,
+        edges[pieces.panel],
+        pieces.start,
+        pieces.stop,
+        pole[pieces.panel],
+        pieces.coefficients,
+        pieces.error,
+        accuracy,
     )

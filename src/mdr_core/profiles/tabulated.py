@@ -274,7 +274,8 @@ class Tabulated(BehindFlat):
         told = f"at {self.r[np.argmax(close)]:.12g} closer than {_CLOSEST:g} of the radius to"
         detail = f"{told} the one before: the stress next to them has no digits, leave one out"
         _refuse_first("r", close, detail)
-        return stress_panels(self._slope.source.transform, self.r, self._jumps, _ACCURACY)
+        source = self._slope.source
+        return stress_panels(source.transform, self.r, self._jumps, _ACCURACY, source.kinks())
 
     def pressure_kernel(
         self,
@@ -301,7 +302,7 @@ def _interpolate(r: Array, f: Array, interpolation: Interpolation) -> Array:
     if interpolation == "pchip":
         return np.flip(np.asarray(PchipInterpolator(r, f).c), axis=0)
     spline = CubicSpline(r, f)
-    slopes = spline(r, 1)
+    slopes = spline.c[2]
     if r[0] == 0 and -_RINGING * np.abs(slopes).max() <= slopes[0] < 0:
         # A tip that falls by an interpolation's error is meant to be smooth. Left alone, it
         # would push the smallest loads below zero.
