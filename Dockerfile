@@ -42,7 +42,7 @@ EXPOSE 8000
 
 # Without curl, which the base lacks, and without urllib, which would ask a proxy if there is one.
 HEALTHCHECK --interval=30s --timeout=5s --start-period=20s --retries=3 \
-    CMD ["python", "-c", "from http.client import HTTPConnection as C; c = C('127.0.0.1', 8000, timeout=4); c.request('HEAD', '/health'); raise SystemExit(c.getresponse().status != 200)"]
+    CMD ["python", "-c", "from http.client import HTTPConnection as C; c = C('127.0.0.1', 8000, timeout=4); c.request('HEAD', '/health/live'); raise SystemExit(c.getresponse().status != 200)"]
 
 ENTRYPOINT ["mdr", "serve"]
 CMD ["--host", "0.0.0.0", "--port", "8000"]
