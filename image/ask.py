@@ -13,7 +13,7 @@ RELATIVE = 1e-14
 def main() -> None:
     print(f"a Hertzian contact agrees with its closed form to {hertz():.1e}")
     print(f"a picture is drawn, of {picture()} bytes")
-    print(f"a compute process solves a known contact: {fetch('GET', '/health/ready')}")
+    print(f"a compute process solves a known contact: {fetch('GET', '/health/ready').decode()}")
     print(f"the documentation page is there, of {len(fetch('GET', '/docs'))} bytes")
 
 
