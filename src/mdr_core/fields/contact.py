@@ -4,8 +4,7 @@ Every function answers [load][radius], or [radius] where all loads were single n
 is called is computed.
 """
 
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,8 +26,7 @@ from mdr_core.typing import Array
 _FAR: Final = 1e8
 
 
-@dataclass(frozen=True)
-class _Slip:
+class _Slip(NamedTuple):
     """One load's partial slip, as plain numbers."""
 
     normal: Load
@@ -230,6 +228,6 @@ def _slips(contact: TangentialContact) -> list[_Slip]:
     at_once = contact.normal.profile.slips_at_once
     return [
         # Where nothing slips before all does, the kernel takes the load itself as its width.
-        replace(part, width=part.width * part.normal.coordinate) if at_once else part
+        part._replace(width=part.width * part.normal.coordinate) if at_once else part
         for part in (_Slip(load, *row) for load, row in zip(spread, rows, strict=True))
     ]

@@ -1,9 +1,8 @@
 """What all fields share: one load's contact, its kernels, and the blocks of radii."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import inf
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,8 +23,7 @@ _BEYOND: Final = 1.5
 Row = Callable[[Array, float], Array]
 
 
-@dataclass(frozen=True)
-class Load:
+class Load(NamedTuple):
     """One load's contact, as plain numbers; `edge` is a where it is what was given."""
 
     profile: Profile
