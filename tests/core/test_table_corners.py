@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mdr_core import fields
+from mdr_core import fields, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import Tabulated
@@ -108,3 +108,36 @@ def test_far_panels_are_not_looked_at_one_by_one() -> None:
         low, high = blocks.far_from(place, blocks.usable(0, points))
         counts.append(int((high - low).sum()))
     assert counts[1] <= 2 * counts[0]
+
+
+@pytest.mark.parametrize("a", [0.0031, 0.0213, 0.0498, EDGE])
+def test_panels_taken_as_one_keep_the_tolerance(a: float) -> None:
+    """At a loose tolerance the kinks between the panels of a smooth table are not resolved."""
+    r = np.linspace(0, END, 200)
+    profile = Tabulated(r, sphere(r))
+    assert profile._panels_for(1e-6).base.size < profile._stress.base.size / 4
+    contact = solve(profile, 1.0, contact_radius=a, rtol=1e-6)
+    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=a * (1 - 1e-4))
+    radii = [a * part for part in (0.31, 0.93, 1 - 1e-5, 1 - 1e-9)]
+    found = [
+        fields.pressure(contact, radii, rtol=1e-6),
+        fields.shear_stress(pushed, radii[3:], rtol=1e-6),
+    ]
+    with mp.workdps(TABLE_DIGITS):
+        exact = Table({"r": r.tolist(), "f": sphere(r).tolist(), "interpolation": "cubic"})
+        truth = [exact.pressure(mpf(x), mpf(a)) for x in radii]
+        # Next to the edge all that is carried slips.
+        truth.append(truth[3])
+        for value, true in zip(np.concatenate(found), truth, strict=True):
+            assert abs(mpf(float(value)) / true - 1) <= 1e-6
+
+
+def test_no_kink_is_passed_over() -> None:
+    """What a tolerance of 1e-6 feels keeps the panels apart: a weak kink, and a noisy point."""
+    r = np.linspace(0, END, 401)
+    bent = sphere(r) + 0.3 * np.maximum(r - r[203], 0) ** 2
+    noisy = sphere(r)
+    noisy[203] *= 1 + 1e-5
+    for f in (bent, noisy):
+        profile = Tabulated(r, f)
+        assert profile._panels_for(1e-6) is profile._stress

@@ -12,8 +12,9 @@ from mdr_core.abel.panels import (
     resolve,
     slope_source,
 )
+from mdr_core.abel.resolved import smooth_panels, stress_panels
 from mdr_core.abel.roots import arc, between, one_sided
-from mdr_core.abel.stress import StressPanels, stress_panels
+from mdr_core.abel.stress import StressPanels
 
 __all__ = [
     "Jumps",
@@ -30,5 +31,6 @@ __all__ = [
     "one_sided",
     "resolve",
     "slope_source",
+    "smooth_panels",
     "stress_panels",
 ]

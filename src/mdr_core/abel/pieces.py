@@ -143,6 +143,26 @@ def _looked_at(
     return coefficients, at_end, tail / np.where(largest > 0, largest, 1.0)
 
 
+def whole_pieces(slope: Slope, edges: Array, tolerance: float) -> Pieces | None:
+    """Resolve G in each panel at all nodes; None where some panel is not one polynomial.
+
+    The tolerance is that of the last coefficients, relative to the smallest value in the panel.
+    """
+    base = edges[:-1]
+    length = leg(edges[1:], base)
+    points, inverse = _points(DEGREE + 1)
+    s = np.multiply.outer(length, (1 + points) / 2)
+    b = np.repeat(base, points.size)
+    values = slope(b, _offset(b, s.ravel())).reshape(s.shape)
+    coefficients = values @ inverse.T
+    tail = np.abs(coefficients[:, -_LAST:]).max(axis=1)
+    smallest = np.abs(values).min(axis=1)
+    if not (tail <= tolerance * smallest).all():
+        return None
+    error = float((tail / np.where(smallest > 0, smallest, 1.0)).max())
+    return Pieces(np.arange(base.size), np.zeros_like(length), length, coefficients, error)
+
+
 def _offset(base: Array, s: Array) -> Array:
     """x - b of s."""
     return np.asarray(s * s / np.maximum(base + np.hypot(base, s), _TINY))

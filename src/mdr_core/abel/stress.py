@@ -9,8 +9,7 @@ from numpy.polynomial import chebyshev
 from mdr_core.abel.clusters import FAR, Clusters, add, clusters, masses_at_nodes, pairs
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panel_moments import PLACES, PowerPanels, interpolated, power_panels
-from mdr_core.abel.panels import Jumps
-from mdr_core.abel.pieces import DEGREE, Slope, pieces_behind
+from mdr_core.abel.pieces import DEGREE
 from mdr_core.abel.roots import leg, one_sided
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import Analytic, gauss_legendre
@@ -28,6 +27,15 @@ _AXIS: Final = 1e-8
 _TIP: Final = 1e-6
 # The panels' polynomials have degree 23.
 _POLYNOMIALS: Final = Analytic(growth=12.0, fewest=24)
+
+
+def _basis(points: Array) -> Array:
+    """The polynomials of a piece at points between -1 and 1 (degree + 1, points)."""
+    return np.asarray(chebyshev.chebvander(points, DEGREE).T, dtype=float)
+
+
+_AT_PLACES: Final = _basis(2 * PLACES - 1)
+_AT_NODES: Final = _basis(gauss_legendre(_MASS_NODES)[0])
 
 
 @dataclass(frozen=True)
@@ -106,7 +114,8 @@ class StressPanels:
         length = leg(self.edges[panel + 1], left[:, 0])[:, None]
         s = length * places
         first = self._first[panel]
-        value = self.coefficients[first] @ _basis(2 * places - 1)
+        basis = _AT_PLACES if places is PLACES else _basis(2 * places - 1)
+        value = self.coefficients[first] @ basis
         cut = np.flatnonzero(np.diff(self._first)[panel] > 1)
         if cut.size:
             value[cut] = self._from_pieces(panel[cut], places, s[cut])
@@ -127,7 +136,7 @@ class StressPanels:
         span = self.stop - self.start
         s = self.start[:, None] + np.multiply.outer(span, (1 + nodes) / 2)
         # The nodes are in the same places of all pieces.
-        value = self.coefficients @ _basis(nodes) * s + self.pole[:, None]
+        value = self.coefficients @ _AT_NODES * s + self.pole[:, None]
         masses = span[:, None] / 2 * weights * value / np.hypot(self.base[:, None], s)
         square = np.diff(self.edges) * (self.edges[1:] + self.edges[:-1])
         parts = masses_at_nodes(
@@ -310,58 +319,3 @@ class StressPanels:
             rtol=rtol,
             analytic=_POLYNOMIALS,
         )
-
-
-def _basis(points: Array) -> Array:
-    """The polynomials of a piece at points between -1 and 1 (degree + 1, points)."""
-    return np.asarray(chebyshev.chebvander(points, DEGREE).T, dtype=float)
-
-
-def stress_panels(
-    slope: Slope,
-    edges: Array,
-    jumps: Jumps,
-    accuracy: float = 1e-13,
-    kinks: Array | None = None,
-) -> StressPanels:
-    """Resolve G = g' between the given edges, each panel in s about its own left edge.
-
-    `slope(base, offset)` is G(base + offset) without the pole of the jump at `base`.
-
-    Source: notes, §5.
-
-    Parameters
-    ----------
-    edges : the ends of the smooth pieces, ascending [length], shape (k + 1,).
-    jumps : of f', at some of the edges.
-    accuracy : of a panel's part of the kernel next to the panel; the dearer rule is more accurate.
-    kinks : parts of G that begin at each edge, relative to G, from which follows how many nodes a
-        panel needs; without them each takes 24.
-
-    Raises
-    ------
-    AccuracyError : G is not piecewise smooth.
-
-    Examples
-    --------
-    Eq. (5.38): the integral is (2/R) sqrt(a^2 - r^2) for the paraboloid, g' = 2 x/R, here R = 1.
-
-    >>> none = Jumps(np.empty(0), np.empty(0))
-    >>> panels = stress_panels(lambda base, offset: 2 * (base + offset), np.array([0, 2.0]), none)
-    >>> value = panels.kernel(np.array([1.0]), np.array([0.0, 0.6]), 1e-12)
-    >>> [float(f"{each:.6g}") for each in value]
-    [2.0, 1.6]
-    """
-    pieces = pieces_behind(slope, edges, kinks, accuracy / 5)
-    pole = np.zeros(edges.size - 1)
-    pole[np.searchsorted(edges[:-1], jumps.at)] = jumps.at * jumps.size
-    return StressPanels(
-        edges,
-        edges[pieces.panel],
-        pieces.start,
-        pieces.stop,
-        pole[pieces.panel],
-        pieces.coefficients,
-        pieces.error,
-        accuracy,
-    )

@@ -21,7 +21,8 @@ from mdr_core.typing import Array, Indices
 _POINTS: Final = 10
 # Of a quadratic, as clusters see it from afar.
 _FAR_POINTS: Final = 16
-# Interpolation errs by 7.3^-18: nothing that a later resolution would mistake for structure.
+# Interpolation errs by 7.3^-14 of the part of a block: nothing that a later bisection would take
+# for structure.
 _CLUSTER_NODES: Final = 14
 # Rounding of what should be zero, relative to the largest of its kind next to it.
 _NOISE: Final = 256 * float(np.finfo(float).eps)

@@ -1,27 +1,31 @@
 """Profiles through the points of a table: piecewise cubic, with closed panel moments."""
 
 from itertools import pairwise
-from typing import ClassVar, Final, Literal
+from math import floor, inf, log10
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panels import Jumps
+from mdr_core.abel.resolved import smooth_panels, stress_panels
 from mdr_core.abel.roots import leg
-from mdr_core.abel.stress import StressPanels, stress_panels
+from mdr_core.abel.stress import StressPanels
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 from mdr_core.profiles.behind_flat import BehindFlat
 from mdr_core.profiles.table_moments import TableSlope
+from mdr_core.profiles.table_points import (
+    RINGING,
+    Interpolation,
+    check_points,
+    interpolate,
+    refuse_first,
+)
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Parameter
 
-Interpolation = Literal["cubic", "pchip", "linear"]
-# A smooth body's spline rings a little: a slope this much below zero, relative to the
-# steepest, is the interpolation's and not the body's.
-_RINGING: Final = 1e-8
 # Places in each panel where the sign of g' is looked at.
 _LOOKS: Final = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
 # A slope on the axis below this, relative to the steepest, is the interpolation's.
@@ -32,6 +36,14 @@ _CLOSEST: Final = 9e-6
 _ENERGY_POINTS: Final = 10
 # A bound on what the closed moments of one panel lose; by far not reached.
 _ACCURACY: Final = 1e-11
+# So many panels are taken as one where g' is smooth enough for the tolerance: each of them still
+# holds two of the places where that is looked at.
+_TOGETHER: Final = 8
+# Kinks of g' larger than this, over the tolerance, are felt.
+_FELT: Final = 1e3
+_DECADE_ROUNDING: Final = 1e-6
+# At the rim of a narrow contact g' counts where its polynomial is worst.
+_MARGIN: Final = 8.0
 
 
 class Tabulated(BehindFlat):
@@ -67,7 +79,7 @@ class Tabulated(BehindFlat):
         self.values = np.asarray(f, dtype=float)
         self.interpolation = interpolation
         self._breaks = tuple(float(b) for b in breaks)
-        _check_points(self.r, self.values)
+        check_points(self.r, self.values)
         for i, b in enumerate(self._breaks):
             if b not in self.r[1:-1]:
                 raise InputError(("profile", "breaks", i), "must be an inner radius of the table")
@@ -159,7 +171,7 @@ class Tabulated(BehindFlat):
         """Coefficients (4, panels) of f in r - r_i, ascending, segment by segment."""
         cuts = np.searchsorted(self.r, sorted({0.0, *self._breaks, self.domain}))
         parts = [
-            _interpolate(self.r[i : j + 1], self.values[i : j + 1], self.interpolation)
+            interpolate(self.r[i : j + 1], self.values[i : j + 1], self.interpolation)
             for i, j in pairwise(cuts)
         ]
         return np.concatenate(parts, axis=1)
@@ -178,7 +190,7 @@ class Tabulated(BehindFlat):
 
     def _check_admissible(self) -> None:
         slope = self._slope
-        fall = slope.first_negative(_RINGING)
+        fall = slope.first_negative(RINGING)
         if fall is not None:
             raise InputError(
                 ("profile",),
@@ -191,11 +203,11 @@ class Tabulated(BehindFlat):
                 ("profile",),
                 f"the slope drops at radius {radius:.12g}: the pressure there would be negative",
             )
-        if slope.source_is_positive(_RINGING):
+        if slope.source_is_positive(RINGING):
             return
         x = (self.r[:-1, None] + np.diff(self.r)[:, None] * _LOOKS).ravel()
         slopes = self.dg(x)
-        bad = slopes < -_RINGING * np.abs(slopes[np.isfinite(slopes)]).max()
+        bad = slopes < -RINGING * np.abs(slopes[np.isfinite(slopes)]).max()
         if bad.any():
             raise InputError(
                 ("profile",),
@@ -270,12 +282,41 @@ class Tabulated(BehindFlat):
 
     @cached_property
     def _stress(self) -> StressPanels:
+        self._refuse_close_points()
+        source = self._slope.source
+        return stress_panels(source.transform, self.r, self._jumps, _ACCURACY, source.kinks())
+
+    def _refuse_close_points(self) -> None:
         close = np.append(False, np.diff(self.r) < _CLOSEST * self.r[1:])
         told = f"at {self.r[np.argmax(close)]:.12g} closer than {_CLOSEST:g} of the radius to"
         detail = f"{told} the one before: the stress next to them has no digits, leave one out"
-        _refuse_first("r", close, detail)
-        source = self._slope.source
-        return stress_panels(source.transform, self.r, self._jumps, _ACCURACY, source.kinks())
+        refuse_first("r", close, detail)
+
+    @cached_property
+    def _merged(self) -> dict[int, StressPanels | None]:
+        """What `_panels_for` has found out, by the decade of the tolerance."""
+        return {}
+
+    @cached_property
+    def _largest_kink(self) -> float:
+        """Of g' between two panels, relative to g'."""
+        return inf if self._jumps.at.size else float(self._slope.source.kinks().max())
+
+    def _panels_for(self, rtol: float) -> StressPanels:
+        """Several panels in one, where no kink between them is felt at this tolerance."""
+        decade = floor(log10(rtol) + _DECADE_ROUNDING)
+        accuracy = 10.0**decade / _MARGIN
+        few = self.r.size <= _TOGETHER
+        if few or accuracy < _ACCURACY or self._largest_kink > _FELT * accuracy:
+            return self._stress
+        if decade not in self._merged:
+            self._refuse_close_points()
+            # Near the axis g' may be small: there a kink is felt that is not farther out.
+            near, far = self.r[:_TOGETHER], self.r[_TOGETHER:-1:_TOGETHER]
+            edges = np.concatenate([near, far, self.r[-1:]])
+            found = smooth_panels(self._slope.source.transform, edges, accuracy)
+            self._merged[decade] = found
+        return self._merged[decade] or self._stress
 
     def pressure_kernel(
         self,
@@ -289,46 +330,8 @@ class Tabulated(BehindFlat):
     ) -> Array:
         a = self.contact_radius(coordinate) if edge is None else edge
         span = None if width is None else self.radius_width(coordinate, width)
-        value = self._stress.kernel(a, radius, rtol, span, inner)
+        # What is cut at c needs the dearer rule for every radius in c's panel: a small one.
+        panels = self._panels_for(rtol) if span is None else self._stress
+        value = panels.kernel(a, radius, rtol, span, inner)
         value *= modulus / np.pi
         return value
-
-
-def _interpolate(r: Array, f: Array, interpolation: Interpolation) -> Array:
-    """Coefficients (4, panels), ascending, of one segment."""
-    if interpolation == "linear" or r.size == 2:
-        slope = np.diff(f) / np.diff(r)
-        return np.stack([f[:-1], slope, np.zeros_like(slope), np.zeros_like(slope)])
-    if interpolation == "pchip":
-        return np.flip(np.asarray(PchipInterpolator(r, f).c), axis=0)
-    spline = CubicSpline(r, f)
-    slopes = spline.c[2]
-    if r[0] == 0 and -_RINGING * np.abs(slopes).max() <= slopes[0] < 0:
-        # A tip that falls by an interpolation's error is meant to be smooth. Left alone, it
-        # would push the smallest loads below zero.
-        spline = CubicSpline(r, f, bc_type=((1, np.zeros(())), "not-a-knot"))
-        spline.c[2, 0] = 0.0
-    return np.flip(np.asarray(spline.c), axis=0)
-
-
-def _check_points(r: Array, f: Array) -> None:
-    """Refuse what is not a table of a rising profile."""
-    if r.ndim != 1 or r.size < 2:
-        raise InputError(("profile", "r"), "at least two points are needed")
-    if f.shape != r.shape:
-        raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
-    _refuse_first("r", ~np.isfinite(r), "must be finite")
-    _refuse_first("f", ~np.isfinite(f), "must be finite")
-    _refuse_first("r", r[:1] != 0, "the table must start at radius 0")
-    _refuse_first("f", f[:1] != 0, "the profile must start at f = 0")
-    _refuse_first("r", np.append(False, np.diff(r) <= 0), "the radii must increase")
-    falls = np.append(False, np.diff(f) < 0)
-    radius = r[np.argmax(falls)]
-    _refuse_first("f", falls, f"f falls before radius {radius:.12g}")
-    if f[-1] == 0:
-        raise InputError(("profile", "f"), "f is zero everywhere: the edge is not in the table")
-
-
-def _refuse_first(name: str, bad: Flags, detail: str) -> None:
-    if bad.any():
-        raise InputError(("profile", name, int(np.argmax(bad))), detail)
