@@ -1,9 +1,9 @@
 """Transforms of a slope that is quadratic between the radii of a table, in closed moments.
 
-With r = x cos(alpha), int u^k dr/sqrt(x^2 - r^2) over a panel becomes int u^k dt over
-t = alpha(left) - alpha, where u = r - left = S sin t - L (1 - cos t), S = sqrt(x^2 - L^2), and the
-moments are elementary. Written in 1 - cos t and t - sin t they do not cancel, however narrow the
-panel and however far from the axis. Source: notes, §5.
+Next to a point, int u^k dr/sqrt(x^2 - r^2) over a panel, u = r - left, is what the same polynomial
+gives from the panel's left end to x less what it gives from its right end. With u = (x - left) y
+each of them has the weight 1/sqrt(1 - y) and a smooth rest, all of one sign: it does not cancel,
+however narrow the panel and however far from the axis. Source: notes, §5.
 """
 
 from collections.abc import Callable
