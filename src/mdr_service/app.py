@@ -26,9 +26,11 @@ def create_app() -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
+        # It would look for a collector at every request; `/metrics` tells more.
+        telemetry={"tracing": False, "metrics": False, "logs": False},
         lifespan=_lifespan,
     )
-    handlers.install(app)
+    handlers.install(app, routes.ENDPOINTS)
     app.state.openapi = openapi.document(version("mdr"), app.routes)
     app.mount("/docs/swagger", StaticFiles(packages=[("fastapi_swagger", "resources")]))
     app.mount("/docs/page", StaticFiles(packages=[("mdr_service", "page")]))

@@ -291,3 +291,11 @@ async def docs(_request: Request) -> Response:
 async def openapi_document(request: Request) -> Response:
     """Answer the description of this service."""
     return _said(request.app.state.openapi)
+
+
+ENDPOINTS: Final = {
+    (method, route.path): route.endpoint
+    for route in router.routes
+    if isinstance(route, DirectRoute)
+    for method in route.methods or ()
+}
