@@ -106,10 +106,11 @@ def one_sided(
     if not np.count_nonzero(on_break):
         return _two_roots(problem, b, r)
     # The few points on the break have a rule of their own; elsewhere stands in for them meanwhile.
-    result = _two_roots(problem, b, np.where(on_break, np.asarray(b) / 2, r))
-    index = np.flatnonzero(on_break)
-    at = np.broadcast_to(b, r.shape)[index]
-    result[index] = _coincident_roots(problem.picked(index, r.shape), at, r[index])
+    index = on_break.nonzero()[0]
+    elsewhere = np.array(r)
+    elsewhere[index] /= 2
+    result = _two_roots(problem, b, elsewhere)
+    result[index] = _coincident_roots(problem, index, r[index])
     return result
 
 
@@ -125,56 +126,57 @@ class _OneSided(NamedTuple):
     rtol: float
     analytic: Analytic
 
-    def picked(self, index: Indices, shape: tuple[int, ...]) -> "_OneSided":
-        """The same for some of the points."""
 
-        def pick(part: Array | None) -> Array | None:
-            return None if part is None else np.broadcast_to(part, shape)[index]
-
-        return self._replace(
-            weight=lambda x, s, chosen: self.weight(x, s, index[chosen]),
-            upper=np.broadcast_to(self.upper, shape)[index],
-            width=pick(self.width),
-            edge=pick(self.edge),
-            inner=pick(self.inner),
-        )
-
-
-def _coincident_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
+def _coincident_roots(problem: _OneSided, index: Indices, r: Array) -> Array:
     """r = b: F dx/s = weight ds/s, in log(s) over an annulus, in arcsinh(s/b) from the break on.
 
-    Infinite where F ~ 1/s and the stretch starts at b.
+    `index` says which of all points these are. Infinite where F ~ 1/s and the stretch starts at b.
     """
-    weight, upper = problem.weight, problem.upper
-    width = upper if problem.width is None else problem.width
+    upper = _picked(problem.upper, index)
+    if problem.width is None:
+        return _from_break(problem, index, r, upper)
     result = np.empty_like(r)
+    width = np.broadcast_to(_picked(problem.width, index), r.shape)
+    upper = np.broadcast_to(upper, r.shape)
     apart = width < upper
-    index = np.flatnonzero(apart)
-    if index.size:
-        low = (upper - width)[index]
+    here = apart.nonzero()[0]
+    if here.size:
+        place, at = index[here], r[here]
 
         def over_annulus(t: Array, chosen: Chosen) -> Array:
             s = np.exp(t)
-            return weight(np.hypot(r[index[chosen]], s), s, index[chosen])
+            return problem.weight(np.hypot(at[chosen], s), s, place[chosen])
 
-        length = np.log1p(width[index] / low)
-        result[index] = integrate_plain(
+        low = (upper - width)[here]
+        length = np.log1p(width[here] / low)
+        result[here] = integrate_plain(
             over_annulus, np.log(low), length, problem.rtol, problem.analytic
         )
-    index = np.flatnonzero(~apart)
-    if index.size:
-
-        def from_break(y: Array, chosen: Chosen) -> Array:
-            at = r[index[chosen]]
-            x, s = at * np.cosh(y), at * np.sinh(y)
-            return np.asarray(weight(x, s, index[chosen]) * x / s)
-
-        length = np.arcsinh(upper[index] / r[index])
-        nothing = np.zeros(index.size)
-        result[index] = integrate_plain(from_break, nothing, length, problem.rtol, problem.analytic)
-        pole = weight(r[None, index], nothing[None], index)[0]
-        result[index[pole != 0]] = np.inf
+    here = (~apart).nonzero()[0]
+    if here.size:
+        result[here] = _from_break(problem, index[here], r[here], upper[here])
     return result
+
+
+def _from_break(problem: _OneSided, index: Indices, r: Array, upper: Array) -> Array:
+    """r = b <= x, in arcsinh(s/b)."""
+
+    def integrand(y: Array, chosen: Chosen) -> Array:
+        at = r[chosen]
+        x, s = at * np.cosh(y), at * np.sinh(y)
+        return np.asarray(problem.weight(x, s, index[chosen]) * x / s)
+
+    nothing = np.zeros(r.size)
+    result = integrate_plain(
+        integrand, nothing, np.arcsinh(upper / r), problem.rtol, problem.analytic
+    )
+    pole = problem.weight(r[None], nothing[None], index)[0]
+    result[pole != 0] = np.inf
+    return result
+
+
+def _picked(part: Array, index: Indices) -> Array:
+    return part if part.size == 1 else part[index]
 
 
 def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
