@@ -25,7 +25,7 @@ from tests.core.evaluations import FIELDS, PROFILES, cost, counted, field, made,
 TOLERANCES = [10.0**-decade for decade in range(3, 14)]
 #: Fields of which a kind may say that they are closed form.
 CLOSED_FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement")
-#: A table is resolved once, to the last digits; nothing slips under a flat punch.
+#: A table is resolved once, not for each radius; nothing slips under a flat punch.
 RESOLVED = ("tabulated", "flat_punch")
 QUERY: dict[str, Any] = {
     "profile": {"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 2.0},
