@@ -140,8 +140,13 @@ TABLE = (
         {"pydantic_core"},
     ),
     Row("mdr_service.watch", set(), {"orjson", "prometheus_client"}),
-    Row("mdr_service.handlers", {"mdr_service.problems", "mdr_service.watch"}, WEB | ANSWERING),
-    Row("mdr_service.body", WIRE, WEB),
+    Row("mdr_service.headers", set(), {"starlette"}),
+    Row(
+        "mdr_service.handlers",
+        {"mdr_service.headers", "mdr_service.problems", "mdr_service.watch"},
+        WEB | ANSWERING,
+    ),
+    Row("mdr_service.body", WIRE | {"mdr_service.headers"}, WEB),
     Row("mdr_service.apart", WIRE | {"mdr_service.cost", "mdr_service.questions"}, set()),
     Row(
         "mdr_service.compute",
@@ -165,7 +170,7 @@ TABLE = (
         WIRE
         | ADDRESSED
         | {"mdr_service.batch", "mdr_service.body", "mdr_service.compute", "mdr_service.cost"}
-        | {"mdr_service.questions"},
+        | {"mdr_service.headers", "mdr_service.questions"},
         WEB,
     ),
     Row(

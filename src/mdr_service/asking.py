@@ -6,7 +6,7 @@ from typing import Final
 from fastapi import Request
 from starlette.responses import Response
 
-from mdr_service import address, batch, body, cost, forms, problems, questions, wire
+from mdr_service import address, batch, body, cost, forms, headers, problems, questions, wire
 from mdr_service.compute import COMPUTE
 from mdr_service.questions import QUESTIONS, Answer
 from mdr_service.schemas.batch import BatchQuery
@@ -77,7 +77,7 @@ def _form(request: Request, offered: tuple[str, ...], name: str | None) -> str:
     """Return the media type that is asked for: by name, or else by what is accepted."""
     if name is not None:
         return forms.named(name, offered)
-    return forms.accepted(request.headers.get("accept", "*/*"), offered)
+    return forms.accepted(headers.first(request.scope, b"accept", "*/*"), offered)
 
 
 def _sent(answer: Answer) -> Response:
@@ -90,10 +90,10 @@ def _kept(request: Request, response: Response) -> Response:
     The tag is weak: the same numbers may be sent compressed as well.
     """
     digest = blake2b(response.body, digest_size=16).hexdigest()
-    headers = {"ETag": f'W/"{digest}"', "Cache-Control": _KEPT, "Vary": "Accept"}
-    known = request.headers.get("if-none-match", "")
+    told = {"ETag": f'W/"{digest}"', "Cache-Control": _KEPT, "Vary": "Accept"}
+    known = headers.first(request.scope, b"if-none-match")
     tags = {tag.strip().removeprefix("W/") for tag in known.split(",")}
     if tags & {f'"{digest}"', "*"}:
-        return Response(status_code=304, headers=headers)
-    response.headers.update(headers)
+        return Response(status_code=304, headers=told)
+    response.headers.update(told)
     return response

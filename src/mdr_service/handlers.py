@@ -13,7 +13,7 @@ from starlette.responses import Response
 from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from mdr_service import problems, watch
+from mdr_service import headers, problems, watch
 from mdr_service.problems import METHOD_NOT_ALLOWED, NOT_FOUND, ServiceError
 
 # Of the service, not of the request.
@@ -33,7 +33,7 @@ Endpoints = Mapping[tuple[str, str], Endpoint]
 _log = logging.getLogger(__name__)
 
 
-def response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:
+def response(error: ServiceError, more: Mapping[str, str] | None = None) -> Response:
     """Return the answer to a request that failed."""
     watch.PROBLEMS.labels(error.kind.name).inc()
     document = problems.document(error)
@@ -42,7 +42,7 @@ def response(error: ServiceError, headers: Mapping[str, str] | None = None) -> R
         # A fault of the request is found again by asking again; one of the service in its log.
         document["instance"] = f"urn:mdr:request:{watched.id}"
     # What is wrong today may be mended tomorrow.
-    told = {"Cache-Control": "no-store", **(headers or {})}
+    told = {"Cache-Control": "no-store", **(more or {})}
     if error.retry_after is not None:
         told["Retry-After"] = str(error.retry_after)
     return Response(orjson.dumps(document), error.kind.status, told, problems.MEDIA_TYPE)
@@ -75,7 +75,7 @@ class Watching:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        watched = watch.begin(scope["method"], _given_id(scope))
+        watched = watch.begin(scope["method"], headers.first(scope, b"x-request-id"))
         marks = [(b"x-request-id", watched.id.encode("ascii")), *_ALWAYS]
 
         async def told(message: Message) -> None:
@@ -119,13 +119,6 @@ async def _ask(endpoint: Endpoint, scope: Scope, receive: Receive, send: Send) -
 def _routed(scope: Scope) -> str | None:
     route = scope.get("route")
     return route.path if isinstance(route, Route) else None
-
-
-def _given_id(scope: Scope) -> bytes | None:
-    for name, value in scope["headers"]:
-        if name == b"x-request-id":
-            return bytes(value)
-    return None
 
 
 async def _linger(message: Message, receive: Receive, send: Send) -> None:

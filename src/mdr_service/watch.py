@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import lru_cache
 from time import perf_counter, time
 from typing import Any, Final
 
@@ -18,7 +19,7 @@ import orjson
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 METRICS_MEDIA_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
-_ID: Final = re.compile(rb"[A-Za-z0-9._~+/=-]{1,64}")
+_ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
 _OTHER: Final = "other"
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 
@@ -73,10 +74,9 @@ class Watched:
 _current: ContextVar[Watched | None] = ContextVar("request", default=None)
 
 
-def begin(method: str, given: bytes | None) -> Watched:
+def begin(method: str, given: str = "") -> Watched:
     """Watch a request, under the id that the client gave it if that is one."""
-    known = given is not None and _ID.fullmatch(given)
-    name = given.decode("ascii") if given is not None and known else os.urandom(8).hex()
+    name = given if given and _ID.fullmatch(given) else os.urandom(8).hex()
     watched = Watched(name, method if method in _METHODS else _OTHER)
     _current.set(watched)
     return watched
@@ -134,7 +134,13 @@ def _latency(route: str) -> Histogram:
 
 
 def _time(seconds: float) -> str:
-    return datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds")
+    whole = int(seconds)
+    return f"{_second(whole)}.{int(1e3 * (seconds - whole)):03d}+00:00"
+
+
+@lru_cache(maxsize=1)
+def _second(seconds: int) -> str:
+    return datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%dT%H:%M:%S")
 
 
 class JsonLines(logging.Formatter):

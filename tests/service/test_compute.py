@@ -202,7 +202,7 @@ def test_the_queue_is_served_in_its_order_and_waiting_costs_no_budget(tmp_path: 
 
 def test_a_request_knows_what_it_cost_and_how_long_it_waited(tmp_path: Path) -> None:
     async def work(compute: Compute) -> None:
-        watched = watch.begin("GET", None)
+        watched = watch.begin("GET")
         async with occupied(compute, tmp_path / "go", 0.01), anyio.create_task_group() as tasks:
             tasks.start_soon(compute.run, LONG, own_process)
             await anyio.sleep(0.1)
