@@ -34,8 +34,8 @@ def test_under_a_paraboloid_the_shear_is_largest_at_the_stick_edge(part: float) 
     contact = normal.solve(Paraboloid(3.0), E_STAR, normal_force=1.0)
     pushed = tangential.solve(contact, G_STAR, MU, tangential_force=-part * MU * 1.0)
     # Eq. (5.16) in Eq. (5.38): 1 - (c/a)^2 with all its digits.
-    mp.dps = 40
-    leg = mp.sqrt(1 - (1 - mpf(part)) ** (mpf(2) / 3))
+    with mp.workdps(40):
+        leg = mp.sqrt(1 - (1 - mpf(part)) ** (mpf(2) / 3))
     expected = MU * float(fields.largest_pressure(contact)) * float(leg)
     assert float(fields.largest_shear_stress(pushed)) == pytest.approx(expected, rel=1e-12)
 

@@ -179,10 +179,10 @@ def test_the_volume_is_the_work_at_every_number_of_cycles() -> None:
 
 
 def test_the_first_cycles_wear_in_proportion() -> None:
-    found, (c, outer) = worn(), rim(mpf(0.5 * FULL))
-    del outer
-    a = mp.sqrt(mpf(BIG))
-    each = 16 * mpf(MU) ** 2 / (15 * mpf(BIG) ** 2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)
+    found, big, mu = worn(), mpf(BIG), mpf(MU)
+    # g(c) = d - u_x/mu, Eq. (5.80).
+    a, c = mp.sqrt(big), mp.sqrt(big * (1 - mpf(0.5 * FULL) / mu))
+    each = 16 * mu**2 / (15 * big**2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)
     assert found.worn_volume[1] == pytest.approx(float(each) * WEAR, rel=1e-3)
 
 
