@@ -1,6 +1,7 @@
 """Requests to the arguments of the core; the one place that knows the models of both."""
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -16,6 +17,7 @@ from mdr_service.schemas.queries import (
     SHEAR_FIELDS,
     Bodies,
     Body,
+    BodyOrRigid,
     HistoryQuery,
     Material,
     NormalQuery,
@@ -29,6 +31,8 @@ from mdr_service.settings import SETTINGS
 Array = NDArray[np.float64]
 _Arguments = Callable[[Any], dict[str, Any]]
 _Place = tuple[str | int, ...]
+_Constants = tuple[float, float] | None
+"""Of a body, none where it is rigid."""
 
 
 def normal_arguments(query: NormalQuery | WearQuery) -> dict[str, Any]:
@@ -129,15 +133,21 @@ def profile(model: ProfileModel) -> profiles.Profile:
 def material(model: Material) -> materials.Material:
     """Return the effective moduli."""
     if isinstance(model, Bodies):
-        return materials.from_bodies(
-            [
-                materials.RIGID
-                if body == materials.RIGID
-                else materials.Body(body.youngs_modulus, body.poissons_ratio)
-                for body in model.bodies
-            ]
-        )
+        first, second = map(_constants, model.bodies)
+        return _of_bodies(first, second)
     return materials.Material(model.e_star, model.g_star)
+
+
+def _constants(body: BodyOrRigid) -> _Constants:
+    return (body.youngs_modulus, body.poissons_ratio) if isinstance(body, Body) else None
+
+
+@lru_cache(maxsize=256)
+def _of_bodies(*constants: _Constants) -> materials.Material:
+    # Whoever asks a lot asks about the same bodies, and often twice in one request.
+    return materials.from_bodies(
+        [materials.Body(*each) if each else materials.RIGID for each in constants]
+    )
 
 
 def poissons_ratios(model: Material) -> list[float]:

@@ -51,14 +51,14 @@ class Sizes(NamedTuple):
 
 def of(question: str, query: Query, media_type: str) -> Sizes:
     """Return the sizes of a query, also of one that is to be refused."""
-    found = Sizes(
+    return Sizes(
         question,
         query.profile.kind,
         _FORMS.get(media_type, _OTHER_FORM),
         -log10(query.rtol),
         _length(query),
+        **_MORE[question](query),
     )
-    return found._replace(**_MORE[question](query))
 
 
 def counts(sizes: Sizes) -> Counts:
