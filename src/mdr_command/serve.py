@@ -51,6 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
         timeout_graceful_shutdown=SETTINGS.shutdown_seconds,
         server_header=False,
         access_log=False,
+        # No answer and no line of the log depends on where the client is.
+        proxy_headers=False,
         lifespan="on",
         ws="none",
     )

@@ -97,8 +97,9 @@ def plastic(profile: Profile, contact_radius: Array) -> Flags:
 def _steepest(profile: Profile, contact_radius: Array, largest: float) -> float:
     if profile.slips_at_once or not largest > 0:
         return 0.0
-    # No slope is asked for where nothing touches.
-    touching = contact_radius if contact_radius.all() else np.maximum(contact_radius, largest)
+    # No slope is asked for where nothing touches; a single radius is the largest, and does.
+    all_touch = contact_radius.ndim == 0 or contact_radius.all()
+    touching = contact_radius if all_touch else np.maximum(contact_radius, largest)
     return top(profile.df(touching))
 
 
