@@ -8,9 +8,7 @@ from httpx import ASGITransport, AsyncClient, Response
 from mdr_service.app import create_app
 
 APP = create_app()
-GOOD = (
-    b'{"profile":{"kind":"cone","slope":0.1},"material":{"e_star":1},"load":{"normal_force":1}}'
-)
+GOOD = b'{"profile":{"kind":"cone","slope":0.1},"material":{"e_star":1},"load":{"normal_force":1}}'
 
 
 def ask(root_path: str, method: str, path: str, body: bytes) -> Response:
