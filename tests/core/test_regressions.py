@@ -336,3 +336,24 @@ def test_first_slip_of_a_contact_that_ends_on_a_break(profile: profiles.Profile)
     assert float(found.slip_width) == pytest.approx(force / (a * slope), rel=1e-14, abs=0)
     stress = float(fields.shear_stress(found, [0.0])[0])
     assert stress == pytest.approx(force / (2 * np.pi * a * a), rel=1e-10, abs=0)
+
+
+@pytest.mark.parametrize("shape", [profiles.RoundedCone, profiles.SphericalTipCone])
+def test_a_tip_far_smaller_than_the_contact_is_felt_at_the_axis(
+    shape: type[profiles.RoundedCone | profiles.SphericalTipCone],
+) -> None:
+    """p(0) = (E*/pi) int_0^a g'(x)/x dx, where tips of small slope t are alike: b = R t."""
+    slope = 1e-15
+    contact = normal.solve(shape(slope, 1.0), 1.0, indentation_depth=1e-6)
+    with mpmath.workdps(40):
+        b, a = mpmath.mpf(slope), mpmath.mpf(float(contact.contact_radius))
+
+        def flank(log_x: mpmath.mpf) -> mpmath.mpf:
+            x = mpmath.exp(log_x)
+            s = mpmath.sqrt((x - b) * (x + b))
+            return b * (mpmath.atan(s / b) + 2 * b / (x + s))
+
+        stretches = [mpmath.log(b) + n for n in range(int(mpmath.log(a / b)) + 1)]
+        total = 2 * b + mpmath.quad(flank, [*stretches, mpmath.log(a)])
+        expected = float(total / mpmath.pi)
+    assert float(fields.pressure(contact, [0.0])[0]) == pytest.approx(expected, rel=1e-9, abs=0)

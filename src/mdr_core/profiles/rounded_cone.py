@@ -134,7 +134,11 @@ class TippedCone(Profile):
         if inside.any():
             # Of a contact that ends on the flank the tip's part ends at b.
             top = np.where(flank, start, high)[inside]
-            step = np.minimum(width, width - (high - start))[inside]
+            # Of a wide annulus the radii have the digits, however small b is next to a.
+            within = np.where(
+                high > 2 * start, start - self.coordinate_from_radius(c), width - (high - start)
+            )
+            step = np.minimum(width, within)[inside]
             ends = np.where(flank, b, a)[inside], c[inside]
             total[inside] = self._tip_kernel(top, r[inside], rtol, step, *ends)
         if flank.any():
