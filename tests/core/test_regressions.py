@@ -357,3 +357,11 @@ def test_a_tip_far_smaller_than_the_contact_is_felt_at_the_axis(
         total = 2 * b + mpmath.quad(flank, [*stretches, mpmath.log(a)])
         expected = float(total / mpmath.pi)
     assert float(fields.pressure(contact, [0.0])[0]) == pytest.approx(expected, rel=1e-9, abs=0)
+
+
+def test_the_slip_next_to_the_axis_of_a_body_of_another_size_is_the_lag_of_all() -> None:
+    """Beyond full slip all lags by u_x - mu (E*/G*) d; the pole at R is infinitely far there."""
+    contact = normal.solve(profiles.SphericalTipCone(1e5, 1e16), 1.0, indentation_depth=1.1)
+    found = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
+    lag = 3.0 - 0.5 / 0.8 * 1.1
+    assert fields.slip(found, [1e-300, 5e-324]) == pytest.approx(-lag, rel=1e-14)

@@ -181,8 +181,8 @@ def _rule(branch: Branch, points: int, highest: float, stretch: float) -> tuple[
     if not branch.pole < inf:
         return composite_rule(points, pieces)
     # In the angle the pole lies at i sqrt(2 (pole/x - 1)).
-    distance = sqrt(max(2 * (branch.pole / highest - 1), 1e-15))
-    return graded_rule(points, max(ceil(-log2(distance)) + 1, 1))
+    distance = sqrt(min(max(2 * (branch.pole / highest - 1), 1e-15), 1.0))
+    return graded_rule(points, ceil(-log2(distance)) + 1)
 
 
 def _lower(
@@ -207,7 +207,7 @@ def _lower(
     if branch.pole < inf:
         # From the upper end on the pole is log(pole/x) away.
         distance = max(log(branch.pole / float(np.hypot(base, high.max()))), 1e-15)
-        halvings = max(ceil(log2(float(length.max()) / distance)) + 1, 1)
+        halvings = ceil(log2(max(float(length.max()) / distance, 1.0))) + 1
         nodes, weights = graded_rule(points, max(halvings, ceil(log2(count)) + 1))
     y = upper - nodes[:, None] * length
     s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
