@@ -8,11 +8,10 @@ from typing import Final
 
 from pydantic_core import to_json
 
-from mdr_service import cost, problems, questions, wire
+from mdr_service import cost, problems, questions, sizes, wire
 from mdr_service.problems import ServiceError
 from mdr_service.schemas.batch import BatchItem, BatchQuery
-from mdr_service.schemas.queries import HistoryQuery, NormalQuery, Query, StressQuery
-from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.schemas.queries import Query
 from mdr_service.settings import SETTINGS
 
 # A query with the question that it asks, or the text of the entry that says why it is none.
@@ -29,7 +28,7 @@ def read(batch: BatchQuery) -> list[Asked]:
     asked = [_read(item) for item in batch.queries]
     numbers = 0
     for index, each in enumerate(asked):
-        own = 0 if isinstance(each, bytes) else _numbers(each[1])
+        own = 0 if isinstance(each, bytes) else _numbers(*each)
         # What is too much alone is refused alone.
         numbers += own if own <= SETTINGS.max_numbers else 0
         if numbers > SETTINGS.max_numbers:
@@ -44,14 +43,13 @@ def priced(asked: Sequence[Asked], most: float, slowness: float) -> tuple[list[A
 
     Raises ServiceError where that is too much for all of them together.
     """
-    found = [_tried(each, most, slowness) for each in asked]
-    seconds = [0.0 if isinstance(each, bytes) else _seconds(each) for each in found]
-    together = list(itertools.accumulate(seconds))
+    found = [_priced(each, most, slowness) for each in asked]
+    together = list(itertools.accumulate(seconds for _, seconds in found))
     if together[-1] > most:
         fitting = bisect(together, most)
         told = [(f"/queries/{fitting}", f"the first {fitting} queries would fit")]
         raise cost.beyond(together[-1] * slowness, most * slowness, told)
-    return found, together[-1]
+    return [each for each, _ in found], together[-1]
 
 
 def answer(asked: Sequence[Asked]) -> bytes:
@@ -60,25 +58,20 @@ def answer(asked: Sequence[Asked]) -> bytes:
     return b'{"answers":[' + b",".join(entries) + b"]}"
 
 
-def _tried(asked: Asked, most: float, slowness: float) -> Asked:
-    """Return the query, or the text of its refusal where it alone takes too long."""
-    if isinstance(asked, bytes) or _seconds(asked) <= most:
-        return asked
-    return _problem(cost.too_costly(*asked, wire.MEDIA_TYPE, most, slowness))
+def _priced(asked: Asked, most: float, slowness: float) -> tuple[Asked, float]:
+    """Return the query and its seconds, or the text of its refusal if it alone is too much."""
+    if isinstance(asked, bytes):
+        return asked, 0.0
+    seconds = cost.seconds(*asked, wire.MEDIA_TYPE)
+    if seconds <= most:
+        return asked, seconds
+    return _problem(cost.too_costly(*asked, wire.MEDIA_TYPE, most, slowness)), 0.0
 
 
-def _seconds(asked: tuple[str, Query]) -> float:
-    return cost.seconds(*asked, wire.MEDIA_TYPE)
-
-
-def _numbers(query: Query) -> int:
+def _numbers(question: str, query: Query) -> int:
     """Return how many loads, or numbers of cycles, times radii, or else samples it is about."""
-    if isinstance(query, StressQuery | WearQuery | EvolutionQuery):
-        return query.loads * max(query.radii, 1)
-    if isinstance(query, HistoryQuery):
-        ways = {"history": query.history, "cycles": query.cycles}
-        return sum(ways[name].samples for name in ways.keys() & query.model_fields_set)
-    return query.loads if isinstance(query, NormalQuery) else 0
+    found = sizes.of(question, query, wire.MEDIA_TYPE)
+    return max(found.loads * max(found.radii, 1), found.samples)
 
 
 def _read(item: BatchItem) -> Asked:
