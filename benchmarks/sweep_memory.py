@@ -44,8 +44,8 @@ def main() -> None:
         folder = Path(name)
         write_scenes(folder / "scenes.parquet", scenes)
         (folder / "template.json").write_text('{"profile": {"kind": "paraboloid"}}')
-        command = [sys.executable, "-m", "mdr_sweep", "tangential", "--workers", "2"]
-        command += ["--table", "scenes.parquet", "--template", "template.json"]
+        command = [sys.executable, "-m", "mdr_command", "sweep", "tangential"]
+        command += ["--workers", "2", "--table", "scenes.parquet", "--template", "template.json"]
         start = perf_counter()
         process = psutil.Popen([*command, "--out", "answers.parquet"], cwd=folder)
         most = 0.0

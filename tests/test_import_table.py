@@ -136,7 +136,7 @@ TABLE = (
     Row("mdr_service.cost", WIRE | {"mdr_service.sizes"}, {"orjson"}),
     Row(
         "mdr_service.batch",
-        WIRE | {"mdr_service.cost", "mdr_service.questions"},
+        WIRE | {"mdr_service.cost", "mdr_service.questions", "mdr_service.sizes"},
         {"pydantic_core"},
     ),
     Row("mdr_service.watch", set(), {"orjson", "prometheus_client"}),
@@ -239,7 +239,6 @@ TABLE = (
         {"dask", "distributed", "pyarrow"},
     ),
     Row("mdr_sweep.command", SWEEPS, {"distributed"}),
-    Row("mdr_sweep.__main__", {"mdr_sweep.command"}, set()),
     Row("mdr_sweep", set(), set()),
     Row("mdr_service", set(), set()),
 )

@@ -8,9 +8,6 @@ import platform
 from importlib import metadata
 from pathlib import Path
 
-#: Packages that a chart may name, as they are installed.
-PEERS = ("PyAbel", "openabel", "tamaas", "ContactMechanics")
-
 
 def processor() -> str:
     """The processor's model and the number of cores."""

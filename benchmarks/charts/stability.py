@@ -33,9 +33,9 @@ def main() -> None:
     rows: list[tuple[object, ...]] = []
     for path in sorted(FOLDER.glob("test_*.py")):
         module = importlib.import_module(f"tests.stability.{path.stem}")
-        if hasattr(module, "curves"):
+        if hasattr(module, "CURVES"):
             place = path.stem.removeprefix("test_")
-            found = module.curves()
+            found = [make() for make in module.CURVES.values()]
             draw(place, found)
             rows += [row(place, each) for each in found]
     table(HEADER, rows, "stability")

@@ -1,7 +1,7 @@
 """Sweeps towards the places where methods fail: our error, and that of the textbook's formula.
 
-Every test module of this folder has functions that return `Curve`s; its tests hold ours against
-the bound, and the charts draw the same curves with the naive formula's beside them.
+The test modules of this folder name in `CURVES` the functions that make them; their tests hold ours
+against the bound, and the charts draw the same curves with the naive formula's beside them.
 """
 
 from __future__ import annotations

@@ -148,10 +148,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_towards_the_edge(name: str) -> None:
     sweep = CURVES[name]()

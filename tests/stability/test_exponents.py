@@ -179,10 +179,6 @@ CURVES: dict[str, Callable[[], Curve]] = (
 )
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_towards_the_last_exponents(name: str) -> None:
     CURVES[name]().holds()

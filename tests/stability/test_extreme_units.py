@@ -73,10 +73,6 @@ def force(kind: str) -> Curve:
 CURVES = {kind: partial(force, kind) for kind in SHAPES}
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("kind", CURVES)
 def test_in_every_unit(kind: str) -> None:
     sweep = CURVES[kind]()

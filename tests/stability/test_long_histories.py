@@ -158,10 +158,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_nothing_drifts(name: str) -> None:
     sweep = CURVES[name]()

@@ -70,10 +70,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_of_any_length(name: str) -> None:
     sweep = CURVES[name]()

@@ -156,10 +156,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_wear_to_the_end(name: str) -> None:
     CURVES[name]().holds()

@@ -167,10 +167,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_towards_the_equator_and_the_tip(name: str) -> None:
     CURVES[name]().holds()

@@ -137,10 +137,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_the_interpolant_is_answered(name: str) -> None:
     CURVES[name]().holds()

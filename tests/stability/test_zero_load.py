@@ -12,6 +12,7 @@ from mdr_core import normal
 from mdr_core.profiles import Hyperboloid, RoundedPunch, Series, SphericalTipCone
 from mdr_core.profiles import PowerTerm as Term
 from tests.core.comparison import profile_from
+from tests.core.evaluations import PROFILES
 from tests.stability.curves import (
     CLOSED,
     RTOL,
@@ -200,10 +201,6 @@ CURVES = {
 }
 
 
-def curves() -> list[Curve]:
-    return [make() for make in CURVES.values()]
-
-
 @pytest.mark.parametrize("name", CURVES)
 def test_towards_no_load(name: str) -> None:
     sweep = CURVES[name]()
@@ -211,29 +208,12 @@ def test_towards_no_load(name: str) -> None:
     sweep.naive_dies(1e-2)
 
 
-KINDS: dict[str, dict[str, Any]] = {
-    "flat_punch": {"radius": 1.0},
-    "cone": {"slope": 0.3},
-    "paraboloid": {"radius": 1.0},
-    "sphere": {"radius": 1.0},
-    "ellipsoid": {"radius": 1.0, "height": 0.5},
-    "power": {"coefficient": 1.0, "exponent": 1.5},
-    "rounded_punch": {"flat_radius": 0.5, "rounding_radius": 1.0},
-    "truncated_cone": {"flat_radius": 0.5, "slope": 0.3},
-    "truncated_paraboloid": {"flat_radius": 0.5, "radius": 1.0},
-    "rounded_cone": {"slope": 0.3, "tip_radius": 1.0},
-    "spherical_tip_cone": {"slope": 0.3, "tip_radius": 1.0},
-    "hyperboloid": {"slope": 0.3, "tip_radius": 1.0},
-    "capped_paraboloid": {"cap_radius": 0.5, "tip_radius": 2.0, "radius": 1.0},
-}
-
-
 @pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", PROFILES)
 def test_no_load_is_answered_by_nothing(kind: str, control: str) -> None:
-    contact = normal.solve(profile_from({"kind": kind, **KINDS[kind]}), 1.0, **{control: 0.0})
+    contact = normal.solve(profile_from({"kind": kind, **PROFILES[kind]}), 1.0, **{control: 0.0})
     for name in ("indentation_depth", "normal_force", "elastic_energy"):
         assert getattr(contact, name) == 0, name
     flat = "radius" if kind == "flat_punch" else "flat_radius"
-    assert contact.contact_radius == KINDS[kind].get(flat, 0.0)
+    assert contact.contact_radius == PROFILES[kind].get(flat, 0.0)
     assert np.isfinite(contact.normal_stiffness)

@@ -19,7 +19,7 @@ WAIT = 120.0
 
 def sweep(folder: Path, *options: str, **more: Any) -> "subprocess.Popen[str]":
     """Start a sweep in a folder."""
-    command = [sys.executable, "-m", "mdr_sweep", *options]
+    command = [sys.executable, "-m", "mdr_command", "sweep", *options]
     return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True, **more)
 
 
