@@ -162,20 +162,17 @@ def yield_notices(
             ),
         )
     peak = _peak(profile, e_star, contact_radius)
-    factor = _shear_factor(poissons_ratios)
+    onset = _onset(yield_strength, poissons_ratios)
     found = []
-    if np.any(2 * factor * peak >= yield_strength):
+    if np.any(peak >= onset):
         found.append(
             Notice(
                 "yield",
                 f"the peak pressure {float(np.max(peak)):.4g} exceeds the onset of yield, "
-                f"{yield_strength / (2 * factor):.4g}: the material is plastic under the surface",
+                f"{onset:.4g}: the material is plastic under the surface",
             )
         )
-    sliding = full_slip is not None and full_slip & (
-        2 * np.asarray(friction_coefficient) * peak >= yield_strength
-    )
-    if np.any(sliding):
+    if np.any(_yields_at_surface(peak, yield_strength, friction_coefficient, full_slip)):
         found.append(
             Notice("yield", "in full sliding the shear stress exceeds yield at the surface")
         )
@@ -203,11 +200,23 @@ def yields(
             sharp |= np.isfinite(b)
         return {"yield": sharp, "yield_unknown": ~sharp}
     peak = _peak(profile, e_star, contact_radius)
-    found = 2 * _shear_factor(poissons_ratios) * peak >= yield_strength
-    if full_slip is not None:
-        surface = 2 * np.asarray(friction_coefficient) * peak >= yield_strength
-        found = found | (full_slip & surface)
+    beneath = peak >= _onset(yield_strength, poissons_ratios)
+    found = beneath | _yields_at_surface(peak, yield_strength, friction_coefficient, full_slip)
     return {"yield": np.broadcast_to(found, shape)}
+
+
+def _onset(yield_strength: float, poissons_ratios: Sequence[float]) -> float:
+    """The pressure on the axis with which the largest shear stress beneath it is Y/2."""
+    factor = max(largest_shear(nu) for nu in (poissons_ratios or (_USUAL_RATIO,)))
+    return yield_strength / (2 * factor)
+
+
+def _yields_at_surface(
+    peak: Array, yield_strength: float, friction_coefficient: Parameter, full_slip: Flags | None
+) -> Flags:
+    """Where a sliding contact carries a shear stress mu p_0 of Y/2 or more at the surface."""
+    carries = 2 * np.asarray(friction_coefficient) * peak >= yield_strength
+    return np.asarray(carries & (False if full_slip is None else full_slip))
 
 
 def _peak(profile: Profile, e_star: Parameter, contact_radius: Array) -> Array:
@@ -217,10 +226,6 @@ def _peak(profile: Profile, e_star: Parameter, contact_radius: Array) -> Array:
         np.atleast_1d(profile.coordinate_from_radius(a)), np.zeros(a.size), 1e-6
     )
     return np.asarray(e_star) * at_axis.reshape(a.shape)
-
-
-def _shear_factor(poissons_ratios: Sequence[float]) -> float:
-    return max(largest_shear(nu) for nu in (poissons_ratios or (_USUAL_RATIO,)))
 
 
 @lru_cache(maxsize=64)
