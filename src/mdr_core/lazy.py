@@ -7,7 +7,7 @@ if TYPE_CHECKING:
     from functools import cached_property
 else:
 
-    class cached_property:  # noqa: N801
+    class cached_property:  # noqa: N801 -- used in place of that of functools
         """A property that is computed once for each object and kept in its dictionary.
 
         That of `functools` holds, in Python 3.11, one lock for all objects of a class while it

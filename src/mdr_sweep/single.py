@@ -29,8 +29,8 @@ def answer(study: Study, given: Mapping[str, Any]) -> Told:
             return _answer(study, read(study.query, given))
     except problems.FAILURES as error:
         return Told({}, error=sentence(problems.told(error)))
-    except Exception:  # noqa: BLE001
-        # What the service would answer: a defect in one scene stops no sweep.
+    except Exception:  # noqa: BLE001 -- as the service would
+        # A defect in one scene stops no sweep.
         return Told({}, error=sentence(problems.DEFECT))
 
 

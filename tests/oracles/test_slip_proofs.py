@@ -109,7 +109,7 @@ def test_energy_is_the_plain_integral(name: str) -> None:
         with mp.workdps(50):
             body, base = at.body, at.body.g(c)
             knots = [c, body.b, at.a] if c < body.b else [c, at.a]
-            plain = mp.quad(lambda x: (at.depth - body.g(x)) * (body.g(x) - base), knots)  # noqa: B023
+            plain = mp.quad(lambda x: (at.depth - body.g(x)) * (body.g(x) - base), knots)  # noqa: B023 -- used up
             assert same(reference.overlap(at, c), plain, PLAIN)
 
 
@@ -122,8 +122,8 @@ def test_energy_of_monomials_loses_nothing(name: str) -> None:
             base, width = at.body.g(c), at.a - c
 
             def density(u: mpf) -> mpf:
-                image = at.body.g(c + width * u)  # noqa: B023
-                return (at.depth - image) * (image - base) / at.depth**2  # noqa: B023
+                image = at.body.g(c + width * u)  # noqa: B023 -- used up within the round
+                return (at.depth - image) * (image - base) / at.depth**2  # noqa: B023 -- as above
 
             plain = width * at.depth**2 * at.body.integrate(density, mpf(0), mpf(1))
             assert same(found, plain)

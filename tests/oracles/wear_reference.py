@@ -135,11 +135,14 @@ def _parts(at: Setting, c: mpf, r: mpf, density: Callable[[mpf], mpf], *, root: 
     return total
 
 
+def _zero(_x: mpf, _s: mpf) -> mpf:
+    return mpf(0)
+
+
 def _whole(body: Body, low: mpf, high: mpf) -> Iterator[Panel]:
     """All panels, the flat of a blunt shape included: there g = 0, and the integrand is not."""
     if body.blunt and low < body.b:
-        zero = lambda _x, _s: mpf(0)  # noqa: E731
-        yield Panel(mpf(0), low, min(body.b, high), zero, zero)
+        yield Panel(mpf(0), low, min(body.b, high), _zero, _zero)
         low = body.b
     if high > low:
         yield from body.panels(low, high)

@@ -45,7 +45,7 @@ class Walk:
         tops: Indices,
         start_level: float,
         start_shift: float,
-        record: bool,  # noqa: FBT001
+        record: bool,  # noqa: FBT001 -- by place, as C takes it
     ) -> None:
         """Walk all steps, and tell the number of each load point; -1 in a gap."""
         at = self.top
@@ -129,7 +129,7 @@ class Walk:
         further: float,
         rise: float,
         fall: float,
-        goes_on: bool,  # noqa: FBT001
+        goes_on: bool,  # noqa: FBT001 -- as above
         x: float,
     ) -> int:
         """Go straight on from the load point, whose anchors stay; returns the new one.
@@ -150,7 +150,7 @@ class Walk:
         start: int,
         x: float,
         step: int,
-        record: bool,  # noqa: FBT001
+        record: bool,  # noqa: FBT001 -- as above
     ) -> int:
         """Cut the polyline where it exceeds the load point, as its top does; returns the corner."""
         lower = start - 1
