@@ -38,7 +38,6 @@ class _Slip(NamedTuple):
     sign: float
     full: bool
     excess: float
-    displacement: float
 
 
 def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -174,17 +173,20 @@ def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
     Parameters, returns and errors as of `pressure`.
     """
 
-    def row(part: _Slip) -> Row:
+    def row(part: _Slip, displacement: float) -> Row:
         load = foundation_row(part.normal)
 
         def values(r: Array, highest: float) -> Array:
             sliding = part.sign * part.friction * load(r, highest)
             sticks = (r <= part.c) & (not part.full)
-            return np.where(sticks, part.g_star * part.displacement, sliding)
+            return np.where(sticks, part.g_star * displacement, sliding)
 
         return values
 
-    return fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+    shape = contact.width.shape
+    moved = np.broadcast_to(contact.tangential_displacement, shape).ravel().tolist()
+    rows = [row(part, u_x) for part, u_x in zip(_slips(contact), moved, strict=True)]
+    return fill(shape, rows, radius)
 
 
 def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
@@ -216,7 +218,6 @@ def _slips(contact: TangentialContact) -> list[_Slip]:
         contact.sign,
         contact.full_slip,
         contact.excess,
-        contact.tangential_displacement,
     )
     # A single load has no need of what makes columns of numbers and arrays.
     columns = [
