@@ -15,7 +15,7 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
 from mdr_core.wear.course import Progress
-from mdr_core.wear.evolution import WearEvolution
+from mdr_core.wear.evolving import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service import convert
 from mdr_service.convert import Array

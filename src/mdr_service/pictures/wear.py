@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mdr_core.wear.evolution import WearEvolution
+from mdr_core.wear.evolving import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.convert import Array
 from mdr_service.pictures import canvas
