@@ -30,6 +30,8 @@ def profile_from(fields: Mapping[str, Any]) -> Profile:
 
 def relative_error(value: float, expected: str) -> float:
     """Distance in units of the expected value; a wrong infinity or a NaN is infinitely far."""
+    if expected.startswith("-"):
+        return relative_error(-value, expected[1:])
     if expected == "inf":
         return 0.0 if isinf(value) and value > 0 else float("inf")
     if not isfinite(value):
@@ -41,3 +43,18 @@ def relative_error(value: float, expected: str) -> float:
     if exact == 0:
         return 0.0 if value == 0 else float("inf")
     return float(abs((Decimal(value) - exact) / exact))
+
+
+def wrong(
+    what: str, value: float, expected: str, bound: float, allowance: float, estimate: float
+) -> list[str]:
+    """What is wrong with an answer: its error, or an estimate of it that understates.
+
+    The allowance is what the rounding of the inputs makes of the answer.
+    """
+    error = relative_error(value, expected)
+    if not error <= bound + allowance:
+        return [f"{what}: {error:.2e} > {bound + allowance:.2e}"]
+    if not error - allowance <= estimate:
+        return [f"{what}: estimate {estimate:.2e} < {error:.2e}"]
+    return []

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from mdr_core import fields
-from tests.core.comparison import INPUT
-from tests.core.test_tangential_bank import error_of, name_of, solved
+from tests.core.comparison import INPUT, relative_error
+from tests.core.test_tangential_bank import name_of, solved
 from tests.oracles import slip_bank
 
 BOUND = 1e-11
@@ -37,7 +37,7 @@ def test_field(case: dict[str, Any], name: str) -> None:
     assert found.shape == (len(case["radius"]),)
     failures = []
     for index, expected in enumerate(case["expected"][name]):
-        error = error_of(float(found[index]), expected)
+        error = relative_error(float(found[index]), expected)
         bound = BOUND + INPUT * (case["condition"][name][index] or 0.0)
         if not error <= bound:
             radius = case["radius"][index]
@@ -53,5 +53,5 @@ def test_the_cone_s_axis_carries_a_finite_traction(case: dict[str, Any]) -> None
     index = case["radius"].index(0.0)
     found = computed(case, "shear_stress")[index]
     bound = AXIS + INPUT * (case["condition"]["shear_stress"][index] or 0.0)
-    assert error_of(float(found), case["expected"]["shear_stress"][index]) <= bound
+    assert relative_error(float(found), case["expected"]["shear_stress"][index]) <= bound
     assert np.isposinf(fields.pressure(solved(case).normal, [0.0]))

@@ -9,7 +9,7 @@ import pytest
 
 from mdr_core import fields
 from mdr_core.normal import solve
-from tests.core.comparison import INPUT, profile_from, relative_error
+from tests.core.comparison import INPUT, profile_from, relative_error, wrong
 from tests.oracles import bank
 
 INTERPOLANT = 1e-11
@@ -36,12 +36,8 @@ def test_answers_are_those_of_the_interpolant(case: dict[str, Any]) -> None:
     contact = solved(case)
     failures = []
     for name, expected in case["expected"].items():
-        error = relative_error(float(getattr(contact, name)), expected)
-        allowance = INPUT * case["condition"][name]
-        if error > INTERPOLANT + allowance:
-            failures.append(f"{name}: {error:.2e}")
-        if contact.error_estimate < error - allowance:
-            failures.append(f"{name}: estimate {contact.error_estimate:.2e} < {error:.2e}")
+        value, allowance = float(getattr(contact, name)), INPUT * case["condition"][name]
+        failures += wrong(name, value, expected, INTERPOLANT, allowance, contact.error_estimate)
     assert not failures, failures
 
 

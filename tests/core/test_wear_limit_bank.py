@@ -8,7 +8,7 @@ import pytest
 
 from mdr_core import normal
 from mdr_core.wear import limit
-from tests.core.comparison import INPUT, profile_from, relative_error
+from tests.core.comparison import INPUT, profile_from, relative_error, wrong
 from tests.oracles import wear_bank
 
 BOUND = 1e-12
@@ -47,13 +47,14 @@ def test_answers_and_their_error_estimate(case: dict[str, Any]) -> None:
         values = getattr(found, name)
         assert values.shape == (len(row),)
         for index, expected in enumerate(row):
-            error = relative_error(float(values[index]), expected)
-            allowance = INPUT * case["condition"][name][index]
-            at = f"{name} at {case['given'][index]!r}"
-            if not error <= bound + allowance:
-                failures.append(f"{at}: {error:.2e} > {bound + allowance:.2e}")
-            elif found.error_estimate < error - allowance:
-                failures.append(f"{at}: estimate {found.error_estimate:.2e} < {error:.2e}")
+            failures += wrong(
+                f"{name} at {case['given'][index]!r}",
+                float(values[index]),
+                expected,
+                bound,
+                INPUT * case["condition"][name][index],
+                found.error_estimate,
+            )
     assert set(found.regime) == {"partial_slip"}
     depends = "path_dependent" in {notice.code for notice in found.warnings}
     assert depends == (case["equation"] == "(5.90)")

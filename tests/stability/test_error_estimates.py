@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 
 from mdr_core import history, normal
-from tests.core.comparison import EPS, profile_from
+from tests.core.comparison import EPS, profile_from, relative_error
 from tests.core.test_history_bank import material, misses
-from tests.core.test_tangential_bank import error_of
 from tests.core.test_tangential_bank import solved as pushed
 from tests.core.test_wear_limit_bank import solved as worn
 from tests.oracles import bank, history_bank, slip_bank, wear_bank
@@ -40,7 +39,7 @@ class Measured(NamedTuple):
 
 def largest_error(found: Any, expected: dict[str, list[str]]) -> float:
     return max(
-        error_of(float(value), truth)
+        relative_error(float(value), truth)
         for name, row in expected.items()
         for value, truth in zip(np.ravel(getattr(found, name)), row, strict=True)
     )
@@ -90,7 +89,7 @@ def of_cycles() -> list[Measured]:
             estimate = max(estimate, followed.history.error_estimate)
             for name in ("energy_per_cycle", "secant_stiffness"):
                 found_there = float(getattr(followed, name)[1])
-                error = max(error, error_of(found_there, case["expected"][name][index]))
+                error = max(error, relative_error(found_there, case["expected"][name][index]))
         found.append(Measured(str(case["id"]), estimate, error))
     return found
 
