@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scipy.interpolate import CubicSpline
 
 from mdr_core import fields, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import Tabulated
+from mdr_core.profiles.table_points import interpolate
 from tests.oracles.tables import TABLE_DIGITS, Table
 
 INTERPOLANT = 1e-11
@@ -141,3 +143,40 @@ def test_no_kink_is_passed_over() -> None:
     for f in (bent, noisy):
         profile = Tabulated(r, f)
         assert profile._panels_for(1e-6) is profile._stress
+
+
+@pytest.mark.parametrize("points", [3, 4, 5, 40])
+@pytest.mark.parametrize("tip", [1e-3, -1e-12])
+def test_the_cubic_is_that_of_scipy(points: int, tip: float) -> None:
+    """To the last bit, but clamped where the interpolation alone makes the tip fall."""
+    r = END * np.linspace(0, 1, points) ** 1.3
+    f = sphere(r)
+    f += (tip - CubicSpline(r, f).c[2, 0]) * r
+    expected = CubicSpline(r, f).c
+    assert expected[2, 0] == pytest.approx(tip, rel=1e-2)
+    if tip < 0:
+        expected = CubicSpline(r, f, bc_type=((1, np.zeros(())), "not-a-knot")).c
+        expected[2, 0] = 0.0
+    np.testing.assert_array_equal(interpolate(r, f, "cubic"), expected[::-1])
+
+
+@pytest.mark.parametrize(
+    ("r", "f", "path", "said"),
+    [
+        ([0, 1, np.nan, 3], [0, 1, 2, 3], ("r", 2), "finite"),
+        ([0, 1, 2, np.inf], [0, 1, 2, 3], ("r", 3), "finite"),
+        ([0, 1, 2, 3], [0, 1, np.inf, np.inf], ("f", 2), "finite"),
+        ([0, 1, 2, 3], [0, 1, np.nan, 3], ("f", 2), "finite"),
+        ([1, 2, 3, 4], [0, 1, 2, 3], ("r", 0), "radius 0"),
+        ([0, 1, 2, 3], [1, 1, 2, 3], ("f", 0), "f = 0"),
+        ([0, 1, 1, 3], [0, 1, 2, 3], ("r", 2), "increase"),
+        ([0, 1, 2, 3], [0, 1, 0.5, 3], ("f", 2), "falls before radius 2"),
+        ([0, 1, 2, 3], [0, 0, 0, 0], ("f",), "zero everywhere"),
+        ([0, 1, 2], [0, 1, 2, 3], ("f",), "4 values for 3 radii"),
+        ([0], [0], ("r",), "two points"),
+    ],
+)
+def test_a_bad_point_is_named(r: Any, f: Any, path: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said) as refused:
+        Tabulated(r, f)
+    assert refused.value.path == ("profile", *path)

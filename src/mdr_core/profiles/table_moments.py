@@ -49,30 +49,42 @@ class TableSlope:
         """(r F)' = F + r F', again quadratic in each panel but for the jumps of F between them."""
         left = self.edges[:-1]
         c0, c1, c2 = self.coefficients
-        rows = np.stack([c0 + left * c1, 2 * c1 + 2 * left * c2, 3 * c2])
+        rows = np.empty(self.coefficients.shape)
+        rows[0] = c0 + left * c1
+        rows[1] = 2 * (c1 + left * c2)
+        rows[2] = 3 * c2
         return TableSlope(self.edges, rows, self.steps * left)
+
+    @cached_property
+    def _width(self) -> Array:
+        return self.edges[1:] - self.edges[:-1]
+
+    @cached_property
+    def _at_right(self) -> Array:
+        """F at each right edge, from the left."""
+        c0, c1, c2 = self.coefficients
+        return np.asarray(c0 + self._width * (c1 + self._width * c2))
 
     @cached_property
     def steps(self) -> Array:
         """How far F jumps at each left edge, zero where no more than rounding."""
-        width = np.diff(self.edges)
-        c = self.coefficients
-        right = c[0] + width * (c[1] + width * c[2])
-        size = np.append(0.0, c[0, 1:] - right[:-1])
-        terms = np.abs(c[0]) + width * (np.abs(c[1]) + width * np.abs(c[2]))
-        noise = _NOISE * np.append(0.0, np.maximum(terms[1:], terms[:-1]))
-        return np.where(np.abs(size) > noise, size, 0.0)
+        c0, c1, c2 = np.abs(self.coefficients)
+        terms = c0 + self._width * (c1 + self._width * c2)
+        size = np.zeros(self._width.size)
+        size[1:] = self.coefficients[0, 1:] - self._at_right[:-1]
+        size[1:][np.abs(size[1:]) <= _NOISE * np.maximum(terms[1:], terms[:-1])] = 0.0
+        return size
 
     def kinks(self) -> Array:
         """How large a part of the transform begins anew at each left edge, relative to it.
 
         Within a panel's width: that of F's jump and of its polynomial's change there.
         """
-        left, width = self.edges[:-1], np.diff(self.edges)
+        left, width = self.edges[:-1], self._width
         c = self.coefficients
         before, at = c[:, :-1], width[:-1]
         change = np.zeros_like(c)
-        change[0, 1:] = c[0, 1:] - (before[0] + at * (before[1] + at * before[2]))
+        change[0, 1:] = c[0, 1:] - self._at_right[:-1]
         change[1, 1:] = c[1, 1:] - (before[1] + 2 * at * before[2])
         change[2, 1:] = c[2, 1:] - before[2]
         change = np.abs(change)
@@ -84,18 +96,26 @@ class TableSlope:
 
     def first_negative(self, noise: float) -> float | None:
         """Radius where F first falls below zero, but for rounding."""
-        low, place = self.minimum()
+        if self._surely_positive(noise):
+            return None
+        low, place = self._minimum()
         bad = low < -noise * np.abs(self.coefficients[0]).max()
         return float(place[bad][0]) if bad.any() else None
 
     def source_is_positive(self, noise: float) -> bool:
         """(r F)' >= 0 everywhere: enough for g' >= 0, without a transform."""
-        low, _ = self.source.minimum()
-        return bool((low >= -noise * np.abs(self.source.coefficients[0]).max()).all())
+        return self.source.first_negative(noise) is None
 
-    def minimum(self) -> tuple[Array, Array]:
+    def _surely_positive(self, noise: float) -> bool:
+        """Whether each quadratic is, by its coefficients in Bernstein's polynomials."""
+        c0, c1, _ = self.coefficients
+        middle = c0 + self._width / 2 * c1
+        least = min(float(part.min()) for part in (c0, middle, self._at_right))
+        return bool(least >= -noise * np.abs(c0).max())
+
+    def _minimum(self) -> tuple[Array, Array]:
         """Smallest value of each panel's quadratic, and where."""
-        width = np.diff(self.edges)
+        width = self._width
         c0, c1, c2 = self.coefficients
         with np.errstate(divide="ignore", invalid="ignore"):
             turn = np.where(c2 > 0, -c1 / (2 * c2), width)
