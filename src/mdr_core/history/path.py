@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
 from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
+from mdr_core.history.arcs import Plane
+from mdr_core.history.bent import Points
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
@@ -120,19 +122,10 @@ class Steps:
     shift: Array
     goes_on: Flags
     """Steps on the straight line of the one before."""
-    last: Indices | None
-    """Index of the step that ends at each sample; none given where every step ends at one."""
-
-    def samples(self, part: slice) -> tuple[slice, Indices | slice]:
-        """Samples that a block of steps ends at, and at which of its steps."""
-        if self.last is None:
-            return part, slice(None)
-        samples = slice(*np.searchsorted(self.last, [part.start, part.stop]))
-        return samples, self.last[samples] - part.start
 
 
-def steps(path: Path, profile: Profile, e_star: float, scale: float, pieces: int) -> Steps:
-    """Return the steps of a path, curved stretches in so many pieces.
+def steps(path: Path, profile: Profile, e_star: float, scale: float) -> Steps:
+    """Return the steps of a path that is straight: one to each sample.
 
     `scale` divides the tangential quantity: mu E*/G* for displacements, mu E* for forces.
 
@@ -140,39 +133,58 @@ def steps(path: Path, profile: Profile, e_star: float, scale: float, pieces: int
     ------
     InputError : a tangential force that no equilibrium carries, at or before a point.
     """
-    divided = path.normal if path.normal_name == "indentation_depth" else path.normal / e_star
-    last: Indices | None
-    curved = path.curved
-    if curved.any():
-        normal, tangential, goes_on, last = _bent(path, profile, divided, curved, pieces)
-    else:
-        normal, tangential, goes_on = divided, path.tangential, path.goes_on
-        last = None
-    level = _levels(path, profile, normal)
-    shift = tangential / scale
+    level = _levels(path, profile, _divided(path, e_star))
+    shift = path.tangential / scale
+    if path.by_force:
+        shift = _carried(path, level, shift, None)
+    return Steps(level, shift, path.goes_on)
+
+
+def points(path: Path, profile: Profile, e_star: float, scale: float) -> tuple[Points, Indices]:
+    """Return the load points of a path with curved legs, and which of them are the samples.
+
+    Further points are where a leg becomes as steep as the cone: between any two both sums of the
+    load point only grow, or only fall. Arguments and errors as of `steps`.
+    """
+    plane, other = Plane(profile, path.by_force), _divided(path, e_star)
+    shift = path.tangential / scale
+    s, rate = _find(path, profile, other), _rates(path, other, shift)
+    before = np.append(profile.first_coordinate, s[:-1])
+    turn = plane.radius_on_the_cone(rate)
+    ends = np.sort(np.stack([before, s]), axis=0)
+    low, high = profile.contact_radius(ends)
+    turns = np.flatnonzero((low < turn) & (turn < high))
+    at = profile.coordinate_from_radius(turn[turns])
+    inside = (ends[0][turns] < at) & (at < ends[1][turns])
+    turns, at = turns[inside], at[inside]
+    met = plane.other(at)
+    begun = np.append(0.0, other[:-1])[turns], np.append(0.0, shift[:-1])[turns]
+    last = np.arange(s.size) + np.searchsorted(turns, np.arange(s.size), side="right")
+    s, other = np.insert(s, turns, at), np.insert(other, turns, met)
+    shift = np.insert(shift, turns, begun[1] + rate[turns] * (met - begun[0]))
+    level = np.where(other > 0, plane.level(s), np.minimum(other, 0.0))
+    goes_on = np.insert(path.goes_on, turns, path.goes_on[turns])
+    goes_on[last[turns]] = True
     if path.by_force:
         shift = _carried(path, level, shift, last)
-    return Steps(level, shift, goes_on, last)
+    rate = np.insert(rate, turns, rate[turns])
+    way = np.sign(np.diff(s, prepend=profile.first_coordinate))
+    return Points(s, level, other, shift, rate, way, goes_on), last
 
 
-def _bent(
-    path: Path, profile: Profile, divided: Array, curved: Flags, pieces: int
-) -> tuple[Array, Array, Flags, Indices]:
-    """Normal and tangential quantity, what goes on and the last steps, with curved stretches."""
-    counts = np.where(curved, pieces, 1)
-    normal, tangential = np.repeat(divided, counts), np.repeat(path.tangential, counts)
-    inner = np.repeat(curved, counts)
-    goes_on = np.repeat(path.goes_on, counts) & ~inner
-    # What follows a chord begins a line of its own.
-    goes_on[1:] &= ~inner[:-1]
-    shares = _shares(path, profile, divided, curved, pieces)
-    for values, samples in ((normal, divided), (tangential, path.tangential)):
-        start = np.append(0.0, samples[:-1])[curved]
-        ends = samples[curved]
-        between = start[:, None] + (ends - start)[:, None] * shares
-        between[:, -1] = ends
-        values[inner] = between.ravel()
-    return normal, tangential, goes_on, np.cumsum(counts) - 1
+def _divided(path: Path, e_star: float) -> Array:
+    by_depth = path.normal_name == "indentation_depth"
+    return path.normal if by_depth else path.normal / e_star
+
+
+def _rates(path: Path, other: Array, shift: Array) -> Array:
+    """d(shift)/d(other) on the leg of each sample; zero where only the shift moves."""
+    rise, moved = (
+        np.diff(values[path.per_step - 1 :: path.per_step], prepend=0.0)
+        for values in (other, shift)
+    )
+    rate = np.where(rise == 0, 0.0, moved / np.where(rise == 0, 1.0, rise))
+    return np.repeat(rate, path.per_step)
 
 
 def _find(path: Path, profile: Profile, normal: Array) -> Array:
@@ -181,17 +193,6 @@ def _find(path: Path, profile: Profile, normal: Array) -> Array:
     if path.normal_name == "indentation_depth":
         return coordinate_from_depth(profile, load)
     return coordinate_from_force(profile, load)
-
-
-def _shares(path: Path, profile: Profile, divided: Array, curved: Flags, pieces: int) -> Array:
-    """Shares of each curved stretch at which the contact coordinate has gone even steps."""
-    start, end = np.append(0.0, divided[:-1])[curved], divided[curved]
-    ends = _find(path, profile, np.stack([start, end]))
-    t = np.arange(1, pieces + 1) / pieces
-    s = ends[0][:, None] + (ends[1] - ends[0])[:, None] * t
-    by_depth = path.normal_name == "indentation_depth"
-    values = profile.depth(s) if by_depth else profile.reduced_force(s)
-    return np.asarray(np.clip((values - start[:, None]) / (end - start)[:, None], 0.0, 1.0))
 
 
 def _levels(path: Path, profile: Profile, normal: Array) -> Array:

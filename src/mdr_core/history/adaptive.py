@@ -1,0 +1,89 @@
+"""Integrals along arcs: many at once, each cut in halves until what is left out is small."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Indices
+
+_POINTS: Final = 16
+# A piece that was halved so often ends at a point where nothing is smooth.
+_ROUNDS: Final = 24
+_FINEST: Final = 1e-13
+# Pieces at once: bounds the memory.
+_BLOCK: Final = 1024
+
+
+class Integral(NamedTuple):
+    """One integral for each owner, with what may be missing of each."""
+
+    value: Array
+    missing: Array
+
+
+def integrate(
+    function: Callable[[Indices, Array], Array],
+    ends: tuple[Indices, Array, Array],
+    goal: float,
+    *,
+    rough: bool,
+) -> Integral:
+    """Return the integrals of function(owner, at), positive, summed by owner.
+
+    `ends` are owners, and the ends of their pieces; function takes owners of shape (m, 1) and
+    places of shape (m, n). Where the ends are `rough`, nodes crowd there: roots do no harm. A
+    piece whose last coefficients exceed `goal` of the largest integral is halved.
+    """
+    owner, low, high = ends
+    count = int(owner.max(initial=-1)) + 1
+    value, missing = np.zeros(count), np.zeros(count)
+    goal = max(goal, _FINEST)
+    for round_ in range(_ROUNDS):
+        total, tail = _pieces(function, owner, low, high, rough=rough)
+        largest = float(np.max(value + np.bincount(owner, total, count), initial=0.0))
+        good = (tail <= goal * largest) | ~(tail > 0) | (round_ == _ROUNDS - 1)
+        value += np.bincount(owner[good], total[good], count)
+        missing += np.bincount(owner[good], tail[good], count)
+        if good.all():
+            break
+        owner, low, high = owner[~good], low[~good], high[~good]
+        middle = (low + high) / 2
+        owner = np.concatenate([owner, owner])
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return Integral(value, missing)
+
+
+def _pieces(
+    function: Callable[[Indices, Array], Array],
+    owner: Indices,
+    low: Array,
+    high: Array,
+    *,
+    rough: bool,
+) -> tuple[Array, Array]:
+    """Integral over each piece, and its size in the last two of the rule's polynomials."""
+    share, weights, last = _rule(rough=rough)
+    total, tail = np.empty(owner.size), np.empty(owner.size)
+    for start in range(0, owner.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        span = (high[part] - low[part])[:, None]
+        values = function(owner[part][:, None], low[part][:, None] + span * share)
+        values = values * np.abs(span)
+        total[part] = (values * weights).sum(axis=1)
+        tail[part] = np.abs(values @ last).sum(axis=1)
+    return total, tail
+
+
+@lru_cache(maxsize=2)
+def _rule(*, rough: bool) -> tuple[Array, Array, Array]:
+    nodes, weights = gauss_legendre(_POINTS)
+    weights = weights / 2
+    polynomials = legendre.legvander(nodes, _POINTS - 1)[:, -2:]
+    share = (1 + nodes) / 2
+    density = 6 * share * (1 - share) if rough else np.ones_like(share)
+    place = share * share * (3 - 2 * share) if rough else share
+    return place, weights * density, polynomials * (weights * density)[:, None]

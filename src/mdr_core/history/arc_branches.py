@@ -1,0 +1,149 @@
+"""What the foundation carries where pieces of the polyline are arcs.
+
+On an arc the slope is k = rate d(other)/d(level), so that the sums of `branches` over it are
+
+    int k d(other) = rate M,  M = int d(other)/d(level) d(other),
+
+and for the energy another integral of the same kind. Both are smooth in the contact coordinate.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core.history.adaptive import integrate
+from mdr_core.history.arcs import Plane
+from mdr_core.history.branches import Branches
+from mdr_core.history.memory import total
+from mdr_core.lazy import cached_property
+from mdr_core.typing import Array, Indices
+
+_TINY: Final = float(np.finfo(float).tiny)
+
+
+@dataclass(frozen=True)
+class ArcBranches(Branches):
+    """The vertices of a walk of mixed control; a piece that is on no face is an arc."""
+
+    rtol: float
+    known: Array
+    """Contact coordinate of the vertices, NaN where it is not known."""
+    rates: Array
+    """d(shift)/d(other) of the pieces below the vertices, NaN on a face."""
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinate of each vertex."""
+        missing = np.isnan(self.known)
+        found = self.known.copy()
+        if missing.any():
+            found[missing] = self._plane.at_level(self.tree.level[missing])
+        return found
+
+    @property
+    def _plane(self) -> Plane:
+        return Plane(self.profile, self.by_force)
+
+    @cached_property
+    def arcs(self) -> Indices:
+        """Vertices with an arc below them on which the shift moves."""
+        return np.flatnonzero(np.abs(self.rates) > 0)
+
+    @cached_property
+    def rate(self) -> Array:
+        """d(shift)/d(other) on the arcs."""
+        moved = self.tree.slope[self.arcs] * self.tree.span[self.arcs]
+        return np.asarray(moved / self._other_span)
+
+    @cached_property
+    def _other_span(self) -> Array:
+        return np.asarray(self._given_step[self.arcs])
+
+    @cached_property
+    def _given_step(self) -> Array:
+        return self.depth_step if self.by_force else self.force_step
+
+    @cached_property
+    def _integrals(self) -> tuple[Array, Array, float]:
+        """M on the arcs, the energy of each for a rate of one, and what may be missing, relative.
+
+        Arcs lie above each other: what is between two neighbours of all their ends is integrated
+        once.
+        """
+        plane = self._plane
+        upper, lower = self.coordinate[self.arcs], self.coordinate[self.tree.parent[self.arcs]]
+        if not upper.size:
+            return np.zeros(0), np.zeros(0), 0.0
+        breaks = self.profile.coordinate_breaks
+        breaks = breaks[(breaks > lower.min()) & (breaks < upper.max())]
+        edges = np.unique(np.concatenate([lower, upper, breaks]))
+        first, last = np.searchsorted(edges, lower), np.searchsorted(edges, upper)
+        count = last - first
+        arc = np.repeat(np.arange(count.size), count)
+        piece = np.arange(arc.size) - np.repeat(np.cumsum(count) - count, count) + first[arc]
+        other = plane.other(edges)
+        # Measured from the end at which the integrand of the energy is zero.
+        zero = 0 if self.by_force else 1
+        used = np.unique(piece)
+
+        def inner(index: Indices, s: Array) -> Array:
+            return np.abs(plane.other(s) - other[index + zero]) * self.steep(s)
+
+        pieces = used, edges[used], edges[used + 1]
+        rough = bool(self.profile.coordinate_breaks.size)
+        whole, part = (
+            integrate(density, pieces, self.rtol / 20, rough=rough)
+            for density in (lambda _, s: self.steep(s), inner)
+        )
+        moment = np.bincount(arc, whole.value[piece], count.size)
+        end = other[(first if self.by_force else last)[arc]]
+        ahead = np.abs(end - other[piece + zero])
+        energy = np.bincount(arc, ahead * whole.value[piece] + part.value[piece], count.size)
+        missing = max(
+            float(each.missing.sum() / max(each.value.sum(), _TINY)) for each in (whole, part)
+        )
+        return np.asarray(moment), np.asarray(energy), missing
+
+    def steep(self, s: Array) -> Array:
+        """d(other)/d(level) d(other)/ds."""
+        return self._plane.steepness(s) * self._plane.other_slope(s)
+
+    @cached_property
+    def _summed(self) -> Array:
+        """Rises of what is summed over arcs: the force over depths, the anchor over forces."""
+        rise = np.array(self._given_step)
+        # What slope x rise stands for rate x M there.
+        rise[self.arcs] = self._integrals[0] * self.tree.span[self.arcs] / self._other_span
+        return rise
+
+    @cached_property
+    def shear(self) -> Array:
+        """F_x/(mu E*) of each vertex as a load point [length^2]."""
+        return total(self.tree, self.force_step if self.by_force else self._summed)
+
+    @cached_property
+    def anchor(self) -> Array:
+        """Anchor of each vertex above that of the axis [length]."""
+        return total(self.tree, self._summed if self.by_force else self.depth_step)
+
+    @cached_property
+    def square(self) -> Array:
+        """int_0^x (anchor of the vertex - anchor)^2 dx up to each vertex [length^3]."""
+        tree, below = self.tree, self.shear[self.tree.parent]
+        rise = below * (self._summed if self.by_force else self.depth_step)
+        rise += tree.slope * self._lens_on_faces
+        times = tree.slope[self.arcs] * (tree.span[self.arcs] / self._other_span) ** 2
+        rise[self.arcs] += times * self._integrals[1]
+        return total(tree, rise)
+
+    @cached_property
+    def _lens_on_faces(self) -> Array:
+        lens = self._lens.copy()
+        lens[self.arcs] = 0.0
+        return lens
+
+    @property
+    def missing(self) -> float:
+        """How much of the integrals along arcs may be missing, relative."""
+        return self._integrals[2]

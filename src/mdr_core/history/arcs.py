@@ -1,0 +1,110 @@
+"""The curves that a load follows if one of each pair of loads is controlled: arcs.
+
+The polyline of `memory` goes over levels: depths if the displacement is controlled, reduced forces
+if the tangential force is. The normal load is given by the other of the two, and on a leg the
+shift is linear in that one. So whatever the profile, and whatever the leg,
+
+    shift = shift_0 + rate (other(s) - other(s_0)),    level = level(s),
+
+with d(other)/d(level) = 2 a or 1/(2 a) from dF_N/E* = 2 a dd: in the contact coordinate s an arc is
+the profile's own force over its own depth, stretched. On a leg its slope passes the cone's at one
+radius at most. Source: notes, §10.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core.errors import DefectError
+from mdr_core.foundation import Function, coordinate_from_depth, coordinate_from_force, force_slope
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+_STEPS: Final = 120
+# Newton's step, relative to the root, at which the next error is below rounding.
+_LAST_STEP: Final = 1e-9
+_ADJACENT: Final = 2.0**-51
+
+
+@dataclass(frozen=True)
+class Plane:
+    """What levels are, and what is linear in time."""
+
+    profile: Profile
+    by_force: bool
+    """Levels are I = F_N/E* [length^2] and the depth is given; else the other way round."""
+
+    @property
+    def level(self) -> Function:
+        """Level of a contact coordinate."""
+        return self.profile.reduced_force if self.by_force else self.profile.depth
+
+    @property
+    def other(self) -> Function:
+        """The other of the two, which is given."""
+        return self.profile.depth if self.by_force else self.profile.reduced_force
+
+    @property
+    def level_slope(self) -> Function:
+        """d(level)/ds."""
+        return force_slope(self.profile) if self.by_force else self.profile.depth_slope
+
+    @property
+    def other_slope(self) -> Function:
+        """d(other)/ds."""
+        return self.profile.depth_slope if self.by_force else force_slope(self.profile)
+
+    def at_level(self, level: Array) -> Array:
+        """Contact coordinate of a level."""
+        find = coordinate_from_force if self.by_force else coordinate_from_depth
+        return find(self.profile, level)
+
+    def at_other(self, other: Array) -> Array:
+        """Contact coordinate of the other."""
+        find = coordinate_from_depth if self.by_force else coordinate_from_force
+        return find(self.profile, other)
+
+    def steepness(self, s: Array) -> Array:
+        """d(other)/d(level)."""
+        twice = 2 * self.profile.contact_radius(s)
+        return 1 / twice if self.by_force else twice
+
+    def radius_on_the_cone(self, rate: Array) -> Array:
+        """Radius at which an arc of this rate is as steep as the cone; infinite without one."""
+        size = np.abs(rate)
+        if self.by_force:
+            return size / 2
+        with np.errstate(divide="ignore"):
+            return 1 / (2 * size)
+
+
+def rising_root(function: Callable[[Array], tuple[Array, Array]], low: Array, high: Array) -> Array:
+    """Return where an increasing function, which comes with its slope, is zero.
+
+    Newton's method; the bracket [low, high] is narrowed by the signs, and its middle replaces a
+    step that leaves it, or is not half as long as the one before. Beyond the bracket's ends by a
+    rounding, the end is the root.
+    """
+    s, last = (low + high) / 2, high - low
+    done = settling = np.zeros(s.shape, dtype=bool)
+    for _ in range(_STEPS):
+        with np.errstate(all="ignore"):
+            value, slope = function(s)
+            moved = s - value / slope
+        low, high = np.where(value < 0, s, low), np.where(value > 0, s, high)
+        # At a break of the profile the slope may be infinite.
+        known = (moved >= low) & (moved <= high) & (slope < np.inf)
+        known &= np.abs(moved - s) <= np.maximum(last / 2, _LAST_STEP * s)
+        moved = np.where(known, moved, (low + high) / 2)
+        moved = np.where(done | (value == 0), s, moved)
+        last = np.abs(moved - s)
+        s = moved
+        # One short step may only say that the function is steep there.
+        short = known & (last <= _LAST_STEP * s) | (value == 0)
+        done = done | short & settling | (high - low <= _ADJACENT * high)
+        if done.all():
+            return s
+        settling = short
+    raise DefectError("a point on an arc was not found")
