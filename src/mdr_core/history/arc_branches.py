@@ -107,7 +107,7 @@ class ArcBranches(Branches):
 
     def steep(self, s: Array) -> Array:
         """d(other)/d(level) d(other)/ds."""
-        return self._plane.steepness(s) * self._plane.other_slope(s)
+        return self._plane.steepness(s) * self._plane.slopes(s)[1]
 
     @cached_property
     def _summed(self) -> Array:

@@ -55,6 +55,10 @@ class _Rows(NamedTuple):
         ends = self.load_from, self.load_to
         return np.minimum(*ends), np.maximum(*ends)
 
+    def spread(self, shape: tuple[int, ...]) -> "_Rows":
+        """All of them broadcast, along one axis."""
+        return _Rows(*(np.broadcast_to(part, shape).ravel() for part in self))
+
     def at(self, index: Indices | Flags) -> "_Rows":
         """Some of the rows, of any shape."""
         return _Rows(*(part[index] for part in self))
@@ -141,25 +145,21 @@ class _Loss:
     def _load_at(self, over: Array) -> Array:
         """Coordinate of the load when its sum has fallen so far."""
         rows = self._rows
-        low, high = (
-            np.minimum(rows.load_from, rows.load_to),
-            np.maximum(rows.load_from, rows.load_to),
-        )
 
-        def miss(s: Array) -> tuple[Array, Array]:
-            value, slope = self._load(rows, s)
+        def miss(index: Indices, s: Array) -> tuple[Array, Array]:
+            own = rows.at(index)
+            value, slope = self._load(own, s)
             # It falls on the way: where the coordinate grows it falls with it.
-            return -rows.way * (value + over), -rows.way * slope
+            return -own.way * (value + over[index]), -own.way * slope
 
-        with np.errstate(all="ignore"):
-            found = rising_root(miss, low, high)
-        return np.where(over <= 0, rows.load_from, found)
+        return np.where(over <= 0, rows.load_from, rising_root(miss, *rows.load_range))
 
     def _load(self, rows: _Rows, s: Array) -> tuple[Array, Array]:
         """The load's sum above its start, and its slope."""
         plane, rate = self._plane, rows.sign * rows.load_rate
         value = plane.level(s) - rows.begun + rate * (plane.other(s) - rows.begun_other)
-        return value, plane.level_slope(s) + rate * plane.other_slope(s)
+        steep = plane.slopes(s)
+        return value, steep[0] + rate * steep[1]
 
     def _front(self, rows: _Rows, s: Array) -> tuple[Array, Array]:
         """The front's sum above the load's start, and its slope."""
@@ -168,7 +168,8 @@ class _Loss:
         times = np.where(face, 2.0, 1.0)
         value = times * (plane.level(s) - rows.entry)
         value = value + rate * (plane.other(s) - rows.entry_other) - rows.entered
-        return value, times * plane.level_slope(s) + rate * plane.other_slope(s)
+        steep = plane.slopes(s)
+        return value, times * steep[0] + rate * steep[1]
 
     def _cut(self, first: Array, last: Array) -> tuple[Indices, Array, Array]:
         """The ends, and where the front or the load is on a break of the profile."""
@@ -229,9 +230,9 @@ class _Loss:
         return found
 
     def _front_at(self, rows: _Rows, value: Array) -> Array:
-        def miss(s: Array) -> tuple[Array, Array]:
-            own, slope = self._front(rows, s)
-            return own - value, slope
+        def miss(index: Indices, s: Array) -> tuple[Array, Array]:
+            own, slope = self._front(rows.at(index), s)
+            return own - value[index], slope
 
         return rising_root(miss, rows.lower, rows.upper)
 
@@ -257,11 +258,11 @@ class _Loss:
     def _by_sum(self, owner: Indices, over: Array) -> Array:
         """R, where the sum has fallen so far: slopes that are infinite at breaks do no harm."""
         shape = np.broadcast_shapes(owner.shape, over.shape)
-        rows = _Rows(*(np.broadcast_to(part, shape) for part in self._rows.at(owner)))
+        rows, over = self._rows.at(owner).spread(shape), np.broadcast_to(over, shape).ravel()
         part = _Loss(self._plane, rows, of_everything=False)
         front = part._front_at(rows, -over)
         load = np.where(rows.way == 0, rows.load_from, part._load_at(over))
-        return self._overlap(front, np.maximum(load, front))
+        return self._overlap(front, np.maximum(load, front)).reshape(shape)
 
     def _overlap(self, front: Array, edge: Array) -> Array:
         """R [length^2], or R/2x [length]."""
@@ -276,16 +277,23 @@ class _Loss:
         if lateral.all():
             return -v
         shape = v.shape
-        rows = _Rows(*(np.broadcast_to(part, shape) for part in rows))
+        rows, v = rows.spread(shape), v.ravel()
+        lateral = rows.way == 0
 
-        def miss(s: Array) -> tuple[Array, Array]:
-            own, own_slope = self._front(rows, s)
-            load, slope = self._load(rows, np.where(lateral, rows.load_from, rows.way * (v + s)))
-            return own - load, own_slope - rows.way * slope
+        def miss(index: Indices, s: Array) -> tuple[Array, Array]:
+            chosen = rows.at(index)
+            own, own_slope = self._front(chosen, s)
+            load, slope = self._load(chosen, chosen.way * (v[index] + s))
+            return own - load, own_slope - chosen.way * slope
 
-        low = np.where(lateral, -v, np.maximum(rows.lower, self._least(rows, v)))
-        high = np.where(lateral, -v, np.minimum(rows.upper, self._most(rows, v)))
-        return rising_root(miss, low, np.maximum(low, high))
+        low = np.maximum(rows.lower, self._least(rows, v))
+        high = np.maximum(np.minimum(rows.upper, self._most(rows, v)), low)
+        moving = np.flatnonzero(~lateral)
+        front = -v
+        front[moving] = rising_root(
+            lambda index, s: miss(moving[index], s), low[moving], high[moving]
+        )
+        return front.reshape(shape)
 
     @staticmethod
     def _least(rows: _Rows, v: Array) -> Array:

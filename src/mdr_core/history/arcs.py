@@ -18,9 +18,9 @@ from typing import Final
 import numpy as np
 
 from mdr_core.errors import DefectError
-from mdr_core.foundation import Function, coordinate_from_depth, coordinate_from_force, force_slope
+from mdr_core.foundation import Function, coordinate_from_depth, coordinate_from_force
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 _STEPS: Final = 120
 # Newton's step, relative to the root, at which the next error is below rounding.
@@ -46,15 +46,11 @@ class Plane:
         """The other of the two, which is given."""
         return self.profile.depth if self.by_force else self.profile.reduced_force
 
-    @property
-    def level_slope(self) -> Function:
-        """d(level)/ds."""
-        return force_slope(self.profile) if self.by_force else self.profile.depth_slope
-
-    @property
-    def other_slope(self) -> Function:
-        """d(other)/ds."""
-        return self.profile.depth_slope if self.by_force else force_slope(self.profile)
+    def slopes(self, s: Array) -> tuple[Array, Array]:
+        """d(level)/ds and d(other)/ds."""
+        rise = self.profile.depth_slope(s)
+        force = 2 * self.profile.contact_radius(s) * rise
+        return (force, rise) if self.by_force else (rise, force)
 
     def at_level(self, level: Array) -> Array:
         """Contact coordinate of a level."""
@@ -80,31 +76,37 @@ class Plane:
             return 1 / (2 * size)
 
 
-def rising_root(function: Callable[[Array], tuple[Array, Array]], low: Array, high: Array) -> Array:
-    """Return where an increasing function, which comes with its slope, is zero.
+def rising_root(
+    function: Callable[[Indices, Array], tuple[Array, Array]], low: Array, high: Array
+) -> Array:
+    """Return where increasing functions are zero; function(index, s) gives values and slopes.
 
     Newton's method; the bracket [low, high] is narrowed by the signs, and its middle replaces a
     step that leaves it, or is not half as long as the one before. Beyond the bracket's ends by a
-    rounding, the end is the root.
+    rounding, the end is the root. All arrays have one axis.
     """
     s, last = (low + high) / 2, high - low
-    done = settling = np.zeros(s.shape, dtype=bool)
+    root, index = s.copy(), np.arange(s.size)
+    settling = np.zeros(s.shape, dtype=bool)
     for _ in range(_STEPS):
         with np.errstate(all="ignore"):
-            value, slope = function(s)
+            value, slope = function(index, s)
             moved = s - value / slope
         low, high = np.where(value < 0, s, low), np.where(value > 0, s, high)
         # At a break of the profile the slope may be infinite.
         known = (moved >= low) & (moved <= high) & (slope < np.inf)
         known &= np.abs(moved - s) <= np.maximum(last / 2, _LAST_STEP * s)
-        moved = np.where(known, moved, (low + high) / 2)
-        moved = np.where(done | (value == 0), s, moved)
-        last = np.abs(moved - s)
-        s = moved
+        moved = np.where(value == 0, s, np.where(known, moved, (low + high) / 2))
+        s, last = moved, np.abs(moved - s)
         # One short step may only say that the function is steep there.
         short = known & (last <= _LAST_STEP * s) | (value == 0)
-        done = done | short & settling | (high - low <= _ADJACENT * high)
-        if done.all():
-            return s
+        done = short & settling | (high - low <= _ADJACENT * high)
+        if done.any():
+            root[index] = s
+            rest = ~done
+            index, s, last, low, high = (part[rest] for part in (index, s, last, low, high))
+            short = short[rest]
+        if not index.size:
+            return root
         settling = short
     raise DefectError("a point on an arc was not found")

@@ -280,9 +280,10 @@ class Walk:
         low, high = np.array([below.coordinate]), np.array([above.coordinate])
         level, other = plane.level(low), plane.other(low)
 
-        def miss(s: Array) -> tuple[Array, Array]:
+        def miss(_: Indices, s: Array) -> tuple[Array, Array]:
             value = (plane.level(s) - level) + slope * (plane.other(s) - other) - keep
-            return value, plane.level_slope(s) + slope * plane.other_slope(s)
+            steep = plane.slopes(s)
+            return value, steep[0] + slope * steep[1]
 
         return float(rising_root(miss, low, high)[0])
 
@@ -363,20 +364,19 @@ class _Record:
         over = excess(start.sums[FORWARD], upper.sums[FORWARD])
         sign = 1.0 if high == BACKWARD else -1.0
 
-        def ahead(s: Array) -> tuple[Array, Array]:
+        def ahead(_: Indices, s: Array) -> tuple[Array, Array]:
             level, other = plane.level(s), plane.other(s)
             began = np.array([start.coordinate])
             load = self._rate * (other - plane.other(began)) + (level - plane.level(began))
-            load_slope = self._rate * plane.other_slope(s)
+            steep, other_slope = plane.slopes(s)
             rise = level - plane.level(top)
-            steep = plane.level_slope(s)
             if face:
                 own = (2 * rise if still else 0 * rise) - over
                 slope = steep if still else -steep
             else:
                 own = rise + upper.rate * (other - plane.other(top)) - over
-                slope = upper.rate * plane.other_slope(s)
-            return sign * (load - own), sign * (load_slope - slope)
+                slope = upper.rate * other_slope
+            return sign * (load - own), sign * (self._rate * other_slope - slope)
 
         s = rising_root(ahead, np.array([ends[0]]), top)
         moved = [walk.along(start.coordinate, float(s[0]), sign * self._rate) for sign in SIGNS]
