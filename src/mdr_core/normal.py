@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf, isfinite
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +26,16 @@ _FROM: Final = {
     "normal_force": coordinate_from_force,
     "contact_radius": coordinate_from_radius,
 }
+
+
+class Load(NamedTuple):
+    """One load's contact, as plain numbers; `edge` is a where it is what was given."""
+
+    profile: Profile
+    e_star: float
+    coordinate: float
+    a: float
+    edge: Array | None
 
 
 @dataclass(frozen=True)
@@ -77,6 +87,17 @@ class NormalContact:
     def elastic_energy(self) -> Array:
         """E* int_0^a (d - g)^2 dx = int_0^d F_N dd [force length]."""
         return self.e_star * self.profile.reduced_energy(self.coordinate)
+
+    @cached_property
+    def loads(self) -> list[Load]:
+        """The loads one by one, for what is answered over the radius."""
+        exact = self.control == "contact_radius"
+        e_star = float(self.e_star)
+        edges, coordinates = np.ravel(self.contact_radius), np.ravel(self.coordinate)
+        return [
+            Load(self.profile, e_star, coordinate, a, np.array([a]) if exact else None)
+            for a, coordinate in zip(edges.tolist(), coordinates.tolist(), strict=True)
+        ]
 
     @property
     def method(self) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import prod
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +12,7 @@ from mdr_core import annulus, sensitivity
 from mdr_core.checks import require_positive
 from mdr_core.errors import InputError, Notice
 from mdr_core.lazy import cached_property
-from mdr_core.normal import NormalContact
+from mdr_core.normal import Load, NormalContact
 from mdr_core.partial_slip import CONTROLS, state, state_of_sweep
 from mdr_core.profiles import Profile
 from mdr_core.sweeps import BLOCK, scene_by_scene
@@ -25,6 +25,20 @@ _STEPS: Final = 40.0
 _ROUNDINGS: Final = 8 * 2.0**-52
 # What an edge that follows from a load is known to.
 _EDGES: Final = 2 * _ROUNDINGS
+
+
+class Slip(NamedTuple):
+    """One load's partial slip, as plain numbers."""
+
+    normal: Load
+    friction: float
+    compliance: float
+    g_star: float
+    width: float
+    c: float
+    sign: float
+    full: bool
+    excess: float
 
 
 @dataclass(frozen=True)
@@ -167,6 +181,35 @@ class TangentialContact:
             moment = annulus.slip_moment(profile, self._coordinate, width, stick)
             slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
         return slipping + self.limiting_force * self.excess
+
+    @cached_property
+    def slips(self) -> list[Slip]:
+        """The loads one by one, for what is answered over the radius."""
+        shape = self.width.shape
+        parts = (
+            self.friction_coefficient,
+            self.compliance,
+            self.g_star,
+            self.width,
+            self.stick_radius,
+            self.sign,
+            self.full_slip,
+            self.excess,
+        )
+        # A single load has no need of what makes columns of numbers and arrays.
+        columns = [
+            np.broadcast_to(part, shape).tolist() if shape else [np.asarray(part).item()]
+            for part in parts
+        ]
+        rows: list[Any] = list(zip(*columns, strict=True))
+        pressed = self.normal.loads
+        spread = pressed if len(pressed) == len(rows) else pressed * len(rows)
+        at_once = self.normal.profile.slips_at_once
+        return [
+            # Where nothing slips before all does, the kernel takes the load itself as its width.
+            part._replace(width=part.width * part.normal.coordinate) if at_once else part
+            for part in (Slip(load, *row) for load, row in zip(spread, rows, strict=True))
+        ]
 
     @property
     def method(self) -> str:

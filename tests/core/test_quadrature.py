@@ -142,9 +142,9 @@ def evaluations(run: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> i
 
 
 KERNELS = {
-    "rounded punch": (RoundedPunch(0.95, 2.0), 1.0),
+    "rounded punch": (RoundedPunch(0.25, 2.0), 1.0),
     "truncated cone": (TruncatedCone(0.3, 0.2), 1.0),
-    "sphere": (Sphere(1.3), 1.0),
+    "sphere": (Sphere(1.1), 1.0),
     "hyperboloid": (Hyperboloid(0.4, 0.1), 1.0),
 }
 

@@ -15,6 +15,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.abel.polynomial import Inner, StressPolynomial
 from mdr_core.quadrature import (
     DEFAULT,
     Analytic,
@@ -68,6 +69,7 @@ def one_sided(
     odd: bool,
     rtol: float,
     analytic: Analytic = DEFAULT,
+    polynomial: tuple[StressPolynomial, float] | None = None,
 ) -> Array:
     """Return the integrals of F(x) / sqrt(x^2 - r^2) over x from max(r, b, c) to a.
 
@@ -88,6 +90,7 @@ def one_sided(
     odd : F is an odd function of s, which halves the work for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
     analytic : where F s/x is analytic in y, if not in the whole strip, and how it grows.
+    polynomial : what stands for F s/x to the tolerance, and its unit of s^2 [length^2].
 
     Examples
     --------
@@ -99,7 +102,7 @@ def one_sided(
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
-    problem = _OneSided(weight, upper, width, edge, inner, odd, rtol, analytic)
+    problem = _OneSided(weight, upper, width, edge, inner, odd, rtol, analytic, polynomial)
     on_break = r == b
     if np.count_nonzero(on_break):
         on_break &= r > 0
@@ -125,6 +128,7 @@ class _OneSided(NamedTuple):
     odd: bool
     rtol: float
     analytic: Analytic
+    polynomial: tuple[StressPolynomial, float] | None
 
 
 def _coincident_roots(problem: _OneSided, index: Indices, r: Array) -> Array:
@@ -179,14 +183,61 @@ def _picked(part: Array, index: Indices) -> Array:
     return part if part.size == 1 else part[index]
 
 
-def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
-    """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
-    weight, upper, width, edge = problem.weight, problem.upper, problem.width, problem.edge
+class _Stretch(NamedTuple):
+    """The stretch of x that each point sees, from max(r, b, c) to a; `lower` is None for c <= b."""
+
+    signed2: Array
+    """b^2 - r^2."""
+    epsilon: Array
+    """|b^2 - r^2|^(1/2)."""
+    above: Flags
+    """r > b."""
+    edge2: Array
+    """a^2 - r^2."""
+    lower: Array | None
+    """sqrt(c^2 - b^2)."""
+    root: Array | None
+    """sqrt(c^2 - r^2), zero for c < r."""
+    gap2: Array
+    """a^2 less the largest of b^2, c^2 and r^2."""
+    length: Array
+    """Its length in y."""
+
+
+def _stretch(problem: _OneSided, b: Parameter, r: Array) -> _Stretch:
+    upper, width, edge = problem.upper, problem.width, problem.edge
     signed2 = (b - r) * (b + r)
     above = signed2 < 0
-    distance2 = np.abs(signed2)
-    shift = distance2 * above
-    epsilon = np.sqrt(distance2)
+    epsilon = np.sqrt(np.abs(signed2))
+    upper2 = upper * upper
+    # a^2 - r^2, and c^2 - r^2 below: above the break they are the lesser legs, as r is than b.
+    edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
+    if width is None:
+        gap2 = np.minimum(edge2, upper2)
+        length = np.arcsinh(np.sqrt(gap2) / epsilon)
+        return _Stretch(signed2, epsilon, above, edge2, None, None, gap2, length)
+    lower = upper - width
+    if problem.inner is None:
+        inner2 = lower * lower + signed2
+    else:
+        c = np.maximum(problem.inner, b)
+        inner2 = (c - r) * (c + r)
+    root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
+    # a^2 less the larger of c^2 and r^2, and its arc: the cosines are the other legs.
+    on_root = above & (inner2 == 0)
+    gap2 = np.minimum(edge2, width * (upper + lower))
+    legs = np.sqrt(edge2) * np.where(on_root, epsilon, lower) + root * upper
+    length = np.arcsinh(gap2 / np.maximum(legs, _TINY))
+    return _Stretch(signed2, epsilon, above, edge2, lower, root, gap2, length)
+
+
+def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
+    """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
+    weight, seen = problem.weight, _stretch(problem, b, r)
+    if problem.polynomial is not None:
+        return _closed(problem, *problem.polynomial, seen)
+    epsilon, above = seen.epsilon, seen.above
+    shift = np.abs(seen.signed2) * above
     base2 = np.asarray(b * b)
     each = base2.size > 1
 
@@ -200,26 +251,30 @@ def _two_roots(problem: _OneSided, b: Parameter, r: Array) -> Array:
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
     even: Flags | bool = problem.odd or above
-    upper2 = upper * upper
-    # a^2 - r^2, and c^2 - r^2 below: above the break they are the lesser legs, as r is than b.
-    edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
-    if width is None:
-        top = np.sqrt(np.minimum(edge2, upper2)) / epsilon
-        return between(h, np.arcsinh(top), problem.rtol, even=even, analytic=problem.analytic)
-    lower = upper - width
-    if problem.inner is None:
-        inner2 = lower * lower + signed2
-    else:
-        c = np.maximum(problem.inner, b)
-        inner2 = (c - r) * (c + r)
-    root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
-    start = np.arcsinh(np.minimum(root, lower) / epsilon)
-    # a^2 less the larger of c^2 and r^2, and its arc: the cosines are the other legs.
-    on_root = above & (inner2 == 0)
-    gap2 = np.minimum(edge2, width * (upper + lower))
-    legs = np.sqrt(edge2) * np.where(on_root, epsilon, lower) + root * upper
-    length = np.arcsinh(gap2 / np.maximum(legs, _TINY))
-    return between(h, length, problem.rtol, start, even=even, analytic=problem.analytic)
+    start = None
+    if seen.lower is not None and seen.root is not None:
+        start = np.arcsinh(np.minimum(seen.root, seen.lower) / epsilon)
+    return between(h, seen.length, problem.rtol, start, even=even, analytic=problem.analytic)
+
+
+def _closed(problem: _OneSided, polynomial: StressPolynomial, unit: float, seen: _Stretch) -> Array:
+    """The weight as a polynomial: what s e grows by, and the arc, carry all of the integral."""
+    upper, lower, root = problem.upper, seen.lower, seen.root
+    upper2 = (upper * upper).item()
+    delta = seen.signed2 / unit
+    step = np.sqrt(seen.edge2)
+    step *= upper
+    inner = None
+    if problem.width is not None and lower is not None and root is not None:
+        leg = root * lower
+        gap2 = (problem.width * (upper + lower)).item()
+        inner = Inner(leg / unit, (lower * lower).item() / unit, gap2 / unit)
+        # The difference of s e at the two ends, with the digits of a narrow annulus.
+        step += leg
+        np.divide(root * root + upper2, np.maximum(step, _TINY, out=step), out=step)
+        step *= seen.gap2
+    step /= unit
+    return polynomial.between(delta, step, upper2 / unit, seen.length, inner)
 
 
 def between(

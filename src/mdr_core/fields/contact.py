@@ -4,40 +4,24 @@ Every function answers [load][radius], or [radius] where all loads were single n
 is called is computed.
 """
 
-from typing import Any, Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core.fields.rows import (
-    Load,
     Row,
     fill,
     foundation_row,
     grid_through,
     kernel,
-    loads,
     slip_kernel,
 )
-from mdr_core.normal import NormalContact
-from mdr_core.tangential import TangentialContact
+from mdr_core.normal import Load, NormalContact
+from mdr_core.tangential import Slip, TangentialContact
 from mdr_core.typing import Array
 
 _FAR: Final = 1e8
-
-
-class _Slip(NamedTuple):
-    """One load's partial slip, as plain numbers."""
-
-    normal: Load
-    friction: float
-    compliance: float
-    g_star: float
-    width: float
-    c: float
-    sign: float
-    full: bool
-    excess: float
 
 
 def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -75,7 +59,7 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     def row(load: Load) -> Row:
         return lambda r, highest: kernel(load, r, highest, None, load.e_star, rtol)
 
-    return fill(contact.contact_radius.shape, [row(load) for load in loads(contact)], radius)
+    return fill(contact.contact_radius.shape, [row(load) for load in contact.loads], radius)
 
 
 def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -88,14 +72,14 @@ def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float =
     `pressure`.
     """
 
-    def row(slip: _Slip) -> Row:
+    def row(slip: Slip) -> Row:
         load, modulus = slip.normal, slip.sign * slip.friction * slip.normal.e_star
         if slip.width == 0 and not slip.full:
             return lambda r, _highest: np.zeros(r.shape)
         slip_annulus = None if slip.full else (slip.width, slip.c)
         return lambda r, highest: kernel(load, r, highest, slip_annulus, modulus, rtol)
 
-    return fill(contact.width.shape, [row(slip) for slip in _slips(contact)], radius)
+    return fill(contact.width.shape, [row(slip) for slip in contact.slips], radius)
 
 
 def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -108,7 +92,7 @@ def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     Source: mdr-5, Eqs. (5.39)-(5.45). Parameters, returns and errors as of `pressure`.
     """
 
-    def row(part: _Slip) -> Row:
+    def row(part: Slip) -> Row:
         scale = part.sign * part.compliance
         profile, c, a = part.normal.profile, (0.0 if part.full else part.c), part.normal.a
 
@@ -122,7 +106,7 @@ def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) 
 
         return values
 
-    return fill(contact.width.shape, [row(part) for part in _slips(contact)], radius)
+    return fill(contact.width.shape, [row(part) for part in contact.slips], radius)
 
 
 def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -152,7 +136,7 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
 
         return values
 
-    rows = [row(load, float(d)) for load, d in zip(loads(contact), depths, strict=True)]
+    rows = [row(load, float(d)) for load, d in zip(contact.loads, depths, strict=True)]
     return fill(contact.contact_radius.shape, rows, radius)
 
 
@@ -162,7 +146,7 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
     Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23). Parameters, returns and errors
     as of `pressure`.
     """
-    rows = [foundation_row(load) for load in loads(contact)]
+    rows = [foundation_row(load) for load in contact.loads]
     return fill(contact.contact_radius.shape, rows, radius)
 
 
@@ -173,7 +157,7 @@ def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
     Parameters, returns and errors as of `pressure`.
     """
 
-    def row(part: _Slip, displacement: float) -> Row:
+    def row(part: Slip, displacement: float) -> Row:
         load = foundation_row(part.normal)
 
         def values(r: Array, highest: float) -> Array:
@@ -185,7 +169,7 @@ def foundation_shear(contact: TangentialContact, radius: ArrayLike) -> Array:
 
     shape = contact.width.shape
     moved = np.broadcast_to(contact.tangential_displacement, shape).ravel().tolist()
-    rows = [row(part, u_x) for part, u_x in zip(_slips(contact), moved, strict=True)]
+    rows = [row(part, u_x) for part, u_x in zip(contact.slips, moved, strict=True)]
     return fill(shape, rows, radius)
 
 
@@ -204,31 +188,3 @@ def grid(contact: NormalContact | TangentialContact, points: int) -> Array:
     if isinstance(contact, TangentialContact):
         special.append(np.ravel(contact.stick_radius))
     return grid_through(normal.profile, special, float(np.max(normal.contact_radius)), points)
-
-
-def _slips(contact: TangentialContact) -> list[_Slip]:
-    shape = contact.width.shape
-    pressed = loads(contact.normal)
-    parts = (
-        contact.friction_coefficient,
-        contact.compliance,
-        contact.g_star,
-        contact.width,
-        contact.stick_radius,
-        contact.sign,
-        contact.full_slip,
-        contact.excess,
-    )
-    # A single load has no need of what makes columns of numbers and arrays.
-    columns = [
-        np.broadcast_to(part, shape).tolist() if shape else [np.asarray(part).item()]
-        for part in parts
-    ]
-    rows: list[Any] = list(zip(*columns, strict=True))
-    spread = pressed if len(pressed) == len(rows) else pressed * len(rows)
-    at_once = contact.normal.profile.slips_at_once
-    return [
-        # Where nothing slips before all does, the kernel takes the load itself as its width.
-        part._replace(width=part.width * part.normal.coordinate) if at_once else part
-        for part in (_Slip(load, *row) for load, row in zip(spread, rows, strict=True))
-    ]

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import annulus
-from mdr_core.fields.rows import Load, fill, grid_through, kernel, slip_kernel
+from mdr_core.fields.rows import fill, grid_through, kernel, slip_kernel
 from mdr_core.history import State
+from mdr_core.normal import Load
 from mdr_core.typing import Array
 
 _EDGE: Final = 1 + 4 * float(np.finfo(float).eps)

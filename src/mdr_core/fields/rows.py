@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import inf
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from mdr_core import annulus
 from mdr_core.checks import largest
 from mdr_core.errors import InputError
-from mdr_core.normal import NormalContact
+from mdr_core.normal import Load
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
@@ -21,16 +21,6 @@ _BEYOND: Final = 1.5
 
 # One load at some radii, of which `highest` is the largest.
 Row = Callable[[Array, float], Array]
-
-
-class Load(NamedTuple):
-    """One load's contact, as plain numbers; `edge` is a where it is what was given."""
-
-    profile: Profile
-    e_star: float
-    coordinate: float
-    a: float
-    edge: Array | None
 
 
 def graded(stops: Array, points: int) -> Array:
@@ -106,7 +96,7 @@ def kernel(
 
     `slip_annulus` is its width in the contact coordinate and c; None for c = 0.
     """
-    at = np.array([load.coordinate])
+    at = _single(load.coordinate)
     span, inner = (None, None) if slip_annulus is None else map(_single, slip_annulus)
     inside = slice(None) if highest < load.a else np.asarray(r < load.a)
     chosen = r[inside]
@@ -130,22 +120,6 @@ def slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
     if profile.slips_at_once:
         return np.zeros(r.shape)
     return profile.slip_kernel(np.full(r.shape, c), r, rtol)
-
-
-def loads(contact: NormalContact) -> list[Load]:
-    """Return the loads of a contact, one by one."""
-    edges = np.atleast_1d(contact.contact_radius)
-    exact = contact.control == "contact_radius"
-    return [
-        Load(
-            contact.profile,
-            float(contact.e_star),
-            float(coordinate),
-            float(a),
-            np.array([a]) if exact else None,
-        )
-        for a, coordinate in zip(edges, np.atleast_1d(contact.coordinate), strict=True)
-    ]
 
 
 def fill(shape: tuple[int, ...], rows: list[Row], radius: ArrayLike) -> Array:

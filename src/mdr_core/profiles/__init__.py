@@ -2,13 +2,9 @@
 
 from typing import Final
 
-from mdr_core.profiles.blunt import (
-    FlatPunch,
-    RoundedPunch,
-    TruncatedCone,
-    TruncatedParaboloid,
-)
+from mdr_core.profiles.blunt import RoundedPunch, TruncatedCone, TruncatedParaboloid
 from mdr_core.profiles.capped_paraboloid import CappedParaboloid
+from mdr_core.profiles.flat_punch import FlatPunch
 from mdr_core.profiles.power import Power
 from mdr_core.profiles.power_law import Cone, Paraboloid
 from mdr_core.profiles.profile import Profile

@@ -1,105 +1,26 @@
 """Profiles with a flat of radius b: the contact coordinate is s = sqrt(a^2 - b^2)."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import lru_cache
+from typing import ClassVar, Final
 
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
+from mdr_core.abel.polynomial import COARSE, StressPolynomial, economised, end, interval, single
 from mdr_core.abel.roots import leg, one_sided
-from mdr_core.errors import InputError
 from mdr_core.profiles.behind_flat import BehindFlat
-from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
+from mdr_core.profiles.profile import NORMAL_ANSWERS, require_positive
 from mdr_core.profiles.stable import atan_gap
 from mdr_core.typing import Array, Parameter
 
-
-@dataclass(frozen=True)
-class FlatPunch(Profile):
-    """A flat of `radius` with a vertical edge; the coordinate is the depth, the radius given.
-
-    Source: mdr-5, Eqs. (5.31), (5.33); notes, §2.
-    """
-
-    radius: Parameter
-
-    kind: ClassVar[str] = "flat_punch"
-    formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
-
-    def __post_init__(self) -> None:
-        require_positive("radius", self.radius)
-
-    @property
-    def breaks(self) -> tuple[Parameter, ...]:
-        return (self.radius,)
-
-    def f(self, radius: Array) -> Array:
-        return np.asarray(np.where(radius <= self.radius, 0.0, np.inf))
-
-    def df(self, radius: Array) -> Array:
-        return self.f(radius)
-
-    def g(self, x: Array) -> Array:
-        return self.f(x)
-
-    def dg(self, x: Array) -> Array:
-        return self.f(x)
-
-    @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (self.radius,)
-
-    @property
-    def slips_at_once(self) -> bool:
-        return True
-
-    def contact_radius(self, coordinate: Array) -> Array:
-        return self.radius + np.zeros_like(coordinate)
-
-    def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        raise InputError(
-            ("load", "contact_radius"),
-            "the contact radius of a flat punch is its own at every load: "
-            "give the depth or the force",
-        )
-
-    def depth(self, coordinate: Array) -> Array:
-        return np.asarray(coordinate + np.zeros_like(self.radius))
-
-    def depth_slope(self, coordinate: Array) -> Array:
-        return np.ones_like(coordinate)
-
-    def reduced_force(self, coordinate: Array) -> Array:
-        return 2 * self.radius * coordinate
-
-    def coordinate_from_depth(self, depth: Array) -> Array:
-        return depth
-
-    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        return reduced_force / (2 * self.radius)
-
-    def reduced_energy(self, coordinate: Array) -> Array:
-        return self.radius * coordinate * coordinate
-
-    def pressure_kernel(
-        self,
-        coordinate: Array,
-        radius: Array,
-        rtol: float,
-        width: Array | None = None,
-        edge: Array | None = None,
-        modulus: float = 1.0,
-        inner: Array | None = None,
-    ) -> Array:
-        """d / (pi sqrt(a^2 - r^2)): the edge term of Eq. (5.34); no slip annulus exists."""
-        depth = coordinate if width is None else width
-        return modulus * depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
-
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
-        """(2/pi) d arcsin(a/r)."""
-        return np.asarray(2 / np.pi * depth * np.arctan2(a, np.sqrt((r - a) * (r + a))))
+# Of s/b: of narrower rims the arc and the legs cancel, on wider ones no polynomial is short.
+_NARROWEST: Final = 1e-3
+# Fewer radii have their nodes in the time in which the polynomials are set up.
+_MANY: Final = 100
+_WIDEST: Final = 3.0
 
 
 class Blunt(BehindFlat):
@@ -131,7 +52,7 @@ class Blunt(BehindFlat):
 
     def _weight(self, x: Array, s: Array) -> Array:
         """g'(x) s/x = dg/ds [1], analytic and even in s."""
-        return self._bare_weight(x, s) * self._factor
+        return self.bare_weight(x, s) * self._factor
 
     @property
     @abstractmethod
@@ -139,8 +60,20 @@ class Blunt(BehindFlat):
         """What of the weight depends on nothing."""
 
     @abstractmethod
-    def _bare_weight(self, x: Array, s: Array) -> Array:
-        """The weight without its factor."""
+    def bare_weight(self, x: Array, s: Array) -> Array:
+        """The weight without its factor: a function of s/b alone, that begins like (s/b)^2k."""
+
+    begins: ClassVar[int] = 0
+
+    def _polynomial(self, coordinate: Array, rtol: float) -> tuple[StressPolynomial, float] | None:
+        """What stands for the bare weight up to the edge, and its unit of s^2; None if nothing."""
+        span = (coordinate / self.flat_radius).item()
+        if not _NARROWEST < span < _WIDEST:
+            return None
+        number = interval(span * span)
+        found = _economised(type(self), number, rtol)
+        unit = (np.square(self.flat_radius) * end(number)).item()
+        return None if found is None else (found, unit)
 
     def pressure_kernel(
         self,
@@ -152,8 +85,9 @@ class Blunt(BehindFlat):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
+        worthwhile = rtol >= COARSE and radius.size >= _MANY and single(coordinate, width, inner)
         value = one_sided(
-            lambda x, s, _: self._bare_weight(x, s),
+            lambda x, s, _: self.bare_weight(x, s),
             self.flat_radius,
             radius,
             coordinate,
@@ -162,9 +96,23 @@ class Blunt(BehindFlat):
             inner=inner,
             odd=True,
             rtol=rtol,
+            polynomial=self._polynomial(coordinate, rtol) if worthwhile else None,
         )
         value *= modulus * self._factor / np.pi
         return value
+
+
+@lru_cache(maxsize=256)
+def _economised(
+    kind: Callable[[float, float], Blunt], number: int, rtol: float
+) -> StressPolynomial | None:
+    """The bare weight of a kind, in q = (s/b)^2 up to the end of that interval."""
+    body = kind(1.0, 1.0)
+
+    def weight(q: Array) -> Array:
+        return np.asarray(body.bare_weight(np.sqrt(1 + q), np.sqrt(q)) / q**body.begins)
+
+    return economised(weight, (0.0, end(number)), rtol, odd=False, starts=body.begins)
 
 
 @dataclass(frozen=True)
@@ -206,11 +154,13 @@ class RoundedPunch(Blunt):
         edge = self.contact_radius(coordinate)
         return edge * self.depth(coordinate) + cube / (3 * self.rounding_radius)
 
+    begins: ClassVar[int] = 1
+
     @property
     def _factor(self) -> Parameter:
         return self.flat_radius / self.rounding_radius
 
-    def _bare_weight(self, x: Array, s: Array) -> Array:
+    def bare_weight(self, x: Array, s: Array) -> Array:
         """(2 s/b - arctan(s/b)) s/x."""
         value = np.asarray(s / self.flat_radius)
         angle = np.arctan(value)
@@ -263,7 +213,7 @@ class TruncatedCone(Blunt):
     def _factor(self) -> Parameter:
         return self.slope
 
-    def _bare_weight(self, x: Array, s: Array) -> Array:
+    def bare_weight(self, x: Array, s: Array) -> Array:
         b = self.flat_radius
         return (np.arctan(s / b) * s + b) / x
 
@@ -331,7 +281,7 @@ class TruncatedParaboloid(Blunt):
 
     @property
     def _factor(self) -> Parameter:
-        return 1 / np.asarray(self.radius)[()]
+        return self.flat_radius / np.asarray(self.radius)[()]
 
-    def _bare_weight(self, x: Array, s: Array) -> Array:
-        return (x * x + s * s) / x
+    def bare_weight(self, x: Array, s: Array) -> Array:
+        return (s * s / x + x) / self.flat_radius

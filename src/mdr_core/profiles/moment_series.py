@@ -51,17 +51,21 @@ class MomentSeries:
         t -= 1
         axis = _horner(self.axis, t)
         np.subtract(2, t, out=t)
-        value = np.where(near_axis, axis, _horner(self.edge, t))
-        value *= np.sqrt((a - r) * (a + r)) / a
+        edge = _horner(self.edge, t)
+        leg = a - r
+        leg *= a + r
+        np.sqrt(leg, out=leg)
+        leg /= a
+        axis *= leg
+        edge *= leg
         if self.power < 0:
             with np.errstate(divide="ignore"):
                 rho **= self.power
         else:
             rho **= self.power
         rho *= self.factor
-        rho *= near_axis
-        value += rho
-        return value
+        axis += rho
+        return np.where(near_axis, axis, edge)
 
 
 @lru_cache(maxsize=256)

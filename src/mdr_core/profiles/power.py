@@ -1,6 +1,7 @@
 """The power law C r^n of any real exponent."""
 
 from dataclasses import dataclass
+from math import pi
 from typing import ClassVar, Final
 
 import numpy as np
@@ -199,9 +200,9 @@ class Power(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        n = np.asarray(self.exponent, dtype=float)
-        scale = modulus * kappa(self.exponent) / np.pi * self.df(coordinate)
-        moment = power_moment(float(n) - 1, coordinate, radius, rtol, width, inner)
+        n = float(self.exponent)
+        scale = self.df(coordinate) * (modulus * float(kappa(n)) / pi)
+        moment = power_moment(n - 1, coordinate, radius, rtol, width, inner)
         if n > 1:
             moment *= scale
             return moment

@@ -4,11 +4,21 @@ Source: notes, §4 and §5.
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 from math import exp, log
 from typing import Final
 
 import numpy as np
 
+from mdr_core.abel.polynomial import (
+    COARSE,
+    Inner,
+    StressPolynomial,
+    economised,
+    end,
+    interval,
+    single,
+)
 from mdr_core.abel.roots import between
 from mdr_core.profiles.moment_series import moment_series
 from mdr_core.profiles.profile import NOWHERE, ORDINARY
@@ -21,6 +31,8 @@ _LOG_ORDINARY: Final = 500.0
 # Above this power the integral lies next to the contact's edge: what is exp(-42) of it is lost.
 STEEP: Final = 64.0
 _ROUNDING_LOG: Final = 42.0
+# Of c/a: on wider annuli no polynomial is short.
+_WIDE: Final = 0.2
 # So small a part of the stick radius is the axis to it: its square is far below rounding.
 _INMOST: Final = 1e-100
 # The exponents for which NumPy does not raise.
@@ -67,7 +79,7 @@ def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """C n r^(n-1), infinite at r = 0 for n < 1."""
-    n = np.asarray(exponent, dtype=float)
+    n = exponent if isinstance(exponent, float) else np.asarray(exponent, dtype=float)
     with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
         bare = raised(r, n - 1)
         if bare.size == 1 and _TINY <= bare.item() <= _HUGE:
@@ -120,14 +132,43 @@ def root_step(a: Array, r: Array, width: Array | None, inner: Array | None = Non
 
     c = a - width, or `inner` where it is known by itself.
     """
+    return roots(a, r, width, inner)[0]
+
+
+def roots(
+    a: Array, r: Array, width: Array | None, inner: Array | None = None
+) -> tuple[Array, Array | None]:
+    """That difference, and its second term by itself."""
     root_a = a - r
     root_a *= a + r
     np.sqrt(root_a, out=root_a)
     if width is None:
-        return root_a
+        return root_a, None
     c = a - width if inner is None else inner
-    root_c = np.sqrt(np.maximum(c - r, 0.0) * (c + r))
-    return np.asarray(np.where(c > r, width * (a + c) / (root_a + root_c), root_a))
+    root_c = np.maximum(c - r, 0.0)
+    root_c *= c + r
+    np.sqrt(root_c, out=root_c)
+    return np.asarray(np.where(c > r, width * (a + c) / (root_a + root_c), root_a)), root_c
+
+
+def odd_moment(
+    polynomial: StressPolynomial,
+    unit: float,
+    a: Array,
+    r: Array,
+    width: Array | None,
+    inner: Array | None = None,
+) -> Array:
+    """int_max(r,c)^a w(x/l) / sqrt(x^2 - r^2) dx of an odd polynomial w, l^2 = `unit`."""
+    delta = r * r
+    delta /= -unit
+    step, lower = roots(a, r, width, inner)
+    upper2 = (a * a).item() / unit
+    if width is None or lower is None:
+        return polynomial.between(delta, step, upper2, None, None)
+    c = a - width if inner is None else inner
+    below = Inner(lower, (c * c).item() / unit, (width * (a + c)).item() / unit)
+    return polynomial.between(delta, step, upper2, None, below)
 
 
 def log_ratio(a: Array, r: Array, width: Array | None, inner: Array | None = None) -> Array:
@@ -160,9 +201,9 @@ def power_moment(
         return log_ratio(a, r, width, inner)
     if m == 1:
         return root_step(a, r, width, inner) / a
-    series = moment_series(m, rtol) if width is None else None
+    series = _by_series(m, a, r, rtol, width, inner)
     if series is not None:
-        return series.at(a, r)
+        return series
     if m > STEEP:
         width, inner = _felt_part(m, a, width, inner)
     c = None if width is None else a - width if inner is None else inner
@@ -191,6 +232,31 @@ def power_moment(
     if any_on_axis:
         value[on_axis] = np.broadcast_to(_axis_moment(m, a, width), value.shape)[on_axis]
     return value
+
+
+def _by_series(
+    m: float, a: Array, r: Array, rtol: float, width: Array | None, inner: Array | None
+) -> Array | None:
+    """The moment without a node, None where no series is short."""
+    if width is None:
+        series = moment_series(m, rtol)
+        return None if series is None else series.at(a, r)
+    if rtol < COARSE or not single(a, width, inner):
+        return None
+    ratio = ((a - width if inner is None else inner) / a).item()
+    if ratio < _WIDE:
+        return None
+    polynomial = _over_annulus(m, interval(1 / (ratio * ratio)), rtol)
+    if polynomial is None:
+        return None
+    edge = a.item()
+    return odd_moment(polynomial, edge * edge, a, r, width, inner) / edge
+
+
+@lru_cache(maxsize=256)
+def _over_annulus(m: float, number: int, rtol: float) -> StressPolynomial | None:
+    """x^m for 1/end(number) <= x^2 <= 1."""
+    return economised(lambda q: q ** ((m - 1) / 2), (1 / end(number), 1.0), rtol, odd=True)
 
 
 def felt_from(edge: Array, exponent: float) -> Array:

@@ -6,15 +6,19 @@ from typing import ClassVar, Final
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
+from mdr_core.abel.polynomial import single
 from mdr_core.abel.roots import arc, between
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, require_positive
+from mdr_core.profiles.smooth_tip import smooth_tip_kernel
 from mdr_core.profiles.stable import atan_gap, tanh_gap
 from mdr_core.typing import Array, Chosen, Parameter
 
 _EQUATOR: Final = 17.0
+# Up to this v, 0.8 of the radius, a polynomial may be short.
+_SHALLOW: Final = 1.1
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
 
@@ -118,9 +122,33 @@ class Spheroid(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        kernel = sphere_kernel(self.radius, coordinate, radius, rtol, width, edge, inner)
+        kernel = self._by_polynomial(coordinate, radius, rtol, width, edge, inner)
+        if kernel is None:
+            kernel = sphere_kernel(self.radius, coordinate, radius, rtol, width, edge, inner)
         kernel *= modulus * self.height / self.radius
         return kernel
+
+    def _by_polynomial(
+        self,
+        v: Array,
+        r: Array,
+        rtol: float,
+        width: Array | None,
+        edge: Array | None,
+        inner: Array | None,
+    ) -> Array | None:
+        """The kernel of a shallow contact, None of others."""
+        if not single(v, width, edge, inner) or v.item() > _SHALLOW:
+            return None
+        a = self.contact_radius(v) if edge is None else edge
+        gap = None if width is None else self.radius_width(v, width)
+        return smooth_tip_kernel(_sphere_slope, self.radius, a, r, rtol, gap, inner)
+
+
+def _sphere_slope(q: Array) -> Array:
+    """artanh(x)/x + 1/(1 - x^2) with q = x^2 > 0: of g' of the unit sphere, over x."""
+    x = np.sqrt(q)
+    return np.asarray(np.arctanh(x) / x + 1 / (1 - q))
 
 
 def sphere_kernel(
@@ -272,6 +300,13 @@ class Hyperboloid(Profile):
         inner: Array | None = None,
     ) -> Array:
         """x^2 + h^2 = (r^2 + h^2) cosh^2 y removes the root at r and the branch points +-ih."""
+        if single(coordinate, width, inner):
+            value = smooth_tip_kernel(
+                _hyperboloid_slope, self.scale, coordinate, radius, rtol, width, inner
+            )
+            if value is not None:
+                value *= modulus * self.slope
+                return value
         a, r, h = coordinate, radius, np.asarray(self.scale)
         rho = np.hypot(h, r)
         leg = root_step(a, r, None)
@@ -306,3 +341,9 @@ class Hyperboloid(Profile):
         smooth += h / rho * pole
         smooth *= modulus * self.slope / np.pi
         return smooth
+
+
+def _hyperboloid_slope(q: Array) -> Array:
+    """arctan(x)/x + 1/(1 + x^2) with q = x^2 > 0: of g' with h = t = 1, over x."""
+    x = np.sqrt(q)
+    return np.asarray(np.arctan(x) / x + 1 / (1 + q))
