@@ -180,3 +180,30 @@ def test_a_bad_point_is_named(r: Any, f: Any, path: Any, said: str) -> None:
     with pytest.raises(InputError, match=said) as refused:
         Tabulated(r, f)
     assert refused.value.path == ("profile", *path)
+
+
+@pytest.mark.parametrize("c", [1e-3, 0.05, 0.3])
+def test_the_axis_sticks_under_a_tip(c: float) -> None:
+    """Slip that does not reach a tip leaves a finite stress there: of a cone, (1/2) ln(a/c)."""
+    contact = solve(Tabulated([0, 0.5, 1.5], [0, 0.5, 1.5], "linear"), 1.0, contact_radius=1.0)
+    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+    found = fields.shear_stress(pushed, [0.0])
+    assert found[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT)
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
+@pytest.mark.parametrize("place", [-1e-3, -1e-13, 0, 1e-13, 1e-6, 1e-3])
+def test_slip_that_ends_next_to_a_node(kind: Any, place: float) -> None:
+    """The panel that holds c is taken from c on, in powers, where they are good enough."""
+    r = END * np.linspace(0, 1, 14)
+    c = r[5] * (1 + place)
+    contact = solve(Tabulated(r, sphere(r), kind), 1.0, contact_radius=EDGE, rtol=1e-11)
+    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=float(c))
+    radii = [0.3 * c, c * (1 - 1e-2), c * (1 - 1e-6), c * (1 + 1e-6), 0.47]
+    found = fields.shear_stress(pushed, radii, rtol=1e-11)
+    with mp.workdps(TABLE_DIGITS):
+        exact = Table({"r": r.tolist(), "f": sphere(r).tolist(), "interpolation": kind})
+        for x, value in zip(map(mpf, radii), found, strict=True):
+            true = exact.pressure(x, mpf(EDGE))
+            true -= exact.pressure(x, mpf(float(c))) if x < c else 0
+            assert abs(mpf(float(value)) / true - 1) <= INTERPOLANT

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from math import ceil, log
 from typing import Final
 
 import numpy as np
@@ -22,6 +23,7 @@ FAR: Final = 0.5
 # v <= -FAR or infinite, to |w| >= 1/k = 2 + sqrt(3): interpolation in w errs by 7.3^-nodes.
 _BEYOND: Final = 1 + 2 * FAR + 2 * np.sqrt(FAR + FAR * FAR)
 _SHIFT: Final = (_BEYOND - 1) / 2
+_ERROR: Final = 7.3
 # Pairs of a block and a point handled at once: their roots stay in cache.
 _PAIRS: Final = 4096
 # Blocks whose interpolation is at hand at once.
@@ -30,7 +32,12 @@ _BLOCKS: Final = 512
 _TOUCHING: Final = 1e-290
 
 
-@lru_cache(maxsize=8)
+def nodes_for(accuracy: float) -> int:
+    """How many nodes of a block keep what it gives to this accuracy."""
+    return ceil(log(1 / accuracy) / log(_ERROR))
+
+
+@lru_cache(maxsize=16)
 def _interpolation(count: int) -> tuple[Array, Array, Array]:
     """Nodes of a block of length one, the same in w, and their barycentric weights."""
     points = np.asarray(chebyshev.chebpts1(count), dtype=float)

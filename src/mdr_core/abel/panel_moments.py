@@ -1,11 +1,14 @@
 """The stress kernel over single panels whose weight is a polynomial, by closed moments."""
 
 from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil, log
 from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
 
 _DEGREE: Final = 23
@@ -14,9 +17,16 @@ _TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_POINTS, _DEGREE))
 # Places in a panel of length one.
 PLACES: Final = (1 + _POINTS) / 2
 _EPS: Final = float(np.finfo(float).eps)
-# What is left out of the last coefficients, of the largest value: as powers they would grow.
+# What is left out of the last coefficients, of the largest value: as powers they would grow. It
+# is this part of the accuracy, down to rounding.
 _NOISE: Final = 1e-14
+_UNFELT: Final = 1e-3
 _SMALL: Final = 0.5
+# Of a panel that is half its own length away, measured in x^2, n nodes leave 3.4^-2n, and they may
+# leave this part of the accuracy.
+_FALL: Final = 2 * log(3.4)
+_LEFT: Final = 1e-2
+_MOST_NODES: Final = 14
 
 
 def _to_powers() -> Array:
@@ -39,6 +49,16 @@ def _factors() -> Array:
 _POWERS: Final = _to_powers()
 _FACTORS: Final = _factors()
 _OF_ROOT: Final = np.append([0.0, 0.0], 1 / (np.arange(2, _DEGREE + 1) * _FACTORS[2:]))
+
+
+@lru_cache(maxsize=16)
+def _nodes(accuracy: float) -> tuple[Array, Array]:
+    """Squares of Gauss' nodes of a panel of length one, and each one's weight times powers."""
+    count = min(ceil(log(1 / (_LEFT * accuracy)) / _FALL), _MOST_NODES)
+    nodes, weights = gauss_legendre(count)
+    u = (1 + nodes) / 2
+    powers = u[:, None] ** np.arange(_DEGREE + 1)
+    return u * u, weights[:, None] / 2 * powers / _FACTORS
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +92,27 @@ class PowerPanels:
         return PowerPanels(
             self.left, np.full_like(self.left, right), length, self.coefficients * part, self.known
         )
+
+    def begun(self, left: float, accuracy: float) -> "PowerPanels":
+        """A single panel, but only from the radius `left` on, in powers from there."""
+        begin = np.array([left])
+        length = np.sqrt((self.right - begin) * (self.right + begin))
+        s = length * PLACES
+        own = np.hypot(np.sqrt((begin - self.left) * (begin + self.left)), s)
+        rows = self.coefficients.shape[0]
+        powers = (own / self.length)[:, None] ** np.arange(rows) / _FACTORS[:rows]
+        values = (powers @ self.coefficients[:, 0]) * s / own
+        part = power_panels(begin, self.right, values[None], np.zeros(1), accuracy)
+        part.known[:] &= self.known
+        return part
+
+    def from_afar(self, above: Array, accuracy: float) -> Array:
+        """`integrals` of a single panel for radii far below it, above = left^2 - r^2."""
+        squares, powers = _nodes(accuracy)
+        masses = powers[:, : self.coefficients.shape[0]] @ self.coefficients[:, 0] * self.length
+        root = np.add.outer(above, self.length * self.length * squares)
+        np.sqrt(root, out=root)
+        return np.asarray(np.divide(1.0, root, out=root) @ masses)
 
     def integrals(self, r: Array) -> Array:
         """int W ds/sqrt(s^2 + left^2 - r^2) over each panel, or what lies above its r < right.
@@ -109,19 +150,21 @@ def power_panels(
 ) -> PowerPanels:
     """Expand W in powers from its values (panels, places) at `PLACES`, and that at s = 0.
 
-    Known are panels where a dozen of the last coefficients, and the rounding, stay below
-    `accuracy` of the largest value.
+    Known are panels where a dozen of the last coefficients, the rounding, and the distance of the
+    polynomial from the value at s = 0 stay below `accuracy` of the largest value.
     """
     length = np.sqrt((right - left) * (right + left))
     chebyshev_ = values @ _TO_COEFFICIENTS.T
     largest = np.abs(values).max(axis=1)
     sizes = np.abs(chebyshev_)
     good = sizes[:, -2:].max(axis=1) <= accuracy / 12 * largest
-    real = sizes > _NOISE * largest[:, None]
+    real = sizes > max(_NOISE, _UNFELT * accuracy) * largest[:, None]
     needed = np.flip(np.maximum.accumulate(np.flip(real, axis=1), axis=1), axis=1)
     kept = np.where(needed, chebyshev_, 0.0)
     powers = kept @ _POWERS
     good &= (np.abs(kept) @ np.abs(_POWERS)).max(axis=1) * _EPS <= accuracy * largest
+    # Next to the left end W may change where no place sees it.
+    good &= np.abs(powers[:, 0] - at_left) <= accuracy * largest
     powers[:, 0] = at_left
     good &= length > 0
     # In pairs of an even and an odd one, no more of them than some panel needs.

@@ -23,6 +23,11 @@ DEGREE: Final = 23
 # So many of the last coefficients of a panel are looked at.
 _LAST: Final = 2
 _FEWEST: Final = 8
+# Numbers of nodes are multiples of it: panels alike are looked at together.
+_STEP: Final = 4
+# So many nodes resolve a panel that is one polynomial, at first, where no more than this is asked.
+_FIRST_LOOK: Final = 12
+_COARSE: Final = 1e-7
 _SPARE: Final = 1.5
 # How much of g' the root at the axis is, at most.
 _AXIS: Final = 1.0
@@ -114,7 +119,7 @@ def _counts(base: Array, length: Array, kinks: Array, tolerance: float) -> Indic
         with np.errstate(divide="ignore"):
             fall = np.log(size[1:] / tolerance) / np.log(ellipse)
         needed[1:] = np.maximum(needed[1:], fall + _SPARE)
-    counts = 2 * np.ceil(np.clip(needed, 0, DEGREE + 1) / 2).astype(int)
+    counts = _STEP * np.ceil(np.clip(needed, 0, DEGREE + 1) / _STEP).astype(int)
     return np.asarray(counts)
 
 
@@ -144,23 +149,30 @@ def _looked_at(
 
 
 def whole_pieces(slope: Slope, edges: Array, tolerance: float) -> Pieces | None:
-    """Resolve G in each panel at all nodes; None where some panel is not one polynomial.
+    """Resolve G in each panel without a cut; None where some panel is not one polynomial.
 
     The tolerance is that of the last coefficients, relative to the smallest value in the panel.
     """
     base = edges[:-1]
     length = leg(edges[1:], base)
-    points, inverse = _points(DEGREE + 1)
-    s = np.multiply.outer(length, (1 + points) / 2)
-    b = np.repeat(base, points.size)
-    values = slope(b, _offset(b, s.ravel())).reshape(s.shape)
-    coefficients = values @ inverse.T
-    tail = np.abs(coefficients[:, -_LAST:]).max(axis=1)
-    smallest = np.abs(values).min(axis=1)
-    if not (tail <= tolerance * smallest).all():
-        return None
-    error = float((tail / np.where(smallest > 0, smallest, 1.0)).max())
-    return Pieces(np.arange(base.size), np.zeros_like(length), length, coefficients, error)
+    panel = np.arange(base.size)
+    coefficients, tails = np.zeros((base.size, DEGREE + 1)), np.empty(base.size)
+    rest = panel
+    for count in (_FIRST_LOOK, DEGREE + 1) if tolerance >= _COARSE else (DEGREE + 1,):
+        points, inverse = _points(count)
+        s = np.multiply.outer(length[rest], (1 + points) / 2)
+        b = np.repeat(base[rest], count)
+        values = slope(b, _offset(b, s.ravel())).reshape(s.shape)
+        found = values @ inverse.T
+        coefficients[rest, :count] = found
+        smallest = np.abs(values).min(axis=1)
+        tail = np.abs(found[:, -_LAST:]).max(axis=1)
+        tails[rest] = tail / np.where(smallest > 0, smallest, 1.0)
+        rest = rest[~(tail <= tolerance * smallest)]
+        if not rest.size:
+            start = np.zeros_like(length)
+            return Pieces(panel, start, length, coefficients, float(tails.max()))
+    return None
 
 
 def _offset(base: Array, s: Array) -> Array:

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mdr_core.abel.clusters import FAR, Clusters, add, clusters, masses_at_nodes, pairs
+from mdr_core.abel.clusters import FAR, Clusters, add, clusters, masses_at_nodes, nodes_for, pairs
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.panel_moments import PLACES, PowerPanels, interpolated, power_panels
 from mdr_core.abel.pieces import DEGREE
@@ -21,6 +21,9 @@ _MASS_NODES: Final = 16
 _FAR_NODES: Final = 14
 # Interpolation errs by 7.3^-12 of the part of a block: below 1e-13 of the whole.
 _CLUSTER_NODES: Final = 12
+# Of the accuracy: what clusters may leave, and the ends of an annulus.
+_FELT: Final = 0.1
+_SAME: Final = 1e-3
 # The axis of the first panel: nearer than this nothing changes for a function smooth there.
 _AXIS: Final = 1e-8
 # G(0) below this, relative to the largest G, is what an interpolation leaves of a smooth tip.
@@ -140,7 +143,9 @@ class StressPanels:
         masses = span[:, None] / 2 * weights * value / np.hypot(self.base[:, None], s)
         square = np.diff(self.edges) * (self.edges[1:] + self.edges[:-1])
         parts = masses_at_nodes(
-            s * s / np.repeat(square, np.diff(first))[:, None], masses, _CLUSTER_NODES
+            s * s / np.repeat(square, np.diff(first))[:, None],
+            masses,
+            min(nodes_for(_FELT * self.accuracy), _CLUSTER_NODES),
         )
         return clusters(self.edges, np.add.reduceat(parts, first[:-1]), above=False)
 
@@ -209,14 +214,16 @@ class StressPanels:
         value[infinite] = np.inf
         return value
 
-    def _off_axis(self, panel: Indices, r: Array) -> tuple[Array, Flags]:
-        """Radii moved off the axis, and where a tip makes the integral infinite there.
+    def _off_axis(self, panel: Indices, r: Array, c: float = 0.0) -> tuple[Array, Flags]:
+        """Radii moved off the axis, and where a tip makes the integral from c on infinite there.
 
         G(0) > 0 is a tip, and the integral of G/x over it infinite.
         """
         on_axis = (r == 0) & (panel == 0)
         if not on_axis.any():
             return r, on_axis
+        if c > 0:
+            return np.where(on_axis, _AXIS * c, r), np.zeros_like(on_axis)
         row = self.coefficients[0]
         tip = abs(float(chebyshev.chebval(-1.0, row))) > _TIP * np.abs(self.coefficients).max()
         return np.where(on_axis, _AXIS * self.stop[0], r), on_axis & tip
@@ -225,21 +232,39 @@ class StressPanels:
         """The part of one panel that lies in the annulus."""
         left = max(float(self.edges[panel]), annulus.c)
         right = min(float(self.edges[panel + 1]), annulus.a)
+        powers = self._cut_powers(panel, annulus, left, right)
         square = (right - left) * (right + left)
         above = (left - r) * (left + r)
         far = int(np.searchsorted(-above, -FAR * square, side="right"))
         total = np.zeros_like(r)
-        total[:far] = self._by_nodes(panel, annulus, left, above[:far])
+        if powers is None:
+            total[:far] = self._by_nodes(panel, annulus, left, above[:far])
+        else:
+            total[:far] = powers.from_afar(above[:far], self.accuracy)
         near = slice(far, int(np.searchsorted(r, right)))
         if near.start < near.stop:
-            at, infinite = self._off_axis(np.full(near.stop - far, panel), r[near])
-            if self.edges[panel] >= annulus.c and self._powers.known[panel]:
-                powers = self._powers.chosen(np.full(at.size, panel)).cut(right)
-                total[near] = powers.integrals(at)
+            every = np.full(near.stop - far, panel)
+            at, infinite = self._off_axis(every, r[near], annulus.c)
+            if powers is None:
+                total[near] = self._by_rule(every, at, annulus, rtol)
             else:
-                total[near] = self._by_rule(np.full(at.size, panel), at, annulus, rtol)
+                total[near] = powers.chosen(np.zeros_like(every)).integrals(at)
             total[near][infinite] = np.inf
         return total
+
+    def _cut_powers(
+        self, panel: int, annulus: _Annulus, left: float, right: float
+    ) -> PowerPanels | None:
+        """A panel's part between two radii in powers of its own; None where they are no good."""
+        powers = self._powers.chosen(np.array([panel])).cut(right)
+        if not powers.known[0] or left == self.edges[panel]:
+            return powers if powers.known[0] else None
+        # Of a narrow annulus the width has digits that its ends have not.
+        miss = abs((annulus.a - annulus.c) - annulus.width)
+        if right == annulus.a and miss > _SAME * self.accuracy * annulus.width:
+            return None
+        powers = powers.begun(left, _FELT * self.accuracy)
+        return powers if powers.known[0] else None
 
     def _by_nodes(self, panel: int, annulus: _Annulus, left: float, above: Array) -> Array:
         """Fixed nodes on a part of a panel for all points far below it, `above` = left^2 - r^2."""

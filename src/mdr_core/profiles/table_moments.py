@@ -7,23 +7,29 @@ however narrow the panel and however far from the axis. Source: notes, §5.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.clusters import Clusters, add, clusters, masses_at_nodes, pairs
+from mdr_core.abel.clusters import Clusters, add, clusters, masses_at_nodes, nodes_for, pairs
 from mdr_core.lazy import cached_property
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
 
-# Of the rule next to a point: 2 x 10 points leave 5.8^-20, and panels off the axis far less.
-_POINTS: Final = 10
-# Of a quadratic, as clusters see it from afar.
-_FAR_POINTS: Final = 16
 # Interpolation errs by 7.3^-14 of the part of a block: nothing that a later bisection would take
 # for structure.
 _CLUSTER_NODES: Final = 14
+# So many more has the rule by which clusters see a quadratic from afar.
+_MORE: Final = 2
+# Of the rule next to a point 2 x 10 points leave 5.8^-20, panels off the axis far less: as many
+# as two thirds of the nodes of a cluster are always enough.
+_PART: Final = 3
+# The smallest part of a slope that is only roughly needed.
+_FELT: Final = 0.1
+# Of a quadratic times r^2.
+_POWERS: Final = 5
 # Rounding of what should be zero, relative to the largest of its kind next to it.
 _NOISE: Final = 256 * float(np.finfo(float).eps)
 
@@ -32,12 +38,18 @@ _NOISE: Final = 256 * float(np.finfo(float).eps)
 class TableSlope:
     """F = c0 + c1 u + c2 u^2, u = r - left edge, between `edges` (k + 1); coefficients (3, k).
 
-    `jumps` (k,): what F' holds of Dirac's kind at each left edge, times its radius.
+    `jumps` (k,): what F' holds of Dirac's kind at each left edge, times its radius. `nodes`: of a
+    block of panels that is seen from afar.
     """
 
     edges: Array
     coefficients: Array
     jumps: Array | None = None
+    nodes: int = _CLUSTER_NODES
+
+    def to(self, accuracy: float) -> "TableSlope":
+        """The same, transformed to no more than this accuracy."""
+        return replace(self, nodes=min(nodes_for(_FELT * accuracy), _CLUSTER_NODES))
 
     def at(self, u: Array, panel: Array) -> Array:
         """F at the offset u in the given panel."""
@@ -169,7 +181,7 @@ class TableSlope:
     def _seen_from_above(self, weigh: Callable[[Array, Array], Array]) -> Clusters:
         """Whole panels, as they are seen from larger radii afar."""
         left, right = self.edges[:-1, None], self.edges[1:, None]
-        nodes, weights = gauss_legendre(_FAR_POINTS)
+        nodes, weights = gauss_legendre(self.nodes + _MORE)
         width = right - left
         u = width * (1 + nodes) / 2
         c0, c1, c2 = self.coefficients[:, :, None]
@@ -178,7 +190,7 @@ class TableSlope:
         if self.jumps is not None and self.jumps.any():
             v = np.append(v, np.ones_like(left), axis=1)
             values = np.append(values, self.jumps[:, None], axis=1)
-        return clusters(self.edges, masses_at_nodes(v, values, _CLUSTER_NODES), above=True)
+        return clusters(self.edges, masses_at_nodes(v, values, self.nodes), above=True)
 
     def _moments(self, panel: Indices, base: Array, offset: Array) -> Array:
         total = self._seen(self.coefficients[:, panel], panel, base, offset)
@@ -197,39 +209,42 @@ class TableSlope:
     def _seen(self, powers: Array, panel: Indices, base: Array, offset: Array) -> Array:
         """A polynomial in each panel, as far as it lies below the panel's own point."""
         left, right = self.edges[panel], self.edges[panel + 1]
-        total = _reach(powers, left, np.maximum((base - left) + offset, 0.0))
+        rule = _rule(self.nodes - self.nodes // _PART)
+        total = _reach(powers, left, np.maximum((base - left) + offset, 0.0), rule)
         beyond = (base - right) + offset
         over = np.flatnonzero(beyond > 0)
         # The polynomial goes on; what is too much is no larger than what is left.
         moved = _moved(powers.take(over, axis=1), (right - left)[over])
-        total[over] -= _reach(moved, right[over], beyond[over])
+        total[over] -= _reach(moved, right[over], beyond[over], rule)
         return total
 
 
-def _rule() -> tuple[Array, Array]:
-    """Nodes and weights of int_0^1 h(y)/sqrt(1 - y) dy."""
-    nodes, weights = gauss_legendre(2 * _POINTS)
-    return 1 - np.square(nodes[_POINTS:]), 2 * weights[_POINTS:]
+@lru_cache(maxsize=16)
+def _rule(points: int) -> tuple[Array, Array]:
+    """Nodes of int_0^1 y^n h(y)/sqrt(1 - y) dy, and weights for n = 0 to 4, (5, points)."""
+    nodes, weights = gauss_legendre(2 * points)
+    y = 1 - np.square(nodes[points:])
+    return y, 2 * weights[points:] * y ** np.arange(_POWERS)[:, None]
 
 
-_NODES, _WEIGHTS = _rule()
-
-
-def _reach(powers: Array, left: Array, above: Array) -> Array:
+def _reach(powers: Array, left: Array, above: Array, rule: tuple[Array, Array]) -> Array:
     """int_left^x sum_n c_n (r - left)^n dr/sqrt(x^2 - r^2), x = left + above.
 
     With r = left + y above the other root is that of 2 left + above (1 + y), smooth in y.
     """
+    nodes, weights = rule
     span = 2 * left + above
     part = above / np.where(span > 0, span, 1.0)
-    root = np.multiply.outer(_NODES, part)
+    root = np.multiply.outer(nodes, part)
     root += 1
     np.sqrt(root, out=root)
     np.divide(1.0, root, out=root)
+    terms = weights[: len(powers)] @ root
+    terms *= powers
     total: Array = np.zeros_like(above)
-    for power, row in zip(range(powers.shape[0] - 1, -1, -1), powers[::-1], strict=True):
+    for term in terms[::-1]:
         total *= above
-        total += row * ((_WEIGHTS * _NODES**power) @ root)
+        total += term
     total *= np.sqrt(part)
     return total
 

@@ -314,7 +314,7 @@ class Tabulated(BehindFlat):
             # Near the axis g' may be small: there a kink is felt that is not farther out.
             near, far = self.r[:_TOGETHER], self.r[_TOGETHER:-1:_TOGETHER]
             edges = np.concatenate([near, far, self.r[-1:]])
-            found = smooth_panels(self._slope.source.transform, edges, accuracy)
+            found = smooth_panels(self._slope.source.to(accuracy).transform, edges, accuracy)
             self._merged[decade] = found
         return self._merged[decade] or self._stress
 
@@ -330,8 +330,6 @@ class Tabulated(BehindFlat):
     ) -> Array:
         a = self.contact_radius(coordinate) if edge is None else edge
         span = None if width is None else self.radius_width(coordinate, width)
-        # What is cut at c needs the dearer rule for every radius in c's panel: a small one.
-        panels = self._panels_for(rtol) if span is None else self._stress
-        value = panels.kernel(a, radius, rtol, span, inner)
+        value = self._panels_for(rtol).kernel(a, radius, rtol, span, inner)
         value *= modulus / np.pi
         return value
