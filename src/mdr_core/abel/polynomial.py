@@ -13,7 +13,7 @@ from operator import mul
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.polynomial import Polynomial, chebyshev
+from numpy.polynomial import chebyshev
 
 from mdr_core.typing import Array
 
@@ -151,27 +151,41 @@ def economised(
     if not left_out[-1] <= accuracy:
         return None
     count = max(int(np.argmax(left_out <= accuracy)), _FEWEST)
-    fitted = chebyshev.Chebyshev(found[:count], domain=[low / high, 1])
-    powers: Array = np.asarray(fitted.convert(kind=Polynomial, domain=[-1, 1], window=[-1, 1]).coef)
+    powers = _in_powers(found[:count], low / high)
     if np.abs(powers).sum() * _ROUNDINGS * _EPSILON > accuracy * values.min():
         return None
     return _tabulated(np.append(np.zeros(starts), powers * high**starts), odd=odd)
 
 
-def _tabulated(coefficients: Array, *, odd: bool) -> StressPolynomial:
-    """The table of a weight."""
+def _in_powers(coefficients: Array, low: float) -> Array:
+    """The powers of q of a sum of Chebyshev's polynomials on [low, 1], by their recurrence."""
     count = coefficients.size
-    table = np.zeros((count, count))
-    first = 1 if odd else 2
+    scale, shift = 2 / (1 - low), -(1 + low) / (1 - low)
+    before, this = np.zeros(count), np.zeros(count)
+    before[0] = 1
+    this[:2] = shift, scale
+    result = coefficients[0] * before + coefficients[1] * this
+    for coefficient in coefficients[2:].tolist():
+        following = 2 * shift * this - before
+        following[1:] += 2 * scale * this[:-1]
+        before, this = this, following
+        result += coefficient * this
+    return result
+
+
+def _tabulated(coefficients: Array, *, odd: bool) -> StressPolynomial:
+    """The table of a weight: the m-th row is what goes with s^(n-1) e, n = 2m + 1 or 2m + 2."""
+    count, first = coefficients.size, 1 if odd else 2
     rows = count if odd else count - 1
-    for m in range(rows):
-        n = first + 2 * m
-        factor = 1 / n
-        for j in range(rows - m):
-            table[m, j] = factor * coefficients[m + j + count - rows]
-            factor *= -(n + 2 * j + 1) / (n + 2 * j + 2)
-    factor = 1.0
-    for k in range(0 if odd else count):
-        table[-1, k] = factor * coefficients[k]
-        factor *= -(2 * k + 1) / (2 * k + 2)
-    return StressPolynomial(table)
+    n = first + 2 * np.arange(rows)[:, None]
+    j = np.arange(count)
+    # 1/n of I_n itself, and as I_(n+2j) comes down to it, -(n + 2j - 1)/(n + 2j) by each step.
+    factors = -(n + 2 * j - 1) / (n + 2 * j)
+    factors[:, 0] = 1 / n[:, 0]
+    place = np.arange(rows)[:, None] + j + (count - rows)
+    padded = np.append(coefficients, np.zeros(count))
+    table = np.cumprod(factors, axis=1) * padded[place]
+    if odd:
+        return StressPolynomial(table)
+    of_arc = -(2 * j - 1) / np.maximum(2 * j, 1)
+    return StressPolynomial(np.vstack((table, coefficients * np.cumprod(of_arc))))
