@@ -164,7 +164,7 @@ def _in_powers(coefficients: Array, low: float) -> Array:
     before, this = np.zeros(count), np.zeros(count)
     before[0] = 1
     this[:2] = shift, scale
-    result = coefficients[0] * before + coefficients[1] * this
+    result: Array = coefficients[0] * before + coefficients[1] * this
     for coefficient in coefficients[2:].tolist():
         following = 2 * shift * this - before
         following[1:] += 2 * scale * this[:-1]
