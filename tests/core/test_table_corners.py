@@ -134,6 +134,21 @@ def test_panels_taken_as_one_keep_the_tolerance(a: float) -> None:
             assert abs(mpf(float(value)) / true - 1) <= 1e-6
 
 
+def test_displacements_of_panels_taken_as_one() -> None:
+    """What slips wholly lags by the shape itself; beside the contact: johnson, Eq. (3.42)."""
+    r = np.linspace(0, END, 200)
+    profile = Tabulated(r, sphere(r))
+    inside = np.linspace(0.01, EDGE, 50)
+    found = profile.slip_kernel(np.zeros_like(inside), inside, 1e-6)
+    assert found == pytest.approx(sphere(inside), rel=1e-6)
+    contact = solve(Tabulated(r, r * r / 2), 1.0, contact_radius=EDGE)
+    outside = EDGE * (1 + np.geomspace(1e-6, 10, 50))
+    leg = np.sqrt((outside - EDGE) * (outside + EDGE))
+    expected = (2 * EDGE**2 - outside**2) * np.arcsin(EDGE / outside) + EDGE * leg
+    found = fields.normal_displacement(contact, outside, rtol=1e-6)
+    assert found == pytest.approx(expected / np.pi, rel=1e-6)
+
+
 def test_no_kink_is_passed_over() -> None:
     """What a tolerance of 1e-6 feels keeps the panels apart: a weak kink, and a noisy point."""
     r = np.linspace(0, END, 401)

@@ -78,6 +78,7 @@ class StressPanels:
         base, start, stop = (float(part[piece]) for part in (self.base, self.start, self.stop))
         middle, half = (start + stop) / 2, (stop - start) / 2
         pole, row = float(self.pole[piece]), self.coefficients[piece]
+        row = row[: int(np.flatnonzero(row).max(initial=0)) + 1]
 
         def weight(x: Array, s: Array, _index: Chosen) -> Array:
             value = chebyshev.chebval(np.clip((s - middle) / half, -1, 1), row)

@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.abel.displacement import Branch
+from mdr_core.abel.displacement import Branch, slope_integral
 from mdr_core.abel.panels import Jumps
 from mdr_core.abel.resolved import smooth_panels, stress_panels
 from mdr_core.abel.roots import leg
@@ -279,6 +279,17 @@ class Tabulated(BehindFlat):
     @property
     def branches(self) -> tuple[Branch, ...]:
         return self._stress.branches
+
+    # The displacements feel kinks no more than the stresses do.
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        branches = self._panels_for(rtol).branches
+        return 2 / np.pi * slope_integral(branches, c, r, r, rtol, outside=False)
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+        del depth
+        branches, axis = self._panels_for(rtol).branches, np.zeros_like(r)
+        return 2 / np.pi * slope_integral(branches, axis, a, r, rtol, outside=True)
 
     @cached_property
     def _stress(self) -> StressPanels:
