@@ -170,11 +170,18 @@ def _step(
     if narrow.all():
         # An empty annulus may lie on a tip where the slope is infinite.
         return np.where(width > 0, _narrow_step(slope, high, width, below[0]), 0.0)
-    wide = function(high) - function(np.maximum(low, 0.0))
     if not narrow.any():
-        return wide
-    part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below[0])
-    return np.where(narrow, np.where(width > 0, part, 0.0), wide)
+        return function(high) - function(np.maximum(low, 0.0))
+    if profile.swept:
+        # The functions are those of all scenes.
+        wide = function(high) - function(np.maximum(low, 0.0))
+        part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below[0])
+        return np.where(narrow, np.where(width > 0, part, 0.0), wide)
+    result = np.zeros(narrow.shape)
+    result[~narrow] = function(high[~narrow]) - function(np.maximum(low[~narrow], 0.0))
+    few = narrow & (width > 0)
+    result[few] = _narrow_step(slope, high[few], width[few], below[0][few])
+    return result
 
 
 def _break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
