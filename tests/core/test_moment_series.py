@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from mdr_core import fields, normal
 from mdr_core.profiles.moment_series import moment_series
+from tests.core.comparison import profile_from
+from tests.oracles import reference
+from tests.oracles.shapes import shape_of
 
 #: Both halves, where they meet, and next to axis and edge.
 PLACES = np.concatenate(
@@ -53,3 +57,17 @@ def test_the_series_hold_on_the_axis(m: float) -> None:
 @pytest.mark.parametrize("m", [-0.01, 0.0, 0.01, 2.0, 1.999, 4.0, 30.0])
 def test_where_the_parts_cancel_there_is_no_series(m: float) -> None:
     assert moment_series(m, 1e-6) is None
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10])
+def test_terms_that_cancel_leave_the_sum_its_tolerance(rtol: float) -> None:
+    """g' of 0.03 x^1.5 of its first term at the edge: the rest is taken away by the second."""
+    terms = [{"coefficient": 1.0, "exponent": 2.5}, {"coefficient": -0.6, "exponent": 3.5}]
+    given = {"kind": "series", "terms": terms}
+    shape, places = shape_of(given), [0.02, 0.4, 0.75, 0.95, 0.999]
+    contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0, rtol=rtol)
+    found = fields.pressure(contact, places, rtol=rtol).tolist()
+    with mp.workdps(40):
+        for r, p in zip(places, found, strict=True):
+            exact = reference.pressure(shape, mpf(r), mpf(1))
+            assert abs(mpf(p) / exact - 1) <= rtol, r

@@ -46,7 +46,7 @@ class MomentSeries:
         """F(r/a), infinite on the axis for m < 0; 0 <= r <= a."""
         rho = r / a
         t = rho * rho
-        near_axis = t <= 0.5
+        near_edge = t > 0.5
         t *= 4
         t -= 1
         axis = _horner(self.axis, t)
@@ -65,7 +65,8 @@ class MomentSeries:
             rho **= self.power
         rho *= self.factor
         axis += rho
-        return np.where(near_axis, axis, edge)
+        np.copyto(axis, edge, where=near_edge)
+        return axis
 
 
 @lru_cache(maxsize=256)

@@ -30,6 +30,9 @@ _LOG_LARGEST: Final = 700.0
 _EPS: Final = float(np.finfo(float).eps)
 # Radii at which it is looked how much the terms cancel.
 _PLACES: Final = 257
+# Terms that are larger than their sum by no more than this leave it the tolerance.
+_LITTLE: Final = 2.0
+_FINEST: Final = 1e-15
 # Radii beyond have no double.
 _LOG_FARTHEST: Final = 690.0
 
@@ -242,15 +245,37 @@ class Series(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
-        for c, n in self._powers:
-            scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
-            moment = power_moment(n - 1, coordinate, radius, rtol, width, inner)
-            total += scale * np.where(np.isinf(moment), 0.0, moment)
+        total, lost = self._stress(coordinate, radius, rtol, width, modulus, inner)
+        if lost > _LITTLE:
+            finer = max(rtol / lost, _FINEST)
+            total, _ = self._stress(coordinate, radius, finer, width, modulus, inner)
         if width is None and self.infinite_pressure_radii:
             # Next to the first term all others are small there, whatever their factors.
             return np.where(radius == 0, copysign(inf, modulus), total)
         return total
+
+    def _stress(
+        self,
+        coordinate: Array,
+        radius: Array,
+        rtol: float,
+        width: Array | None,
+        modulus: float,
+        inner: Array | None,
+    ) -> tuple[Array, float]:
+        """The sum of the terms' kernels, each to rtol, and how much larger they are than it."""
+        total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
+        size = np.zeros(total.shape)
+        for c, n in self._powers:
+            scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
+            moment = power_moment(n - 1, coordinate, radius, rtol, width, inner)
+            term = scale * np.where(np.isinf(moment), 0.0, moment)
+            total += term
+            size += np.abs(term)
+        if all(c > 0 for c, _ in self._powers):
+            return total, 1.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return total, float(np.nanmax(size / np.abs(total), initial=1.0))
 
 
 def _total(parts: Iterable[Array]) -> Array:
