@@ -245,37 +245,28 @@ class Series(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        total, lost = self._stress(coordinate, radius, rtol, width, modulus, inner)
+        def summed(tolerance: float) -> tuple[Array, float]:
+            """The sum of the terms, each to the tolerance, and how much larger they are than it."""
+            total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
+            size = np.zeros(total.shape)
+            for c, n in self._powers:
+                scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
+                moment = power_moment(n - 1, coordinate, radius, tolerance, width, inner)
+                term = scale * np.where(np.isinf(moment), 0.0, moment)
+                total += term
+                size += np.abs(term)
+            if all(c > 0 for c, _ in self._powers):
+                return total, 1.0
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return total, float(np.nanmax(size / np.abs(total), initial=1.0))
+
+        total, lost = summed(rtol)
         if lost > _LITTLE:
-            finer = max(rtol / lost, _FINEST)
-            total, _ = self._stress(coordinate, radius, finer, width, modulus, inner)
+            total, _ = summed(max(rtol / lost, _FINEST))
         if width is None and self.infinite_pressure_radii:
             # Next to the first term all others are small there, whatever their factors.
             return np.where(radius == 0, copysign(inf, modulus), total)
         return total
-
-    def _stress(
-        self,
-        coordinate: Array,
-        radius: Array,
-        rtol: float,
-        width: Array | None,
-        modulus: float,
-        inner: Array | None,
-    ) -> tuple[Array, float]:
-        """The sum of the terms' kernels, each to rtol, and how much larger they are than it."""
-        total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
-        size = np.zeros(total.shape)
-        for c, n in self._powers:
-            scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
-            moment = power_moment(n - 1, coordinate, radius, rtol, width, inner)
-            term = scale * np.where(np.isinf(moment), 0.0, moment)
-            total += term
-            size += np.abs(term)
-        if all(c > 0 for c, _ in self._powers):
-            return total, 1.0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return total, float(np.nanmax(size / np.abs(total), initial=1.0))
 
 
 def _total(parts: Iterable[Array]) -> Array:
