@@ -10,7 +10,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, exp, floor, inf, log, log10, pi, sqrt
+from math import ceil, exp, floor, inf, log, log2, log10, pi, sqrt
 from typing import Final
 
 import numpy as np
@@ -31,6 +31,8 @@ _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
 _CALL: Final = 2000
 _LOG_LARGEST: Final = 700.0
+# What lies nearer than this to the end of a piece lies on it.
+_NEAREST: Final = 2.0**-52
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
 
@@ -244,9 +246,15 @@ def composite_rule(points: int, count: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=256)
-def graded_rule(points: int, halvings: int) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], cut into pieces that halve towards 0."""
+def graded_rule(points: int, halvings: int, count: int = 1) -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1], cut into equal pieces of which the first halves towards 0."""
     nodes, weights = gauss_legendre(points)
-    ends = np.append(0.0, 0.5 ** np.arange(halvings, -1, -1))
+    first = np.append(0.0, 0.5 ** np.arange(halvings, -1, -1))
+    ends = np.append(first, np.arange(2, count + 1)) / count
     width = np.diff(ends)[:, None]
     return (ends[:-1, None] + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
+
+
+def halvings_towards(distance: float) -> int:
+    """How often a piece of length one is halved for a singularity so far behind its beginning."""
+    return max(ceil(-log2(max(distance, _NEAREST))), 0)

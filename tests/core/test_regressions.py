@@ -10,6 +10,8 @@ from scipy.special import gamma
 from mdr_core import fields, foundation, normal, profiles, tangential
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
+from tests.core.comparison import profile_from
+from tests.oracles import slip_reference
 
 
 class Answer:
@@ -365,3 +367,23 @@ def test_the_slip_next_to_the_axis_of_a_body_of_another_size_is_the_lag_of_all()
     found = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
     lag = 3.0 - 0.5 / 0.8 * 1.1
     assert fields.slip(found, [1e-300, 5e-324]) == pytest.approx(-lag, rel=1e-14)
+
+
+@pytest.mark.parametrize("slope", [3.0, 30.0, 300.0])
+def test_the_surface_about_a_steep_cone_with_a_round_tip(slope: float) -> None:
+    """Its sphere ends next to its equator, and goes on behind the cone as a near singularity."""
+    b = 0.3
+    given = {"kind": "spherical_tip_cone", "slope": slope, "tip_radius": b * np.hypot(1, 1 / slope)}
+    contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0)
+    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=0.05)
+    inside, outside = [0.2, 0.301, 0.7, 0.99999], [1 + 1e-9, 1.1, 2.5, 40.0]
+    at = slip_reference.setting(
+        given, "contact_radius", 1.0, slip_reference.Material(1.0, 1.0, 1.0)
+    )
+    with mpmath.workdps(40):
+        slips = [float(slip_reference.slip(at, mpmath.mpf(0.05), mpmath.mpf(r))) for r in inside]
+        beside = [float(slip_reference.displacement(at, mpmath.mpf(r))) for r in outside]
+    found = fields.slip(pushed, inside, rtol=1e-12)
+    np.testing.assert_allclose(found, slips, rtol=1e-11)
+    found = fields.normal_displacement(contact, outside, rtol=1e-12)
+    np.testing.assert_allclose(found, beside, rtol=1e-11)

@@ -12,6 +12,7 @@ from mpmath import mp, mpf
 
 from mdr_core import fields, normal
 from mdr_core.profiles import Ellipsoid, Sphere
+from tests.oracles import slip_reference
 from tests.stability.curves import (
     CLOSED,
     RTOL,
@@ -156,6 +157,38 @@ def pressure(part: float) -> Curve:
     )
 
 
+def beside(part: float) -> Curve:
+    """The surface at r = part R, outside the contact: the pole of g' is just behind its edge."""
+    r = part * BIG
+
+    def ours(a: float) -> float:
+        contact = normal.solve(Sphere(BIG), 1.0, contact_radius=a, rtol=RTOL)
+        return float(fields.normal_displacement(contact, [r], rtol=RTOL)[0])
+
+    def exact(a: float) -> mpf:
+        fields_ = {"kind": "sphere", "radius": BIG}
+        material = slip_reference.Material(1.0, 1.0, 1.0)
+        at = slip_reference.setting(fields_, "contact_radius", a, material)
+        return slip_reference.displacement(at, mpf(r))
+
+    def naive(a: float) -> float:
+        def density(x: float) -> float:
+            slope = np.arctanh(x / BIG) + x * BIG / (BIG**2 - x**2)
+            return float(slope * np.arcsin(x / r))
+
+        return 2 / pi * plain_quad(density, 0.0, a)
+
+    edges = EDGES[::-1].tolist()
+    return curve(
+        f"sphere-beside-{part}",
+        f"displacement beside a sphere at r = {part} R, a → R",
+        "1 − a/R",
+        "∫ g′ arcsin(x/r) dx by quad",
+        BIG - EDGES[::-1],
+        ([ours(a) for a in edges], attempt(naive, edges), [exact(a) for a in edges]),
+    )
+
+
 CURVES = {
     "depth, a -> R": partial(depth, "equator"),
     "depth, a -> 0": partial(depth, "tip"),
@@ -164,6 +197,8 @@ CURVES = {
     "inverse": inverse,
     "pressure inside": partial(pressure, 0.3),
     "pressure outside": partial(pressure, 0.95),
+    "beside, on the equator's circle": partial(beside, 1.0),
+    "beside": partial(beside, 1.3),
 }
 
 
@@ -172,6 +207,6 @@ def test_towards_the_equator_and_the_tip(name: str) -> None:
     CURVES[name]().holds()
 
 
-@pytest.mark.parametrize("name", ["force, a -> 0", "inverse", "pressure inside"])
+@pytest.mark.parametrize("name", ["force, a -> 0", "inverse", "pressure inside", "beside"])
 def test_where_the_naive_formula_dies(name: str) -> None:
     CURVES[name]().naive_dies(1e-6)

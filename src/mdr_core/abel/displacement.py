@@ -7,13 +7,13 @@ int_0^a (g(a) - g(x))/sqrt(r^2 - x^2) dx = int_0^a g'(x) arcsin(x/r) dx.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import ceil, inf, log, log2, sqrt
+from math import asinh, ceil, inf, log, sqrt
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.roots import Weight
-from mdr_core.quadrature import composite_rule, graded_rule
+from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards
 from mdr_core.typing import Array, Indices
 
 # Above this part of the reach the angle resolves the root at r; below it the weight is smooth in
@@ -36,7 +36,7 @@ class Branch:
 
     s = sqrt(x^2 - base^2); the stretch may begin only at `start`. Below `reach` times the radius
     nothing of the integral is left; `steepness` is the highest power that g' resembles, `pole`
-    a radius beyond `stop` where it is infinite.
+    a radius beyond `stop` where it is infinite, and at s = -`behind` it is not analytic.
     """
 
     base: float
@@ -46,6 +46,7 @@ class Branch:
     start: float = 0.0
     steepness: float = 3.5
     pole: float = inf
+    behind: float = inf
 
 
 # K(x, leg), leg = sqrt(r^2 - x^2): what the slope is weighted with.
@@ -92,7 +93,7 @@ def slope_integral(
             s_low, s_high, s_r = (_leg(x, branch.base) for x in (start, end, far))
             leg_low, leg_high = (np.sqrt((far - x) * (far + x)) for x in (start, end))
             ends = _Ends(s_low, s_high, s_r, leg_low, leg_high)
-            total[index] += _branch(branch, ends, kernel, points, float(end.max()))
+            total[index] += _branch(branch, ends, kernel, points)
     return total
 
 
@@ -110,7 +111,7 @@ def annulus_integral(
     Source: notes, §7. All of shape (m,).
     """
     points = next(count for limit, count in _POINTS if rtol >= limit)
-    r, total = low + width, np.zeros_like(low)
+    total = np.zeros_like(low)
     for branch in branches:
         begin = max(branch.base, branch.start)
         inside = below(begin) + width > 0
@@ -119,8 +120,7 @@ def annulus_integral(
         index = np.flatnonzero(inside)
         if index.size:
             ends = _annulus_ends(branch, low, width, below, index)
-            highest = min(float(r[index].max()), branch.stop)
-            total[index] += _branch(branch, ends, kernel, points, highest)
+            total[index] += _branch(branch, ends, kernel, points)
     return total
 
 
@@ -149,7 +149,7 @@ def _annulus_ends(
     return _Ends(s_low, s_high, s_r, leg_low, leg(past, stop))
 
 
-def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: float) -> Array:
+def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int) -> Array:
     base, s_r, s_low, s_high = branch.base, ends.s_r, ends.s_low, ends.s_high
     split = np.minimum(np.maximum(_UPPER * s_r, s_low), s_high)
     # Angles from the point itself, s = s_r cos(alpha): the narrow end is the exact one.
@@ -160,7 +160,7 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: f
     span = np.where(upper, np.arctan2(leg_split, split) - top, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
-    nodes, weights = _rule(branch, points, highest, stretch)
+    nodes, weights = _rule(branch, points, _pole_distance(branch, ends, top, span), stretch)
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)
     x = np.hypot(base, s)
@@ -172,17 +172,25 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int, highest: f
     return np.asarray(total)
 
 
-def _rule(branch: Branch, points: int, highest: float, stretch: float) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], finer towards 0 where a pole lies close behind it.
+def _pole_distance(branch: Branch, ends: _Ends, top: Array, span: Array) -> float:
+    """How far beyond the upper end the pole lies in the angle, at least, in parts of a stretch."""
+    if not branch.pole < inf or not (seen := span > 0).any():
+        return inf
+    s_pole = sqrt((branch.pole - branch.base) * (branch.pole + branch.base))
+    # Imaginary for a point below the pole.
+    at_pole = np.arccos(s_pole / ends.s_r[seen] + 0j)
+    return float((np.abs(at_pole - top[seen]) / span[seen]).min())
+
+
+def _rule(branch: Branch, points: int, pole: float, stretch: float) -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1], finer towards 0 where a pole lies closely behind it.
 
     `stretch` is the logarithm of the largest part of the radius that is to be covered.
     """
     pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / _STEEP), 1)
-    if not branch.pole < inf:
+    if not pole < inf:
         return composite_rule(points, pieces)
-    # In the angle the pole lies at i sqrt(2 (pole/x - 1)).
-    distance = sqrt(min(max(2 * (branch.pole / highest - 1), 1e-15), 1.0))
-    return graded_rule(points, ceil(-log2(distance)) + 1)
+    return graded_rule(points, halvings_towards(pole * pieces) + 1, pieces)
 
 
 def _lower(
@@ -204,11 +212,15 @@ def _lower(
     piece = _PIECE * min(1.0, _STEEP / branch.steepness)
     count = max(ceil(length.max() / piece), 1)
     nodes, weights = composite_rule(points, count)
+    part = count / float(length.max())
     if branch.pole < inf:
         # From the upper end on the pole is log(pole/x) away.
-        distance = max(log(branch.pole / float(np.hypot(base, high.max()))), 1e-15)
-        halvings = ceil(log2(max(float(length.max()) / distance, 1.0))) + 1
-        nodes, weights = graded_rule(points, max(halvings, ceil(log2(count)) + 1))
+        distance = log(branch.pole / float(np.hypot(base, high.max())))
+        nodes, weights = graded_rule(points, halvings_towards(distance * part) + 1, count)
+    elif branch.behind < inf:
+        distance = asinh(branch.behind / base)
+        nodes, weights = graded_rule(points, halvings_towards(distance * part), count)
+        nodes = 1 - nodes
     y = upper - nodes[:, None] * length
     s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
     x = np.hypot(base, s)

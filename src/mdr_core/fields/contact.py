@@ -127,7 +127,8 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
             outer = ~(inside | far)
             if outer.any():
                 edge = np.full(int(outer.sum()), load.a)
-                result[outer] = load.profile.outer_displacement(edge, r[outer], rtol, depth)
+                at = load.coordinate
+                result[outer] = load.profile.outer_displacement(edge, r[outer], rtol, at)
             if far.any():
                 # The contact is a point to them: the next term is (a/r)^2, below rounding.
                 force = load.profile.reduced_force(np.asarray(load.coordinate))

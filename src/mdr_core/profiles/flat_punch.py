@@ -92,6 +92,6 @@ class FlatPunch(Profile):
         depth = coordinate if width is None else width
         return modulus * depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
-        """(2/pi) d arcsin(a/r)."""
-        return np.asarray(2 / np.pi * depth * np.arctan2(a, np.sqrt((r - a) * (r + a))))
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        """(2/pi) d arcsin(a/r): the coordinate of a flat punch is its depth."""
+        return np.asarray(2 / np.pi * coordinate * np.arctan2(a, np.sqrt((r - a) * (r + a))))

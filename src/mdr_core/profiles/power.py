@@ -180,7 +180,7 @@ class Power(Profile):
         tip = self.g(low) * power_step(low, low - c, c, np.asarray(n))
         return super().slip_kernel(low, r, rtol) + tip
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         low = felt_from(a, self.steepness)
         return 2 / np.pi * slope_integral(self.branches, low, a, r, rtol, outside=True)
 

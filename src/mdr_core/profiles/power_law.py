@@ -84,7 +84,7 @@ class Cone(Profile):
         leg = np.sqrt((r - c) * (r + c))
         return np.asarray(self.slope * np.where(c > 0, atan_gap(leg, np.where(c > 0, c, 1.0)), r))
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))]. Source: notes, §7."""
         half = a / (r + np.sqrt((r - a) * (r + a)))
         return np.asarray(self.slope * a * (2 * np.arctan(half) - half))
@@ -204,7 +204,7 @@ class Paraboloid(Profile):
         gap = atan_gap(leg, np.where(c > 0, c, 1.0))
         return np.asarray((c * gap + leg2 * np.arctan2(leg, c)) / (np.pi * self.radius))
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).
 
         Source: johnson, Eq. (3.42a); notes, §7.

@@ -274,10 +274,10 @@ class Profile(ABC):
         value = slope_integral(self.branches, c, r, r, rtol, outside=False)
         return 2 / np.pi * value
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """(2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx [length] for r >= a; shape (m,).
 
-        Only a flat punch needs the depth: elsewhere it is g(a).
+        Where a has no digits of what counts, the contact's coordinate has them.
 
         Source: mdr-5, Eq. (5.75), with the foundation's displacement d - g.
         """

@@ -50,7 +50,7 @@ class TippedCone(Profile):
                 b,
                 pole=self._pole,
             ),
-            Branch(b, lambda x, s, _index: self._flank_weight(x, s)),
+            Branch(b, lambda x, s, _index: self._flank_weight(x, s), behind=self._behind),
         )
 
     @abstractmethod
@@ -96,6 +96,11 @@ class TippedCone(Profile):
     @property
     def _pole(self) -> float:
         """Radius beyond the tip's end where its own g' is infinite."""
+        return inf
+
+    @property
+    def _behind(self) -> float:
+        """s = -`_behind` is the flank's nearest singularity, if any is felt."""
         return inf
 
     def reduced_energy(self, coordinate: Array) -> Array:

@@ -197,10 +197,10 @@ class Series(Profile):
         # The gentle ones are felt all over, the steep ones at the edge alone, the sharp at the tip.
         return self._superposed(lambda term: term.slip_kernel(c, r, rtol))
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         if self.steepness <= STEEP:
-            return super().outer_displacement(a, r, rtol, depth)
-        return self._superposed(lambda term: term.outer_displacement(a, r, rtol, depth))
+            return super().outer_displacement(a, r, rtol, coordinate)
+        return self._superposed(lambda term: term.outer_displacement(a, r, rtol, coordinate))
 
     def _superposed(self, answer: Callable[[Power], Array]) -> Array:
         """The sum of what each power answers by itself."""

@@ -153,6 +153,10 @@ class SphericalTipCone(TippedCone):
         return float(np.asarray(self.tip_radius))
 
     @property
+    def _behind(self) -> float:
+        return float(np.asarray(self._height))
+
+    @property
     def _energy_scale(self) -> Parameter:
         return np.minimum(self.tangent_radius, self._height)
 
