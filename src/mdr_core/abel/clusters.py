@@ -77,8 +77,8 @@ class Clusters:
     """Blocks of 1, 2, 4, ... panels, those of one size after those of the size before.
 
     `edge` is the end of a block that points are nearer to, `length` its length in x^2, `masses`
-    (blocks, nodes) what stands for it; `first` and `last` are its panels, `parent` the block of
-    twice the size that holds it, or -1.
+    (blocks, nodes) what stands for it, over the root of the length; `first` and `last` are its
+    panels, `parent` the block of twice the size that holds it, or -1.
     """
 
     edge: Array
@@ -123,9 +123,10 @@ class Clusters:
                 gap += shift
                 at = at + shift
             gap *= at + edge
+            np.abs(gap, out=gap)
+            gap /= self.length[block]
             root = room[: block.size]
-            np.multiply(self.length[block, None], nodes, out=root)
-            root += np.abs(gap)[:, None]
+            np.add(gap[:, None], nodes, out=root)
             np.sqrt(root, out=root)
             # Without a mode the rows would be copied once more.
             masses = self.masses.take(block, axis=0, out=taken[: block.size], mode="clip")
@@ -184,6 +185,7 @@ def clusters(edges: Array, masses: Array, *, above: bool) -> Clusters:
     total = np.empty((level.size, masses.shape[1]))
     total[: counts[0]] = masses
     _gather(total, v, counts, above=above)
+    total /= np.sqrt(length)[:, None]
     return Clusters(high if above else low, length, total, first, last, parent, above)
 
 
