@@ -61,7 +61,7 @@ def _ours(scene: Scene, quantity: str) -> Iterator[Way]:
     known = scene.made()
     table = scene.profile["kind"] == "tabulated"
     route = {"paraboloid": "closed form", "cone": "closed form", "tabulated": "panel moments"}
-    method = f"MDR, {route.get(scene.profile['kind'], 'quadrature')}"
+    method = f"MDR, {route.get(scene.profile['kind'], 'series or quadrature')}"
     for rtol in TOLERANCES:
         asked = f"rtol {rtol:.0e}"
         contact = normal.solve(known, 1.0, contact_radius=EDGE, rtol=rtol)
