@@ -27,9 +27,9 @@ that a looser `rtol` never takes more. One profile of each kind, contact radius 
 Values of the integrand for each radius, at `rtol` = 1e-3, 1e-6, 1e-10 (what is taken unless
 another is given) and 1e-13. *closed* takes none, and 0 is a series, of a power's hypergeometric
 function or of a short polynomial, for which no integrand is evaluated. *resolved*: a table's slope
-is resolved into panels once, to the last digits (for a pressure, neighbouring panels are taken
-together as far as `rtol` allows), and its stresses are then sums of closed moments. Displacements
-are asked for outside the contact, slip all over it.
+is resolved into panels once (neighbouring ones are taken together as far as `rtol` allows), and its
+stresses are then sums of closed moments. Displacements are asked for outside the contact, slip all
+over it.
 
 """
 LOADS_HEAD = """
