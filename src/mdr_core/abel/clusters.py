@@ -33,7 +33,7 @@ _TOUCHING: Final = 1e-290
 
 
 def nodes_for(accuracy: float) -> int:
-    """How many nodes of a block keep what it gives to this accuracy."""
+    """How many nodes of a block keep what it gives to a tenth of this accuracy, and better."""
     return ceil(log(1 / accuracy) / log(_ERROR))
 
 

@@ -21,8 +21,8 @@ _MASS_NODES: Final = 16
 _FAR_NODES: Final = 14
 # Interpolation errs by 7.3^-12 of the part of a block: below 1e-13 of the whole.
 _CLUSTER_NODES: Final = 12
-# Of the accuracy: what clusters may leave, and the ends of an annulus.
-_FELT: Final = 0.1
+# Parts of the accuracy: what a panel may lose that is expanded anew, and the ends of an annulus.
+_ANEW: Final = 0.1
 _SAME: Final = 1e-3
 # The axis of the first panel: nearer than this nothing changes for a function smooth there.
 _AXIS: Final = 1e-8
@@ -146,7 +146,7 @@ class StressPanels:
         parts = masses_at_nodes(
             s * s / np.repeat(square, np.diff(first))[:, None],
             masses,
-            min(nodes_for(_FELT * self.accuracy), _CLUSTER_NODES),
+            min(nodes_for(self.accuracy), _CLUSTER_NODES),
         )
         return clusters(self.edges, np.add.reduceat(parts, first[:-1]), above=False)
 
@@ -264,7 +264,7 @@ class StressPanels:
         miss = abs((annulus.a - annulus.c) - annulus.width)
         if right == annulus.a and miss > _SAME * self.accuracy * annulus.width:
             return None
-        powers = powers.begun(left, _FELT * self.accuracy)
+        powers = powers.begun(left, _ANEW * self.accuracy)
         return powers if powers.known[0] else None
 
     def _by_nodes(self, panel: int, annulus: _Annulus, left: float, above: Array) -> Array:

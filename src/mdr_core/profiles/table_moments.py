@@ -26,8 +26,6 @@ _MORE: Final = 2
 # Of the rule next to a point 2 x 10 points leave 5.8^-20, panels off the axis far less: as many
 # as two thirds of the nodes of a cluster are always enough.
 _PART: Final = 3
-# The smallest part of a slope that is only roughly needed.
-_FELT: Final = 0.1
 # Of a quadratic times r^2.
 _POWERS: Final = 5
 # Rounding of what should be zero, relative to the largest of its kind next to it.
@@ -49,7 +47,7 @@ class TableSlope:
 
     def to(self, accuracy: float) -> "TableSlope":
         """The same, transformed to no more than this accuracy."""
-        return replace(self, nodes=min(nodes_for(_FELT * accuracy), _CLUSTER_NODES))
+        return replace(self, nodes=min(nodes_for(accuracy), _CLUSTER_NODES))
 
     def at(self, u: Array, panel: Array) -> Array:
         """F at the offset u in the given panel."""
