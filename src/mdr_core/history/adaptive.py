@@ -13,7 +13,11 @@ from mdr_core.typing import Array, Indices
 _POINTS: Final = 16
 # A piece that was halved so often ends at a point where nothing is smooth.
 _ROUNDS: Final = 24
-_FINEST: Final = 1e-13
+_FINEST: Final = 1e-12
+# Degrees of the coefficients that are compared, and how much what is missing may exceed them.
+_COMPARED: Final = (6, 7, 14, 15)
+_SAFE: Final = 16.0
+_SLOWLY: Final = 32.0
 # Pieces at once: bounds the memory.
 _BLOCK: Final = 1024
 
@@ -31,19 +35,21 @@ def integrate(
     goal: float,
     *,
     rough: bool,
+    smooth: bool = True,
 ) -> Integral:
     """Return the integrals of function(owner, at), positive, summed by owner.
 
     `ends` are owners, and the ends of their pieces; function takes owners of shape (m, 1) and
-    places of shape (m, n). Where the ends are `rough`, nodes crowd there: roots do no harm. A
-    piece whose last coefficients exceed `goal` of the largest integral is halved.
+    places of shape (m, n). Where the ends are `rough`, nodes crowd there: roots do no harm.
+    What is not `smooth` in between is trusted less. A piece that may miss more than `goal` of the
+    largest integral is halved.
     """
     owner, low, high = ends
     count = int(owner.max(initial=-1)) + 1
     value, missing = np.zeros(count), np.zeros(count)
     goal = max(goal, _FINEST)
     for round_ in range(_ROUNDS):
-        total, tail = _pieces(function, owner, low, high, rough=rough)
+        total, tail = _pieces(function, owner, low, high, rough=rough, smooth=smooth)
         largest = float(np.max(value + np.bincount(owner, total, count), initial=0.0))
         good = (tail <= goal * largest) | ~(tail > 0) | (round_ == _ROUNDS - 1)
         value += np.bincount(owner[good], total[good], count)
@@ -64,8 +70,14 @@ def _pieces(
     high: Array,
     *,
     rough: bool,
+    smooth: bool,
 ) -> tuple[Array, Array]:
-    """Integral over each piece, and its size in the last two of the rule's polynomials."""
+    """Integral over each piece, and what may be missing.
+
+    The rule is exact for twice as many polynomials as it has nodes. From the eighth to the last
+    coefficients fall by some factor, and the first that it misses are as far behind again, twice.
+    Those of a root fall slowly, and ever more so: then nothing is counted on.
+    """
     share, weights, last = _rule(rough=rough)
     total, tail = np.empty(owner.size), np.empty(owner.size)
     for start in range(0, owner.size, _BLOCK):
@@ -74,7 +86,9 @@ def _pieces(
         values = function(owner[part][:, None], low[part][:, None] + span * share)
         values = values * np.abs(span)
         total[part] = (values * weights).sum(axis=1)
-        tail[part] = np.abs(values @ last).sum(axis=1)
+        earlier, later = np.abs(values @ last).reshape(-1, 2, 2).sum(axis=2).T
+        falls = later / np.where(earlier > later, earlier, np.where(later > 0, later, 1.0))
+        tail[part] = _SAFE * later * (np.minimum(_SLOWLY * falls, 1.0) if smooth else 1.0)
     return total, tail
 
 
@@ -82,7 +96,7 @@ def _pieces(
 def _rule(*, rough: bool) -> tuple[Array, Array, Array]:
     nodes, weights = gauss_legendre(_POINTS)
     weights = weights / 2
-    polynomials = legendre.legvander(nodes, _POINTS - 1)[:, -2:]
+    polynomials = legendre.legvander(nodes, _POINTS - 1)[:, _COMPARED]
     share = (1 + nodes) / 2
     density = 6 * share * (1 - share) if rough else np.ones_like(share)
     place = share * share * (3 - 2 * share) if rough else share

@@ -14,7 +14,7 @@ import numpy as np
 
 from mdr_core.history.adaptive import integrate
 from mdr_core.history.arcs import Plane
-from mdr_core.history.branches import Branches
+from mdr_core.history.branches import Branches, last_break
 from mdr_core.history.memory import total
 from mdr_core.lazy import cached_property
 from mdr_core.typing import Array, Indices
@@ -54,19 +54,15 @@ class ArcBranches(Branches):
     def rate(self) -> Array:
         """d(shift)/d(other) on the arcs."""
         moved = self.tree.slope[self.arcs] * self.tree.span[self.arcs]
-        return np.asarray(moved / self._other_span)
-
-    @cached_property
-    def _other_span(self) -> Array:
-        return np.asarray(self._given_step[self.arcs])
+        return np.asarray(moved / self._integrals[2])
 
     @cached_property
     def _given_step(self) -> Array:
         return self.depth_step if self.by_force else self.force_step
 
     @cached_property
-    def _integrals(self) -> tuple[Array, Array, float]:
-        """M on the arcs, the energy of each for a rate of one, and what may be missing, relative.
+    def _integrals(self) -> tuple[Array, Array, Array, float]:
+        """M on the arcs, the energy of each for a rate of one, its step of the other, and an error.
 
         Arcs lie above each other: what is between two neighbours of all their ends is integrated
         once.
@@ -74,7 +70,7 @@ class ArcBranches(Branches):
         plane = self._plane
         upper, lower = self.coordinate[self.arcs], self.coordinate[self.tree.parent[self.arcs]]
         if not upper.size:
-            return np.zeros(0), np.zeros(0), 0.0
+            return np.zeros(0), np.zeros(0), np.zeros(0), 0.0
         breaks = self.profile.coordinate_breaks
         breaks = breaks[(breaks > lower.min()) & (breaks < upper.max())]
         edges = np.unique(np.concatenate([lower, upper, breaks]))
@@ -87,23 +83,33 @@ class ArcBranches(Branches):
         zero = 0 if self.by_force else 1
         used = np.unique(piece)
 
-        def inner(index: Indices, s: Array) -> Array:
-            return np.abs(plane.other(s) - other[index + zero]) * self.steep(s)
+        # Behind a break all is smooth in the root of the distance.
+        base = last_break(self.profile.coordinate_breaks, edges)
 
-        pieces = used, edges[used], edges[used + 1]
-        rough = bool(self.profile.coordinate_breaks.size)
-        whole, part = (
-            integrate(density, pieces, self.rtol / 20, rough=rough)
-            for density in (lambda _, s: self.steep(s), inner)
+        def outer(index: Indices, root: Array) -> Array:
+            return 2 * root * self.steep(base[index] + root * root)
+
+        def inner(index: Indices, root: Array) -> Array:
+            met = plane.other(base[index] + root * root)
+            return np.abs(met - other[index + zero]) * outer(index, root)
+
+        def span(index: Indices, root: Array) -> Array:
+            return 2 * root * plane.slopes(base[index] + root * root)[1]
+
+        pieces = used, np.sqrt(edges[used] - base[used]), np.sqrt(edges[used + 1] - base[used])
+        whole, part, step = (
+            integrate(density, pieces, self.rtol / 20, rough=False)
+            for density in (outer, inner, span)
         )
         moment = np.bincount(arc, whole.value[piece], count.size)
         end = other[(first if self.by_force else last)[arc]]
         ahead = np.abs(end - other[piece + zero])
         energy = np.bincount(arc, ahead * whole.value[piece] + part.value[piece], count.size)
         missing = max(
-            float(each.missing.sum() / max(each.value.sum(), _TINY)) for each in (whole, part)
+            float(each.missing.sum() / max(each.value.sum(), _TINY)) for each in (whole, part, step)
         )
-        return np.asarray(moment), np.asarray(energy), missing
+        spans = np.bincount(arc, step.value[piece], count.size)
+        return np.asarray(moment), np.asarray(energy), np.asarray(spans), missing
 
     def steep(self, s: Array) -> Array:
         """d(other)/d(level) d(other)/ds."""
@@ -114,7 +120,7 @@ class ArcBranches(Branches):
         """Rises of what is summed over arcs: the force over depths, the anchor over forces."""
         rise = np.array(self._given_step)
         # What slope x rise stands for rate x M there.
-        rise[self.arcs] = self._integrals[0] * self.tree.span[self.arcs] / self._other_span
+        rise[self.arcs] = self._integrals[0] * self.tree.span[self.arcs] / self._integrals[2]
         return rise
 
     @cached_property
@@ -133,7 +139,7 @@ class ArcBranches(Branches):
         tree, below = self.tree, self.shear[self.tree.parent]
         rise = below * (self._summed if self.by_force else self.depth_step)
         rise += tree.slope * self._lens_on_faces
-        times = tree.slope[self.arcs] * (tree.span[self.arcs] / self._other_span) ** 2
+        times = tree.slope[self.arcs] * (tree.span[self.arcs] / self._integrals[2]) ** 2
         rise[self.arcs] += times * self._integrals[1]
         return total(tree, rise)
 
@@ -146,4 +152,4 @@ class ArcBranches(Branches):
     @property
     def missing(self) -> float:
         """How much of the integrals along arcs may be missing, relative."""
-        return self._integrals[2]
+        return self._integrals[3]

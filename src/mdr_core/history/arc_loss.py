@@ -25,6 +25,8 @@ from mdr_core.typing import Array, Flags, Indices
 _NARROW: Final = 0.1
 # Rows are cut where they meet a break, up to so many: those of a long table are small.
 _MOST_CUTS: Final = 4096
+# To a looser tolerance a table's breaks are not felt.
+_FINE: Final = 1e-6
 
 
 class _Rows(NamedTuple):
@@ -38,6 +40,8 @@ class _Rows(NamedTuple):
     entered: Array
     left: Array
     """How far the sum is below its start as the front enters and leaves."""
+    fall: Array
+    """The same at the end of the step."""
     front_rate: Array
     """NaN on a face of the cone."""
     upper: Array
@@ -70,7 +74,7 @@ def per_step(plane: Plane, points: Points, slips: Slips, rtol: float) -> Integra
     if not slips.step:
         return Integral(np.zeros(count), np.zeros(count))
     step = np.array(slips.step, dtype=np.intp)
-    sign, entered, left, rate, s_up, y_up, s_low, y_low = np.array(slips.row).T
+    sign, entered, left, fall, rate, s_up, y_up, s_low, y_low = np.array(slips.row).T
     slides = np.isnan(y_up)
     ends = [np.where(slides, 0.0, part) for part in (s_up, y_up, s_low, y_low)]
     before = np.append(plane.profile.first_coordinate, points.coordinate[:-1])
@@ -83,6 +87,7 @@ def per_step(plane: Plane, points: Points, slips: Slips, rtol: float) -> Integra
         points.coordinate[step],
         entered,
         left,
+        fall,
         rate,
         upper,
         _known(plane, ends[2], ends[3]),
@@ -124,35 +129,48 @@ class _Loss:
         rows = self._rows
         if self._plane.profile.coordinate_breaks.size > 1 and not self._slides:
             # A table's slopes are infinite at its breaks, unless it is smooth.
-            pieces = self._cut_by_sum()
-            return integrate(self._by_sum, pieces, rtol / 20, rough=True)
-        lateral = rows.way == 0
-        ends = []
-        for over, front in ((rows.entered, rows.upper), (rows.left, rows.lower)):
-            load = np.where(lateral, rows.load_from, self._load_at(over))
-            ends.append(self._variable(rows.way, load, front, over))
-        owner, low, high = self._cut(ends[0], ends[1])
-        rough = bool(self._plane.profile.coordinate_breaks.size)
-        found = integrate(self._density, (owner, low, high), rtol / 20, rough=rough)
+            pieces = self._cut_by_sum(rtol)
+            found = integrate(self._by_sum, pieces, rtol / 20, rough=True, smooth=False)
+        else:
+            rough = bool(self._plane.profile.coordinate_breaks.size)
+            found = integrate(self._density, self._cut(), rtol / 20, rough=rough)
         short = rows.way.size - found.value.size
         return Integral(*(np.append(part, np.zeros(short)) for part in found))
+
+    def _cut(self) -> tuple[Indices, Array, Array]:
+        """Ends of the variable, and where the front or the load is on a break of the profile."""
+        rows, breaks = self._rows, self._plane.profile.coordinate_breaks
+        first, last = (
+            self._variable(rows.way, self.load_at(over), front, over)
+            for over, front in ((rows.entered, rows.upper), (rows.left, rows.lower))
+        )
+        owners, places = [np.arange(first.size)] * 2, [first, last]
+        for at in breaks.tolist():
+            for found in self._meetings(at):
+                owners.append(found[0])
+                places.append(found[1])
+        return _between(owners, places, first, last)
 
     def _variable(self, way: Array, load: Array, front: Array, over: Array) -> Array:
         if self._slides:
             return np.where(way == 0, over, way * load)
         return way * load - front
 
-    def _load_at(self, over: Array) -> Array:
+    def load_at(self, over: Array) -> Array:
         """Coordinate of the load when its sum has fallen so far."""
         rows = self._rows
+        inner = np.flatnonzero((over > 0) & (over < rows.fall) & (rows.way != 0))
+        some, goal = rows.at(inner), over[inner]
 
         def miss(index: Indices, s: Array) -> tuple[Array, Array]:
-            own = rows.at(index)
+            own = some.at(index)
             value, slope = self._load(own, s)
             # It falls on the way: where the coordinate grows it falls with it.
-            return -own.way * (value + over[index]), -own.way * slope
+            return -own.way * (value + goal[index]), -own.way * slope
 
-        return np.where(over <= 0, rows.load_from, rising_root(miss, *rows.load_range))
+        found = np.where(over > 0, rows.load_to, rows.load_from)
+        found[inner] = rising_root(miss, *some.load_range)
+        return found
 
     def _load(self, rows: _Rows, s: Array) -> tuple[Array, Array]:
         """The load's sum above its start, and its slope."""
@@ -171,27 +189,18 @@ class _Loss:
         steep = plane.slopes(s)
         return value, times * steep[0] + rate * steep[1]
 
-    def _cut(self, first: Array, last: Array) -> tuple[Indices, Array, Array]:
-        """The ends, and where the front or the load is on a break of the profile."""
-        breaks = self._plane.profile.coordinate_breaks
-        owners, places = [np.arange(first.size)] * 2, [first, last]
-        for at in breaks.tolist():
-            for found in self._meetings(at):
-                owners.append(found[0])
-                places.append(found[1])
-        return _between(owners, places, first, last)
-
-    def _cut_by_sum(self) -> tuple[Indices, Array, Array]:
+    def _cut_by_sum(self, rtol: float) -> tuple[Indices, Array, Array]:
         """The same where the sum itself is the variable."""
         rows, breaks = self._rows, self._plane.profile.coordinate_breaks
         owners, places = [np.arange(rows.way.size)] * 2, [rows.entered, rows.left]
+        most = _MOST_CUTS if rtol < _FINE else 0
         for low, high, moved in (
             (rows.lower, rows.upper, self._front),
             (*rows.load_range, self._load),
         ):
             first, last = np.searchsorted(breaks, low, side="right"), np.searchsorted(breaks, high)
             count = np.maximum(last - first, 0)
-            if count.sum() > _MOST_CUTS:
+            if count.sum() > most:
                 continue
             owner = np.repeat(np.arange(count.size), count)
             at = np.arange(owner.size) - np.repeat(np.cumsum(count) - count, count) + first[owner]
@@ -203,31 +212,21 @@ class _Loss:
     def _meetings(self, at: float) -> list[tuple[Indices, Array]]:
         """Rows, and values of the variable, where the load or the front is on a break."""
         rows, found = self._rows, []
-        low, high = (
-            np.minimum(rows.load_from, rows.load_to),
-            np.maximum(rows.load_from, rows.load_to),
-        )
+        low, high = rows.load_range
         met = np.flatnonzero((low < at) & (at < high) & (rows.way != 0))
-        if met.size:
-            own = rows.at(met)
-            s = np.full(met.size, at)
-            if self._slides:
-                found.append((met, own.way * s))
-            else:
-                value, _ = self._load(own, s)
-                front = self._front_at(own, value)
-                found.append((met, own.way * s - front))
         if self._slides:
-            return found
+            return [(met, rows.way[met] * at)]
+        s = np.full(met.size, at)
+        value, _ = self._load(rows.at(met), s)
+        own = (rows.entered[met] < -value) & (-value < rows.left[met])
+        met, s, value = met[own], s[own], value[own]
+        front = self._front_at(rows.at(met), value)
+        found.append((met, rows.way[met] * s - front))
         met = np.flatnonzero((rows.lower < at) & (at < rows.upper))
-        if met.size:
-            own = rows.at(met)
-            s = np.full(met.size, at)
-            value, _ = self._front(own, s)
-            part = _Loss(self._plane, own, of_everything=False)
-            load = np.where(own.way == 0, own.load_from, part._load_at(-value))
-            found.append((met, own.way * load - s))
-        return found
+        some, s = rows.at(met), np.full(met.size, at)
+        value, _ = self._front(some, s)
+        load = _Loss(self._plane, some, of_everything=False).load_at(-value)
+        return [*found, (met, some.way * load - s)]
 
     def _front_at(self, rows: _Rows, value: Array) -> Array:
         def miss(index: Indices, s: Array) -> tuple[Array, Array]:
@@ -261,7 +260,7 @@ class _Loss:
         rows, over = self._rows.at(owner).spread(shape), np.broadcast_to(over, shape).ravel()
         part = _Loss(self._plane, rows, of_everything=False)
         front = part._front_at(rows, -over)
-        load = np.where(rows.way == 0, rows.load_from, part._load_at(over))
+        load = part.load_at(over)
         return self._overlap(front, np.maximum(load, front)).reshape(shape)
 
     def _overlap(self, front: Array, edge: Array) -> Array:

@@ -25,6 +25,9 @@ from mdr_core.typing import Array, Indices
 _STEPS: Final = 120
 # Newton's step, relative to the root, at which the next error is below rounding.
 _LAST_STEP: Final = 1e-9
+_SETTLED: Final = 1e-6
+# A root on the axis is nearer to it than this, of the bracket.
+_NEXT_TO_NOTHING: Final = 1e-12
 _ADJACENT: Final = 2.0**-51
 
 
@@ -86,6 +89,7 @@ def rising_root(
     rounding, the end is the root. All arrays have one axis.
     """
     s, last = (low + high) / 2, high - low
+    least = _ADJACENT * _NEXT_TO_NOTHING * high
     root, index = s.copy(), np.arange(s.size)
     settling = np.zeros(s.shape, dtype=bool)
     for _ in range(_STEPS):
@@ -95,16 +99,20 @@ def rising_root(
         low, high = np.where(value < 0, s, low), np.where(value > 0, s, high)
         # At a break of the profile the slope may be infinite.
         known = (moved >= low) & (moved <= high) & (slope < np.inf)
-        known &= np.abs(moved - s) <= np.maximum(last / 2, _LAST_STEP * s)
-        moved = np.where(value == 0, s, np.where(known, moved, (low + high) / 2))
+        # One short step may only say that the function is steep; and next to where it is level
+        # the steps end in rounding.
+        done = settling & (np.abs(moved - s) <= _SETTLED * s)
+        known &= (np.abs(moved - s) <= np.maximum(last / 2, _LAST_STEP * s)) | done
+        rests = (value == 0) | (done & (np.abs(moved - s) > last))
+        moved = np.where(rests, s, np.where(known, moved, (low + high) / 2))
         s, last = moved, np.abs(moved - s)
-        # One short step may only say that the function is steep there.
         short = known & (last <= _LAST_STEP * s) | (value == 0)
-        done = short & settling | (high - low <= _ADJACENT * high)
+        done |= (high - low <= np.maximum(_ADJACENT * high, least)) | (settling & short)
         if done.any():
             root[index] = s
             rest = ~done
-            index, s, last, low, high = (part[rest] for part in (index, s, last, low, high))
+            index, least = index[rest], least[rest]
+            s, last, low, high = (part[rest] for part in (s, last, low, high))
             short = short[rest]
         if not index.size:
             return root

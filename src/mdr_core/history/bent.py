@@ -65,11 +65,17 @@ class Slips:
 
     step: list[int] = field(default_factory=list)
     row: list[tuple[float, ...]] = field(default_factory=list)
-    """Sign of the sum that slips; how far it is below the start as the front enters and leaves; of
-    the front's piece its rate, and coordinate and level of both ends. Without a piece: a slide."""
+    """Sign of the sum that slips; how far it is below the start as the front enters and leaves, and
+    at the end of the step; of the front's piece its rate, and coordinate and level of both
+    ends. Without a piece: a slide."""
 
     def note(
-        self, step: int, own: int, over: tuple[float, float], ends: tuple[Vertex, Vertex] | None
+        self,
+        step: int,
+        own: int,
+        over: tuple[float, float],
+        fall: float,
+        ends: tuple[Vertex, Vertex] | None,
     ) -> None:
         """Write a row, if anything slips; `ends` are the upper and the lower one of the piece."""
         if not over[1] > over[0]:
@@ -79,7 +85,7 @@ class Slips:
             upper, lower = ends
             piece = upper.rate, upper.coordinate, upper.level, lower.coordinate, lower.level
         self.step.append(step)
-        self.row.append((SIGNS[own], *over, *piece))
+        self.row.append((SIGNS[own], *over, fall, *piece))
 
 
 def excess(a: Sum, b: Sum) -> float:
@@ -318,17 +324,21 @@ class _Record:
         # The load point passes through the piece, where nothing slips.
         middle = self._crossing(lower, upper, high)
         self._note(high, middle, upper)
-        self._note(low, lower, replace(middle, rate=upper.rate))
+        self._note(low, lower, replace(middle, growth=upper.growth))
 
     def slide(self, own: int) -> None:
         """Note the slide of everything, after the front has reached the axis."""
-        over = excess(self._start.sums[own], self._walk.stack[0].sums[own])
-        self._walk.slips.note(self._step, own, (max(over, 0.0), self._moved[own]), None)
+        over, fall = excess(self._start.sums[own], self._walk.stack[0].sums[own]), self._moved[own]
+        self._walk.slips.note(self._step, own, (max(over, 0.0), fall), fall, None)
 
     def _note(self, own: int, lower: Vertex, upper: Vertex) -> None:
         over = tuple(excess(self._start.sums[own], end.sums[own]) for end in (upper, lower))
-        bounded = min(max(over[0], 0.0), self._moved[own]), min(over[1], self._moved[own])
-        self._walk.slips.note(self._step, own, bounded, (upper, lower))
+        if isnan(upper.rate) and upper.growth[own] == 0:
+            # A face that stands still in this sum: all of it at once, which is no way.
+            return
+        fall = self._moved[own]
+        bounded = min(max(over[0], 0.0), fall), min(over[1], fall)
+        self._walk.slips.note(self._step, own, bounded, fall, (upper, lower))
 
     def _side(self, vertex: Vertex) -> int:
         """The sum in which the load point reaches a vertex first."""

@@ -33,6 +33,7 @@ _MOST: Final = 1024
 # The stress feels the slope of chords, which they miss by more.
 _SLOPE: Final = 4.0
 _EPS: Final = float(np.finfo(float).eps)
+_TINY: Final = float(np.finfo(float).tiny)
 # Roundings of a level that a point on an arc feels.
 _ROUNDINGS: Final = 8.0
 
@@ -179,7 +180,9 @@ class Arcs(Followed):
         if not walk.level:
             return 0.0
         lost = self._loss
-        missing = float(lost.missing.sum() / max(lost.value.sum(), 1e-300))
+        missing = max(
+            float(most(lost.missing) / max(most(lost.value), _TINY)) for most in (np.sum, np.max)
+        )
         moved = float(np.max(np.abs(self.points.shift), initial=0.0))
         highest = float(np.max(self.points.level))
         felt = _ROUNDINGS * _EPS * highest / moved if moved > 0 else 0.0

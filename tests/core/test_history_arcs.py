@@ -1,0 +1,317 @@
+"""Histories of mixed control: a depth with a tangential force, a normal force with a displacement.
+
+Two legs are known in closed form but for integrals, which mpmath takes; any others obey the balance
+of work, and take as many evaluations of the profile to many digits as to few.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from numpy.polynomial.legendre import leggauss
+
+from mdr_core import history, normal
+from mdr_core.errors import InputError
+from tests.core.comparison import profile_from
+from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mdr_core.profiles import Profile
+
+MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
+#: Turns anchors into displacements, and an integral of line loads into an energy.
+COMPLIANCE = MU * E_STAR / G_STAR
+DIGITS = 30
+
+#: g(x), g' as a function of x - b, and the radius b of the flat.
+SHAPES: dict[str, tuple[Callable[[mpf], mpf], Callable[[mpf], mpf], str]] = {
+    "paraboloid": (lambda x: x * x / mpf(1.3), lambda x: 2 * x / mpf(1.3), "0"),
+    "cone": (lambda x: mp.pi / 2 * mpf(0.3) * x, lambda _: mp.pi / 2 * mpf(0.3), "0"),
+    "power4": (
+        lambda x: mpf(8) / 3 * mpf(0.4) * x**4,
+        lambda x: mpf(32) / 3 * mpf(0.4) * x**3,
+        "0",
+    ),
+    "truncated-cone": (
+        lambda x: mpf(0.3) * x * mp.acos(mpf(0.6) / x),
+        lambda gap: mpf(0.3) * (mp.acos(B / (B + gap)) + B / mp.sqrt(gap * (2 * B + gap))),
+        "b",
+    ),
+}
+B = mpf(0.6)
+
+
+class Shape:
+    """g, I = F_N/E* and their inverses, in mpmath."""
+
+    def __init__(self, name: str) -> None:
+        self.g, self.slope, flat = SHAPES[name]
+        self.flat = B if flat == "b" else mpf(0)
+
+    def over(self, density: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
+        """int of density(x) g'(x) dx, whose root behind a flat is taken by x = b + t^2."""
+        b = self.flat
+        ends = [mp.sqrt(end - b) for end in (low, high)]
+        return mp.quad(lambda t: density(b + t * t) * self.slope(t * t) * 2 * t, ends)
+
+    def force(self, x: mpf) -> mpf:
+        """I = 2 int x g' dx."""
+        return self.over(lambda y: 2 * y, self.flat, x)
+
+    def radius(self, depth: float) -> mpf:
+        """x of a depth."""
+        return self.root(lambda x: self.g(x) - mpf(depth), self.flat, mpf(2))
+
+    @staticmethod
+    def root(function: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
+        """The zero of a function that changes its sign between."""
+        return mp.findroot(function, (low, high), solver="illinois", verify=False, maxsteps=60)
+
+
+def overlap(shape: Shape, front: mpf, edge: mpf) -> mpf:
+    """R = 2 int (x - x(front)) dw."""
+    return shape.over(lambda x: 2 * (x - front), front, edge)
+
+
+@pytest.fixture(autouse=True)
+def _precise() -> Any:
+    with mp.workdps(DIGITS):
+        yield
+
+
+def near(value: mpf, rel: float = 1e-11) -> Any:
+    return pytest.approx(float(value), rel=rel, abs=0)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
+    """The springs that touch take the arc as their anchors, until it is as steep as the cone."""
+    shape = Shape(name)
+    a1, a2 = (shape.radius(part * DEPTH) for part in (0.3, 1.0))
+    i1, i2 = shape.force(a1), shape.force(a2)
+    turn = (2 * a1 + 3 * a2) / 5
+    rate = 1 / (2 * turn)
+    shift = rate * (i2 - i1)
+
+    def eta(x: mpf) -> mpf:
+        return shape.g(x) - rate * (shape.force(x) - i1)
+
+    goal = eta(a2)
+    assert goal > shape.g(a1)
+    c = shape.root(lambda x: eta(x) - goal, a1, turn)
+    found = history.solve(
+        profile_from(PROFILES[name]),
+        E_STAR,
+        G_STAR,
+        MU,
+        normal_force=[float(i1) * E_STAR, float(i2) * E_STAR],
+        tangential_displacement=[0.0, sign * float(shift) * COMPLIANCE],
+    )
+    carried = rate * shape.over(lambda x: 4 * x * x, a1, c) + i2 - shape.force(c)
+    assert sign * found.tangential_force[1] == near(MU * E_STAR * carried)
+
+    def stored(x: mpf) -> mpf:
+        # int v^2 dx = -int x d(v^2), and nothing at the edge.
+        v = shift - rate * (shape.force(x) - i1) if x < c else shape.g(a2) - shape.g(x)
+        return 2 * x * v * (2 * x * rate if x < c else 1)
+
+    square = shape.over(stored, a1, c) + shape.over(stored, c, a2)
+    assert found.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square)
+
+    def lost(x: mpf) -> mpf:
+        # Both leave the turn like roots: the front is as far below it as the load is above.
+        front = shape.root(lambda y: eta(y) - eta(x), a1, turn)
+        return overlap(shape, front, x) * (2 * x * rate - 1)
+
+    with mp.workdps(20):
+        loss = shape.over(lost, turn * (1 + mpf(10) ** -9), a2)
+    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, rel=1e-8)
+    assert found.dissipation[0] == 0
+    assert found.regime.tolist() == ["stick", "partial_slip"]
+    radius = float(c)
+    assert found.slip_fronts[-1] == pytest.approx(radius, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
+    """They slip at first, and stick from where the arc is no steeper than the cone."""
+    shape = Shape(name)
+    a1, a2 = (shape.radius(part * DEPTH) for part in (0.5, 1.0))
+    d1, d2 = shape.g(a1), shape.g(a2)
+    turn = (a1 + a2) / 2
+    rate = 2 * turn
+
+    def eta(x: mpf) -> mpf:
+        return shape.force(x) - rate * (shape.g(x) - d1)
+
+    c = shape.root(lambda x: shape.force(x) - eta(turn), shape.flat, a1)
+    found = history.solve(
+        profile_from(PROFILES[name]),
+        E_STAR,
+        G_STAR,
+        MU,
+        indentation_depth=[float(d1), float(d2)],
+        tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
+    )
+    anchor = shape.g(turn) - shape.g(c) + rate * shape.over(lambda x: 1 / (2 * x), turn, a2)
+    assert sign * found.tangential_displacement[1] == near(COMPLIANCE * anchor)
+
+    def lost(x: mpf) -> mpf:
+        front = shape.root(lambda y: shape.force(y) - eta(x), shape.flat, a1)
+        return overlap(shape, front, x) * (rate - 2 * x) / (2 * front)
+
+    with mp.workdps(20):
+        loss = shape.over(lost, a1, turn)
+    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, rel=1e-10)
+    assert found.regime.tolist() == ["stick", "stick"]
+
+
+def wandering(name: str, control: str, legs: int, seed: int) -> dict[str, Any]:
+    """A random way of mixed control, within friction."""
+    random = np.random.default_rng(seed)
+    d = random.uniform(0.4, 1.0, legs) * DEPTH
+    if control == "normal_force":
+        force = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=d)
+        u = random.uniform(-1.1, 1.1, legs) * MOST
+        return {"normal_force": force.normal_force, "tangential_displacement": u}
+    least = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=0.35 * DEPTH)
+    f = random.uniform(-1, 1, legs) * MU * float(least.normal_force)
+    f[0] = 0.0
+    return {"indentation_depth": d, "tangential_force": f}
+
+
+def with_points(way: dict[str, Any], shares: Any) -> dict[str, Any]:
+    """The same way with more points on every leg."""
+    return {
+        name: (
+            np.append(0.0, row[:-1])[:, None]
+            + np.subtract(row, np.append(0.0, row[:-1]))[:, None] * np.append(shares, 1.0)
+        ).ravel()
+        for name, row in way.items()
+    }
+
+
+KINDS = [name for name in PROFILES if name != "flat-punch"]
+controls = pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
+
+
+@controls
+@pytest.mark.parametrize("name", KINDS)
+def test_work_is_stored_or_lost(name: str, control: str) -> None:
+    """int F_x du to the end of each leg, by Gauss' rule on many panels of each leg."""
+    way = wandering(name, control, 6, 3)
+    nodes, weights = leggauss(8)
+    panels = 200
+    # Panels close in on both ends of a leg, where F_x behaves like a root.
+    edges = np.sin(np.linspace(0, np.pi / 2, panels + 1)) ** 2
+    width = np.diff(edges)
+    shares = (edges[:-1, None] + width[:, None] * (1 + nodes) / 2).ravel()
+    measure = (width[:, None] * weights / 2).ravel()
+    found = solve(name, **with_points(way, shares))
+    legs = len(found.step) // (shares.size + 1)
+    force, moved = (
+        getattr(found, column).reshape(legs, -1)
+        for column in ("tangential_force", "tangential_displacement")
+    )
+    if control == "normal_force":
+        done = force[:, :-1] @ measure * np.diff(way["tangential_displacement"], prepend=0.0)
+    else:
+        ends = force[:, -1] * moved[:, -1]
+        done = np.diff(ends, prepend=0.0)
+        done -= moved[:, :-1] @ measure * np.diff(way["tangential_force"], prepend=0.0)
+    ends = slice(shares.size, None, shares.size + 1)
+    balance = (found.tangential_energy + found.dissipated_energy)[ends]
+    size = np.max(np.abs(balance))
+    assert balance == pytest.approx(np.cumsum(done), rel=0, abs=2e-6 * size)
+    plain = solve(name, **way)
+    bound = found.error_estimate + plain.error_estimate
+    assert plain.dissipated_energy == pytest.approx(found.dissipated_energy[ends], rel=1e-8)
+    for column in ("tangential_force", "tangential_displacement", "tangential_energy"):
+        values = getattr(found, column)[ends]
+        largest = np.max(np.abs(values))
+        assert getattr(plain, column) == pytest.approx(values, rel=0, abs=bound * largest), column
+
+
+def solve(name: str, **options: Any) -> history.History:
+    return history.solve(profile_from(PROFILES[name]), E_STAR, G_STAR, MU, **options)
+
+
+@controls
+@pytest.mark.parametrize("name", KINDS)
+def test_the_estimate_covers_what_a_looser_tolerance_misses(name: str, control: str) -> None:
+    way = wandering(name, control, 12, 5)
+    exact = solve(name, **way, rtol=1e-13)
+    for rtol in (1e-3, 1e-6, 1e-9):
+        found = solve(name, **way, rtol=rtol)
+        for column in (
+            "tangential_force",
+            "tangential_displacement",
+            "tangential_energy",
+            "dissipation",
+        ):
+            values = getattr(exact, column)
+            bound = found.error_estimate + exact.error_estimate
+            miss = np.max(np.abs(getattr(found, column) - values))
+            assert miss <= bound * np.max(np.abs(values)), (column, rtol)
+
+
+@controls
+@pytest.mark.parametrize("name", ["paraboloid", "rounded-cone", "series", "cubic-table"])
+def test_the_other_direction_is_the_mirror_image(name: str, control: str) -> None:
+    way = wandering(name, control, 12, 6)
+    pushed = next(key for key in way if key.startswith("tangential"))
+    right, left = solve(name, **way), solve(name, **(way | {pushed: -way[pushed]}))
+    for column in ("tangential_force", "tangential_displacement"):
+        values = getattr(right, column)
+        size = np.max(np.abs(values))
+        assert -getattr(left, column) == pytest.approx(values, rel=0, abs=1e-13 * size)
+    assert left.dissipation == pytest.approx(right.dissipation, rel=1e-10, abs=0)
+    assert left.regime.tolist() == right.regime.tolist()
+
+
+def counted(monkeypatch: pytest.MonkeyPatch, kind: type[Profile]) -> list[int]:
+    """How many coordinates each evaluation of a profile's depth is of."""
+    counts: list[int] = []
+    plain = kind.depth
+
+    def depth(self: Profile, s: Any) -> Any:
+        counts.append(np.size(s))
+        return plain(self, s)
+
+    monkeypatch.setattr(kind, "depth", depth)
+    return counts
+
+
+@controls
+@pytest.mark.parametrize("name", ["power4", "sphere", "rounded-cone"])
+def test_digits_and_legs_cost_little(
+    name: str, control: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts = counted(monkeypatch, type(profile_from(PROFILES[name])))
+    taken = []
+    for legs, rtol in ((10, 1e-3), (10, 1e-10), (100, 1e-10)):
+        counts.clear()
+        found = solve(name, **wandering(name, control, legs, 7), rtol=rtol)
+        assert found.dissipated_energy[-1] > 0
+        taken.append((len(counts), sum(counts)))
+    # Seven more digits, and ten times the legs.
+    assert taken[1][1] <= 8 * taken[0][1]
+    assert taken[2][0] <= 10 * taken[1][0]
+    assert taken[2][1] <= 20 * taken[1][1]
+
+
+def test_a_force_beyond_friction_between_two_points_is_refused() -> None:
+    """Both points are within friction; where the arc is as steep as the cone it is not."""
+    name, depths = "paraboloid", np.array([0.1, 1.0]) * DEPTH
+    force = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=depths)
+    limit = 0.999 * MU * np.asarray(force.normal_force)
+    with pytest.raises(InputError) as caught:
+        solve(name, indentation_depth=depths, tangential_force=[0.0, limit[1]])
+    assert caught.value.path == ("history", "tangential", "tangential_force", 1)
