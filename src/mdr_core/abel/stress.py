@@ -258,13 +258,12 @@ class StressPanels:
     ) -> PowerPanels | None:
         """A panel's part between two radii in powers of its own; None where they are no good."""
         powers = self._powers.chosen(np.array([panel])).cut(right)
-        if not powers.known[0] or left == self.edges[panel]:
-            return powers if powers.known[0] else None
-        # Of a narrow annulus the width has digits that its ends have not.
-        miss = abs((annulus.a - annulus.c) - annulus.width)
-        if right == annulus.a and miss > _SAME * self.accuracy * annulus.width:
-            return None
-        powers = powers.begun(left, _ANEW * self.accuracy)
+        if powers.known[0] and left > self.edges[panel]:
+            # Of a narrow annulus the width has digits that its ends have not.
+            miss = abs((annulus.a - annulus.c) - annulus.width)
+            if right == annulus.a and miss > _SAME * self.accuracy * annulus.width:
+                return None
+            powers = powers.begun(left, _ANEW * self.accuracy)
         return powers if powers.known[0] else None
 
     def _by_nodes(self, panel: int, annulus: _Annulus, left: float, above: Array) -> Array:
@@ -317,15 +316,21 @@ class StressPanels:
         # The root at r inside the piece: the rule starts on it, at y = 0, even in y.
         on_root = leg_r >= low
         span = np.where(on_root, high, span)
+        begin = np.where(low > self.start[piece], annulus.c, np.hypot(self.base[piece], low))
         used = np.flatnonzero((span > 0) & (high > leg_r))
         piece, number = piece[used], number[used]
-        values = self._rule(piece, r[number], high[used], span[used], edge[used], rtol)
+        ends = high[used], span[used], edge[used], begin[used]
+        values = self._rule(piece, r[number], ends, rtol)
         return np.bincount(number, weights=values, minlength=r.size).astype(float, copy=False)
 
     def _rule(
-        self, piece: Indices, r: Array, high: Array, span: Array, edge: Array, rtol: float
+        self, piece: Indices, r: Array, ends: tuple[Array, Array, Array, Array], rtol: float
     ) -> Array:
-        """Two-root rule on each pair of a piece and a point, from high - span to high in s."""
+        """Two-root rule on each pair of a piece and a point, from high - span to high in s.
+
+        `ends` are high and span, and the radii that go with the upper and the lower end.
+        """
+        high, span, edge, begin = ends
         start, stop, pole = self.start[piece], self.stop[piece], self.pole[piece]
         rows = self.coefficients[piece].T
 
@@ -341,6 +346,7 @@ class StressPanels:
             high,
             width=span,
             edge=edge,
+            inner=begin,
             odd=False,
             rtol=rtol,
             analytic=_POLYNOMIALS,
