@@ -43,11 +43,13 @@ class Analytic:
 
     The singularities that the substitutions leave sit at |Im y| = pi/2; the strip stays inside.
     `fewest`: points that an integrand of some degree needs on any interval, however short.
+    `zeros`: how many zeros it may have in or next to the interval, where it is small all over.
     """
 
     growth: float = 2.0
     strip: float = 0.47 * pi
     fewest: int = 0
+    zeros: int = 0
 
 
 DEFAULT: Final = Analytic()
@@ -66,7 +68,8 @@ def error_bound(points: int, half_length: float, analytic: Analytic) -> float:
 
     For h analytic and |h| <= M in the Bernstein ellipse of parameter rho the error is below
     (64/15) M rho^(-2n) / (1 - rho^-2); with |h| growing like exp(growth |Re y|) the ellipse that
-    fits the strip, or a smaller one, gives the bound, here relative to the largest h inside.
+    fits the strip, or a smaller one, gives the bound, here relative to the largest h inside. From
+    each zero the ellipse reaches further than the interval by its semi-axis, at most.
 
     Source: trefethen, Thm 19.3.
     """
@@ -79,8 +82,10 @@ def error_bound(points: int, half_length: float, analytic: Analytic) -> float:
         rho2 = exp(2 * part)
         semi_axis = (exp(part) + exp(-part)) / 2
         log_bound = growth * half_length * (semi_axis - 1) - 2 * points * part
+        log_bound += analytic.zeros * log(semi_axis)
         best = min(best, exp(min(log_bound, _LOG_LARGEST)) / (1 - 1 / rho2))
-    return best * (64 / 15) * (1 + growth * half_length)
+    # An integrand with zeros is by so much less on the average than where it is largest.
+    return best * (64 / 15) * (1 + growth * half_length) * (1 + analytic.zeros)
 
 
 @lru_cache(maxsize=256)

@@ -106,6 +106,29 @@ def test_plain_integrals_reach_what_is_asked(name: str, rtol: float) -> None:
         assert off(value, exact(name, low, high)) <= rtol + ROUNDING, (low, high)
 
 
+@pytest.mark.parametrize("rtol", DECADES)
+def test_a_double_zero_at_or_next_to_the_interval_keeps_the_tolerance(rtol: float) -> None:
+    """sinh^2 y/cosh y, whose integral is sinh y - arctan(sinh y): small all over, not beside it."""
+
+    def h(y: Array, _: object) -> Array:
+        return np.sinh(y) ** 2 / np.cosh(y)
+
+    def truth(y: float) -> mpf:
+        return mp.sinh(y) - mp.atan(mp.sinh(y))
+
+    lengths = np.geomspace(1e-4, 3.0, 40)
+    analytic = Analytic(zeros=2)
+    with mp.workdps(50):
+        for low in (0.0, 1e-4, 3e-3, 0.05, 0.4):
+            found = quadrature.integrate_plain(h, np.full(40, low), lengths, rtol, analytic)
+            for value, length in zip(found, lengths.tolist(), strict=True):
+                exact_ = truth(mpf(low) + mpf(length)) - truth(mpf(low))
+                assert off(value, exact_) <= rtol + ROUNDING, (low, length)
+        even = integrate_even(h, lengths, rtol, analytic)
+        for value, length in zip(even, lengths.tolist(), strict=True):
+            assert off(value, truth(mpf(length))) <= rtol + ROUNDING, length
+
+
 def test_many_integrals_at_once_keep_their_places() -> None:
     """Each is asked with its own number: a mixture of all rules, and of several blocks."""
     upper = np.tile(np.array([0.0, 0.01, 0.5, 2.0, 7.0, 25.0]), 3000)

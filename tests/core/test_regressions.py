@@ -1,6 +1,7 @@
 """What once went wrong in the core, each by its smallest example."""
 
 import threading
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -11,7 +12,8 @@ from mdr_core import fields, foundation, normal, profiles, tangential
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
 from tests.core.comparison import profile_from
-from tests.oracles import slip_reference
+from tests.oracles import reference, slip_reference
+from tests.oracles.shapes import shape_of
 
 
 class Answer:
@@ -387,3 +389,71 @@ def test_the_surface_about_a_steep_cone_with_a_round_tip(slope: float) -> None:
     np.testing.assert_allclose(found, slips, rtol=1e-11)
     found = fields.normal_displacement(contact, outside, rtol=1e-12)
     np.testing.assert_allclose(found, beside, rtol=1e-11)
+
+
+@pytest.mark.parametrize("rtol", [1e-7, 1e-9, 1e-10, 1e-11, 1e-12])
+@pytest.mark.parametrize("gap", [1e-2, 3e-4, 1e-6])
+def test_a_narrow_rim_has_the_shear_stress_that_was_asked(gap: float, rtol: float) -> None:
+    """g' begins like s there: next to its double zero a rule was taken that was too coarse."""
+    b, c = 1 - gap, 1 - 0.4 * gap
+    given = {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": 2.0}
+    contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0, rtol=rtol)
+    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+    places = [0.0, 0.34, 0.9, b - 0.1 * gap, 1 - 0.7 * gap, 1 - 0.2 * gap]
+    # One by one: next to each other some would be given the rule of others.
+    found = [fields.shear_stress(pushed, [r], rtol=rtol).item() for r in places]
+    shape, ends = shape_of(given), (mpmath.mpf(1), mpmath.mpf(c))
+    with mpmath.workdps(reference.QUAD_DIGITS):
+        for r, tau in zip(map(mpmath.mpf, places), found, strict=True):
+            parts = [reference.pressure(shape, r, end) for end in ends if r < end]
+            exact = parts[0] - sum(parts[1:])
+            # The rim's width is known to its own rounding.
+            assert abs(mpmath.mpf(tau) / exact - 1) <= rtol + 4e-16 / gap, r
+
+
+@pytest.mark.parametrize(
+    ("given", "b"),
+    [
+        ({"kind": "rounded_cone", "slope": 0.25, "tip_radius": 1.0}, 0.25),
+        ({"kind": "spherical_tip_cone", "slope": 0.75, "tip_radius": 0.5}, 0.3),
+        ({"kind": "capped_paraboloid", "cap_radius": 0.3, "tip_radius": 7.0, "radius": 0.4}, 0.3),
+        ({"kind": "rounded_punch", "flat_radius": 1e-4, "rounding_radius": 7.0}, 1e-4),
+        ({"kind": "truncated_cone", "flat_radius": 1e-4, "slope": 0.1}, 1e-4),
+    ],
+)
+def test_the_traction_where_slip_ends_next_to_a_break(given: dict[str, Any], b: float) -> None:
+    """The stick edge's distance from the break was lost where the annulus is wide."""
+    profile = profile_from(given)
+    at = slip_reference.setting(
+        given, "contact_radius", 1.0, slip_reference.Material(1.0, 1.0, 1.0)
+    )
+    for gap in (1e-8, 1e-10, 1e-12):
+        c = b * (1 + gap)
+        radii = [c * (1 + part * gap) for part in (-3.0, -1.5, -0.3, -0.001, 0.001, 1.0)]
+        contact = normal.solve(profile, 1.0, contact_radius=1.0)
+        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        found = fields.shear_stress(pushed, radii, rtol=1e-12)
+        with mpmath.workdps(40):
+            exact = [slip_reference.traction(at, mpmath.mpf(c), mpmath.mpf(r)) for r in radii]
+        np.testing.assert_allclose(found, [float(tau) for tau in exact], rtol=1e-11)
+
+
+def test_stresses_of_a_contact_that_ends_next_to_its_tip() -> None:
+    """The tip ended where the flank did not begin, by a unit in the last place."""
+    given = {"kind": "spherical_tip_cone", "slope": 0.75, "tip_radius": 0.5}
+    at = slip_reference.Material(1.0, 1.0, 1.0)
+    for gap in (1e-6, 1e-8, 1e-10):
+        a = 0.3 * (1 + gap)
+        c = a - 0.1 * (a - 0.3)
+        contact = normal.solve(profile_from(given), 1.0, contact_radius=a)
+        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        radii = [0.0, 0.1, 0.3 * (1 - 20 * gap), 0.3 * (1 - gap), 0.3 * (1 + gap / 3)]
+        setting = slip_reference.setting(given, "contact_radius", a, at)
+        for stick, found in (
+            (0.0, fields.pressure(contact, radii, rtol=1e-12)),
+            (c, fields.shear_stress(pushed, radii, rtol=1e-12)),
+        ):
+            with mpmath.workdps(40):
+                edge = mpmath.mpf(stick)
+                exact = [slip_reference.traction(setting, edge, mpmath.mpf(r)) for r in radii]
+            np.testing.assert_allclose(found, [float(value) for value in exact], rtol=1e-11)

@@ -48,8 +48,8 @@ PROFILES: dict[str, Profile] = {
 #: Over an annulus only: all of it is their own series.
 POWERS = {f"power {n}": power(n) for n in (0.4, 1.5, 2.7, 6.0, 9.5)}
 SMOOTH = ("sphere", "ellipsoid", "hyperboloid")
-TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6)
-TIGHT = (1e-7, 1e-8, 1e-10, 1e-12)
+TOLERANCES = (1e-3, 1e-5, 1e-6, 1e-7, 1e-8)
+TIGHT = (1e-9, 1e-10, 1e-12)
 ROUNDING = 2e-14
 #: So many radii that a polynomial is worth it behind a flat.
 MANY = np.concatenate([(np.arange(200) + 0.5) / 200, 1 - np.geomspace(1e-12, 1e-3, 8)])

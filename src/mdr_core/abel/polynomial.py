@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 from mdr_core.typing import Array
 
 #: The loosest tolerances, for which a tenth of what is asked is left out.
-COARSE: Final = 1e-6
+COARSE: Final = 1e-8
 # Of tighter ones nothing is left out but this, and beyond the finest a rule's rounding is smaller.
 _EXACT: Final = 1e-14
 _FINEST: Final = 1e-12

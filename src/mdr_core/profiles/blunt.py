@@ -14,10 +14,13 @@ from mdr_core.abel.roots import leg, one_sided
 from mdr_core.profiles.behind_flat import BehindFlat
 from mdr_core.profiles.profile import NORMAL_ANSWERS, require_positive
 from mdr_core.profiles.stable import atan_gap
+from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 
 # Of s/b: of narrower rims the arc and the legs cancel, on wider ones no polynomial is short.
 _NARROWEST: Final = 1e-3
+# A weight that begins like s^2 has a double zero at the break.
+_DOUBLE_ZERO: Final = Analytic(zeros=2)
 # Fewer radii have their nodes in the time in which the polynomials are set up.
 _MANY: Final = 100
 _WIDEST: Final = 3.0
@@ -96,6 +99,7 @@ class Blunt(BehindFlat):
             inner=inner,
             odd=True,
             rtol=rtol,
+            analytic=_DOUBLE_ZERO if self.begins else DEFAULT,
             polynomial=self._polynomial(coordinate, rtol) if worthwhile else None,
         )
         value *= modulus * self._factor / np.pi
