@@ -43,6 +43,16 @@ def leg(x: Array, b: Parameter) -> Array:
     return np.asarray(np.sqrt(np.maximum(x - b, 0.0) * (x + b)))
 
 
+def leg_step(upper: Array, square: Array, lower: Array) -> Array:
+    """upper - lower of two legs, from the difference of their squares.
+
+    Of a narrow annulus `lower` follows from the other two, whose digits it need not have.
+    """
+    upper2 = upper * upper
+    follows = np.sqrt(np.maximum(upper2 - square, 0.0))
+    return np.asarray(square / (upper + np.where(square < upper2 / 2, follows, lower)))
+
+
 def arc(
     top: Array, cosh_top: Array, bottom: Array, cosh_bottom: Array, square_difference: Array
 ) -> tuple[Array, Array]:
@@ -222,6 +232,8 @@ def _stretch(problem: _OneSided, b: Parameter, r: Array) -> _Stretch:
     else:
         c = np.maximum(problem.inner, b)
         inner2 = (c - r) * (c + r)
+        # Next to the break the radii have the digits, in a narrow annulus its width.
+        lower = np.where(width > upper / 2, leg(c, b), lower)
     root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
     # a^2 less the larger of c^2 and r^2, and its arc: the cosines are the other legs.
     on_root = above & (inner2 == 0)

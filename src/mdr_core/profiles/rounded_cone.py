@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.roots import leg, one_sided
+from mdr_core.abel.roots import leg, leg_step, one_sided
 from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, energy_integral, require_positive
 from mdr_core.quadrature import DEFAULT, Analytic
@@ -76,8 +76,8 @@ class TippedCone(Profile):
         return leg(coordinate, self.tangent_radius)
 
     @abstractmethod
-    def _outer_width(self, high: Array, width: Array) -> Array:
-        """s(a) - s(c) with its digits, for c beyond the tangent radius."""
+    def _outer_step(self, high: Array, width: Array) -> Array:
+        """s(a)^2 - s(c)^2 with its digits, for c beyond the tangent radius."""
 
     @property
     def coordinate_breaks(self) -> Array:
@@ -144,10 +144,12 @@ class TippedCone(Profile):
                 high > 2 * start, start - self.coordinate_from_radius(c), width - (high - start)
             )
             step = np.minimum(width, within)[inside]
-            ends = np.where(flank, b, a)[inside], c[inside]
-            total[inside] = self._tip_kernel(top, r[inside], rtol, step, *ends)
+            end = np.where(flank, b, a)[inside]
+            total[inside] = self._tip_kernel(top, r[inside], rtol, step, end, c[inside])
         if flank.any():
-            ends = a[flank], c[flank]
+            # By the radii, if they are what was given: so the tip ends where the flank begins.
+            s = self._outer(high) if edge is None else leg(a, b)
+            ends = s[flank], a[flank], c[flank]
             total[flank] += self._flank_kernel(
                 b[flank], r[flank], high[flank], width[flank], ends, rtol
             )
@@ -160,20 +162,21 @@ class TippedCone(Profile):
         r: Array,
         high: Array,
         width: Array,
-        ends: tuple[Array, Array],
+        ends: tuple[Array, Array, Array],
         rtol: float,
     ) -> Array:
-        upper = self._outer(high)
+        upper, edge, inner = ends
         beyond = self._outer(high - width) > 0
-        annulus = np.where(beyond, self._outer_width(high, np.where(beyond, width, 0.0)), upper)
+        square = self._outer_step(high, np.where(beyond, width, 0.0))
+        annulus = np.where(beyond, leg_step(upper, square, leg(inner, b)), upper)
         value = one_sided(
             lambda x, s, _: self._flank_weight(x, s),
             b,
             r,
             upper,
             width=annulus,
-            edge=ends[0],
-            inner=ends[1],
+            edge=edge,
+            inner=inner,
             odd=False,
             rtol=rtol,
             analytic=self._flank_analytic,
@@ -235,9 +238,8 @@ class RoundedCone(TippedCone):
         square = x * x * (np.arctan(s / b) + (4 / 3) * b / (x + s))
         return np.asarray(self.slope * (square + b * s / 3))
 
-    def _outer_width(self, high: Array, width: Array) -> Array:
-        low = high - width
-        return width * (high + low) / (self._outer(high) + self._outer(low))
+    def _outer_step(self, high: Array, width: Array) -> Array:
+        return width * (2 * high - width)
 
     def _tip_energy(self, coordinate: Array) -> Array:
         square = coordinate * coordinate

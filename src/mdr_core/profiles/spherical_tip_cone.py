@@ -137,10 +137,9 @@ class SphericalTipCone(TippedCone):
         across = np.square(self._outer(s_a)) / (a + self.tangent_radius) + tip
         return np.where(s_a <= start, tip, np.where(low >= start, beyond, across))
 
-    def _outer_width(self, high: Array, width: Array) -> Array:
-        low = high - width
-        step = np.square(self._length) * self._stretched.step(high, width, low)
-        return np.asarray(step / (self._outer(high) + self._outer(low)))
+    def _outer_step(self, high: Array, width: Array) -> Array:
+        step = self._stretched.step(high, width, high - width)
+        return np.asarray(np.square(self._length) * step)
 
     @property
     def _flank_analytic(self) -> Analytic:
