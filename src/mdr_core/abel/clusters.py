@@ -49,14 +49,14 @@ def _interpolation(count: int) -> tuple[Array, Array, Array]:
 def _shares(v: Array, count: int) -> tuple[Array, Array]:
     """How masses at v of blocks of length one are shared among the nodes.
 
-    Barycentric: shares of shape (*v, nodes), to be divided by their sum, shape of v.
+    Barycentric: shares of shape (nodes, *v), to be divided by their sum, shape of v.
     """
     _, points, weights = _interpolation(count)
     w = (_BEYOND * v - _SHIFT) / (v + _SHIFT)
-    share: Array = np.subtract(w[..., None], points)
+    share = np.subtract(w, points[:, None, None])
     share += _TOUCHING
-    np.divide(weights, share, out=share)
-    return share, share @ np.ones(count)
+    np.divide(weights[:, None, None], share, out=share)
+    return share, share.sum(axis=0)
 
 
 def masses_at_nodes(v: Array, masses: Array, count: int) -> Array:
@@ -64,12 +64,15 @@ def masses_at_nodes(v: Array, masses: Array, count: int) -> Array:
     result = np.empty((v.shape[0], count))
     for start in range(0, v.shape[0], _BLOCKS):
         part = slice(start, start + _BLOCKS)
-        result[part] = _shared(masses[part], *_shares(v[part], count))
+        # Of all the arrays the blocks are the last axis, which is the longest.
+        shares = _shares(np.ascontiguousarray(v[part].T), count)
+        result[part] = _shared(masses[part].T, *shares).T
     return result
 
 
 def _shared(masses: Array, shares: Array, total: Array) -> Array:
-    return np.asarray(np.matmul((masses / total)[:, None], shares)[:, 0])
+    """Masses (k, blocks) at the nodes (nodes, blocks)."""
+    return np.asarray((shares * (masses / total)).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,12 +163,10 @@ def add(total: Array, point: Indices, values: Array) -> None:
     total[low:high] += np.bincount(point - low, weights=values)
 
 
-def clusters(edges: Array, masses: Array, *, above: bool) -> Clusters:
-    """Gather panels between `edges` (k + 1), given their masses at their nodes (k, n), in blocks.
-
-    `above`: the points lie above the panels, and the nodes count from each right end.
-    """
-    counts = [edges.size - 1]
+@lru_cache(maxsize=4)
+def _blocks(panels: int) -> tuple[list[int], Indices, Indices, Indices]:
+    """How many blocks there are of each size, the panels of each, and the block that holds it."""
+    counts = [panels]
     while counts[-1] > 1:
         counts.append(counts[-1] // 2)
     begin = np.concatenate([[0], np.cumsum(counts)])
@@ -177,16 +178,26 @@ def clusters(edges: Array, masses: Array, *, above: bool) -> Clusters:
     parent = begin[level + 1] + number // 2
     alone = np.append(begin[2:], 0)[level] <= parent
     parent[alone] = -1
+    return counts, first, last, parent
+
+
+def clusters(edges: Array, masses: Array, *, above: bool) -> Clusters:
+    """Gather panels between `edges` (k + 1), given their masses at their nodes (k, n), in blocks.
+
+    `above`: the points lie above the panels, and the nodes count from each right end.
+    """
+    counts, first, last, parent = _blocks(edges.size - 1)
     low, high = edges[first], edges[last]
     length = (high - low) * (high + low)
     joined = slice(counts[0], None)
     middle = edges[(first + last)[joined] // 2]
     v = _places_in_pairs(low[joined], middle, high[joined], masses.shape[1], above=above)
-    total = np.empty((level.size, masses.shape[1]))
-    total[: counts[0]] = masses
+    total = np.empty((masses.shape[1], first.size))
+    total[:, : counts[0]] = masses.T
     _gather(total, v, counts, above=above)
-    total /= np.sqrt(length)[:, None]
-    return Clusters(high if above else low, length, total, first, last, parent, above)
+    total /= np.sqrt(length)
+    rows = np.ascontiguousarray(total.T)
+    return Clusters(high if above else low, length, rows, first, last, parent, above)
 
 
 def _places_in_pairs(low: Array, middle: Array, high: Array, count: int, *, above: bool) -> Array:
@@ -195,27 +206,31 @@ def _places_in_pairs(low: Array, middle: Array, high: Array, count: int, *, abov
     length = lower + upper
     near = (upper if above else lower) / length
     nodes = _interpolation(count)[0]
-    rest = (lower if above else upper) / length
-    v_far = near[:, None] + np.multiply.outer(rest, nodes)
-    return np.concatenate([np.multiply.outer(near, nodes), v_far], axis=1)
+    v = np.empty((2 * count, near.size))
+    np.multiply.outer(nodes, near, out=v[:count])
+    np.multiply.outer(nodes, (lower if above else upper) / length, out=v[count:])
+    v[count:] += near
+    return v
 
 
 def _gather(total: Array, v: Array, counts: list[int], *, above: bool) -> None:
     """Fill in the masses of joined blocks, size after size, from those of the panels."""
-    count, done, before = total.shape[1], 0, 0
+    count, done, before = total.shape[0], 0, 0
     known: tuple[Array, Array] | None = None
     start = 0
     for size, whole in pairwise(counts):
-        two = total[before : before + 2 * whole].reshape(whole, 2, count)
-        rows = (two[:, ::-1] if above else two).reshape(whole, 2 * count)
-        here = slice(done, done + whole)
+        two = total[:, before : before + 2 * whole]
+        lower, upper = two[:, ::2], two[:, 1::2]
+        rows = np.concatenate([upper, lower] if above else [lower, upper])
         before += size
+        here = slice(before, before + whole)
         if whole > _BLOCKS:
-            total[before : before + whole] = masses_at_nodes(v[here], rows, count)
+            places = v[:, done : done + whole]
+            total[:, here] = masses_at_nodes(places.T, rows.T, count).T
         else:
             # All smaller numbers of blocks together are no more than twice this one.
             if known is None:
-                known, start = _shares(v[done:], count), done
+                known, start = _shares(v[:, done:], count), done
             part = slice(done - start, done - start + whole)
-            total[before : before + whole] = _shared(rows, known[0][part], known[1][part])
+            total[:, here] = _shared(rows, known[0][..., part], known[1][:, part])
         done += whole

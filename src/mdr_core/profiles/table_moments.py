@@ -90,19 +90,20 @@ class TableSlope:
 
         Within a panel's width: that of F's jump and of its polynomial's change there.
         """
-        left, width = self.edges[:-1], self._width
-        c = self.coefficients
-        before, at = c[:, :-1], width[:-1]
-        change = np.zeros_like(c)
-        change[0, 1:] = c[0, 1:] - self._at_right[:-1]
-        change[1, 1:] = c[1, 1:] - (before[1] + 2 * at * before[2])
-        change[2, 1:] = c[2, 1:] - before[2]
-        change = np.abs(change)
-        size = 2 * (change[0] + width * (change[1] + width * change[2]))
+        left, width = self.edges[1:-1], self._width[1:]
+        c0, c1, c2 = self.coefficients
+        before = self._width[:-1]
+        change = np.abs(c2[1:] - c2[:-1]) * width
+        change += np.abs(c1[1:] - (c1[:-1] + 2 * before * c2[:-1]))
+        change *= width
+        change += np.abs(c0[1:] - self._at_right[:-1])
+        change *= 2
         if self.jumps is not None:
-            size += np.abs(self.jumps) / width
+            change += np.abs(self.jumps[1:]) / width
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(np.nan_to_num(size / np.abs(c[0]) * np.sqrt(width / (2 * left))))
+            change /= np.abs(c0[1:])
+        change *= np.sqrt(width / (2 * left))
+        return np.append(0.0, np.fmax(change, 0.0))
 
     def first_negative(self, noise: float) -> float | None:
         """Radius where F first falls below zero, but for rounding."""
