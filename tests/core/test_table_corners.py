@@ -197,7 +197,7 @@ def test_a_bad_point_is_named(r: Any, f: Any, path: Any, said: str) -> None:
     assert refused.value.path == ("profile", *path)
 
 
-@pytest.mark.parametrize("c", [1e-6, 1e-3, 0.05, 0.3])
+@pytest.mark.parametrize("c", [1e-12, 1e-6, 1e-3, 0.05, 0.3])
 def test_the_axis_sticks_under_a_tip(c: float) -> None:
     """Slip that does not reach a tip leaves a finite stress there: of a cone, (1/2) ln(a/c)."""
     contact = solve(Tabulated([0, 0.5, 1.5], [0, 0.5, 1.5], "linear"), 1.0, contact_radius=1.0)
