@@ -33,6 +33,8 @@ _PLACES: Final[Array] = np.asarray(chebyshev.chebpts1(_DEGREE + 1))
 _SPREAD: Final[Array] = np.asarray((_PLACES + 1) * 0.5)
 _TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_PLACES, _DEGREE))
 _EPSILON: Final = float(np.finfo(float).eps)
+# Powers x points handled at once: they stay in the processor's cache.
+_BLOCK: Final = 32_768
 # So many roundings of the largest term are not seen.
 _ROUNDINGS: Final = 16.0
 
@@ -94,13 +96,26 @@ class StressPolynomial:
             for powers in ends:
                 powers[-1] = 0.0
             ends.append([0.0] * (count - 1) + [1.0])
-        parts = (np.array(ends) @ self.table) @ _powers(delta, count)
-        value: Array = parts[0]
-        value *= step
-        for row, factor in enumerate(factors[1:], start=1):
-            parts[row] *= factor
-            value += parts[row]
-        return value
+        rows = np.array(ends) @ self.table
+        powers = np.empty((count, min(_BLOCK // count, delta.size)))
+        if delta.size == powers.shape[1]:
+            return _summed(rows, delta, factors, powers)
+        result = np.empty_like(delta)
+        for start in range(0, delta.size, powers.shape[1]):
+            part = slice(start, start + powers.shape[1])
+            result[part] = _summed(rows, delta[part], [factor[part] for factor in factors], powers)
+        return result
+
+
+def _summed(rows: Array, delta: Array, factors: list[Array], powers: Array) -> Array:
+    """Each row's polynomial in delta times its factor, all together; `powers` is overwritten."""
+    parts = rows @ _raised(delta, powers[:, : delta.size])
+    value: Array = parts[0]
+    value *= factors[0]
+    for row, factor in enumerate(factors[1:], start=1):
+        parts[row] *= factor
+        value += parts[row]
+    return value
 
 
 def _powers_of(square: float, count: int) -> list[float]:
@@ -116,11 +131,10 @@ def _steps(upper2: float, inner: Inner, count: int) -> list[float]:
     return steps
 
 
-def _powers(delta: Array, count: int) -> Array:
-    """delta^j for j from 0 on, shape (count, m)."""
-    powers = np.empty((count, delta.size))
+def _raised(delta: Array, powers: Array) -> Array:
+    """delta^j in the rows j = 0, 1, ... of `powers`."""
     powers[0], powers[1] = 1, delta
-    done = 1
+    done, count = 1, len(powers)
     while done < count - 1:
         more = min(done, count - 1 - done)
         np.multiply(powers[1 : 1 + more], powers[done], out=powers[done + 1 : done + 1 + more])
