@@ -26,7 +26,7 @@ from scipy.optimize import nnls
 
 import mdr_service
 from mdr_core.errors import AccuracyError, DefectError, InputError
-from mdr_service import arrays, cost, pictures, problems, questions, sizes, table, wire
+from mdr_service import arrays, cost, pictures, problems, questions, sizes, solve, table, wire
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -55,6 +55,7 @@ KINDS = (*PLAIN, *LONG_ONES)
 FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement", "foundation_load")
 FIELDS = (*FIELDS, "foundation_shear")
 SHEAR = frozenset({"shear_stress", "slip", "foundation_shear"})
+STYLES = ("small", "near", "again", "random")
 # What takes this long is not measured twice.
 LONG = 0.3
 # Of each question and kind of profile.
@@ -144,6 +145,38 @@ def history(kind: str, rng: random.Random) -> dict[str, Any]:
     return base(kind, rng) | {"friction_coefficient": 0.3, "history": way(rng, 4)}
 
 
+def curved(kind: str, rng: random.Random) -> dict[str, Any]:
+    """A way of mixed control: small loops, nearly sliding ones, the same again, or at random."""
+    query = base(kind, rng) | {"friction_coefficient": 0.3}
+    if kind == "flat_punch":
+        return query | {"history": way(rng, 2)}
+    legs, style = rng.choice([1, 2, 3, 5, 10, 20, 50, 200]), rng.choice(STYLES)
+    share = {"small": 1e-3, "near": 0.95, "again": 0.6, "random": 0.5}[style]
+    spread = {"small": 3e-5, "again": 0.008}.get(style, 0.01)
+    depth = [0.03 - spread * rng.random() for _ in range(legs)]
+    push = [share * rng.uniform(-1, 1) for _ in range(legs)]
+    if style == "again":
+        depth = [0.03 - spread * (number % 2) for number in range(legs)]
+        push = [share * (-1) ** number for number in range(legs)]
+    model = questions.QUESTIONS["normal"].model.model_validate(
+        {"profile": query["profile"], "material": MATERIAL, "load": {"indentation_depth": depth}}
+    )
+    force = np.asarray(solve.normal(model).normal_force)
+    if rng.random() < 0.5:
+        shift = 0.3 * np.array(push) * depth / MATERIAL["g_star"]
+        loads = {"normal_force": force.tolist()}, {"tangential_displacement": shift.tolist()}
+    else:
+        # A straight way over depths lags behind the force: it keeps away from sliding.
+        least = np.minimum(force, np.append(force[0], force[:-1]))
+        pushed = np.append(0.0, 0.18 * np.array(push) * least)
+        depth = [depth[0], *depth]
+        loads = {"indentation_depth": depth}, {"tangential_force": pushed.tolist()}
+    samples = rng.choice([1, 1, 1, 4])
+    return query | {
+        "history": {"normal": loads[0], "tangential": loads[1], "samples_per_step": samples}
+    }
+
+
 def stress(kind: str, rng: random.Random) -> dict[str, Any]:
     asked = rng.sample(FIELDS, rng.choice([1, 1, 2, 3]))
     query = base(kind, rng) | {"quantities": asked, "points": max(2, many(rng, 3.5))}
@@ -204,14 +237,17 @@ ASKED = {
     "wear": wear,
     "evolution": evolution,
 }
+# Of the same question as another, but with a bank of its own.
+ALSO = {("history", "curved"): curved}
 
 
 def cases(kind: str, seed: str, count: int) -> Iterator[Case]:
-    for question, query in ASKED.items():
+    named = {(question, question): query for question, query in ASKED.items()} | ALSO
+    for (question, name), query in named.items():
         # What takes long is asked less often.
         few = count // 2 if question == "evolution" else count
         for number in range(few):
-            rng = random.Random(f"{seed} {question} {kind} {number}")
+            rng = random.Random(f"{seed} {name} {kind} {number}")
             yield question, query(kind, rng), wire.MEDIA_TYPE
 
 

@@ -19,12 +19,8 @@ _OTHER_FORM: Final = "npz"
 # Numbers of an answer for each load, sample or number of cycles.
 _COLUMNS: Final = {"normal": 6, "tangential": 12, "history": 9, "wear": 6, "evolution": 7}
 
-# Chords of a curved leg over all halvings, at the loosest tolerance, how they grow with the digits,
-# and how many there are at most, in a leg and in all: as of `mdr_core.history`.
-_CHORDS, _LOOSEST, _GROWTH = 64, 3, 0.3
-_FEWEST_IN_A_LEG, _MOST_IN_A_LEG = 128, 32_768
-_MOST_IN_ALL, _MOST_OF_DEAR_ONES = 600_000, 60_000
-_CHEAP: Final = frozenset({"cone", "flat_punch", "paraboloid"})
+# Legs of mixed control beyond these are taken together with the first.
+_FIRST_ARCS: Final = 8
 
 
 class Sizes(NamedTuple):
@@ -44,6 +40,8 @@ class Sizes(NamedTuple):
     samples: int = 0
     curved: int = 0
     """How many of the samples end a leg that is not straight."""
+    kinked: bool = False
+    """Whether the profile is a table of straight pieces."""
     nodes: int = 0
     moving: bool = False
     """Whether the stick edge moves as it wears."""
@@ -57,6 +55,7 @@ def of(question: str, query: Query, media_type: str) -> Sizes:
         _FORMS.get(media_type, _OTHER_FORM),
         -log10(query.rtol),
         _length(query),
+        kinked=isinstance(query.profile, Tabulated) and query.profile.interpolation == "linear",
         **_MORE[question](query),
     )
 
@@ -142,17 +141,19 @@ def _tangential(sizes: Sizes) -> Counts:
 
 def _history(sizes: Sizes) -> Counts:
     yield "history", 1
-    yield "history/sample", sizes.samples
-    yield "history/chord", _chords(sizes)
-
-
-def _chords(sizes: Sizes) -> float:
     if not sizes.curved:
-        return 0
-    wanted = _CHORDS * 10 ** (_GROWTH * (sizes.digits - _LOOSEST))
-    in_all = _MOST_IN_ALL if sizes.profile in _CHEAP else _MOST_OF_DEAR_ONES
-    most = min(_MOST_IN_A_LEG, max(in_all / sizes.curved, _FEWEST_IN_A_LEG))
-    return sizes.curved * min(wanted, most)
+        yield "history/sample", sizes.samples
+        return
+    # Every round of the integrals takes all arcs at once, and more digits take more rounds.
+    digits = sizes.digits
+    arcs = min(sizes.curved, _FIRST_ARCS) * digits
+    yield "history/arcs", digits if sizes.curved > 1 else 0
+    yield "history/arc", arcs
+    yield "history/arc sample", sizes.samples
+    if sizes.kinked:
+        yield "history/kinks", digits
+        yield "history/kink", arcs
+        yield "history/kink sample", sizes.samples * digits
 
 
 def _stress(sizes: Sizes) -> Counts:

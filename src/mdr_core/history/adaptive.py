@@ -13,7 +13,11 @@ from mdr_core.typing import Array, Indices
 _POINTS: Final = 16
 # A piece that was halved so often ends at a point where nothing is smooth.
 _ROUNDS: Final = 24
+# The same for what has kinks all over.
+_FEW_ROUNDS: Final = 5
 _FINEST: Final = 1e-12
+# Sums over a table's knots carry more rounding.
+_ROUGHEST: Final = 1e-10
 # Degrees of the coefficients that are compared, and how much what is missing may exceed them.
 _COMPARED: Final = (6, 7, 14, 15)
 _SAFE: Final = 16.0
@@ -47,11 +51,12 @@ def integrate(
     owner, low, high = ends
     count = int(owner.max(initial=-1)) + 1
     value, missing = np.zeros(count), np.zeros(count)
-    goal = max(goal, _FINEST)
-    for round_ in range(_ROUNDS):
+    goal = max(goal, _FINEST if smooth else _ROUGHEST)
+    rounds = _ROUNDS if smooth else _FEW_ROUNDS
+    for round_ in range(rounds):
         total, tail = _pieces(function, owner, low, high, rough=rough, smooth=smooth)
         largest = float(np.max(value + np.bincount(owner, total, count), initial=0.0))
-        good = (tail <= goal * largest) | ~(tail > 0) | (round_ == _ROUNDS - 1)
+        good = (tail <= goal * largest) | ~(tail > 0) | (round_ == rounds - 1)
         value += np.bincount(owner[good], total[good], count)
         missing += np.bincount(owner[good], tail[good], count)
         if good.all():

@@ -24,9 +24,9 @@ from mdr_core.typing import Array, Flags, Indices
 # Up to this part of the radius an annulus is narrow: a difference would lose digits.
 _NARROW: Final = 0.1
 # Rows are cut where they meet a break, up to so many: those of a long table are small.
-_MOST_CUTS: Final = 4096
+_MOST_CUTS: Final = 16_384
 # To a looser tolerance a table's breaks are not felt.
-_FINE: Final = 1e-6
+_FINE: Final = 5e-4
 
 
 class _Rows(NamedTuple):
@@ -308,6 +308,10 @@ def overlap(profile: Profile, front: Array, edge: Array) -> Array:
     """R = 2 int (x - x(front)) dw between two contact coordinates [length^2]."""
     ends = profile.contact_radius(front), profile.contact_radius(edge)
     narrow = ends[1] - ends[0] < _NARROW * ends[1]
+    breaks = profile.coordinate_breaks
+    if breaks.size > 1:
+        # A difference over several breaks keeps digits enough; a rule takes one of them.
+        narrow &= np.searchsorted(breaks, edge) - np.searchsorted(breaks, front, "right") <= 1
     wide = profile.reduced_force(edge) - profile.reduced_force(front)
     wide = wide - 2 * ends[0] * (profile.depth(edge) - profile.depth(front))
     if not narrow.any():
@@ -321,7 +325,7 @@ def overlap(profile: Profile, front: Array, edge: Array) -> Array:
         return 2 * moved * profile.depth_slope(s)
 
     found = np.array(wide)
-    found[narrow] = integral(density, low, span, profile.coordinate_breaks)
+    found[narrow] = integral(density, low, span, breaks)
     return found
 
 

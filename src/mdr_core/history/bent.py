@@ -17,6 +17,8 @@ from mdr_core.typing import Array, Indices
 
 FORWARD: Final = 0
 BACKWARD: Final = 1
+# Up to this part of its level a load point goes through a vertex.
+_ROUNDING: Final = 8 * float(np.finfo(float).eps)
 # level + shift and level - shift.
 SIGNS: Final = (1.0, -1.0)
 
@@ -317,9 +319,10 @@ class _Record:
             self._note(BACKWARD if rise <= 0 else FORWARD, lower, upper)
             return
         low = self._side(lower) if own is None else own
-        high = low if upper is self._start else self._side(upper)
-        if low == high:
-            self._note(low, lower, upper)
+        high = None if upper is self._start else self._side(upper)
+        if low is None or high is None or low == high:
+            known = low if low is not None else high
+            self._note(FORWARD if known is None else known, lower, upper)
             return
         # The load point passes through the piece, where nothing slips.
         middle = self._crossing(lower, upper, high)
@@ -340,8 +343,8 @@ class _Record:
         bounded = min(max(over[0], 0.0), fall), min(over[1], fall)
         self._walk.slips.note(self._step, own, bounded, fall, (upper, lower))
 
-    def _side(self, vertex: Vertex) -> int:
-        """The sum in which the load point reaches a vertex first."""
+    def _side(self, vertex: Vertex) -> int | None:
+        """The sum in which the load point reaches a vertex first; None where it goes through."""
         over = growth_over(vertex, self._point)
         if over[BACKWARD] <= 0:
             return FORWARD
@@ -351,6 +354,8 @@ class _Record:
         # Where the load point is at the vertex' level, above or below it.
         ahead = self._walk.along(self._start.coordinate, s, float(self._rate))
         ahead += excess(self._start.sums[FORWARD], vertex.sums[FORWARD])
+        if abs(ahead) <= _ROUNDING * self._start.level:
+            return None
         return BACKWARD if ahead > 0 else FORWARD
 
     def _coordinate(self, vertex: Vertex) -> float:
