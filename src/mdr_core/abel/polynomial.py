@@ -93,8 +93,8 @@ class StressPolynomial:
             ends.append(_steps(upper2, inner, count))
         if arc is not None:
             factors.append(arc)
-            for powers in ends:
-                powers[-1] = 0.0
+            for of_end in ends:
+                of_end[-1] = 0.0
             ends.append([0.0] * (count - 1) + [1.0])
         rows = np.array(ends) @ self.table
         powers = np.empty((count, min(_BLOCK // count, delta.size)))
