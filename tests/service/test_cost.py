@@ -4,12 +4,14 @@ import itertools
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mdr_core import profiles
+from mdr_core.profiles import Profile, RoundedCone, Sphere, TruncatedCone
 from mdr_service import cost, problems, sizes
 from mdr_service.compute import AT_ONCE_SECONDS, COMPUTE
-from mdr_service.questions import QUESTIONS
+from mdr_service.questions import QUESTIONS, answer
 from mdr_service.schemas import examples
 from mdr_service.schemas.queries import FieldName
 from mdr_service.settings import SETTINGS
@@ -70,6 +72,7 @@ def test_every_kind_has_every_rate_and_none_is_negative(kind: str) -> None:
     everything = {
         "samples": 1,
         "curved": 1,
+        "kinked": kind == "tabulated",
         "nodes": 8,
         "radii": 1,
         "quantities": FieldName.__args__,
@@ -265,3 +268,45 @@ def test_an_answer_of_a_million_numbers_fits() -> None:
         "quantities": ["pressure"],
     }
     assert seconds("stress", query) < SETTINGS.budget_seconds / 2
+
+
+SHAPES: Mapping[str, Mapping[str, float]] = {
+    "sphere": {"radius": 10.0},
+    "rounded_cone": {"slope": 0.1, "tip_radius": 3.0},
+    "truncated_cone": {"flat_radius": 0.3, "slope": 0.1},
+}
+
+
+def curved_way(legs: int, samples: int) -> dict[str, Any]:
+    """A normal force and a displacement, up and down, never twice the same."""
+    force = [1.0 + 0.3 * (-1) ** leg + 0.001 * leg for leg in range(legs)]
+    shift = [1e-3 * (-1) ** (leg // 2) * (1 + 0.01 * leg) for leg in range(legs)]
+    return {
+        "normal": {"normal_force": force},
+        "tangential": {"tangential_displacement": shift},
+        "samples_per_step": samples,
+    }
+
+
+@pytest.mark.parametrize("kind", [Sphere, RoundedCone, TruncatedCone], ids=lambda kind: kind.kind)
+def test_what_arcs_cost_grows_as_what_is_evaluated(
+    kind: type[Profile], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Counted, not timed: an evaluation costs what the call does, and a little for each place."""
+    plain, count = kind.depth, [0.0]
+
+    def depth(self: Profile, s: Any) -> Any:
+        count[0] += 1 + np.size(s) / 200
+        return plain(self, s)
+
+    monkeypatch.setattr(kind, "depth", depth)
+    profile = {"kind": kind.kind, **SHAPES[kind.kind]}
+    ratios = []
+    for legs, samples, rtol in itertools.product((2, 10, 50, 200), (1, 4), (1e-4, 1e-10)):
+        way = curved_way(legs, samples)
+        query = {**RUBBED, "profile": profile, "history": way, "rtol": rtol}
+        model = QUESTIONS["history"].model.model_validate(query)
+        count[0] = 0.0
+        answer("history", model, "application/json")
+        ratios.append(cost.seconds("history", model, "application/json") / count[0])
+    assert max(ratios) <= 16 * min(ratios), ratios
