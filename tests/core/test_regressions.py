@@ -438,13 +438,14 @@ def test_the_traction_where_slip_ends_next_to_a_break(given: dict[str, Any], b: 
         np.testing.assert_allclose(found, [float(tau) for tau in exact], rtol=1e-11)
 
 
-def test_stresses_of_a_contact_that_ends_next_to_its_tip() -> None:
+@pytest.mark.parametrize("part", [0.1, 1.4])
+def test_stresses_of_a_contact_that_ends_next_to_its_tip(part: float) -> None:
     """The tip ended where the flank did not begin, by a unit in the last place."""
     given = {"kind": "spherical_tip_cone", "slope": 0.75, "tip_radius": 0.5}
     at = slip_reference.Material(1.0, 1.0, 1.0)
     for gap in (1e-6, 1e-8, 1e-10):
         a = 0.3 * (1 + gap)
-        c = a - 0.1 * (a - 0.3)
+        c = a - part * (a - 0.3)
         contact = normal.solve(profile_from(given), 1.0, contact_radius=a)
         pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
         radii = [0.0, 0.1, 0.3 * (1 - 20 * gap), 0.3 * (1 - gap), 0.3 * (1 + gap / 3)]

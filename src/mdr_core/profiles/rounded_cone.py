@@ -76,6 +76,10 @@ class TippedCone(Profile):
         return leg(coordinate, self.tangent_radius)
 
     @abstractmethod
+    def _past(self, coordinate: Array, s: Array) -> Array:
+        """How far the contact coordinate is past the tangent radius, of s too, zero inside it."""
+
+    @abstractmethod
     def _outer_step(self, high: Array, width: Array) -> Array:
         """s(a)^2 - s(c)^2 with its digits, for c beyond the tangent radius."""
 
@@ -134,6 +138,8 @@ class TippedCone(Profile):
         c = np.broadcast_to(self.contact_radius(low) if inner is None else inner, high.shape)
         total = np.zeros(high.shape)
         flank = high > start
+        # By the radii, if they are what was given: so the tip ends where the flank begins.
+        s = self._outer(high) if edge is None else leg(a, b)
         # A narrow annulus that ends on b lies in the tip, though low is b but for rounding.
         inside = (r < b) & ((low < start) | ~flank)
         if inside.any():
@@ -141,14 +147,14 @@ class TippedCone(Profile):
             top = np.where(flank, start, high)[inside]
             # Of a wide annulus the radii have the digits, however small b is next to a.
             within = np.where(
-                high > 2 * start, start - self.coordinate_from_radius(c), width - (high - start)
+                high > 2 * start,
+                start - self.coordinate_from_radius(c),
+                width - self._past(high, s),
             )
             step = np.minimum(width, within)[inside]
             end = np.where(flank, b, a)[inside]
             total[inside] = self._tip_kernel(top, r[inside], rtol, step, end, c[inside])
         if flank.any():
-            # By the radii, if they are what was given: so the tip ends where the flank begins.
-            s = self._outer(high) if edge is None else leg(a, b)
             ends = s[flank], a[flank], c[flank]
             total[flank] += self._flank_kernel(
                 b[flank], r[flank], high[flank], width[flank], ends, rtol
@@ -237,6 +243,9 @@ class RoundedCone(TippedCone):
         b = self.tangent_radius
         square = x * x * (np.arctan(s / b) + (4 / 3) * b / (x + s))
         return np.asarray(self.slope * (square + b * s / 3))
+
+    def _past(self, coordinate: Array, s: Array) -> Array:
+        return np.maximum(coordinate - self.tangent_radius, 0.0)
 
     def _outer_step(self, high: Array, width: Array) -> Array:
         return width * (2 * high - width)

@@ -137,6 +137,9 @@ class SphericalTipCone(TippedCone):
         across = np.square(self._outer(s_a)) / (a + self.tangent_radius) + tip
         return np.where(s_a <= start, tip, np.where(low >= start, beyond, across))
 
+    def _past(self, coordinate: Array, s: Array) -> Array:
+        return self._stretched.past(np.square(s / self._length))
+
     def _outer_step(self, high: Array, width: Array) -> Array:
         step = self._stretched.step(high, width, high - width)
         return np.asarray(np.square(self._length) * step)

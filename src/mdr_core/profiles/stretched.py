@@ -31,6 +31,11 @@ class Stretched:
         far = raised(1 + excess, 1 / np.asarray(self.power))
         return np.asarray(self.start * np.where(excess < 1, near, far))
 
+    def past(self, excess: Array) -> Array:
+        """w - w_b, with the digits of a small excess."""
+        near = self.start * np.expm1(np.log1p(np.minimum(excess, 1.0)) / self.power)
+        return np.asarray(np.where(excess < 1, near, self.coordinate(excess) - self.start))
+
     def excess(self, coordinate: Array) -> Array:
         """e of a coordinate, zero up to the break."""
         past = np.maximum(coordinate - self.start, 0.0) / self.start
