@@ -25,9 +25,11 @@ _LAST: Final = 2
 _FEWEST: Final = 8
 # Numbers of nodes are multiples of it: panels alike are looked at together.
 _STEP: Final = 4
-# So many nodes resolve a panel that is one polynomial, at first, where no more than this is asked.
+# So many nodes resolve a panel that is one polynomial, at first, where no more than this is asked
+# and kinks that are missed would not matter: a tenth of them is felt.
 _FIRST_LOOK: Final = 12
 _COARSE: Final = 1e-7
+_MISSED: Final = 10.0
 _SPARE: Final = 1.5
 # How much of g' the root at the axis is, at most.
 _AXIS: Final = 1.0
@@ -148,17 +150,19 @@ def _looked_at(
     return coefficients, at_end, tail / np.where(largest > 0, largest, 1.0)
 
 
-def whole_pieces(slope: Slope, edges: Array, tolerance: float) -> Pieces | None:
+def whole_pieces(slope: Slope, edges: Array, tolerance: float, kink: float) -> Pieces | None:
     """Resolve G in each panel without a cut; None where some panel is not one polynomial.
 
-    The tolerance is that of the last coefficients, relative to the smallest value in the panel.
+    The tolerance is that of the last coefficients, relative to the smallest value in the panel;
+    `kink` bounds the parts of G that begin inside of panels, relative to G.
     """
     base = edges[:-1]
     length = leg(edges[1:], base)
     panel = np.arange(base.size)
     coefficients, tails = np.zeros((base.size, DEGREE + 1)), np.empty(base.size)
     rest = panel
-    for count in (_FIRST_LOOK, DEGREE + 1) if tolerance >= _COARSE else (DEGREE + 1,):
+    few = tolerance >= _COARSE and kink <= _MISSED * tolerance
+    for count in (_FIRST_LOOK, DEGREE + 1) if few else (DEGREE + 1,):
         points, inverse = _points(count)
         s = np.multiply.outer(length[rest], (1 + points) / 2)
         b = np.repeat(base[rest], count)

@@ -46,13 +46,15 @@ def stress_panels(
     return _panels(pieces_behind(slope, edges, kinks, accuracy / 5), edges, jumps, accuracy)
 
 
-def smooth_panels(slope: Slope, edges: Array, accuracy: float) -> StressPanels | None:
+def smooth_panels(
+    slope: Slope, edges: Array, accuracy: float, kink: float = 0.0
+) -> StressPanels | None:
     """Resolve G where each panel is one polynomial to this accuracy; None where some is not.
 
-    The weak kinks that G may have inside of the panels are below the accuracy. Parameters as of
-    `stress_panels`.
+    The weak kinks that G may have inside of the panels, each at most the part `kink` of G, are
+    below the accuracy. Parameters as of `stress_panels`.
     """
-    pieces = whole_pieces(slope, edges, accuracy)
+    pieces = whole_pieces(slope, edges, accuracy, kink)
     none = Jumps(np.empty(0), np.empty(0))
     # A dozen of the last coefficients are left out.
     return None if pieces is None else _panels(pieces, edges, none, 12 * accuracy)

@@ -40,7 +40,7 @@ _ACCURACY: Final = 1e-11
 # holds two of the places where that is looked at.
 _TOGETHER: Final = 8
 # Kinks of g' larger than this, over the tolerance, are felt.
-_FELT: Final = 1e3
+_FELT: Final = 300.0
 _DECADE_ROUNDING: Final = 1e-6
 # At the rim of a narrow contact g' counts where its polynomial is worst.
 _MARGIN: Final = 8.0
@@ -325,7 +325,8 @@ class Tabulated(BehindFlat):
             # Near the axis g' may be small: there a kink is felt that is not farther out.
             near, far = self.r[:_TOGETHER], self.r[_TOGETHER:-1:_TOGETHER]
             edges = np.concatenate([near, far, self.r[-1:]])
-            found = smooth_panels(self._slope.source.to(accuracy).transform, edges, accuracy)
+            slope = self._slope.source.to(accuracy).transform
+            found = smooth_panels(slope, edges, accuracy, self._largest_kink)
             self._merged[decade] = found
         return self._merged[decade] or self._stress
 
