@@ -16,8 +16,8 @@ import numpy as np
 
 from mdr_core.history.adaptive import Integral, integrate
 from mdr_core.history.arcs import Plane, rising_root
-from mdr_core.history.bent import Points, Slips
 from mdr_core.history.branches import integral
+from mdr_core.history.vertices import Points, Slips
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
 

@@ -16,10 +16,10 @@ from mdr_core.history.adaptive import Integral
 from mdr_core.history.arc_branches import ArcBranches
 from mdr_core.history.arc_loss import per_step
 from mdr_core.history.arcs import Plane
-from mdr_core.history.bent import Points
 from mdr_core.history.branches import Branches, last_break, mean
 from mdr_core.history.memory import Chain, Tree
 from mdr_core.history.path import Steps
+from mdr_core.history.vertices import Points
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from mdr_core.errors import InputError
 from mdr_core.foundation import coordinate_from_depth, coordinate_from_force
 from mdr_core.history.arcs import Plane
-from mdr_core.history.bent import Points
+from mdr_core.history.vertices import Points
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
