@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test check bench costs rates faults sweeps charts figures openapi image-check lock clean
+.PHONY: run test random check bench costs rates faults sweeps charts figures openapi image-check lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -32,6 +32,9 @@ bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
 # Full-size figures of sweeps, for a machine that does nothing else: some minutes.
+random: .venv/development
+	$(BIN)/python -m tests.core.random_scenes
+
 sweeps: .venv/development
 	$(BIN)/python benchmarks/sweep_ratio.py
 	$(BIN)/python benchmarks/sweep_memory.py

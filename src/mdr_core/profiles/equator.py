@@ -1,4 +1,4 @@
-"""The surface beside a spheroid that is pressed in nearly to its equator.
+"""The surface about a spheroid that is pressed in nearly to its equator.
 
 There g' has a pole just behind the contact's edge, and a radius has no digits of its distance
 from it. In v = artanh(x/R) both are gone: g' dx = h (v sech^2 v + tanh v) dv.
@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.quadrature import graded_rule, halvings_towards
+from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards
 from mdr_core.typing import Array
 
 # Nodes by the tolerance: pieces have a half length of one in a strip of pi/2.
@@ -25,15 +25,33 @@ def slope_integral_beside(big_radius: float, v: float, r: Array, rtol: float) ->
     edge = _below_equator(big_radius, v)
     beyond = np.maximum((r - big_radius) + edge, 0.0)
     places, weights = _rule(v, _nearest_root(big_radius, edge, beyond), rtol)
-    down = v * places
-    at = v - down
-    x = big_radius * np.tanh(at)
-    density = at / np.cosh(at) ** 2 + np.tanh(at)
-    # a - x, with the digits of a short step.
-    short = big_radius * np.sinh(down) / (np.cosh(v) * np.cosh(at))
+    x, short, density = _stepped(big_radius, np.asarray(v), v * places)
     leg = np.sqrt(np.add.outer(short, beyond) * np.add.outer(x, r))
     angle = np.arctan2(x[:, None], leg)
     return np.asarray(v * ((weights * density) @ angle))
+
+
+def slope_integral_within(
+    big_radius: float, v: Array, width: Array, r: Array, rtol: float
+) -> Array:
+    """Return (1/h) int_c^r g'(x) arccos(x/r) dx for r = R tanh(v), c = R tanh(v - width).
+
+    With v - `width` u^2 for x the root at r is gone.
+
+    Source: mdr-5, Eq. (5.40), by parts; notes, §7.
+    """
+    u, weights = composite_rule(_points(rtol), ceil(float(width.max(initial=1.0))))
+    x, short, density = _stepped(big_radius, v, np.multiply.outer(u * u, width))
+    angle = np.arctan2(np.sqrt(short * (x + r)), x)
+    return np.asarray(width * ((2 * u * weights) @ (density * angle)))
+
+
+def _stepped(big_radius: float, v: Array, down: Array) -> tuple[Array, Array, Array]:
+    """x at v - down, how far it lies below R tanh(v), and g' dx/dv / h."""
+    at = v - down
+    x = big_radius * np.tanh(at)
+    short = big_radius * np.sinh(down) / (np.cosh(v) * np.cosh(at))
+    return x, short, at / np.cosh(at) ** 2 + np.tanh(at)
 
 
 def _below_equator(big_radius: float, v: float) -> float:
@@ -57,6 +75,9 @@ def _nearest_root(big_radius: float, edge: float, beyond: Array) -> float:
 
 def _rule(v: float, root: float, rtol: float) -> tuple[Array, Array]:
     """Nodes and weights on [0, 1], the edge at 0, where pieces halve down to the nearest root."""
-    points = next(count for limit, count in _POINTS if rtol >= limit)
     count = ceil(v / _PIECE)
-    return graded_rule(points, halvings_towards(root * count / v), count)
+    return graded_rule(_points(rtol), halvings_towards(root * count / v), count)
+
+
+def _points(rtol: float) -> int:
+    return next(count for limit, count in _POINTS if rtol >= limit)

@@ -10,7 +10,7 @@ from mdr_core.abel.polynomial import single
 from mdr_core.abel.roots import arc, between
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
-from mdr_core.profiles.equator import slope_integral_beside
+from mdr_core.profiles.equator import slope_integral_beside, slope_integral_within
 from mdr_core.profiles.power_kernels import root_step
 from mdr_core.profiles.profile import Profile, require_positive
 from mdr_core.profiles.smooth_tip import smooth_tip_kernel
@@ -18,7 +18,7 @@ from mdr_core.profiles.stable import atan_gap, tanh_gap
 from mdr_core.typing import Array, Chosen, Parameter
 
 _EQUATOR: Final = 17.0
-# From here on, a tenth of R before the equator, the pole there is felt outside the contact.
+# From here on, a tenth of R before the equator, radii have not the digits for the pole there.
 _NEAR_EQUATOR: Final = 1.5
 # Up to this v, 0.8 of the radius, a polynomial may be short.
 _SHALLOW: Final = 1.1
@@ -115,11 +115,23 @@ class Spheroid(Profile):
     def scale(self) -> Parameter:
         return 1.0
 
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        v = self._rapidity(r)
+        if not v.max(initial=0.0) > _NEAR_EQUATOR:
+            return super().slip_kernel(c, r, rtol)
+        width = self.coordinate_width(r, c, v, self._rapidity(c))
+        big, height = self._axes
+        return 2 / np.pi * height * slope_integral_within(big, v, width, r, rtol)
+
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
-        if coordinate < _NEAR_EQUATOR:
+        if not coordinate > _NEAR_EQUATOR:
             return super().outer_displacement(a, r, rtol, coordinate)
-        big, height = (float(np.asarray(part)) for part in (self.radius, self.height))
+        big, height = self._axes
         return 2 / np.pi * height * slope_integral_beside(big, coordinate, r, rtol)
+
+    @property
+    def _axes(self) -> tuple[float, float]:
+        return float(np.asarray(self.radius)), float(np.asarray(self.height))
 
     def pressure_kernel(
         self,
