@@ -54,6 +54,15 @@ def test_pressure_next_to_nodes_and_edge(kind: Any, grading: int, a: float) -> N
 
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
+def test_pressure_on_either_side_of_a_node_next_to_the_edge(kind: Any) -> None:
+    """What lies between radius and node is as short as what lies between node and edge."""
+    r = END * np.linspace(0, 1, 4) ** 1.5
+    node = float(r[2])
+    radii = [node * (1 - part * 1e-9) for part in (1.0, 10.0, 100.0)] + [node * (1 + 1e-8)]
+    assert worst_pressure(r, kind, node * (1 + 1e-6), radii) <= INTERPOLANT
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
 @pytest.mark.parametrize("gap", [1e-5, 1e-4, 1e-2])
 def test_pressure_where_two_radii_nearly_agree(kind: Any, gap: float) -> None:
     r = np.linspace(0, END, 22)

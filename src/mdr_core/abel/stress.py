@@ -84,12 +84,19 @@ class StressPanels:
             value = chebyshev.chebval(np.clip((s - middle) / half, -1, 1), row)
             return np.asarray((value * s + pole) / x)
 
-        return Branch(base, weight, float(np.hypot(base, stop)), start=float(np.hypot(base, start)))
+        return Branch(base, weight, float(self._ends[piece]), start=float(np.hypot(base, start)))
 
     @cached_property
     def _first(self) -> Indices:
         """First piece of each panel, and the number of all."""
         return np.append(np.flatnonzero(self.start == 0), self.base.size)
+
+    @cached_property
+    def _ends(self) -> Array:
+        """Where each piece ends as a radius: the last of a panel on its edge, to the last bit."""
+        ends = np.hypot(self.base, self.stop)
+        ends[self._first[1:] - 1] = self.edges[1:]
+        return np.asarray(ends)
 
     @cached_property
     def _powers(self) -> PowerPanels:
@@ -289,7 +296,7 @@ class StressPanels:
         with np.errstate(divide="ignore", invalid="ignore"):
             width = annulus.width * (annulus.a + annulus.c) / (leg_a + leg_c)
         span = np.where(cut_twice, width, np.maximum(high - low, 0.0))
-        return low, high, span, np.where(high == leg_a, annulus.a, np.hypot(base, stop))
+        return low, high, span, np.where(high == leg_a, annulus.a, self._ends[piece])
 
     def _nodes(self, piece: Indices, low: Array, span: Array, count: int) -> tuple[Array, Array]:
         """Gauss' nodes of pieces from `low` on, as steps from there, and the masses G dx."""
