@@ -39,6 +39,9 @@ _RESOLVED: Final = 2.4
 _MOMENT_POINTS: Final = 16
 _MOMENT_BLOCK: Final = 65_536
 
+# The slope at a coordinate, which is that of a break and how far it lies past it.
+_Slope = Callable[[Array, Array, Array], Array]
+
 
 def depth_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
     """Return d(a) - d(c) = int_c^a g' dx [length]. Source: mdr-5, Eq. (5.20); notes, §1.
@@ -48,7 +51,8 @@ def depth_step(profile: Profile, coordinate: Array, width: Array, stick: Array) 
     closed = profile.depth_step(coordinate, width, stick)
     if closed is not None:
         return closed
-    return _step(profile, profile.depth, profile.depth_slope, (coordinate, width, stick))
+    ends = coordinate, width, stick
+    return _step(profile, profile.depth, profile.depth_slope_behind, ends)
 
 
 def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
@@ -56,8 +60,11 @@ def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) 
     closed = profile.force_step(coordinate, width, stick)
     if closed is not None:
         return closed
-    ends = coordinate, width, stick
-    return _step(profile, profile.reduced_force, force_slope(profile), ends)
+
+    def slope(at: Array, start: Array, past: Array) -> Array:
+        return 2 * profile.contact_radius(at) * profile.depth_slope_behind(at, start, past)
+
+    return _step(profile, profile.reduced_force, slope, (coordinate, width, stick))
 
 
 def stick_from_force(
@@ -160,7 +167,7 @@ def _stick(
 
 
 def _step(
-    profile: Profile, function: Function, slope: Function, ends: tuple[Array, Array, Array]
+    profile: Profile, function: Function, slope: _Slope, ends: tuple[Array, Array, Array]
 ) -> Array:
     """function(high) - function(low), by the integral of its slope where they are close."""
     high, width, low = np.broadcast_arrays(*ends)
@@ -204,7 +211,7 @@ def _has_many_breaks(profile: Profile) -> bool:
     return profile.coordinate_breaks.size > 1 and not profile.swept
 
 
-def _narrow_step(slope: Function, high: Array, width: Array, below: Array) -> Array:
+def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Array:
     """int slope ds over [high - width, high], split at the break `below` if that is inside.
 
     Behind a break the slope is smooth in v, s = break + v^2.
@@ -218,14 +225,15 @@ def _narrow_step(slope: Function, high: Array, width: Array, below: Array) -> Ar
     with np.errstate(invalid="ignore"):
         half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
     v = bottom + np.multiply.outer(1 + nodes, half)
+    past = v * v
     # Rounding must not carry a node beyond the edge: a break may lie there.
-    at = np.minimum(below + v * v, high)
+    at = np.minimum(below + past, high)
     with np.errstate(invalid="ignore"):
-        total = half * _summed(weights, 2 * v * slope(at))
+        total = half * _summed(weights, 2 * v * slope(at, below, past))
     outer = width - inner
     if np.any(outer > 0):
         s = low + np.multiply.outer(1 + nodes, outer / 2)
-        values = np.where(outer > 0, slope(s), 0.0)
+        values = np.where(outer > 0, slope(s, s, np.zeros_like(s)), 0.0)
         total = total + outer / 2 * _summed(weights, values)
     return np.asarray(total)
 
@@ -299,10 +307,12 @@ def _moment_block(profile: Profile, high: Array, width: Array) -> Array:
     with np.errstate(invalid="ignore"):
         half = np.where(length > 0, length / (top + bottom), 0.0)[..., None] / 2
     v = bottom[..., None] + half * (1 + nodes)
-    s = np.minimum(below[..., None] + v * v, high[..., None])
+    past = v * v
+    start = np.broadcast_to(below[..., None], past.shape)
+    s = np.minimum(start + past, high[..., None])
     at_nodes = _over_nodes(profile)
     with np.errstate(all="ignore"):
-        rise = np.where(half > 0, 2 * v * half * at_nodes.depth_slope(s), 0.0)
+        rise = np.where(half > 0, 2 * v * half * at_nodes.depth_slope_behind(s, start, past), 0.0)
         run = np.where(half > 0, 2 * v * half * at_nodes.radius_slope(s), 0.0)
     piece = (rise * weights).sum(axis=-1)
     # Rows run from the contact's edge inwards.

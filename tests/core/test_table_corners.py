@@ -231,3 +231,23 @@ def test_slip_that_ends_next_to_a_node(kind: Any, place: float) -> None:
             true = exact.pressure(x, mpf(EDGE))
             true -= exact.pressure(x, mpf(float(c))) if x < c else 0
             assert abs(mpf(float(value)) / true - 1) <= INTERPOLANT
+
+
+@pytest.mark.parametrize("flat", [0.0, 0.1])
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
+def test_the_first_slip_next_to_a_kink(flat: float, gap: float) -> None:
+    """The slope's root behind a kink is that of the distance from it, which a radius has lost."""
+    r = END * np.linspace(0, 1, 13)
+    f = np.maximum(r - flat, 0.0) ** 2
+    profile = Tabulated(r, f, "linear")
+    node = float(r[8])
+    for above, below in ((1.0, 1.0), (1.0, 0.01), (0.01, 1.0), (1.0, -0.3)):
+        a, c = node * (1 + above * gap), node * (1 - below * gap)
+        contact = solve(profile, 1.0, contact_radius=a)
+        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        with mp.workdps(TABLE_DIGITS):
+            exact = Table({"r": r.tolist(), "f": f.tolist(), "interpolation": "linear"})
+            depth = exact.g(mpf(a)) - exact.g(mpf(c))
+            force = exact.force(mpf(a)) - exact.force(mpf(c))
+        assert float(pushed.tangential_displacement) == pytest.approx(float(depth), rel=1e-11)
+        assert float(pushed.tangential_force) == pytest.approx(float(force), rel=1e-11)

@@ -162,6 +162,10 @@ class Profile(ABC):
         """Derivative of the depth with respect to the contact coordinate."""
         return self.dg(coordinate)
 
+    def depth_slope_behind(self, coordinate: Array, start: Array, past: Array) -> Array:
+        """`depth_slope` at start + past, by the digits of `past` where a kink lies at `start`."""
+        return self.depth_slope(coordinate)
+
     def radius_slope(self, coordinate: Array) -> Array:
         """Derivative of the contact radius with respect to the contact coordinate."""
         return np.ones_like(coordinate)

@@ -166,6 +166,25 @@ class Tabulated(BehindFlat):
         total = slope * (s / a) + np.where(first, edge / a, 0.0)
         return np.asarray(total.reshape(np.shape(coordinate)))
 
+    def depth_slope_behind(self, coordinate: Array, start: Array, past: Array) -> Array:
+        """The root that a node's kink leaves in the slope is that of the distance from it."""
+        place, start, past = (
+            np.ravel(part) for part in np.broadcast_arrays(coordinate, start, past)
+        )
+        nodes, slope = self.coordinate_breaks, self._slope.source
+        behind = np.flatnonzero(np.isin(start, nodes))
+        if not behind.size or slope.jumps is None:
+            return self.depth_slope(coordinate)
+        result = self.depth_slope(place)
+        start, past, place = start[behind], past[behind], place[behind]
+        panel = np.searchsorted(nodes, start) + self.r.size - 1 - nodes.size
+        node, radius = self.r[panel], self.contact_radius(place)
+        stretch = (place / radius) if self.flat_radius else 1.0
+        gap = past * (2 * start + past) / (radius + node) if self.flat_radius else past
+        root = slope.jumps[panel] / np.sqrt(np.where(gap > 0, gap, np.inf)) / np.sqrt(radius + node)
+        result[behind] = stretch * (slope.transform(node, gap) + root)
+        return result.reshape(np.shape(coordinate))
+
     @cached_property
     def _cubics(self) -> Array:
         """Coefficients (4, panels) of f in r - r_i, ascending, segment by segment."""
@@ -286,8 +305,8 @@ class Tabulated(BehindFlat):
         branches = self._panels_for(rtol).branches
         return 2 / np.pi * slope_integral(branches, c, r, r, rtol, outside=False)
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, depth: float) -> Array:
-        del depth
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        del coordinate
         branches, axis = self._panels_for(rtol).branches, np.zeros_like(r)
         return 2 / np.pi * slope_integral(branches, axis, a, r, rtol, outside=True)
 
