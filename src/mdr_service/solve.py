@@ -72,14 +72,15 @@ class Stress:
     def method(self) -> str:
         """The dearest route that was taken."""
         closed = _FOUNDATION.union(self.contact.profile.closed_forms)
+        if isinstance(self.result, History) and self.result.state.curved:
+            # Over arcs there is nothing but integrals.
+            closed -= _SHEAR_FIELDS.keys()
         return self.contact.method if closed.issuperset(self.fields) else "quadrature"
 
     @property
     def error_estimate(self) -> float:
         """Bound on the error of each field, relative to its largest value."""
         known = self.result.error_estimate
-        if isinstance(self.result, History):
-            known = max(known, self.result.state_error_estimate)
         return known if self.method == "closed_form" else max(known, self.contact.rtol)
 
     @property
@@ -155,7 +156,6 @@ def notices(query: Query, result: Result | Wear) -> list[Notice]:
     if isinstance(result, NormalContact):
         pressed = result
     elif isinstance(result, History):
-        found += _about_fronts(result)
         pressed = result.contact
         friction = {
             "friction_coefficient": result.start.friction_coefficient,
@@ -212,20 +212,6 @@ def smooth(history: History) -> History:
         samples_per_step=min(samples, _STEPS),
         rtol=max(history.rtol, _VISIBLE),
     )
-
-
-def _about_fronts(history: History) -> list[Notice]:
-    """Return what is to be said of the end's memory, which is not as exact as the answers."""
-    known = history.state_error_estimate
-    if known <= max(history.rtol, history.error_estimate):
-        return []
-    return [
-        Notice(
-            "accuracy",
-            "on this curved way the slip fronts and the fields of the end are known to "
-            f"{known:.1e} only",
-        )
-    ]
 
 
 def _solved(query: StressQuery) -> Result:

@@ -126,7 +126,7 @@ def test_panels_taken_as_one_keep_the_tolerance(a: float) -> None:
     """At a loose tolerance the kinks between the panels of a smooth table are not resolved."""
     r = np.linspace(0, END, 200)
     profile = Tabulated(r, sphere(r))
-    assert profile._panels_for(1e-6).base.size < profile._stress.base.size / 4
+    assert profile.panels(1e-6).base.size < profile._stress.base.size / 4
     contact = solve(profile, 1.0, contact_radius=a, rtol=1e-6)
     pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=a * (1 - 1e-4))
     radii = [a * part for part in (0.31, 0.93, 1 - 1e-5, 1 - 1e-9)]
@@ -166,7 +166,7 @@ def test_no_kink_is_passed_over() -> None:
     noisy[203] *= 1 + 1e-5
     for f in (bent, noisy):
         profile = Tabulated(r, f)
-        assert profile._panels_for(1e-6) is profile._stress
+        assert profile.panels(1e-6) is profile._stress
 
 
 @pytest.mark.parametrize("points", [3, 4, 5, 40])

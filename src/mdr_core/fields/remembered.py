@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import annulus
+from mdr_core.fields.on_arcs import Arc, anchor_step
 from mdr_core.fields.rows import fill, grid_through, kernel, slip_kernel
 from mdr_core.history import State
 from mdr_core.normal import Load
@@ -41,11 +42,14 @@ def shear_stress(state: State, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
     >>> bool(abs(shear_stress(way.state, [0.0])[0] / (0.5 * 0.1 * np.log(1 / c)) - 1) < 1e-13)
     True
     """
+    scale = state.friction_coefficient * state.e_star / np.pi
 
     def values(r: Array, highest: float) -> Array:
         result = np.zeros(r.shape)
         for load, slip_annulus, modulus in _pieces(state):
             result += kernel(load, r, highest, slip_annulus, modulus, rtol)
+        for arc in _arcs(state):
+            result += scale * arc.stress(r, rtol)
         return result
 
     return fill((), [values], radius)
@@ -62,9 +66,10 @@ def slip(state: State, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
     profile = state.profile
     # The edge as another route gives it, to the last digit but one, belongs to the contact.
     a = state.contact_radius * _EDGE
-    bends = np.diff(state.slope, prepend=0.0)
+    pieces = state.pieces
+    bends = np.diff(np.where(pieces.rate == 0, pieces.slope, 0.0), prepend=0.0, append=0.0)
     # S(0; r) and S(b; r) are the same: g is zero on a flat.
-    fronts = np.append(0.0, profile.contact_radius(state.coordinate[1:-1]))[: bends.size]
+    fronts = np.append(0.0, profile.contact_radius(pieces.coordinate[1:]))[: bends.size]
 
     def values(r: Array, _highest: float) -> Array:
         result = np.zeros(r.shape)
@@ -72,6 +77,9 @@ def slip(state: State, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
             inside = (r > front) & (r <= a)
             if bend != 0 and inside.any():
                 result[inside] -= bend * slip_kernel(profile, front, r[inside], rtol)
+        inside = r <= a
+        for arc in _arcs(state):
+            result[inside] -= arc.slip(r[inside], rtol)
         return state.compliance * result
 
     return fill((), [values], radius)
@@ -83,7 +91,8 @@ def foundation_shear(state: State, radius: ArrayLike) -> Array:
     It is linear in g(x) between the fronts. Source: notes, §10. Errors as of `shear_stress`.
     """
     profile, scale = state.profile, state.friction_coefficient * state.e_star
-    edges = profile.contact_radius(state.coordinate)
+    pieces = state.pieces
+    edges = profile.contact_radius(pieces.coordinate)
 
     def values(r: Array, _highest: float) -> Array:
         result = np.zeros(r.shape)
@@ -95,12 +104,19 @@ def foundation_shear(state: State, radius: ArrayLike) -> Array:
         # The piece in which each radius lies; a flat carries what its edge does.
         x = np.maximum(r, edges[0])
         index = np.clip(np.searchsorted(edges, x, side="left") - 1, 0, edges.size - 2)
-        at, top = profile.coordinate_from_radius(x), state.coordinate[index + 1]
+        at, top = profile.coordinate_from_radius(x), pieces.coordinate[index + 1]
         inside = r < edges[-1]
         upper = np.maximum(edges[index + 1], x)
         width = profile.coordinate_width(upper, x, np.maximum(top, at), at)
         step = annulus.depth_step(profile, np.maximum(top, at), width, at)
-        result[inside] = (state.load[index + 1] + scale * state.slope[index] * step)[inside]
+        # Of an arc the depths say nothing.
+        step = np.where(pieces.rate[index] == 0, pieces.slope[index] * step, 0.0)
+        for number in np.flatnonzero(pieces.rate):
+            chosen = index == number
+            end = float(pieces.coordinate[number + 1])
+            rate = float(pieces.rate[number])
+            step[chosen] = anchor_step(profile, rate, end, at[chosen], inverse=pieces.by_force)
+        result[inside] = scale * (pieces.load[index + 1] + step)[inside]
         return result
 
     return fill((), [values], radius)
@@ -124,18 +140,31 @@ def _pieces(state: State) -> list[tuple[Load, tuple[float, float] | None, float]
     profile, modulus = state.profile, state.friction_coefficient * state.e_star
     if not state.touches:
         return []
-    radii = profile.contact_radius(state.coordinate)
+    pieces = state.pieces
+    radii = profile.contact_radius(pieces.coordinate)
     found = []
     if profile.slips_at_once:
         # One spring stands for all: what it carries is the load of the kernel.
         depth, q = float(state.coordinate[-1]), float(state.load[0])
         load = Load(profile, state.e_star, depth, float(radii[-1]), None)
         return [(load, (abs(q) / modulus, load.a), np.copysign(modulus, q))] if q else []
-    for i, slope in enumerate(state.slope.tolist()):
-        if slope != 0:
+    for i, (slope, rate) in enumerate(zip(pieces.slope, pieces.rate, strict=True)):
+        if slope != 0 and rate == 0:
             load = Load(
-                profile, state.e_star, float(state.coordinate[i + 1]), float(radii[i + 1]), None
+                profile, state.e_star, float(pieces.coordinate[i + 1]), float(radii[i + 1]), None
             )
-            below = None if i == 0 else (float(state.width[i]), float(radii[i]))
+            below = None if i == 0 else (float(pieces.width[i]), float(radii[i]))
             found.append((load, below, slope * modulus))
+    return found
+
+
+def _arcs(state: State) -> list[Arc]:
+    """The pieces that are arcs."""
+    profile, pieces = state.profile, state.pieces
+    radii = profile.contact_radius(pieces.coordinate)
+    found = []
+    for i in np.flatnonzero(pieces.rate):
+        width = profile.radius_width(pieces.coordinate[i + 1], pieces.width[i])
+        ends = float(radii[i]), float(radii[i + 1]), float(width)
+        found.append(Arc(profile, float(pieces.rate[i]), pieces.by_force, *ends))
     return found

@@ -123,6 +123,11 @@ class ArcBranches(Branches):
         rise[self.arcs] = self._integrals[0] * self.tree.span[self.arcs] / self._integrals[2]
         return rise
 
+    @property
+    def anchor_step(self) -> Array:
+        """Anchor of each vertex above its parent's [length]."""
+        return self.tree.slope * (self._summed if self.by_force else self.depth_step)
+
     @cached_property
     def shear(self) -> Array:
         """F_x/(mu E*) of each vertex as a load point [length^2]."""

@@ -19,6 +19,7 @@ from mdr_core.history.arcs import Plane
 from mdr_core.history.branches import Branches, last_break, mean
 from mdr_core.history.memory import Chain, Tree
 from mdr_core.history.path import Steps
+from mdr_core.history.state import Pieces
 from mdr_core.history.vertices import Points
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
@@ -26,8 +27,8 @@ from mdr_core.typing import Array, Flags, Indices
 
 # Steps walked at once: bounds the memory, and keeps what is computed of them in cache.
 _BLOCK: Final = 16_384
-# Chords that stand for the arcs that are left at the end, for fields; they miss an arc by an
-# eighth of the square of their part of it.
+# Chords that stand for the arcs that are left at the end, for steps on from there; they miss an
+# arc by an eighth of the square of their part of it.
 _FEWEST: Final = 64
 _MOST: Final = 1024
 # The stress feels the slope of chords, which they miss by more.
@@ -55,6 +56,10 @@ class Followed(ABC):
     def end(self) -> Chain:
         """The polyline over depths at the end; of a gap, the one of `tops`' levels."""
 
+    def arcs(self) -> Pieces | None:
+        """The polyline at the end with its arcs, if there are any."""
+        return None
+
     @property
     def deviation(self) -> float:
         """How much the answers may miss for the curves, relative."""
@@ -62,7 +67,7 @@ class Followed(ABC):
 
     @property
     def chord(self) -> float:
-        """How much the polyline at the end misses, relative."""
+        """How much `end` misses, relative to the largest load of a spring."""
         return 0.0
 
 
@@ -188,13 +193,27 @@ class Arcs(Followed):
         felt = _ROUNDINGS * _EPS * highest / moved if moved > 0 else 0.0
         return max(missing, self._branches.missing) + felt
 
+    def arcs(self) -> Pieces | None:
+        """The polyline at the end with its arcs, if there are any."""
+        numbers = np.array([vertex.number for vertex in self._walked[0].stack], dtype=np.intp)
+        if numbers.size < 2:
+            return None
+        part, own = self._branches, numbers[1:]
+        rate = np.zeros(part.tree.level.shape)
+        rate[part.arcs] = part.rate
+        if not rate[own].any():
+            return None
+        above = np.append(np.cumsum(part.anchor_step[own][::-1])[::-1], 0.0)
+        columns = part.coordinate[numbers], part.width[own], part.tree.slope[own]
+        return Pieces(*columns, above, rate[own], by_force=self.by_force)
+
     def end(self) -> Chain:
         """The polyline over depths at the end, with chords for arcs; of a gap, over levels."""
         return self._end[0]
 
     @property
     def chord(self) -> float:
-        """How much the chords miss, relative to the largest load of a spring."""
+        """How much the chords of `end` miss, relative to the largest load of a spring."""
         return self._end[1]
 
     @cached_property

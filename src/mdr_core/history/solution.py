@@ -123,7 +123,9 @@ class History:
         chain = self.followed.end()
         if self.path.by_force and len(chain.forward) < 2:
             chain = memory.gap(min(float(self.indentation_depth[-1]), 0.0), 0.0)
-        return replace(self.start, chain=chain, chords=self.followed.curved)
+        return replace(
+            self.start, chain=chain, chords=self.followed.curved, curved=self.followed.arcs()
+        )
 
     @property
     def slip_fronts(self) -> Array:
@@ -151,7 +153,10 @@ class History:
 
     @property
     def state_error_estimate(self) -> float:
-        """The same for what is remembered at the end, where chords stand for arcs."""
+        """The same for what `advance` goes on from, where chords stand for arcs.
+
+        Fields of the end take the arcs themselves: for them `error_estimate` holds.
+        """
         return _SUMS * self.contact.error_estimate + self.followed.chord
 
     @property

@@ -1,7 +1,7 @@
 """What a contact remembers: the anchors of its springs, and one straight step on from there."""
 
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,22 @@ from mdr_core.typing import Array
 _CHORD: Final = 0.02
 
 
+class Pieces(NamedTuple):
+    """The polyline of anchors as it is, piece by piece from the axis outwards."""
+
+    coordinate: Array
+    """Contact coordinates of the breakpoints, shape (n + 1,)."""
+    width: Array
+    """Widths of the pieces in the contact coordinate, with their digits, shape (n,)."""
+    slope: Array
+    """Slope of the anchors in w, of an arc its mean, from -1 to 1."""
+    load: Array
+    """q_x/(mu E*) at the breakpoints [length], shape (n + 1,)."""
+    rate: Array
+    """On an arc the slope is rate 2 x, or rate/(2 x) where `by_force`; zero on straight pieces."""
+    by_force: bool
+
+
 @dataclass(frozen=True)
 class State:
     """A contact after any history, as the polyline of its springs' anchors.
@@ -34,7 +50,9 @@ class State:
     friction_coefficient: float
     chain: Chain
     chords: bool = False
-    """A curved way was followed in chords: not every vertex is a front."""
+    """Chords stand for arcs in `chain`: not every vertex is a front."""
+    curved: Pieces | None = None
+    """The polyline at the end of a curved way, if some of it is arcs."""
 
     @property
     def compliance(self) -> float:
@@ -90,6 +108,15 @@ class State:
         """Widths of the pieces in the contact coordinate, with the digits of their steps."""
         return _kept(self._branches.width[1:])
 
+    @cached_property
+    def pieces(self) -> Pieces:
+        """The polyline with its arcs; empty in a gap."""
+        if self.curved is not None:
+            return self.curved
+        load = self.load / (self.friction_coefficient * self.e_star)
+        straight = _kept(np.zeros(self.slope.shape))
+        return Pieces(self.coordinate, self.width, self.slope, load, straight, by_force=False)
+
     @property
     def contact_radius(self) -> float:
         """a [length]."""
@@ -100,6 +127,8 @@ class State:
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
         if self.profile.slips_at_once:
             return np.zeros(0)
+        if self.curved is not None:
+            return self.profile.contact_radius(self.curved.coordinate[1:-1])
         fronts = self.profile.contact_radius(self.coordinate[1:-1])
         return fronts[np.abs(np.diff(self.slope)) > _CHORD] if self.chords else fronts
 
@@ -137,7 +166,8 @@ def advance(state: State, indentation_depth: float, tangential_displacement: flo
 
     Springs that stick keep their anchors, springs that touch on the way take the displacement of
     that moment, springs that would carry more than mu q slip. A depth <= 0 ends the contact; its
-    return finds no memory.
+    return finds no memory. Of a state at the end of arcs, chords are walked on from: see
+    `History.state_error_estimate`.
 
     Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
 
@@ -161,4 +191,4 @@ def advance(state: State, indentation_depth: float, tangential_displacement: flo
         raise InputError(("history",), "must be finite")
     coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
     tree = memory.walk(state.chain, depth, shift / state.compliance, np.zeros(1, dtype=bool))
-    return replace(state, chain=tree.end)
+    return replace(state, chain=tree.end, curved=None)

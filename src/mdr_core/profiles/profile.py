@@ -9,6 +9,7 @@ import numpy as np
 
 from mdr_core import checks
 from mdr_core.abel.displacement import Branch, slope_integral
+from mdr_core.abel.stress import StressPanels
 from mdr_core.checks import first_index
 from mdr_core.errors import InputError
 from mdr_core.lazy import cached_property
@@ -269,6 +270,10 @@ class Profile(ABC):
         A profile smooth from the axis on needs no more than g' itself.
         """
         return (Branch(0.0, lambda x, _s, _index: self.dg(x), steepness=self.steepness),)
+
+    def panels(self, rtol: float) -> StressPanels | None:
+        """g' as panels that are resolved to a tolerance, where that is what is known of it."""
+        return None
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length], c <= r; (m,).

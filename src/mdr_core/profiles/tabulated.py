@@ -302,12 +302,12 @@ class Tabulated(BehindFlat):
     # The displacements feel kinks no more than the stresses do.
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
-        branches = self._panels_for(rtol).branches
+        branches = self.panels(rtol).branches
         return 2 / np.pi * slope_integral(branches, c, r, r, rtol, outside=False)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         del coordinate
-        branches, axis = self._panels_for(rtol).branches, np.zeros_like(r)
+        branches, axis = self.panels(rtol).branches, np.zeros_like(r)
         return 2 / np.pi * slope_integral(branches, axis, a, r, rtol, outside=True)
 
     @cached_property
@@ -324,7 +324,7 @@ class Tabulated(BehindFlat):
 
     @cached_property
     def _merged(self) -> dict[int, StressPanels | None]:
-        """What `_panels_for` has found out, by the decade of the tolerance."""
+        """What `panels` has found out, by the decade of the tolerance."""
         return {}
 
     @cached_property
@@ -332,7 +332,7 @@ class Tabulated(BehindFlat):
         """Of g' between two panels, relative to g'."""
         return inf if self._jumps.at.size else float(self._slope.source.kinks().max())
 
-    def _panels_for(self, rtol: float) -> StressPanels:
+    def panels(self, rtol: float) -> StressPanels:
         """Several panels in one, where no kink between them is felt at this tolerance."""
         decade = floor(log10(rtol) + _DECADE_ROUNDING)
         accuracy = 10.0**decade / _MARGIN
@@ -361,6 +361,6 @@ class Tabulated(BehindFlat):
     ) -> Array:
         a = self.contact_radius(coordinate) if edge is None else edge
         span = None if width is None else self.radius_width(coordinate, width)
-        value = self._panels_for(rtol).kernel(a, radius, rtol, span, inner)
+        value = self.panels(rtol).kernel(a, radius, rtol, span, inner)
         value *= modulus / np.pi
         return value
