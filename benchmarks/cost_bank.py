@@ -192,6 +192,17 @@ def stress(kind: str, rng: random.Random) -> dict[str, Any]:
     return query
 
 
+def left(kind: str, rng: random.Random) -> dict[str, Any]:
+    """Fields of what a way leaves, of all kinds of ways."""
+    if rng.random() < 0.7:
+        query = curved(kind, rng)
+    else:
+        query = base(kind, rng) | {"friction_coefficient": 0.3, "history": way(rng, 2)}
+    asked = {rng.choice(sorted(SHEAR)), *rng.sample(FIELDS, rng.choice([0, 0, 1, 2]))}
+    radii = np.linspace(0.0, 0.9, max(2, many(rng, 3.5)))
+    return query | {"quantities": sorted(asked), "radius": radii.tolist()}
+
+
 def wear(kind: str, rng: random.Random) -> dict[str, Any]:
     loads = many(rng, 3)
     query = base(kind, rng) | {
@@ -238,7 +249,7 @@ ASKED = {
     "evolution": evolution,
 }
 # Of the same question as another, but with a bank of its own.
-ALSO = {("history", "curved"): curved}
+ALSO = {("history", "curved"): curved, ("stress", "left"): left}
 
 
 def cases(kind: str, seed: str, count: int) -> Iterator[Case]:
@@ -355,6 +366,8 @@ def hold(kinds: Sequence[str]) -> None:
         everything += timed(cases(kind, "hold", HELD))
     for found, taken, text in everything:
         name = found.question if found.form == "json" else f"{found.question}, {found.form}"
+        if found.samples and found.question == "stress":
+            name += " of an end"
         if found.curved:
             name += ", curved"
         ratios[name].append((cost.estimated(found) / taken, f"{taken:.2g} s", text))

@@ -21,8 +21,6 @@ _COLUMNS: Final = {"normal": 6, "tangential": 12, "history": 9, "wear": 6, "evol
 
 # Legs of mixed control beyond these are taken together with the first.
 _FIRST_ARCS: Final = 8
-# Chords that stand for arcs where a field is asked for: as of `mdr_core.history`.
-_FEWEST_CHORDS, _MOST_CHORDS = 64, 1024
 _OF_SHEAR: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
 
 
@@ -159,18 +157,18 @@ def _history(sizes: Sizes) -> Counts:
         yield "history/kink sample", sizes.samples * digits
 
 
-def _on_chords(sizes: Sizes) -> Counts:
+def _on_arcs(sizes: Sizes) -> Counts:
+    """What the fields of the end take besides for arcs, of which few are left, or none."""
     if sizes.curved:
-        chords = min(max((8 * 10**-sizes.digits) ** -0.5, _FEWEST_CHORDS), _MOST_CHORDS)
-        chords *= len(_OF_SHEAR.intersection(sizes.quantities))
-        yield "chord", chords
-        yield "chord/number", chords * sizes.radii
+        yield "end of arcs", 1
+        for name in _OF_SHEAR.intersection(sizes.quantities):
+            yield f"{name}/number on arcs", sizes.radii
 
 
 def _stress(sizes: Sizes) -> Counts:
     if sizes.samples:
         yield from _history(sizes)
-        yield from _on_chords(sizes)
+        yield from _on_arcs(sizes)
     elif sizes.rubbed:
         yield from _tangential(sizes)
     else:

@@ -97,6 +97,16 @@ def _spherical_tip(draw: Draw) -> dict[str, Any]:
     return {"slope": slope, "tip_radius": _break(draw) * hypot(1, 1 / slope)}
 
 
+def _table(draw: Draw) -> dict[str, Any]:
+    """A few points of a smooth body, of a kinked one or of a cone, evenly and unevenly spread."""
+    r = 1.2 * np.linspace(0.0, 1.0, draw.choice([4, 6, 10])) ** draw.choice([0.7, 1.0, 2.0])
+    kinked = np.maximum(r - r[1], 0.0) ** 1.5
+    f = draw.choice([r * r, 0.3 * r, kinked, r * r / 2 + 0.1 * r**3])
+    # A cubic through the kinked one rings, and is refused.
+    way = draw.choice(["pchip", "linear"] if f is kinked else ["cubic", "pchip", "linear"])
+    return {"r": r.tolist(), "f": f.tolist(), "interpolation": way, "breaks": []}
+
+
 KINDS: dict[str, Callable[[Draw], dict[str, Any]]] = {
     "paraboloid": lambda draw: {"radius": _spread(draw, -1, 3)},
     "cone": lambda draw: {"slope": _spread(draw, -3, 0)},
@@ -124,6 +134,7 @@ KINDS: dict[str, Callable[[Draw], dict[str, Any]]] = {
         "tip_radius": _spread(draw, 0.5, 3),
         "radius": _spread(draw, -2, 0.4),
     },
+    "tabulated": _table,
 }
 
 
@@ -132,14 +143,14 @@ def scene(draw: Draw) -> Scene:
     kind = draw.choice(list(KINDS))
     profile = {"kind": kind, **KINDS[kind](draw)}
     made = profile_from(profile)
-    breaks = [float(b) for b in made.breaks if 0 < b < EDGE]
+    breaks = [float(b) for b in profile.get("r", made.breaks) if 0 < b < EDGE]
     sticks = [draw.uniform(0.02, 0.98), 1 - _spread(draw, -12, -1), _spread(draw, -6, -0.5)]
     stick = draw.choice([*sticks, *(_near(draw, b) for b in breaks)])
     flat = float(made.contact_radius(np.asarray(made.first_coordinate)))
     if not flat < stick < EDGE:
         return scene(draw)
     radii = [draw.uniform(0.01, 0.999), 1 - _spread(draw, -14, -2), _spread(draw, -8, -1)]
-    radii += [_near(draw, place) for place in (stick, *breaks)]
+    radii += [_near(draw, place) for place in (stick, *breaks[-2:])]
     radii += [1 + _spread(draw, -12, 2)]
     return Scene(profile, made, stick, radii, draw.choice(TOLERANCES))
 

@@ -92,12 +92,12 @@ class Table:
 
     def f(self, r: mpf) -> mpf:
         i = self.panel(r)
-        return mp.polyval(list(self.local[i]), r - self.knots[i])
+        return mp.polyval(list(self.local[i])[::-1], r - self.knots[i], asc=True)
 
     def df(self, r: mpf) -> mpf:
         i = self.panel(r)
         c, q, p, _ = self.local[i]
-        return mp.polyval([3 * c, 2 * q, p], r - self.knots[i])
+        return mp.polyval([p, 2 * q, 3 * c], r - self.knots[i], asc=True)
 
     def _angles(self, x: mpf, own: mpf | None) -> tuple[list[mpf], list[mpf]]:
         """sqrt(x^2 - x_j^2) and arccos(x_j/x) of the knots below x; `own` is the last root."""
