@@ -103,6 +103,7 @@ def _largest(found: Sizes, field: str, most: float) -> int:
         middle = (low + high) // 2
         tried: dict[str, Any] = {field: middle}
         if field == "samples":
-            tried["curved"] = found.curved * middle // found.samples
+            for part in ("curved", "forced"):
+                tried[part] = getattr(found, part) * middle // found.samples
         low, high = (middle, high) if estimated(found._replace(**tried)) <= most else (low, middle)
     return low

@@ -41,6 +41,8 @@ class Sizes(NamedTuple):
     samples: int = 0
     curved: int = 0
     """How many of the samples end a leg that is not straight."""
+    forced: int = 0
+    """How many of them have a normal force of their own."""
     kinked: bool = False
     """Whether the profile is a table of straight pieces."""
     nodes: int = 0
@@ -92,6 +94,7 @@ def _of_history(query: HistoryQuery) -> dict[str, Any]:
         "rubbed": True,
         "samples": sum(way.samples for way in given),
         "curved": sum(way.curved for way in given),
+        "forced": sum(way.forced for way in given),
     }
 
 
@@ -104,6 +107,7 @@ def _of_stress(query: StressQuery) -> dict[str, Any]:
         "rubbed": query.has_friction,
         "samples": query.history.samples if followed else 0,
         "curved": query.history.curved if followed else 0,
+        "forced": query.history.forced if followed else 0,
     }
 
 
@@ -144,6 +148,7 @@ def _history(sizes: Sizes) -> Counts:
     yield "history", 1
     if not sizes.curved:
         yield "history/sample", sizes.samples
+        yield "history/forced sample", sizes.forced
         return
     # Every round of the integrals takes all arcs at once, and more digits take more rounds.
     digits = sizes.digits

@@ -70,8 +70,6 @@ def test_every_example_in_every_form_has_a_cost(question: str, query: object) ->
 @pytest.mark.parametrize("kind", profiles.KINDS)
 def test_every_kind_has_every_rate_and_none_is_negative(kind: str) -> None:
     everything = {
-        "samples": 1,
-        "curved": 1,
         "kinked": kind == "tabulated",
         "nodes": 8,
         "radii": 1,
@@ -80,8 +78,10 @@ def test_every_kind_has_every_rate_and_none_is_negative(kind: str) -> None:
     base = sizes.Sizes("normal", kind, "json", 10.0)._replace(**everything)
     names = {
         name
-        for question, samples in itertools.product(QUESTIONS, (0, 1))
-        for name, _ in sizes.counts(base._replace(question=question, samples=samples))
+        for question, samples, curved in itertools.product(QUESTIONS, (0, 1), (0, 1))
+        for name, _ in sizes.counts(
+            base._replace(question=question, samples=samples, curved=curved)
+        )
     }
     assert all(cost.RATES[kind][name] >= 0 for name in names)
     if kind in {"series", "tabulated"}:
@@ -225,8 +225,11 @@ def test_what_takes_too_long_is_refused_with_what_would_not(
         field = {"radii would fit": "radii", "nodes would fit": "nodes"}.get(what, "loads")
         field = "samples" if what == "samples would fit" else field
         ratio = int(number) / getattr(found, field)
+        part = ratio if found.samples else 1
         fitting = found._replace(
-            **{field: int(number), "curved": int(found.curved * (ratio if found.samples else 1))}
+            **{field: int(number)},
+            curved=int(found.curved * part),
+            forced=int(found.forced * part),
         )
         assert cost.estimated(fitting) <= COMPUTE.most_seconds
     assert {error["pointer"] for error in document["errors"]} <= set(places)

@@ -195,6 +195,18 @@ class _Way(Strict):
         return self._changes * self.samples_per_step
 
     @property
+    def forced(self) -> int:
+        """How many of the samples have a normal force of their own, whose depth is to be found."""
+        if self.normal.control != "normal_force":
+            return 0
+        return self._normal_steps * self.samples_per_step
+
+    @property
+    @abstractmethod
+    def _normal_steps(self) -> int:
+        """On how many legs the normal load may change."""
+
+    @property
     @abstractmethod
     def _changes(self) -> int:
         """On how many legs both loads change."""
@@ -220,6 +232,10 @@ class History(_Way):
     @property
     def steps(self) -> int:
         return max(self.normal.count, self.tangential.count)
+
+    @property
+    def _normal_steps(self) -> int:
+        return self.normal.count
 
     @property
     def _changes(self) -> int:
@@ -250,6 +266,10 @@ class Cycles(_Way):
     @property
     def steps(self) -> int:
         return 2 + 2 * self.count
+
+    @property
+    def _normal_steps(self) -> int:
+        return self.steps if self.normal.amplitude else 1
 
     @property
     def _changes(self) -> int:
