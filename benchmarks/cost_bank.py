@@ -17,6 +17,7 @@ import argparse
 import json
 import random
 from collections import defaultdict
+from functools import partial
 from pathlib import Path
 from time import thread_time
 from typing import TYPE_CHECKING, Any
@@ -192,6 +193,16 @@ def stress(kind: str, rng: random.Random) -> dict[str, Any]:
     return query
 
 
+def alone(field: str, kind: str, rng: random.Random) -> dict[str, Any]:
+    """One field at many radii, where nothing else is felt."""
+    loads = many(rng, 1)
+    query = base(kind, rng) | {"quantities": [field], "points": round(10 ** rng.uniform(2.5, 4))}
+    query["load"] = normal_load(rng, loads, radius=kind != "flat_punch")
+    if field not in SHEAR:
+        return query
+    return query | {"friction_coefficient": 0.3, "tangential": tangential_load(rng, 1)}
+
+
 def left(kind: str, rng: random.Random) -> dict[str, Any]:
     """Fields of what a way leaves, of all kinds of ways."""
     if rng.random() < 0.7:
@@ -250,7 +261,9 @@ ASKED = {
     "evolution": evolution,
 }
 # Of the same question as another, but with a bank of its own.
-ALSO = {("history", "curved"): curved, ("stress", "left"): left}
+ALSO = {("history", "curved"): curved, ("stress", "left"): left} | {
+    ("stress", field): partial(alone, field) for field in FIELDS
+}
 
 
 def cases(kind: str, seed: str, count: int) -> Iterator[Case]:
@@ -258,6 +271,7 @@ def cases(kind: str, seed: str, count: int) -> Iterator[Case]:
     for (question, name), query in named.items():
         # What takes long is asked less often.
         few = count // 2 if question == "evolution" else count
+        few = count // 4 if name in FIELDS else few
         for number in range(few):
             rng = random.Random(f"{seed} {name} {kind} {number}")
             yield question, query(kind, rng), wire.MEDIA_TYPE
