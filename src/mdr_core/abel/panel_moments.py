@@ -8,12 +8,12 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.abel.interpolation import chebyshev_points
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
 
 _DEGREE: Final = 23
-_POINTS: Final = chebyshev.chebpts1(_DEGREE + 1)
-_TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_POINTS, _DEGREE))
+_POINTS, _TO_COEFFICIENTS = chebyshev_points(_DEGREE + 1)
 # Places in a panel of length one.
 PLACES: Final = (1 + _POINTS) / 2
 _EPS: Final = float(np.finfo(float).eps)

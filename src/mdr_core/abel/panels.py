@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.abel.interpolation import chebyshev_points
 from mdr_core.errors import AccuracyError
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
@@ -48,9 +49,7 @@ _CLOSING_IN: Final = 1e-3
 _UNDERFLOW: Final = float(np.finfo(float).tiny) / _EPS
 _NODES: Final = 32
 
-# Chebyshev points of the first kind, which leave out the ends, and values -> coefficients.
-_POINTS: Final = chebyshev.chebpts1(_DEGREE + 1)
-_TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_POINTS, _DEGREE))
+_POINTS, _TO_COEFFICIENTS = chebyshev_points(_DEGREE + 1)
 _TO_SLOPES: Final = chebyshev.chebval(_POINTS, chebyshev.chebder(np.eye(_DEGREE + 1), axis=0)).T
 
 

@@ -5,12 +5,11 @@ G(x) = g'(x) carries a root at every edge b, which s = sqrt(x^2 - b^2) takes awa
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
+from mdr_core.abel.interpolation import chebyshev_points
 from mdr_core.abel.panels import bisect
 from mdr_core.abel.roots import leg
 from mdr_core.typing import Array, Flags, Indices
@@ -51,13 +50,6 @@ class Pieces:
     stop: Array
     coefficients: Array
     error: float
-
-
-@lru_cache(maxsize=8)
-def _points(count: int) -> tuple[Array, Array]:
-    """Chebyshev points of the first kind, and values at them to coefficients."""
-    points = np.asarray(chebyshev.chebpts1(count), dtype=float)
-    return points, np.linalg.inv(chebyshev.chebvander(points, count - 1))
 
 
 def pieces_behind(
@@ -135,7 +127,7 @@ def _looked_at(
     different = sorted(set(counts.tolist()))
     for count in different:
         rows = counts == count
-        s[rows, :count] = np.multiply.outer(length[rows], (1 + _points(count)[0]) / 2)
+        s[rows, :count] = np.multiply.outer(length[rows], (1 + chebyshev_points(count)[0]) / 2)
     values = np.zeros(used.shape)
     values[used] = slope(np.repeat(base, counts), _offset(base[:, None], s)[used])
     largest = np.abs(values).max(axis=1)
@@ -143,7 +135,7 @@ def _looked_at(
     tail = np.empty(base.size)
     for count in different:
         rows = np.flatnonzero(counts == count)
-        found = values[rows, :count] @ _points(count)[1].T
+        found = values[rows, :count] @ chebyshev_points(count)[1].T
         coefficients[rows, :count] = found
         tail[rows] = np.abs(found[:, -_LAST:]).max(axis=1)
     at_end = values[np.arange(base.size), counts - 1]
@@ -163,7 +155,7 @@ def whole_pieces(slope: Slope, edges: Array, tolerance: float, kink: float) -> P
     rest = panel
     few = tolerance >= _COARSE and kink <= _MISSED * tolerance
     for count in (_FIRST_LOOK, DEGREE + 1) if few else (DEGREE + 1,):
-        points, inverse = _points(count)
+        points, inverse = chebyshev_points(count)
         s = np.multiply.outer(length[rest], (1 + points) / 2)
         b = np.repeat(base[rest], count)
         values = slope(b, _offset(b, s.ravel())).reshape(s.shape)

@@ -13,8 +13,8 @@ from operator import mul
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
+from mdr_core.abel.interpolation import chebyshev_points
 from mdr_core.typing import Array
 
 #: The loosest tolerances, for which a tenth of what is asked is left out.
@@ -28,10 +28,9 @@ _SHORTEST: Final = 2.0**-5
 # Terms of each sum, so that there always are some.
 _FEWEST: Final = 3
 _DEGREE: Final = 32
-_PLACES: Final[Array] = np.asarray(chebyshev.chebpts1(_DEGREE + 1))
+_PLACES, _TO_COEFFICIENTS = chebyshev_points(_DEGREE + 1)
 # The places on [0, 1].
 _SPREAD: Final[Array] = np.asarray((_PLACES + 1) * 0.5)
-_TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_PLACES, _DEGREE))
 _EPSILON: Final = float(np.finfo(float).eps)
 # Powers x points handled at once: they stay in the processor's cache.
 _BLOCK: Final = 32_768

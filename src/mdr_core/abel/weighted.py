@@ -6,14 +6,14 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.abel.interpolation import chebyshev_points
 from mdr_core.abel.pieces import DEGREE
 from mdr_core.abel.stress import StressPanels
 from mdr_core.typing import Array
 
 # The factor is known by its values at these points of a piece.
-_POINTS: Final = np.asarray(chebyshev.chebpts1(DEGREE + 1), dtype=float)
+_POINTS, _TO_COEFFICIENTS = chebyshev_points(DEGREE + 1)
 _AT_POINTS: Final = np.asarray(chebyshev.chebvander(_POINTS, DEGREE).T, dtype=float)
-_FROM_POINTS: Final = np.linalg.inv(_AT_POINTS)
 
 
 def times_radius(panels: StressPanels) -> StressPanels:
@@ -33,7 +33,7 @@ def times_radius(panels: StressPanels) -> StressPanels:
     s, x, base, pole = _places(panels)
     # What is left of pole x/s beyond its part at the break.
     value = panels.coefficients @ _AT_POINTS * x + pole * s / (x + base)
-    return replace(panels, coefficients=value @ _FROM_POINTS, pole=panels.pole * panels.base)
+    return replace(panels, coefficients=value @ _TO_COEFFICIENTS.T, pole=panels.pole * panels.base)
 
 
 def over_radius(panels: StressPanels) -> StressPanels:
@@ -41,7 +41,9 @@ def over_radius(panels: StressPanels) -> StressPanels:
     s, x, base, pole = _places(panels)
     outside = np.where(base > 0, base, 1.0)
     value = panels.coefficients @ _AT_POINTS / x - pole * s / (x * outside * (x + base))
-    return replace(panels, coefficients=value @ _FROM_POINTS, pole=panels.pole / outside[:, 0])
+    return replace(
+        panels, coefficients=value @ _TO_COEFFICIENTS.T, pole=panels.pole / outside[:, 0]
+    )
 
 
 def _places(panels: StressPanels) -> tuple[Array, Array, Array, Array]:

@@ -19,13 +19,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.special import gamma, rgamma
 
+from mdr_core.abel.interpolation import chebyshev_points
 from mdr_core.typing import Array
 
 # Of the plain series at 1/2, whose terms end at 1e-19, and of the polynomials made of it.
 _TERMS: Final = 64
 _DEGREE: Final = 22
-_PLACES: Final = chebyshev.chebpts1(_DEGREE + 1)
-_TO_COEFFICIENTS: Final = np.linalg.inv(chebyshev.chebvander(_PLACES, _DEGREE))
+_PLACES, _TO_COEFFICIENTS = chebyshev_points(_DEGREE + 1)
 # Next to an even power the axis' two parts cancel, and far above one its series grows first.
 _MOST_LOST: Final = 4.0
 _STEEPEST: Final = 6.0
