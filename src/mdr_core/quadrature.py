@@ -31,6 +31,8 @@ _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
 _CALL: Final = 2000
 _LOG_LARGEST: Final = 700.0
+# Nodes of equal pieces by the tolerance: their half length is one in a strip of pi/2.
+_NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 # What lies nearer than this to the end of a piece lies on it.
 _NEAREST: Final = 2.0**-52
 # Nodes x integrals handled at once: the temporaries stay in the processor's cache.
@@ -250,12 +252,21 @@ def composite_rule(points: int, count: int) -> tuple[Array, Array]:
     return ((starts + (nodes + 1) / 2) / count).ravel(), np.tile(weights / (2 * count), count)
 
 
+def nodes_of_pieces(rtol: float) -> int:
+    """Return how many nodes a piece of length two needs where h is analytic for |Im y| < pi/2."""
+    return next(count for limit, count in _NODES_OF_PIECES if rtol >= limit)
+
+
 @lru_cache(maxsize=256)
 def graded_rule(points: int, halvings: int, count: int = 1) -> tuple[Array, Array]:
     """Nodes and weights on [0, 1], cut into equal pieces of which the first halves towards 0."""
-    nodes, weights = gauss_legendre(points)
     first = np.append(0.0, 0.5 ** np.arange(halvings, -1, -1))
-    ends = np.append(first, np.arange(2, count + 1)) / count
+    return piecewise_rule(points, np.append(first, np.arange(2, count + 1)) / count)
+
+
+def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
+    """Nodes and weights on pieces between all the ends."""
+    nodes, weights = gauss_legendre(points)
     width = np.diff(ends)[:, None]
     return (ends[:-1, None] + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
 

@@ -13,7 +13,13 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.roots import Weight
-from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards
+from mdr_core.quadrature import (
+    composite_rule,
+    graded_rule,
+    halvings_towards,
+    nodes_of_pieces,
+    piecewise_rule,
+)
 from mdr_core.typing import Array, Indices
 
 # Above this part of the reach the angle resolves the root at r; below it the weight is smooth in
@@ -26,24 +32,28 @@ _LOG_RANGE: Final = 690.0
 _STEEP: Final = 8.0
 # A stretch over which the radius grows by a factor of e takes so many times the pieces.
 _SPARE: Final = 1.5
-# Nodes by the tolerance: pieces have a half length of one in a strip of pi/2.
-_POINTS: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
+# Of the tolerance, and of what is left of an integral next to the axis: so much is left out there.
+_LEFT_OUT: Final = 1e-2
+_LEAST_LEFT_OUT: Final = 1e-17
 
 
 @dataclass(frozen=True)
 class Branch:
     """A stretch base <= x <= stop on which weight(x, s, index) = g'(x) s/x is analytic in s.
 
-    s = sqrt(x^2 - base^2); the stretch may begin only at `start`. Below `reach` times the radius
-    nothing of the integral is left; `steepness` is the highest power that g' resembles, `pole`
-    a radius beyond `stop` where it is infinite, and at s = -`behind` it is not analytic.
+    s = sqrt(x^2 - base^2); the stretch may begin only at `start`. On the axis g(x) is at most
+    `tip_size` g(a) (x/a)^`tip`; `steepness` is the highest power that g' resembles, `pole` a radius
+    beyond `stop` where it is infinite, and at s = -`behind` it is not analytic. `of_powers`: g' is
+    a sum of powers, as smooth in log(x) at any distance from the edge as these are.
     """
 
     base: float
     weight: Weight
     stop: float = inf
-    reach: float = 1e-18
     start: float = 0.0
+    tip: float = 1.0
+    tip_size: float = 1.0
+    of_powers: bool = False
     steepness: float = 3.5
     pole: float = inf
     behind: float = inf
@@ -64,6 +74,28 @@ def arcsine(x: Array, leg: Array) -> Array:
 
 
 @dataclass(frozen=True)
+class _Way:
+    """What the slope is weighted with, as x^`order` on the axis, and how exactly."""
+
+    kernel: Kernel
+    order: int
+    rtol: float
+
+    @property
+    def points(self) -> int:
+        """Nodes of a piece."""
+        return nodes_of_pieces(self.rtol)
+
+    def felt(self, branch: Branch) -> float:
+        """How far down from the upper end x itself is felt, in its logarithm."""
+        return log(branch.tip_size / max(_LEFT_OUT * self.rtol, _LEAST_LEFT_OUT))
+
+    def reach(self, branch: Branch) -> float:
+        """The same of the integral."""
+        return min(self.felt(branch) / (branch.tip + self.order), _LOG_RANGE)
+
+
+@dataclass(frozen=True)
 class _Ends:
     """Where a stretch starts and ends: its s there, sqrt(r^2 - x^2) there, and s at r itself."""
 
@@ -81,8 +113,7 @@ def slope_integral(
 
     Source: mdr-5, Eqs. (5.41), (5.75), integrated by parts; notes, §7. All of shape (m,).
     """
-    points = next(count for limit, count in _POINTS if rtol >= limit)
-    kernel = arcsine if outside else arccosine
+    way = _Way(arcsine, 1, rtol) if outside else _Way(arccosine, 0, rtol)
     total = np.zeros_like(r)
     for branch in branches:
         start = np.maximum(low, max(branch.base, branch.start))
@@ -93,7 +124,7 @@ def slope_integral(
             s_low, s_high, s_r = (_leg(x, branch.base) for x in (start, end, far))
             leg_low, leg_high = (np.sqrt((far - x) * (far + x)) for x in (start, end))
             ends = _Ends(s_low, s_high, s_r, leg_low, leg_high)
-            total[index] += _branch(branch, ends, kernel, points)
+            total[index] += _branch(branch, ends, way)
     return total
 
 
@@ -110,7 +141,7 @@ def annulus_integral(
     `below(x)` = low - x, with the digits that the difference of two radii may not have.
     Source: notes, §7. All of shape (m,).
     """
-    points = next(count for limit, count in _POINTS if rtol >= limit)
+    way = _Way(kernel, 0, rtol)
     total = np.zeros_like(low)
     for branch in branches:
         begin = max(branch.base, branch.start)
@@ -120,7 +151,7 @@ def annulus_integral(
         index = np.flatnonzero(inside)
         if index.size:
             ends = _annulus_ends(branch, low, width, below, index)
-            total[index] += _branch(branch, ends, kernel, points)
+            total[index] += _branch(branch, ends, way)
     return total
 
 
@@ -149,7 +180,7 @@ def _annulus_ends(
     return _Ends(s_low, s_high, s_r, leg_low, leg(past, stop))
 
 
-def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int) -> Array:
+def _branch(branch: Branch, ends: _Ends, way: _Way) -> Array:
     base, s_r, s_low, s_high = branch.base, ends.s_r, ends.s_low, ends.s_high
     split = np.minimum(np.maximum(_UPPER * s_r, s_low), s_high)
     # Angles from the point itself, s = s_r cos(alpha): the narrow end is the exact one.
@@ -160,15 +191,15 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, points: int) -> Array:
     span = np.where(upper, np.arctan2(leg_split, split) - top, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
-    nodes, weights = _rule(branch, points, _pole_distance(branch, ends, top, span), stretch)
+    nodes, weights = _rule(branch, way.points, _pole_distance(branch, ends, top, span), stretch)
     alpha = top + nodes[:, None] * span
     s, leg = s_r * np.cos(alpha), s_r * np.sin(alpha)
     x = np.hypot(base, s)
     everything = np.arange(s_r.size)
-    total = span * (weights @ (branch.weight(x, s, everything) * kernel(x, leg) * leg))
+    total = span * (weights @ (branch.weight(x, s, everything) * way.kernel(x, leg) * leg))
     index = np.flatnonzero(split > s_low)
     if index.size:
-        total[index] += _lower(branch, s_low[index], split[index], s_r[index], kernel, points)
+        total[index] += _lower(branch, s_low[index], split[index], s_r[index], way)
     return np.asarray(total)
 
 
@@ -193,9 +224,7 @@ def _rule(branch: Branch, points: int, pole: float, stretch: float) -> tuple[Arr
     return graded_rule(points, halvings_towards(pole * pieces) + 1, pieces)
 
 
-def _lower(
-    branch: Branch, low: Array, high: Array, s_r: Array, kernel: Kernel, points: int
-) -> Array:
+def _lower(branch: Branch, low: Array, high: Array, s_r: Array, way: _Way) -> Array:
     """From s = low to high <= s_r/2, in y = arcsinh(s/base), or log(s) on the axis."""
     base = branch.base
     if base > 0:
@@ -204,29 +233,43 @@ def _lower(
     else:
         upper = np.log(high)
         with np.errstate(divide="ignore"):
-            length = np.minimum(upper - np.log(low), -np.log(branch.reach))
+            length = np.minimum(upper - np.log(low), way.reach(branch))
         length = np.minimum(length, upper + _LOG_RANGE)
     if not length.max() > 0:
         # Two neighbouring doubles may have one logarithm.
         return np.zeros_like(s_r)
     piece = _PIECE * min(1.0, _STEEP / branch.steepness)
     count = max(ceil(length.max() / piece), 1)
-    nodes, weights = composite_rule(points, count)
     part = count / float(length.max())
-    if branch.pole < inf:
+    if branch.of_powers:
+        nodes, weights = _rule_of_powers(piece, way.felt(branch), float(length.max()), way.points)
+    elif branch.pole < inf:
         # From the upper end on the pole is log(pole/x) away.
         distance = log(branch.pole / float(np.hypot(base, high.max())))
-        nodes, weights = graded_rule(points, halvings_towards(distance * part) + 1, count)
+        nodes, weights = graded_rule(way.points, halvings_towards(distance * part) + 1, count)
     elif branch.behind < inf:
         distance = asinh(branch.behind / base)
-        nodes, weights = graded_rule(points, halvings_towards(distance * part), count)
+        nodes, weights = graded_rule(way.points, halvings_towards(distance * part), count)
         nodes = 1 - nodes
+    else:
+        nodes, weights = composite_rule(way.points, count)
     y = upper - nodes[:, None] * length
     s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
     x = np.hypot(base, s)
     leg = np.sqrt((s_r - s) * (s_r + s))
-    values = branch.weight(x, s, np.arange(s_r.size)) * kernel(x, leg) * run
+    values = branch.weight(x, s, np.arange(s_r.size)) * way.kernel(x, leg) * run
     return np.asarray(length * (weights @ values))
+
+
+def _rule_of_powers(piece: float, felt: float, length: float, points: int) -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1] of the length, down from the upper end.
+
+    The higher a power, the sooner nothing is felt of it: at the distance y none above felt/y.
+    """
+    ends = [0.0]
+    while ends[-1] < length:
+        ends.append(ends[-1] + max(piece, _PIECE * _STEEP * ends[-1] / felt))
+    return piecewise_rule(points, np.array(ends) / ends[-1])
 
 
 def _leg(x: Array, base: float) -> Array:

@@ -9,11 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards
+from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards, nodes_of_pieces
 from mdr_core.typing import Array
 
-# Nodes by the tolerance: pieces have a half length of one in a strip of pi/2.
-_POINTS: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 _PIECE: Final = 2.0
 
 
@@ -40,7 +38,7 @@ def slope_integral_within(
 
     Source: mdr-5, Eq. (5.40), by parts; notes, §7.
     """
-    u, weights = composite_rule(_points(rtol), ceil(float(width.max(initial=1.0))))
+    u, weights = composite_rule(nodes_of_pieces(rtol), ceil(float(width.max(initial=1.0))))
     x, short, density = _stepped(big_radius, v, np.multiply.outer(u * u, width))
     angle = np.arctan2(np.sqrt(short * (x + r)), x)
     return np.asarray(width * ((2 * u * weights) @ (density * angle)))
@@ -76,8 +74,4 @@ def _nearest_root(big_radius: float, edge: float, beyond: Array) -> float:
 def _rule(v: float, root: float, rtol: float) -> tuple[Array, Array]:
     """Nodes and weights on [0, 1], the edge at 0, where pieces halve down to the nearest root."""
     count = ceil(v / _PIECE)
-    return graded_rule(_points(rtol), halvings_towards(root * count / v), count)
-
-
-def _points(rtol: float) -> int:
-    return next(count for limit, count in _POINTS if rtol >= limit)
+    return graded_rule(nodes_of_pieces(rtol), halvings_towards(root * count / v), count)

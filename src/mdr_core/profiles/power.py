@@ -160,13 +160,13 @@ class Power(Profile):
 
     @property
     def branches(self) -> tuple[Branch, ...]:
-        # The lower end holds a part reach^n of the integral.
-        reach = 1e-17 ** (1 / float(np.asarray(self.exponent)))
+        tip = float(np.asarray(self.exponent))
         return (
             Branch(
                 0.0,
                 lambda x, _s, _index: self.dg(x),
-                reach=max(reach, 1e-280),
+                tip=tip,
+                of_powers=True,
                 steepness=self.steepness,
             ),
         )

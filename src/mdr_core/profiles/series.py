@@ -2,12 +2,10 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from itertools import pairwise
 from math import copysign, exp, inf, isfinite, log
 from typing import ClassVar, Final
 
 import numpy as np
-from scipy.optimize import brentq
 
 from mdr_core.abel.displacement import Branch
 from mdr_core.errors import InputError
@@ -20,21 +18,24 @@ from mdr_core.profiles.power_kernels import (
     power_moment,
     power_slope,
 )
+from mdr_core.profiles.power_sums import (
+    LOG_FARTHEST,
+    LogTerms,
+    cancelling,
+    first_fall,
+    log_radius_of,
+    log_terms,
+)
 from mdr_core.profiles.profile import LARGEST_HELD, SMALLEST_HELD, Profile, refuse_load
 from mdr_core.profiles.stable import kappa
 from mdr_core.typing import Array, Parameter
 
 # Bound on the logarithm of a starting radius: no power of it leaves the range of doubles soon.
 _FARTHEST: Final = 70.0
-_LOG_LARGEST: Final = 700.0
 _EPS: Final = float(np.finfo(float).eps)
-# Radii at which it is looked how much the terms cancel.
-_PLACES: Final = 257
 # Terms that are larger than their sum by no more than this leave it the tolerance.
 _LITTLE: Final = 2.0
 _FINEST: Final = 1e-15
-# Radii beyond have no double.
-_LOG_FARTHEST: Final = 690.0
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,8 @@ class Series(Profile):
                 )
             if not 0 < term.exponent < inf:
                 raise InputError(("profile", "terms", i, "exponent"), "must be positive and finite")
+        if not self._powers:
+            raise InputError(("profile", "terms"), "the terms cancel each other: nothing is left")
         if self.domain == 0:
             raise InputError(
                 ("profile", "terms"), "f falls from radius 0 on: the leading term is not positive"
@@ -91,9 +94,10 @@ class Series(Profile):
     def domain(self) -> float:
         if all(c > 0 for c, _ in self._powers):
             return inf
-        slope_f = tuple((c * n, n - 1) for c, n in self._powers)
-        slope_g = tuple((c * n * float(kappa(n)), n - 1) for c, n in self._powers)
-        return min(_first_fall(slope_f), _first_fall(slope_g))
+        # Of the slopes times the radius.
+        slope_f = log_terms(self._powers, lambda n: n)
+        slope_g = log_terms(self._powers, lambda n: n * _kappa(n))
+        return min(first_fall(slope_f), first_fall(slope_g))
 
     @property
     def last_coordinate(self) -> float | None:
@@ -112,12 +116,17 @@ class Series(Profile):
         """Largest sum of the terms' sizes over their total, in depth or force, less one [1]."""
         if all(c > 0 for c, _ in self._powers):
             return 0.0
-        low, high = _log_bounds(self._powers)
-        end = min(high, log(self.domain)) if self.domain < inf else high
-        places = np.linspace(min(low, end - 1), end, _PLACES)
-        depth = tuple((c * float(kappa(n)), n) for c, n in self._powers)
-        force = tuple((c * n / (n + 1), n) for c, n in depth)
-        return max(_worst_cancelling(part, places) for part in (depth, force))
+        last = log(self.domain) if self.domain < inf else LOG_FARTHEST
+        return max(cancelling(terms, last) for terms in (self._depth_terms, self._force_terms))
+
+    @property
+    def _depth_terms(self) -> LogTerms:
+        return log_terms(self._powers, _kappa)
+
+    @property
+    def _force_terms(self) -> LogTerms:
+        """Of F_N/E*, over a."""
+        return log_terms(self._powers, lambda n: _kappa(n) * 2 * n / (n + 1))
 
     def f(self, radius: Array) -> Array:
         return _total(power(c, radius, n) for c, n in self._powers)
@@ -160,13 +169,11 @@ class Series(Profile):
 
         A load beyond the profile's end is refused for that, not here.
         """
-        depth = _without_zeros((c * float(kappa(n)), n) for c, n in self._powers)
-        force = _without_zeros((c * 2 * n / (n + 1), n + 1) for c, n in depth)
-        if not force:
-            return inf, inf
-        last = min(log(self.domain), _LOG_FARTHEST) if self.domain < inf else _LOG_FARTHEST
-        low = max(_log_radius_of(part, log(SMALLEST_HELD), last) for part in (depth, force))
-        high = min(_log_radius_of(part, log(LARGEST_HELD), last) for part in (depth, force))
+        depth = self._depth_terms
+        force = tuple(term._replace(exponent=term.exponent + 1) for term in self._force_terms)
+        last = min(log(self.domain), LOG_FARTHEST) if self.domain < inf else LOG_FARTHEST
+        low = max(log_radius_of(terms, log(SMALLEST_HELD), last) for terms in (depth, force))
+        high = min(log_radius_of(terms, log(LARGEST_HELD), last) for terms in (depth, force))
         ends = load(np.array([exp(low), exp(high)]))
         return float(ends[0]), float(ends[1]) if high < last else inf
 
@@ -195,25 +202,51 @@ class Series(Profile):
         if self.steepness <= STEEP and self.tip_exponent == 1:
             return super().slip_kernel(c, r, rtol)
         # The gentle ones are felt all over, the steep ones at the edge alone, the sharp at the tip.
-        return self._superposed(lambda term: term.slip_kernel(c, r, rtol))
+        return self._superposed(
+            lambda c_i, n, tolerance: Power(c_i, n).slip_kernel(c, r, tolerance), rtol
+        )
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         if self.steepness <= STEEP:
             return super().outer_displacement(a, r, rtol, coordinate)
-        return self._superposed(lambda term: term.outer_displacement(a, r, rtol, coordinate))
+        return self._superposed(
+            lambda c, n, tolerance: Power(c, n).outer_displacement(a, r, tolerance, coordinate),
+            rtol,
+        )
 
-    def _superposed(self, answer: Callable[[Power], Array]) -> Array:
-        """The sum of what each power answers by itself."""
-        return np.asarray(sum(copysign(1, c) * answer(Power(abs(c), n)) for c, n in self._powers))
+    def _superposed(self, answer: Callable[[float, float, float], Array], rtol: float) -> Array:
+        """The sum of what each power, of a positive coefficient, answers by itself.
+
+        `answer` takes a tolerance too: where the terms cancel, each is found more exactly.
+        """
+        total, lost = self._summed(answer, rtol)
+        if lost > _LITTLE:
+            total, _ = self._summed(answer, max(rtol / lost, _FINEST))
+        return total
+
+    def _summed(
+        self, answer: Callable[[float, float, float], Array], rtol: float
+    ) -> tuple[Array, float]:
+        """The sum to a tolerance of its terms, and how much larger these are than it."""
+        total = size = np.zeros(())
+        for c, n in self._powers:
+            term = answer(abs(c), n, rtol)
+            total = total + copysign(1, c) * term
+            size = size + term
+        if all(c > 0 for c, _ in self._powers):
+            return total, 1.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return total, float(np.nanmax(np.abs(size) / np.abs(total), initial=1.0))
 
     @property
     def branches(self) -> tuple[Branch, ...]:
-        reach = 1e-17 ** max(1.0, 1 / self._powers[0][1])
         return (
             Branch(
                 0.0,
                 lambda x, _s, _index: self.dg(x),
-                reach=max(reach, 1e-280),
+                tip=self._powers[0][1],
+                tip_size=1 + self._cancelling,
+                of_powers=True,
                 steepness=self.steepness,
             ),
         )
@@ -245,24 +278,12 @@ class Series(Profile):
         modulus: float = 1.0,
         inner: Array | None = None,
     ) -> Array:
-        def summed(tolerance: float) -> tuple[Array, float]:
-            """The sum of the terms, each to the tolerance, and how much larger they are than it."""
-            total = np.zeros(np.broadcast_shapes(coordinate.shape, radius.shape))
-            size = np.zeros(total.shape)
-            for c, n in self._powers:
-                scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
-                moment = power_moment(n - 1, coordinate, radius, tolerance, width, inner)
-                term = scale * np.where(np.isinf(moment), 0.0, moment)
-                total += term
-                size += np.abs(term)
-            if all(c > 0 for c, _ in self._powers):
-                return total, 1.0
-            with np.errstate(divide="ignore", invalid="ignore"):
-                return total, float(np.nanmax(size / np.abs(total), initial=1.0))
+        def pressure(c: float, n: float, tolerance: float) -> Array:
+            scale = modulus * kappa(n) / np.pi * power_slope(c, coordinate, n)
+            moment = power_moment(n - 1, coordinate, radius, tolerance, width, inner)
+            return np.asarray(scale * np.where(np.isinf(moment), 0.0, moment))
 
-        total, lost = summed(rtol)
-        if lost > _LITTLE:
-            total, _ = summed(max(rtol / lost, _FINEST))
+        total = self._superposed(pressure, rtol)
         if width is None and self.infinite_pressure_radii:
             # Next to the first term all others are small there, whatever their factors.
             return np.where(radius == 0, copysign(inf, modulus), total)
@@ -280,82 +301,5 @@ def _within_range(total: Array) -> Array:
     return np.where(np.isnan(total), inf, total)
 
 
-def _log_radius_of(powers: tuple[tuple[float, float], ...], goal: float, last: float) -> float:
-    """The logarithm of the radius where log(sum c r^e) = goal, within the range of doubles."""
-
-    def excess(u: float) -> float:
-        top = max(log(abs(c)) + e * u for c, e in powers)
-        rest = _sign_at(powers, u)
-        return top - goal + (log(rest) if rest > 0 else -LARGEST_HELD)
-
-    if excess(last) <= 0:
-        return last
-    if excess(-_LOG_FARTHEST) >= 0:
-        return -_LOG_FARTHEST
-    return float(brentq(excess, -_LOG_FARTHEST, last, xtol=1e-6))
-
-
-def _without_zeros(powers: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """The terms whose coefficient has not sunk below the smallest double."""
-    return tuple((c, e) for c, e in powers if c != 0)
-
-
-def _first_fall(powers: tuple[tuple[float, float], ...]) -> float:
-    """Smallest r >= 0 beyond which sum c r^e, ascending in e, falls below zero, or infinity."""
-    if powers[0][0] < 0:
-        return 0.0
-    ends = [*_log_roots(powers), inf]
-    for start, end in pairwise(ends):
-        middle = start + 1 if end == inf else (start + end) / 2
-        if _sign_at(powers, middle) < 0:
-            return exp(start) if start < _LOG_LARGEST else inf
-    return inf
-
-
-def _sign_at(powers: tuple[tuple[float, float], ...], u: float) -> float:
-    """Sum of c r^e at r = exp(u), over its largest term: its sign, always within range."""
-    logs = [log(abs(c)) + e * u for c, e in powers]
-    top = max(logs)
-    return sum(copysign(exp(part - top), c) for part, (c, _) in zip(logs, powers, strict=True))
-
-
-def _log_roots(powers: tuple[tuple[float, float], ...]) -> list[float]:
-    """All u where sum c exp(e u) vanishes and changes sign, ascending.
-
-    Divided by its lowest power and differentiated, the sum loses one term (Rolle): between the
-    roots of that derivative it is monotone, so each stretch holds at most one root.
-    """
-    if len(powers) == 1:
-        return []
-    lowest = powers[0][1]
-    derivative = tuple((c * (e - lowest), e - lowest) for c, e in powers[1:])
-    low, high = _log_bounds(powers)
-    turns = [low, *(u for u in _log_roots(derivative) if low < u < high), high]
-    return [
-        float(brentq(lambda u: _sign_at(powers, u), start, end, xtol=1e-15))
-        for start, end in pairwise(turns)
-        if _sign_at(powers, start) * _sign_at(powers, end) < 0
-    ]
-
-
-def _worst_cancelling(powers: tuple[tuple[float, float], ...], places: Array) -> float:
-    """Largest sum |c| r^e / |sum c r^e| - 1 over log(r)."""
-    sizes = np.array([log(abs(c)) + e * places for c, e in powers])
-    terms = np.exp(sizes - sizes.max(axis=0))
-    total = np.abs((terms * np.sign([[c] for c, _ in powers])).sum(axis=0))
-    return float((terms.sum(axis=0) / np.maximum(total, _EPS)).max() - 1)
-
-
-def _log_bounds(powers: tuple[tuple[float, float], ...]) -> tuple[float, float]:
-    """Logarithms of radii within which every root lies.
-
-    Below the first the lowest power outweighs all others together, above the second the highest.
-    """
-    count = log(len(powers))
-
-    def crossing(one: tuple[float, float], other: tuple[float, float]) -> float:
-        return (log(abs(one[0])) - log(abs(other[0])) - count) / (other[1] - one[1])
-
-    low = min(crossing(powers[0], other) for other in powers[1:])
-    high = max(crossing(powers[-1], other) for other in powers[:-1])
-    return low - 1, high + 1
+def _kappa(exponent: float) -> float:
+    return float(kappa(exponent))

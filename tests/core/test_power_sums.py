@@ -1,0 +1,110 @@
+"""Sums of powers at the ends of what may be given: exponents, coefficients, and how they cancel."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from mdr_core import fields, normal
+from mdr_core.errors import InputError
+from mdr_core.profiles import PowerTerm, Series
+from mdr_core.profiles.power_sums import cancelling, first_fall, log_terms
+from tests.core.evaluations import counted
+
+NEXT = float(np.nextafter(200.0, 0.0))
+#: Gentle, sharp and steep at once.
+MIXED = ((1.0, 0.05), (0.5, 2.0), (0.25, NEXT), (0.25, 200.0))
+DIGITS = 60
+
+
+def series(*terms: tuple[float, float]) -> Series:
+    return Series(tuple(PowerTerm(*term) for term in terms))
+
+
+@pytest.mark.parametrize(
+    "terms",
+    [
+        ((1.0, 0.05), (1.0, float(np.nextafter(0.05, 1.0))), (-1e-3, 2.0)),
+        ((1.0, 0.05), (1.0, 37.0), (1.0, NEXT), (-2.0, 200.0)),
+        ((5e-324, 0.05), (-5e-324, 2.0)),
+        ((1e300, 200.0), (-1e300, 201.0)),
+    ],
+)
+def test_where_a_sum_ends_whatever_its_terms(terms: tuple[tuple[float, float], ...]) -> None:
+    """Equal exponents, once one was taken from both, and coefficients below all doubles failed."""
+    end = mpmath.log(series(*terms).domain)
+    with mpmath.workdps(DIGITS):
+        nearest = mpmath.mpf(10) ** -9
+        signs = [
+            [mpmath.sign(slope(terms, end + away, of_g=of_g)) for of_g in (False, True)]
+            for away in (-nearest, nearest)
+        ]
+    assert min(signs[0]) > 0
+    assert min(signs[1]) < 0
+
+
+def slope(terms: tuple[tuple[float, float], ...], u: mpmath.mpf, *, of_g: bool) -> mpmath.mpf:
+    """f' or g' times r at r = exp(u)."""
+    return mpmath.fsum(
+        mpmath.mpf(c) * n * (kappa(n) if of_g else 1) * mpmath.exp(n * u) for c, n in terms
+    )
+
+
+def kappa(n: float) -> mpmath.mpf:
+    half = mpmath.mpf(n) / 2
+    return mpmath.sqrt(mpmath.pi) / 2 * n * mpmath.gamma(half) / mpmath.gamma(half + 0.5)
+
+
+def test_terms_that_leave_nothing_are_refused() -> None:
+    with pytest.raises(InputError, match="cancel each other"):
+        series((1.0, 2.0), (-1.0, 2.0))
+
+
+@pytest.mark.parametrize(
+    "exponents", [(2, 4, 6), (10, 11, 12), (100, 101, 102), (200, 200.1, 200.2)]
+)
+def test_how_much_terms_cancel_at_most(exponents: tuple[float, float, float]) -> None:
+    """The flattest cubic that still rises: its slope touches zero at r = 1."""
+    n, m, k = map(mpmath.mpf, exponents)
+    with mpmath.workdps(DIGITS):
+        # n + m p + k q = 0 and n^2 + m^2 p + k^2 q = 0, a little less of the middle term.
+        p = -n * (k - n) / (m * (k - m)) * (1 - mpmath.mpf(10) ** -9)
+        q = n * (m - n) / (k * (k - m))
+        u = mpmath.linspace(-3 / (k - n), mpmath.mpf(0), 2001)
+        worst = max(
+            (1 + abs(p) * mpmath.exp((m - n) * at) + q * mpmath.exp((k - n) * at))
+            / (1 + p * mpmath.exp((m - n) * at) + q * mpmath.exp((k - n) * at))
+            for at in u
+        )
+    terms = log_terms(zip((1.0, float(p), float(q)), exponents, strict=True))
+    assert first_fall(terms) == np.inf
+    found = 1 + cancelling(terms, 0.0)
+    assert float(worst) * 0.999 <= found <= float(worst) * 2
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-10])
+def test_the_surface_beside_a_sum_of_gentle_and_steep_powers(rtol: float) -> None:
+    """As exact as asked, and no dearer than some of its terms: pieces follow each power's reach."""
+    a, radii = 1.0, np.array([1.0, 1.001, 1.5, 4.0])
+    contact = normal.solve(series(*MIXED), 1.0, contact_radius=a)
+    with counted() as count:
+        found = fields.normal_displacement(contact, radii, rtol=rtol)
+    with mpmath.workdps(30):
+        exact = [
+            2 / mpmath.pi * mpmath.fsum(c * kappa(n) * outer(n, mpmath.mpf(r)) for c, n in MIXED)
+            for r in radii
+        ]
+    np.testing.assert_allclose(found, [float(value) for value in exact], rtol=rtol)
+    assert count.integrand < 10_000 * radii.size
+
+
+def outer(n: float, r: mpmath.mpf) -> mpmath.mpf:
+    """int_0^1 n x^(n-1) arcsin(x/r) dx by the series of the arcsine."""
+    n = mpmath.mpf(n)
+    half = mpmath.mpf(1) / 2
+    if r == 1:
+        # By parts: pi/2 - int x^n/sqrt(1 - x^2) dx.
+        return mpmath.pi / 2 - mpmath.beta((n + 1) / 2, half) / 2
+    value = mpmath.hyp3f2(half, half, (n + 1) / 2, 3 * half, (n + 3) / 2, 1 / r**2)
+    return n / (n + 1) * value / r
