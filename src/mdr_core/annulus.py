@@ -7,7 +7,7 @@ annulus are integrals. Source: notes, §1 and §4.
 
 from collections.abc import Callable
 from functools import lru_cache
-from math import ceil
+from math import ceil, inf
 from typing import Final
 
 import numpy as np
@@ -147,7 +147,12 @@ def _stick(
     target = np.where(early, ratio * total, 0.0)
     reach = coordinate - profile.first_coordinate
     with np.errstate(divide="ignore", invalid="ignore"):
-        start = np.where(target > 0, np.minimum(target / slope(coordinate), reach / 2), reach / 2)
+        first = slope(coordinate)
+        # Where the slope is infinite, the load says nothing of the width.
+        known = (target > 0) & (first < inf)
+        start = np.where(known, np.minimum(target / first, reach / 2), reach / 2)
+    # A width below all doubles is none.
+    target = np.where(start > 0, target, 0.0)
 
     def log_slope(width: Array, value: Array) -> Array:
         return width * slope(coordinate - width) / value

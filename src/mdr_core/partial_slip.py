@@ -1,13 +1,13 @@
 """How far slip has come under one given tangential load: the stick edge and the annulus."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core import annulus
-from mdr_core.checks import extremes, first_index, largest
+from mdr_core.checks import extremes, first_index, largest, least
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -37,6 +37,8 @@ CONTROLS: Final = {
 }
 # Edge, width, full and excess.
 _Slipped = tuple[Array, Array, Flags, Array]
+# Below it doubles lose their digits one by one.
+_TINY: Final = float(np.finfo(float).tiny)
 _Inverse = Callable[[Profile, Array, Array, Array], tuple[Array, Array]]
 
 
@@ -92,39 +94,41 @@ def _by_force(
     contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
 ) -> _Slipped:
     del g_star
+    name = "tangential_force"
     limit = np.asarray(friction * contact.normal_force)
     left = np.asarray(limit - size)
-    least = left.min()
-    if least < 0:
+    smallest = left.min()
+    if smallest < 0:
         raise InputError(
-            ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
+            ("tangential", name, *(first_index(left < 0) if size.ndim else ())),
             "no equilibrium: the force exceeds friction_coefficient x normal_force",
             left < 0,
         )
-    if least > 0:
-        return *_partial(annulus.stick_from_force, contact, size, left, limit), _NOWHERE, _NOTHING
-    return _somewhere_full(annulus.stick_from_force, contact, size, left, limit)
+    if smallest > 0:
+        return *_partial(name, contact, size, left, limit), _NOWHERE, _NOTHING
+    return _somewhere_full(name, contact, size, left, limit)
 
 
 def _by_displacement(
     contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
 ) -> _Slipped:
+    name = "tangential_displacement"
     limit = np.asarray(friction * contact.e_star / g_star * contact.indentation_depth)
     left = np.asarray(limit - size)
     if left.min() > 0:
-        return *_partial(annulus.stick_from_depth, contact, size, left, limit), _NOWHERE, _NOTHING
-    return _somewhere_full(annulus.stick_from_depth, contact, size, left, limit)
+        return *_partial(name, contact, size, left, limit), _NOWHERE, _NOTHING
+    return _somewhere_full(name, contact, size, left, limit)
 
 
 def _somewhere_full(
-    inverse: _Inverse, contact: NormalContact, size: Array, left: Array, limit: Array
+    name: str, contact: NormalContact, size: Array, left: Array, limit: Array
 ) -> _Slipped:
     """Loads of which some leave nothing of the limit, `left` <= 0."""
     some = limit > 0
     # Where neither load is, nothing slips; without a normal load any displacement slides.
     full = np.asarray(np.where(some, left <= 0, size > 0))
     edge, width = _partial(
-        inverse,
+        name,
         contact,
         np.minimum(size, limit),
         np.where(some, np.maximum(left, 0.0), 1.0),
@@ -134,7 +138,7 @@ def _somewhere_full(
 
 
 def _partial(
-    inverse: _Inverse, contact: NormalContact, size: Array, left: Array, limit: Array
+    name: str, contact: NormalContact, size: Array, left: Array, limit: Array
 ) -> tuple[Array, Array]:
     """Stick edge and annulus under size = limit - left, each with its own digits; limit > 0.
 
@@ -143,8 +147,18 @@ def _partial(
     left /= limit
     ratio = np.divide(size, limit, out=limit if limit.shape == left.shape else None)
     if contact.profile.slips_at_once:
-        return contact.coordinate, ratio
-    return inverse(contact.profile, contact.coordinate, ratio, left)
+        edge, width = contact.coordinate, ratio
+    else:
+        edge, width = _INVERSES[name](contact.profile, contact.coordinate, ratio, left)
+    if min(least(ratio), least(width)) < _TINY:
+        lost = (size > 0) & ((ratio < _TINY) | (width < _TINY))
+        if lost.any():
+            raise InputError(
+                ("tangential", name, *(first_index(lost) if size.ndim else ())),
+                "slip of this load is too narrow for double precision",
+                lost,
+            )
+    return edge, width
 
 
 def _by_stick_radius(
@@ -152,9 +166,9 @@ def _by_stick_radius(
 ) -> _Slipped:
     del g_star, friction
     profile, a = contact.profile, np.asarray(contact.contact_radius)
-    least = profile.contact_radius(np.asarray(profile.first_coordinate))
+    innermost = profile.contact_radius(np.asarray(profile.first_coordinate))
     all_slips = np.asarray((radius == 0) & (a > 0))
-    bad = np.asarray((radius > a) | (radius < 0) | ((radius > 0) & (radius < least)))
+    bad = np.asarray((radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost)))
     detail = "must lie between the flat's radius, or 0, and the contact radius"
     if profile.slips_at_once:
         bad = bad | (radius > 0)
@@ -165,7 +179,7 @@ def _by_stick_radius(
     if profile.slips_at_once:
         shape = np.broadcast_shapes(radius.shape, a.shape)
         return contact.coordinate, np.ones(shape), all_slips, _NOTHING
-    c = np.maximum(radius, least)
+    c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":
         width = profile.coordinate_width(a, c, contact.coordinate, edge)
@@ -175,6 +189,10 @@ def _by_stick_radius(
     return edge, width, all_slips, _NOTHING
 
 
+_INVERSES: Final[Mapping[str, _Inverse]] = {
+    "tangential_force": annulus.stick_from_force,
+    "tangential_displacement": annulus.stick_from_depth,
+}
 _NOTHING: Final = np.asarray(0.0)
 _NOWHERE: Final = np.zeros((), dtype=bool)
 _BY_CONTROL: Final = {

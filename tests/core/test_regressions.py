@@ -10,6 +10,8 @@ from scipy.special import gamma
 
 from mdr_core import fields, foundation, normal, profiles, tangential
 from mdr_core.errors import InputError
+from mdr_core.history.adaptive import integrate
+from mdr_core.history.arc_branches import _over_ranges
 from mdr_core.lazy import cached_property
 from tests.core.comparison import profile_from
 from tests.oracles import reference, slip_reference
@@ -458,3 +460,52 @@ def test_stresses_of_a_contact_that_ends_next_to_its_tip(part: float) -> None:
                 edge = mpmath.mpf(stick)
                 exact = [slip_reference.traction(setting, edge, mpmath.mpf(r)) for r in radii]
             np.testing.assert_allclose(found, [float(value) for value in exact], rtol=1e-11)
+
+
+def test_slip_too_narrow_for_doubles_is_refused() -> None:
+    """Its width was looked for among doubles, and not found."""
+    contact = normal.solve(profiles.TruncatedCone(5e16, 6e5), 1e16, normal_force=6e29)
+    with pytest.raises(InputError, match="too narrow") as refused:
+        tangential.solve(contact, 1e16, 5e-4, tangential_force=[300.0, -2.0, 1e-290])
+    assert refused.value.path == ("tangential", "tangential_force", 2)
+    pushed = tangential.solve(contact, 1e16, 5e-4, tangential_force=[300.0, 0.0])
+    # A part of full slip that small is felt at the edge alone: F_x = 2 G* a u_x.
+    expected = 300.0 / (2e16 * contact.contact_radius)
+    np.testing.assert_allclose(pushed.tangential_displacement, [expected, 0.0], rtol=1e-12)
+
+
+def test_what_is_rounding_is_not_halved_for_ever() -> None:
+    """Every half of a noisy piece is as noisy: there were millions."""
+    rng, asked = np.random.default_rng(1), 0
+
+    def noise(_owner: Any, at: Any) -> Any:
+        nonlocal asked
+        asked += np.size(at)
+        return rng.random(np.shape(at))
+
+    ends = np.array([0, 0]), np.array([0.0, 1.0]), np.array([1.0, 2.0])
+    found = integrate(noise, ends, 1e-10, rough=False)
+    assert asked < 2_000
+    # The mean of so many even numbers, and an error that owns up to it.
+    assert found.value[0] == pytest.approx(1.0, abs=0.3)
+    assert found.missing[0] > abs(found.value[0] - 1.0)
+
+
+@pytest.mark.parametrize("from_below", [True, False])
+def test_sums_over_ranges_above_each_other(*, from_below: bool) -> None:
+    """Samples of one leg are arcs above each other: all pairs of them were gone through."""
+    rng, pieces = np.random.default_rng(2), 37
+    values = rng.random((3, pieces))
+    other = np.cumsum(rng.random(pieces + 1))
+    first = rng.integers(0, pieces, 200)
+    last = np.array([rng.integers(start + 1, pieces + 1) for start in first])
+    found = _over_ranges((first, last), other, values, from_below=from_below)
+    for i, (start, stop) in enumerate(zip(first, last, strict=True)):
+        of = values[:, start:stop]
+        away = (
+            other[start:stop] - other[start]
+            if from_below
+            else other[stop] - other[start + 1 : stop + 1]
+        )
+        expected = of[0].sum(), (of[1] + away * of[0]).sum(), of[2].sum()
+        np.testing.assert_allclose(found[:, i], expected, rtol=1e-14)

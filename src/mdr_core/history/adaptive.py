@@ -16,6 +16,10 @@ _ROUNDS: Final = 24
 # The same for what has kinks all over.
 _FEW_ROUNDS: Final = 5
 _FINEST: Final = 1e-12
+# Halving leaves half of what a jump hides, and all of what is rounding: after so many rounds in a
+# row that leave more than this, nothing more is to be had.
+_LEFT: Final = 0.75
+_STALLED_ROUNDS: Final = 3
 # Sums over a table's knots carry more rounding.
 _ROUGHEST: Final = 1e-10
 # Degrees of the coefficients that are compared, and how much what is missing may exceed them.
@@ -53,10 +57,14 @@ def integrate(
     value, missing = np.zeros(count), np.zeros(count)
     goal = max(goal, _FINEST if smooth else _ROUGHEST)
     rounds = _ROUNDS if smooth else _FEW_ROUNDS
+    left, stalled = np.inf, 0
     for round_ in range(rounds):
         total, tail = _pieces(function, owner, low, high, rough=rough, smooth=smooth)
         largest = float(np.max(value + np.bincount(owner, total, count), initial=0.0))
-        good = (tail <= goal * largest) | ~(tail > 0) | (round_ == rounds - 1)
+        good = (tail <= goal * largest) | ~(tail > 0)
+        before, left = left, float(tail[~good].sum())
+        stalled = stalled + 1 if left > _LEFT * before else 0
+        good |= (round_ == rounds - 1) | (stalled == _STALLED_ROUNDS)
         value += np.bincount(owner[good], total[good], count)
         missing += np.bincount(owner[good], tail[good], count)
         if good.all():

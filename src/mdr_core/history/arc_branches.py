@@ -75,13 +75,11 @@ class ArcBranches(Branches):
         breaks = breaks[(breaks > lower.min()) & (breaks < upper.max())]
         edges = np.unique(np.concatenate([lower, upper, breaks]))
         first, last = np.searchsorted(edges, lower), np.searchsorted(edges, upper)
-        count = last - first
-        arc = np.repeat(np.arange(count.size), count)
-        piece = np.arange(arc.size) - np.repeat(np.cumsum(count) - count, count) + first[arc]
         other = plane.other(edges)
         # Measured from the end at which the integrand of the energy is zero.
         zero = 0 if self.by_force else 1
-        used = np.unique(piece)
+        starts, stops = (np.bincount(end, minlength=edges.size) for end in (first, last))
+        used = np.flatnonzero(np.cumsum(starts - stops) > 0)
 
         # Behind a break all is smooth in the root of the distance.
         base = last_break(self.profile.coordinate_breaks, edges)
@@ -101,15 +99,13 @@ class ArcBranches(Branches):
             integrate(density, pieces, self.rtol / 20, rough=False)
             for density in (outer, inner, span)
         )
-        moment = np.bincount(arc, whole.value[piece], count.size)
-        end = other[(first if self.by_force else last)[arc]]
-        ahead = np.abs(end - other[piece + zero])
-        energy = np.bincount(arc, ahead * whole.value[piece] + part.value[piece], count.size)
         missing = max(
             float(each.missing.sum() / max(each.value.sum(), _TINY)) for each in (whole, part, step)
         )
-        spans = np.bincount(arc, step.value[piece], count.size)
-        return np.asarray(moment), np.asarray(energy), np.asarray(spans), missing
+        values = np.zeros((3, edges.size - 1))
+        values[:, used] = [each.value[used] for each in (whole, part, step)]
+        moment, energy, spans = _over_ranges((first, last), other, values, from_below=self.by_force)
+        return moment, energy, spans, missing
 
     def steep(self, s: Array) -> Array:
         """d(other)/d(level) d(other)/ds."""
@@ -158,3 +154,38 @@ class ArcBranches(Branches):
     def missing(self) -> float:
         """How much of the integrals along arcs may be missing, relative."""
         return self._integrals[3]
+
+
+def _over_ranges(
+    ends: tuple[Indices, Indices], other: Array, pieces: Array, *, from_below: bool
+) -> Array:
+    """Sums over ranges of pieces: of M, of the energy about one end of the range, and of steps.
+
+    Two neighbours of 2^k pieces each make one of twice as many, and every range is made of a few
+    of different sizes: nothing is subtracted, and many ranges may lie above each other. What an
+    energy is about moves with the end: by the moment times the distance.
+    """
+    first, last = ends
+    moment, energy, step = pieces
+    found = np.zeros((3, first.size))
+    done, size = first.copy(), 1
+    while moment.size:
+        some = np.flatnonzero((last - first) & size)
+        at = done[some]
+        moments, energies, steps = found[:, some]
+        if from_below:
+            energies += (other[at] - other[first[some]]) * moment[at]
+        else:
+            energies += np.abs(other[at + size] - other[at]) * moments
+        found[:, some] = moments + moment[at], energies + energy[at], steps + step[at]
+        done[some] = at + size
+        joined = moment.size - size
+        if joined <= 0:
+            break
+        left, right = slice(joined), slice(size, size + joined)
+        low, middle, high = (other[k * size : k * size + joined] for k in range(3))
+        moved = (middle - low) * moment[right] if from_below else (high - middle) * moment[left]
+        energy = energy[left] + energy[right] + np.abs(moved)
+        moment, step = moment[left] + moment[right], step[left] + step[right]
+        size *= 2
+    return found

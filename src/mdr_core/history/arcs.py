@@ -80,22 +80,33 @@ class Plane:
 
 
 def rising_root(
-    function: Callable[[Indices, Array], tuple[Array, Array]], low: Array, high: Array
+    function: Callable[[Indices, Array], tuple[Array, Array]],
+    low: Array,
+    high: Array,
+    goal: Array | None = None,
 ) -> Array:
     """Return where increasing functions are zero; function(index, s) gives values and slopes.
 
     Newton's method; the bracket [low, high] is narrowed by the signs, and its middle replaces a
     step that leaves it, or is not half as long as the one before. Beyond the bracket's ends by a
     rounding, the end is the root. All arrays have one axis.
+
+    Where a function is -`goal` < 0 at its lower end, it is better known by how it grows from there:
+    like powers of the distance, which logarithms make straight. It is followed down from the
+    upper end, where powers are the highest.
     """
-    s, last = (low + high) / 2, high - low
+    s, last = high if goal is not None else (low + high) / 2, high - low
     least = _ADJACENT * _NEXT_TO_NOTHING * high
-    root, index = s.copy(), np.arange(s.size)
+    root, index, start = s.copy(), np.arange(s.size), low
     settling = np.zeros(s.shape, dtype=bool)
     for _ in range(_STEPS):
         with np.errstate(all="ignore"):
             value, slope = function(index, s)
             moved = s - value / slope
+            if goal is not None:
+                grown, far = value + goal[index], s - start[index]
+                power = far * slope / grown
+                moved = start[index] + far * np.exp(-np.log(grown / goal[index]) / power)
         low, high = np.where(value < 0, s, low), np.where(value > 0, s, high)
         # At a break of the profile the slope may be infinite.
         known = (moved >= low) & (moved <= high) & (slope < np.inf)

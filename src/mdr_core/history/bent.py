@@ -214,7 +214,7 @@ class Walk:
             steep = plane.slopes(s)
             return value, steep[0] + slope * steep[1]
 
-        return float(rising_root(miss, low, high)[0])
+        return float(rising_root(miss, low, high, np.array([keep]))[0])
 
 
 class _Record:
