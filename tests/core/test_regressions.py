@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from mdr_core import fields, foundation, normal, profiles, tangential
+from mdr_core import fields, foundation, history, normal, profiles, tangential
 from mdr_core.errors import InputError
 from mdr_core.history.adaptive import integrate
 from mdr_core.history.arc_branches import _over_ranges
@@ -509,3 +509,34 @@ def test_sums_over_ranges_above_each_other(*, from_below: bool) -> None:
         )
         expected = of[0].sum(), (of[1] + away * of[0]).sum(), of[2].sum()
         np.testing.assert_allclose(found[:, i], expected, rtol=1e-14)
+
+
+@pytest.mark.parametrize("size", [1e-308, 1e300])
+def test_a_history_of_loads_without_digits_is_refused(size: float) -> None:
+    """Steps of its polyline had no length."""
+    material = 8e29 if size < 1 else 1e-20, 8e29, 4e5
+    with pytest.raises(InputError, match="leaves the range") as refused:
+        history.solve(
+            profiles.Paraboloid(1.0), *material, normal_force=1.0, tangential_force=[0.1, size]
+        )
+    assert refused.value.path == ("history", "tangential", "tangential_force", 1)
+
+
+def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
+    """The polyline began at a rounded anchor, and its last piece had a negative length."""
+    way = history.solve(
+        profiles.Paraboloid(5e16),
+        3e16,
+        3e29,
+        8e5,
+        normal_force=6.5e29,
+        tangential_displacement=[-7e-183, -3e16, 2e29, -2e-216, -6e-230],
+    )
+    state = way.state
+    assert state.tangential_displacement == pytest.approx(-6e-230, rel=1e-14)
+    assert np.all(np.abs(state.slope) <= 1)
+    radii = [0.0, 0.5 * state.contact_radius, 0.9 * state.contact_radius]
+    # All slid, at last backwards, by far more than springs can be bent: full slip is left.
+    traction = fields.shear_stress(state, radii)
+    pressed = normal.solve(profiles.Paraboloid(5e16), 3e16, normal_force=6.5e29)
+    np.testing.assert_allclose(traction, -8e5 * fields.pressure(pressed, radii), rtol=1e-9)

@@ -91,8 +91,9 @@ class _Way:
         return log(branch.tip_size / max(_LEFT_OUT * self.rtol, _LEAST_LEFT_OUT))
 
     def reach(self, branch: Branch) -> float:
-        """The same of the integral."""
-        return min(self.felt(branch) / (branch.tip + self.order), _LOG_RANGE)
+        """The same of the integral; where that grows without an end, down to the last double."""
+        power = branch.tip + self.order
+        return min(self.felt(branch) / power, _LOG_RANGE) if power > 0 else _LOG_RANGE
 
 
 @dataclass(frozen=True)

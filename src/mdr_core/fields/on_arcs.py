@@ -101,7 +101,8 @@ class Arc:
         def weight(x: Array, s: Array, index: Chosen) -> Array:
             return self.slope(x) * branch.weight(x, s, index)
 
-        return replace(branch, weight=weight, steepness=branch.steepness + 1)
+        tip = branch.tip - 1 if self.inverse else branch.tip + 1
+        return replace(branch, weight=weight, tip=tip, steepness=branch.steepness + 1)
 
     def _on_branch(
         self, branch: Branch, begin: float, r: Array, rtol: float, degree: float = 0.0

@@ -20,7 +20,7 @@ from mdr_core.history.branches import Branches, last_break, mean
 from mdr_core.history.memory import Chain, Tree
 from mdr_core.history.path import Steps
 from mdr_core.history.state import Pieces
-from mdr_core.history.vertices import Points
+from mdr_core.history.vertices import Points, Vertex, sum_of
 from mdr_core.lazy import cached_property
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
@@ -221,12 +221,21 @@ class Arcs(Followed):
         stack = self._walked[0].stack
         if len(stack) < 2:
             return self._levels, 0.0
-        part, numbers = self._branches, np.array([vertex.number for vertex in stack[1:]])
+        steps, missed = self._steps([vertex.number for vertex in stack[1:]])
+        span, anchor = np.concatenate(steps, axis=1)
+        rise = np.cumsum(anchor)
+        largest = float(np.max(np.abs(rise[-1] - np.append(0.0, rise))))
+        # Over depths the vertices are known to more digits than their steps add up to.
+        chain = memory.stacked(*_growths(span, anchor)) if self.by_force else _joined(stack, steps)
+        return chain, _SLOPE * missed / largest if largest > 0 else 0.0
+
+    def _steps(self, numbers: list[int]) -> tuple[list[Array], float]:
+        """Depth and anchor from each vertex to the next, in chords on arcs; what they miss."""
+        part = self._branches
         arcs = {int(number): at for at, number in enumerate(part.arcs)}
-        own = [number for number in numbers.tolist() if number in arcs]
-        wide = sum(self._width(number) for number in own)
+        wide = sum(self._width(number) for number in numbers if number in arcs)
         steps, missed = [], 0.0
-        for number in numbers.tolist():
+        for number in numbers:
             span, slope = float(part.depth_step[number]), float(part.tree.slope[number])
             if number not in arcs:
                 steps.append(np.array([[span], [span * slope]]))
@@ -235,16 +244,7 @@ class Arcs(Followed):
             found, miss = self._in_chords(number, float(part.rate[arcs[number]]), count)
             steps.append(found)
             missed = max(missed, miss)
-        span, anchor = np.concatenate(steps, axis=1)
-        rise = np.cumsum(anchor)
-        largest = float(np.max(np.abs(rise[-1] - np.append(0.0, rise))))
-        first = 0.0 if self.by_force else sum(stack[0].sums[0])
-        chain = memory.stacked(
-            np.maximum(span + anchor, 0.0), np.maximum(span - anchor, 0.0), first
-        )
-        if not self.by_force:
-            chain.forward[-1], chain.backward[-1] = stack[-1].sums
-        return chain, _SLOPE * missed / largest if largest > 0 else 0.0
+        return steps, missed
 
     @property
     def _chords(self) -> int:
@@ -275,3 +275,30 @@ class Arcs(Followed):
         slope = whole[1][chosen] / whole[0][chosen]
         miss = np.abs(halves[1, chosen, 0] - slope * halves[0, chosen, 0])
         return whole[:, chosen], float(miss.max(initial=0.0))
+
+
+def _growths(span: Array, anchor: Array) -> tuple[Array, Array]:
+    """What steps of depth and anchor add to both sums."""
+    return np.maximum(span + anchor, 0.0), np.maximum(span - anchor, 0.0)
+
+
+def _joined(stack: list[Vertex], steps: list[Array]) -> Chain:
+    """The polyline through the vertices, of which each is reached in some steps."""
+    rows = [np.array([stack[0].sums])]
+    for vertex, step in zip(stack[1:], steps, strict=True):
+        if step.shape[1] > 1:
+            between = memory.stacked(*_growths(*step[:, :-1]))
+            rows.append(_above(rows[-1][-1], between))
+        rows.append(np.array([vertex.sums]))
+    forward, backward = np.concatenate(rows).swapaxes(0, 1)
+    return Chain(forward, backward)
+
+
+def _above(low: Array, chords: Chain) -> Array:
+    """Both sums of the ends of chords above a vertex with the sums `low`, (chords, 2, 2)."""
+    found = np.stack([part[1:] for part in chords], axis=1)
+    for row in found:
+        for own in (0, 1):
+            total, lost = sum_of(low[own, 0], row[own, 0])
+            row[own] = total, lost + low[own, 1] + row[own, 1]
+    return found

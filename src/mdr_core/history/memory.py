@@ -135,19 +135,15 @@ def gap(level: float, shift: float) -> Chain:
     return Chain(*np.stack([ends, lost], axis=2))
 
 
-def stacked(forward_step: Array, backward_step: Array, shift: float = 0.0) -> Chain:
-    """Return the polyline whose pieces have the given steps, to their last digit.
-
-    It begins on the axis, at an anchor of `shift`.
-    """
-    return Chain(_sums(shift, forward_step), _sums(-shift, backward_step))
+def stacked(forward_step: Array, backward_step: Array) -> Chain:
+    """Return the polyline from the axis whose pieces have the given steps, to their last digit."""
+    return Chain(_sums(forward_step), _sums(backward_step))
 
 
-def _sums(start: float, steps: Array) -> Array:
+def _sums(steps: Array) -> Array:
     """Running sums as rows of (high, low), by Knuth's two-sum."""
     rows = np.zeros((steps.size + 1, 2))
-    high, low = start, 0.0
-    rows[0, 0] = start
+    high = low = 0.0
     for i, step in enumerate(steps.tolist(), start=1):
         total = high + step
         part = total - high

@@ -23,6 +23,8 @@ NORMAL: Final = ("indentation_depth", "normal_force")
 TANGENTIAL: Final = ("tangential_displacement", "tangential_force")
 # A force on the brink of sliding may exceed it by its rounding.
 _ROUNDING: Final = 4e-16
+# Parts of what is smaller have no digits.
+_LEAST: Final = 1e-290
 
 
 @dataclass(frozen=True)
@@ -131,10 +133,11 @@ def steps(path: Path, profile: Profile, e_star: float, scale: float) -> Steps:
 
     Raises
     ------
-    InputError : a tangential force that no equilibrium carries, at or before a point.
+    InputError : a tangential force that no equilibrium carries, at or before a point; a tangential
+        load that leaves the range of doubles over its scale.
     """
     level = _levels(path, profile, _divided(path, e_star))
-    shift = path.tangential / scale
+    shift = _shift(path, scale)
     if path.by_force:
         shift = _carried(path, level, shift, None)
     return Steps(level, shift, path.goes_on)
@@ -147,7 +150,7 @@ def points(path: Path, profile: Profile, e_star: float, scale: float) -> tuple[P
     load point only grow, or only fall. Arguments and errors as of `steps`.
     """
     plane, other = Plane(profile, path.by_force), _divided(path, e_star)
-    shift = path.tangential / scale
+    shift = _shift(path, scale)
     s, rate = _find(path, profile, other), _rates(path, other, shift)
     before = np.append(profile.first_coordinate, s[:-1])
     turn = plane.radius_on_the_cone(rate)
@@ -170,6 +173,21 @@ def points(path: Path, profile: Profile, e_star: float, scale: float) -> tuple[P
     rate = np.insert(rate, turns, rate[turns])
     way = np.sign(np.diff(s, prepend=profile.first_coordinate))
     return Points(s, level, other, shift, rate, way, goes_on), last
+
+
+def _shift(path: Path, scale: float) -> Array:
+    """The tangential quantity at each sample, over its scale."""
+    with np.errstate(over="ignore", under="ignore"):
+        shift = path.tangential / scale
+        size = np.abs(shift[path.per_step - 1 :: path.per_step])
+    given = path.tangential[path.per_step - 1 :: path.per_step]
+    bad = (given != 0) & ~((size >= _LEAST) & (size <= 1 / _LEAST))
+    if bad.any():
+        raise InputError(
+            ("history", "tangential", path.tangential_name, int(np.flatnonzero(bad)[0])),
+            "leaves the range of double precision, over friction_coefficient and modulus",
+        )
+    return np.asarray(shift)
 
 
 def _divided(path: Path, e_star: float) -> Array:

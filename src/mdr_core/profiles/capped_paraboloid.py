@@ -281,6 +281,6 @@ class CappedParaboloid(Profile):
     def branches(self) -> tuple[Branch, ...]:
         b, tip, kink = float(np.asarray(self._break)), self.tip_radius, self._kink
         return (
-            Branch(0.0, lambda x, _s, _index: 2 * x / tip, b),
+            Branch(0.0, lambda x, _s, _index: 2 * x / tip, b, tip=2.0),
             Branch(b, lambda x, s, _index: 2 * s / tip + kink * (x * x + s * s) / x),
         )

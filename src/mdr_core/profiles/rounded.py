@@ -57,7 +57,7 @@ class Spheroid(Profile):
     @property
     def branches(self) -> tuple[Branch, ...]:
         big = float(np.asarray(self.radius))
-        return (Branch(0.0, lambda x, _s, _index: self.dg(x), pole=big),)
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x), tip=2.0, pole=big),)
 
     def g(self, x: Array) -> Array:
         return self.depth(self._rapidity(x))

@@ -48,6 +48,7 @@ class TippedCone(Profile):
                 0.0,
                 lambda x, _s, _index: self.dg(np.minimum(x, b * _BELOW)),
                 b,
+                tip=2.0,
                 pole=self._pole,
             ),
             Branch(b, lambda x, s, _index: self._flank_weight(x, s), behind=self._behind),
