@@ -10,7 +10,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, exp, floor, inf, log, log2, log10, pi, sqrt
+from math import ceil, floor, log2, log10, pi
 from typing import Final
 
 import numpy as np
@@ -31,6 +31,9 @@ _PIECE_POINTS: Final = 24
 # Evaluations at so many nodes take as long as what one more call takes by itself.
 _CALL: Final = 2000
 _LOG_LARGEST: Final = 700.0
+# Of the widest ellipse, where the best one is looked for; and how often a length is halved in.
+_ELLIPSES: Final = np.linspace(0.1, 1.0, 10)
+_BISECTIONS: Final = 30
 # Nodes of equal pieces by the tolerance: their half length is one in a strip of pi/2.
 _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 # What lies nearer than this to the end of a piece lies on it.
@@ -65,7 +68,7 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
     return nodes, weights
 
 
-def error_bound(points: int, half_length: float, analytic: Analytic) -> float:
+def error_bound(points: int | Indices, half_length: float | Array, analytic: Analytic) -> Array:
     """Bound the relative error of the `points`-point rule on an interval of length 2H.
 
     For h analytic and |h| <= M in the Bernstein ellipse of parameter rho the error is below
@@ -75,39 +78,38 @@ def error_bound(points: int, half_length: float, analytic: Analytic) -> float:
 
     Source: trefethen, Thm 19.3.
     """
-    if half_length == 0:
-        return 0.0
-    growth, beta = analytic.growth, analytic.strip / half_length
-    widest = log(beta + sqrt(1 + beta * beta))
-    best = inf
-    for part in np.linspace(0.1, 1, 10) * widest:
-        rho2 = exp(2 * part)
-        semi_axis = (exp(part) + exp(-part)) / 2
-        log_bound = growth * half_length * (semi_axis - 1) - 2 * points * part
-        log_bound += analytic.zeros * log(semi_axis)
-        best = min(best, exp(min(log_bound, _LOG_LARGEST)) / (1 - 1 / rho2))
+    given = np.asarray(half_length, dtype=float)
+    half = np.where(given > 0, given, 1.0)
+    # log(rho), up to the ellipse that touches the strip's edge.
+    part = np.multiply.outer(_ELLIPSES, np.arcsinh(analytic.strip / half))
+    semi_axis = np.cosh(part)
+    log_bound = analytic.growth * half * (semi_axis - 1) - 2 * points * part
+    log_bound += analytic.zeros * np.log(semi_axis)
+    bound = np.exp(np.minimum(log_bound, _LOG_LARGEST)) / -np.expm1(-2 * part)
     # An integrand with zeros is by so much less on the average than where it is largest.
-    return best * (64 / 15) * (1 + growth * half_length) * (1 + analytic.zeros)
+    factor = 64 / 15 * (1 + analytic.growth * half) * (1 + analytic.zeros)
+    return np.asarray(np.where(given > 0, bound.min(axis=0) * factor, 0.0))
 
 
-@lru_cache(maxsize=256)
-def _longest(points: int, decade: int, analytic: Analytic) -> float:
-    """Largest half length at which the rule's bound stays below 10^decade."""
-    low, high = min(1e-3, 1e-2 / analytic.growth), 40.0
-    tolerance = 10.0**decade
-    for _ in range(40):
-        middle = sqrt(low * high)
-        low, high = (
-            (middle, high) if error_bound(points, middle, analytic) < tolerance else (low, middle)
-        )
-    return low
+@lru_cache(maxsize=512)
+def _longest(rules: tuple[int, ...], decade: int, analytic: Analytic) -> tuple[float, ...]:
+    """Largest half lengths at which the bounds of the rules stay below 10^decade."""
+    points = np.array(rules)
+    low = np.full(points.shape, min(1e-3, 1e-2 / analytic.growth))
+    high = np.full(points.shape, 40.0)
+    for _ in range(_BISECTIONS):
+        middle = np.sqrt(low * high)
+        good = error_bound(points, middle, analytic) < 10.0**decade
+        low, high = np.where(good, middle, low), np.where(good, high, middle)
+    return tuple(low.tolist())
 
 
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=512)
 def _limits(decade: int, analytic: Analytic, rules: tuple[int, ...]) -> tuple[float, ...]:
     """Half lengths up to which each of the rules suffices."""
     return tuple(
-        _longest(points, decade, analytic) if points >= analytic.fewest else 0.0 for points in rules
+        length if points >= analytic.fewest else 0.0
+        for points, length in zip(rules, _longest(rules, decade, analytic), strict=True)
     )
 
 
@@ -202,7 +204,7 @@ def _pieces(
 ) -> Array:
     """Cut [lower, lower + length] into equal pieces that one rule carries."""
     half = float(length.max()) / 2
-    count = ceil(half / _longest(_PIECE_POINTS, _decade(rtol), analytic))
+    count = ceil(half / _longest((_PIECE_POINTS,), _decade(rtol), analytic)[0])
     return _apply(h, composite_rule(_PIECE_POINTS, count), lower, length, index)
 
 

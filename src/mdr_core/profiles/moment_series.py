@@ -26,6 +26,13 @@ from mdr_core.typing import Array
 _TERMS: Final = 64
 _DEGREE: Final = 22
 _PLACES, _TO_COEFFICIENTS = chebyshev_points(_DEGREE + 1)
+# Of each Chebyshev polynomial, the powers: integers.
+_POWERS: Final = np.array(
+    [
+        np.pad(chebyshev.cheb2poly(unit[: degree + 1]), (0, _DEGREE - degree))
+        for degree, unit in enumerate(np.eye(_DEGREE + 1))
+    ]
+)
 # Next to an even power the axis' two parts cancel, and far above one its series grows first.
 _MOST_LOST: Final = 4.0
 _STEEPEST: Final = 6.0
@@ -89,11 +96,9 @@ def moment_series(power: float, rtol: float) -> MomentSeries | None:
 
 def _series(b: float, c: float, x: Array) -> Array:
     """2F1(1, b; c; x) for |x| <= 1/2."""
-    total, term = np.ones_like(x), np.ones_like(x)
-    for k in range(_TERMS):
-        term = term * ((b + k) / (c + k)) * x
-        total += term
-    return total
+    k = np.arange(_TERMS)
+    terms = np.cumprod(np.multiply.outer((b + k) / (c + k), x), axis=0)
+    return np.asarray(1 + terms.sum(axis=0))
 
 
 def _economised(function: Callable[[Array], Array], accuracy: float) -> tuple[float, ...]:
@@ -104,7 +109,7 @@ def _economised(function: Callable[[Array], Array], accuracy: float) -> tuple[fl
     if left_out[-1] > accuracy:
         return ()
     count = max(int(np.argmax(left_out <= accuracy)), 2)
-    return tuple(chebyshev.cheb2poly(coefficients[:count])[::-1].tolist())
+    return tuple((coefficients[:count] @ _POWERS[:count, :count])[::-1].tolist())
 
 
 def _horner(coefficients: tuple[float, ...], t: Array) -> Array:

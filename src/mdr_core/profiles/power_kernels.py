@@ -5,7 +5,7 @@ Source: notes, §4 and §5.
 
 from collections.abc import Iterable
 from functools import lru_cache
-from math import exp, log
+from math import ceil, exp, log, log2
 from typing import Final
 
 import numpy as np
@@ -33,6 +33,8 @@ STEEP: Final = 64.0
 _ROUNDING_LOG: Final = 42.0
 # Of c/a: on wider annuli no polynomial is short.
 _WIDE: Final = 0.2
+# Parts of an octave in which powers share their rules.
+_GROWTHS: Final = 8
 # So small a part of the stick radius is the axis to it: its square is far below rounding.
 _INMOST: Final = 1e-100
 # The exponents for which NumPy does not raise.
@@ -212,7 +214,9 @@ def power_moment(
     any_on_axis = np.count_nonzero(on_axis) > 0
     safe = np.where(on_axis, a / 2, r) if any_on_axis else r
     ratio = safe / a
-    analytic = Analytic(growth=max(abs(m), 1.0))
+    # A little more stands for all powers next to it: the rules' limits are found once.
+    growth = 2.0 ** (ceil(log2(max(abs(m), 1.0)) * _GROWTHS) / _GROWTHS)
+    analytic = Analytic(growth=growth)
 
     def h(y: Array, index: Chosen) -> Array:
         np.cosh(y, out=y)
