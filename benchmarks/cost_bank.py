@@ -42,7 +42,7 @@ PLAIN: dict[str, dict[str, float]] = {
     "paraboloid": {"radius": 10.0},
     "sphere": {"radius": 10.0},
     "ellipsoid": {"radius": 10.0, "height": 8.0},
-    "power": {"coefficient": 0.05, "exponent": 2.7},
+    "power": {},
     "rounded_punch": {"flat_radius": 0.3, "rounding_radius": 5.0},
     "truncated_cone": {"flat_radius": 0.3, "slope": 0.1},
     "truncated_paraboloid": {"flat_radius": 0.3, "radius": 10.0},
@@ -51,6 +51,8 @@ PLAIN: dict[str, dict[str, float]] = {
     "hyperboloid": {"slope": 0.1, "tip_radius": 3.0},
     "capped_paraboloid": {"cap_radius": 0.3, "tip_radius": 20.0, "radius": 10.0},
 }
+# Of powers: sharp and gentle, and steep ones.
+EXPONENTS = ((0.3, 2.0), (2.0, 6.0), (2.0, 6.0), (6.0, 100.0))
 LONG_ONES = ("series", "tabulated")
 KINDS = (*PLAIN, *LONG_ONES)
 FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement", "foundation_load")
@@ -70,13 +72,16 @@ def profile(kind: str, rng: random.Random) -> dict[str, Any]:
         count = round(10 ** rng.uniform(0, 1.7))
         powers = [{"coefficient": 0.05, "exponent": 2.0}]
         powers += [
-            {"coefficient": 1e-3 / count, "exponent": rng.uniform(2, 6)} for _ in range(count - 1)
+            {"coefficient": 1e-3 / count, "exponent": rng.uniform(*rng.choice(EXPONENTS))}
+            for _ in range(count - 1)
         ]
         return {"kind": kind, "terms": powers}
     if kind == "tabulated":
         r = np.linspace(0.0, 3.0, round(10 ** rng.uniform(0.9, 3.2)))
         way = rng.choice(["cubic", "pchip", "linear"])
         return {"kind": kind, "r": r.tolist(), "f": (r * r / 20).tolist(), "interpolation": way}
+    if kind == "power":
+        return {"kind": kind, "coefficient": 0.05, "exponent": rng.uniform(*rng.choice(EXPONENTS))}
     return {"kind": kind, **PLAIN[kind]}
 
 

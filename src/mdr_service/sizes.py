@@ -1,16 +1,14 @@
 """What the cost of a query depends on, and what is counted of it."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import log10
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from mdr_service import pictures, table, wire
+from mdr_service.schemas.loads import Cycles, History
 from mdr_service.schemas.profiles import Series, Tabulated
 from mdr_service.schemas.queries import HistoryQuery, NormalQuery, Query, StressQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-
-if TYPE_CHECKING:
-    from mdr_service.schemas.loads import Cycles, History
 
 Counts = Iterator[tuple[str, float]]
 
@@ -90,25 +88,24 @@ def _of_history(query: HistoryQuery) -> dict[str, Any]:
     # Both or neither may be there; that is found out where it is solved.
     ways: dict[str, History | Cycles] = {"history": query.history, "cycles": query.cycles}
     given = [ways[name] for name in ways.keys() & query.model_fields_set]
+    return {"rubbed": True} | _of_ways(given)
+
+
+def _of_ways(ways: Sequence[History | Cycles]) -> dict[str, int]:
     return {
-        "rubbed": True,
-        "samples": sum(way.samples for way in given),
-        "curved": sum(way.curved for way in given),
-        "forced": sum(way.forced for way in given),
+        "samples": sum(way.samples for way in ways),
+        "curved": sum(way.curved for way in ways),
+        "forced": sum(way.forced for way in ways),
     }
 
 
 def _of_stress(query: StressQuery) -> dict[str, Any]:
-    followed = query.has_history
     return {
         "loads": query.loads,
         "radii": query.radii,
         "quantities": tuple(query.quantities),
         "rubbed": query.has_friction,
-        "samples": query.history.samples if followed else 0,
-        "curved": query.history.curved if followed else 0,
-        "forced": query.history.forced if followed else 0,
-    }
+    } | _of_ways([query.history] if query.has_history else [])
 
 
 def _of_wear(query: WearQuery | EvolutionQuery) -> dict[str, Any]:
