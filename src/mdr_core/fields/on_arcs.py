@@ -18,6 +18,7 @@ from mdr_core.abel.displacement import Branch, slope_integral
 from mdr_core.abel.roots import leg
 from mdr_core.abel.weighted import over_radius, times_radius
 from mdr_core.history.adaptive import integrate
+from mdr_core.history.branches import last_break
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import Analytic
 from mdr_core.typing import Array, Chosen, Indices
@@ -172,8 +173,7 @@ def anchor_step(profile: Profile, rate: float, end: float, at: Array, *, inverse
     lowest = float(at.min(initial=end))
     edges = np.unique(np.concatenate([at, [end], breaks[(breaks > lowest) & (breaks < end)]]))
     edges = edges[edges <= end]
-    behind = np.concatenate([np.zeros(1), breaks])
-    base = behind[np.searchsorted(breaks, edges, side="right")]
+    base = last_break(breaks, edges)
 
     def density(index: Indices, root: Array) -> Array:
         s = base[index] + root * root
