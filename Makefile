@@ -31,10 +31,12 @@ check: .venv/development
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
-# Full-size figures of sweeps, for a machine that does nothing else: some minutes.
+# What nobody thought of: scenes against mpmath, and queries of any sort. A quarter of an hour.
 random: .venv/development
 	$(BIN)/python -m tests.core.random_scenes
+	$(BIN)/python -m tests.faults.random_queries
 
+# Full-size figures of sweeps, for a machine that does nothing else: some minutes.
 sweeps: .venv/development
 	$(BIN)/python benchmarks/sweep_ratio.py
 	$(BIN)/python benchmarks/sweep_memory.py
