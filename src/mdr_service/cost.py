@@ -86,6 +86,10 @@ _KNOBS: Final = (
 )
 
 
+# What is counted besides, and becomes less alike.
+_PARTS: Final = {"samples": ("curved", "forced"), "loads": ("inverted",)}
+
+
 def _fits(query: Query, found: Sizes, most: float) -> Iterator[Error]:
     """Yield what would fit, and where it would be given; of one field the first that is there."""
     done = set()
@@ -102,8 +106,7 @@ def _largest(found: Sizes, field: str, most: float) -> int:
     while high - low > 1:
         middle = (low + high) // 2
         tried: dict[str, Any] = {field: middle}
-        if field == "samples":
-            for part in ("curved", "forced"):
-                tried[part] = getattr(found, part) * middle // found.samples
+        for part in _PARTS.get(field, ()):
+            tried[part] = getattr(found, part) * middle // getattr(found, field)
         low, high = (middle, high) if estimated(found._replace(**tried)) <= most else (low, middle)
     return low

@@ -33,6 +33,8 @@ class Sizes(NamedTuple):
     """Points of a table, or terms of a series."""
     loads: int = 1
     """Or numbers of cycles."""
+    inverted: int = 0
+    """Loads whose contact radius is to be found."""
     radii: int = 0
     quantities: tuple[str, ...] = ()
     rubbed: bool = False
@@ -81,7 +83,13 @@ def _length(query: Query) -> int:
 
 
 def _of_loads(query: NormalQuery) -> dict[str, Any]:
-    return {"loads": query.loads}
+    return {"loads": query.loads, "inverted": _inverted(query)}
+
+
+def _inverted(query: NormalQuery | StressQuery) -> int:
+    if "load" not in query.model_fields_set or query.load.control == "contact_radius":
+        return 0
+    return query.load.count
 
 
 def _of_history(query: HistoryQuery) -> dict[str, Any]:
@@ -102,6 +110,7 @@ def _of_ways(ways: Sequence[History | Cycles]) -> dict[str, int]:
 def _of_stress(query: StressQuery) -> dict[str, Any]:
     return {
         "loads": query.loads,
+        "inverted": _inverted(query),
         "radii": query.radii,
         "quantities": tuple(query.quantities),
         "rubbed": query.has_friction,
@@ -134,11 +143,18 @@ _MORE: Final[Mapping[str, Callable[[Any], dict[str, Any]]]] = {
 def _normal(sizes: Sizes) -> Counts:
     yield "normal", 1
     yield "normal/load", sizes.loads
+    yield from _inverses(sizes)
 
 
 def _tangential(sizes: Sizes) -> Counts:
     yield "tangential", 1
     yield "tangential/load", sizes.loads
+    yield from _inverses(sizes)
+
+
+def _inverses(sizes: Sizes) -> Counts:
+    yield "inverse", min(sizes.inverted, 1)
+    yield "inverse/load", sizes.inverted
 
 
 def _history(sizes: Sizes) -> Counts:
