@@ -62,7 +62,7 @@ STYLES = ("small", "near", "again", "random")
 # What takes this long is not measured twice.
 LONG = 0.3
 # Of each question and kind of profile.
-FITTED, HELD = 20, 8
+FITTED, HELD = 28, 8
 
 Case = tuple[str, dict[str, Any], str]
 
@@ -274,9 +274,7 @@ ALSO = {("history", "curved"): curved, ("stress", "left"): left} | {
 def cases(kind: str, seed: str, count: int) -> Iterator[Case]:
     named = {(question, question): query for question, query in ASKED.items()} | ALSO
     for (question, name), query in named.items():
-        # What takes long is asked less often.
-        few = count // 2 if question == "evolution" else count
-        few = count // 4 if name in FIELDS else few
+        few = count // 4 if name in FIELDS else count
         for number in range(few):
             rng = random.Random(f"{seed} {name} {kind} {number}")
             yield question, query(kind, rng), wire.MEDIA_TYPE
