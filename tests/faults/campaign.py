@@ -52,7 +52,7 @@ HEAVY = (
     post(
         "/v1/wear/evolution",
         examples.EVOLUTION_EXAMPLES["shakedown"]["value"]
-        | {"resolution": 96, "cycles": [float(10 * n) for n in range(300)]},
+        | {"resolution": 96, "cycles": [float(10 * n) for n in range(240)]},
     ),
 )
 # Some tenths of a second of one processor.
