@@ -230,6 +230,7 @@ def test_what_takes_too_long_is_refused_with_what_would_not(
             **{field: int(number)},
             curved=int(found.curved * part),
             forced=int(found.forced * part),
+            inverted=int(found.inverted * (ratio if field == "loads" else 1)),
         )
         assert cost.estimated(fitting) <= COMPUTE.most_seconds
     assert {error["pointer"] for error in document["errors"]} <= set(places)
