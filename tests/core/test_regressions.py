@@ -540,3 +540,16 @@ def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
     traction = fields.shear_stress(state, radii)
     pressed = normal.solve(profiles.Paraboloid(5e16), 3e16, normal_force=6.5e29)
     np.testing.assert_allclose(traction, -8e5 * fields.pressure(pressed, radii), rtol=1e-9)
+
+
+def test_an_arc_whose_ends_are_one_double() -> None:
+    """Depths that swing by their rounding gave steps of no length, and corners half their digits."""
+    material = 1.0, 10.0, 0.5
+    depth = 1 + np.array([0.0, 4.0, 0.0, 4.0]) * 2.0**-52
+    # Far less than friction carries: what slips is not felt.
+    push = 1e-18 * np.array([0.0, 1.0, -1.0, 0.5])
+    body = profiles.Paraboloid(1.0)
+    way = history.solve(body, *material, indentation_depth=depth, tangential_force=push)
+    # F_x = 2 G* a u_x.
+    np.testing.assert_allclose(way.tangential_displacement, push / 20, rtol=1e-9)
+    assert np.all(way.dissipation >= 0)

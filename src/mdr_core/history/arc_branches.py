@@ -105,6 +105,11 @@ class ArcBranches(Branches):
         values = np.zeros((3, edges.size - 1))
         values[:, used] = [each.value[used] for each in (whole, part, step)]
         moment, energy, spans = _over_ranges((first, last), other, values, from_below=self.by_force)
+        # Both ends of an arc may be one double: then it is as steep as there.
+        none = np.flatnonzero(spans == 0)
+        steep = plane.steepness(upper[none])
+        spans[none] = steep * self.tree.span[self.arcs[none]]
+        moment[none], energy[none] = steep * spans[none], steep * np.square(spans[none]) / 2
         return moment, energy, spans, missing
 
     def steep(self, s: Array) -> Array:

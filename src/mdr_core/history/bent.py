@@ -23,6 +23,7 @@ from mdr_core.history.vertices import (
     Vertex,
     excess,
     growth_over,
+    moved_by,
     sum_of,
 )
 from mdr_core.typing import Array, Indices
@@ -167,9 +168,8 @@ class Walk:
             )
             if keep <= 0:
                 return own, None
-            high, lost = below.sums[1 - own]
-            total, more = sum_of(high, keep)
-            return own, self._made(own, point, (total, lost + more), (keep, keep), nan, 0.0)
+            other_sum = moved_by(below.sums[1 - own], point.sums[own], below.sums[own])
+            return own, self._made(own, point, other_sum, (keep, keep), nan, 0.0)
         found = []
         for own in (FORWARD, BACKWARD):
             keep = excess(point.sums[own], below.sums[own])

@@ -94,6 +94,13 @@ def sum_of(a: float, b: float) -> Sum:
     return total, (a - (total - part)) + (b - part)
 
 
+def moved_by(start: Sum, to: Sum, away: Sum) -> Sum:
+    """start + (to - away), with the digits of a difference that is small against both."""
+    total, first = sum_of(start[0], to[0])
+    total, second = sum_of(total, -away[0])
+    return total, first + second + start[1] + to[1] - away[1]
+
+
 def growth_over(upper: Vertex, lower: Vertex) -> tuple[float, float]:
     """What both sums of a vertex exceed those of another by."""
     return (
