@@ -543,7 +543,7 @@ def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
 
 
 def test_an_arc_whose_ends_are_one_double() -> None:
-    """Depths that swing by their rounding gave steps of no length, and corners half their digits."""
+    """Depths that swing by their rounding gave steps of no length, and corners without digits."""
     material = 1.0, 10.0, 0.5
     depth = 1 + np.array([0.0, 4.0, 0.0, 4.0]) * 2.0**-52
     # Far less than friction carries: what slips is not felt.
