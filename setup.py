@@ -6,8 +6,8 @@ from setuptools import Extension, setup
 setup(
     ext_modules=cythonize(
         Extension(
-            "mdr_core.history.walk",
-            ["src/mdr_core/history/walk.py"],
+            "mdr_core.history.slip_memory_kernel",
+            ["src/mdr_core/history/slip_memory_kernel.py"],
             # Without fused multiply-add the digits are those of the uncompiled text.
             extra_compile_args=["-O3", "-ffp-contract=off"],
         ),
@@ -19,7 +19,7 @@ setup(
             "cdivision": True,
             "initializedcheck": False,
             "infer_types": True,
-            # The types are those of walk.pxd.
+            # The types are those of slip_memory_kernel.pxd.
             "annotation_typing": False,
         },
     )

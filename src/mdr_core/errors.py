@@ -1,32 +1,38 @@
-"""What can go wrong, sorted by what the caller should do about it."""
+"""Exceptions, grouped by the action required of the caller."""
 
 from dataclasses import dataclass
 from typing import Any
 
 
 class MDRError(Exception):
-    """Any failure that the core reports on purpose."""
+    """Base class of all exceptions that the core raises deliberately."""
 
 
 class InputError(MDRError, ValueError):
-    """Ask for something else: the value at `path` has no answer in this model.
+    """Invalid input: the value at `path` has no result in this model.
 
-    `path` names the value as the request does, for example
-    ``("load", "normal_force", 3)``; indices count from zero. `scenes` flags, over the scenes of
-    a sweep, all that are refused for the same reason, where that is known.
+    Parameters
+    ----------
+    path : location of the value in the request, for example ``("load", "normal_force", 3)``;
+        indices count from zero.
+    detail : reason and remedy.
+    cases : True for the cases of a sweep that are rejected for the same reason; None if unknown.
     """
 
-    def __init__(self, path: tuple[str | int, ...], detail: str, scenes: Any = None) -> None:
+    def __init__(self, path: tuple[str | int, ...], detail: str, cases: Any = None) -> None:
         super().__init__(f"{'.'.join(map(str, path))}: {detail}")
         self.path = path
         self.detail = detail
-        self.scenes = scenes
+        self.cases = cases
 
 
 class AccuracyError(MDRError):
-    """Loosen: the tolerance asked for cannot be reached with this input.
+    """Accuracy not reached: the requested tolerance is too small for this input.
 
-    `path` names what to change, as the request does: the tolerance, if nothing else.
+    Parameters
+    ----------
+    detail : reason and remedy.
+    path : location in the request of the value to change.
     """
 
     def __init__(self, detail: str, path: tuple[str | int, ...] = ("rtol",)) -> None:
@@ -35,12 +41,12 @@ class AccuracyError(MDRError):
 
 
 class DefectError(MDRError):
-    """Our defect: an invariant of the core broke; no input should cause it."""
+    """Internal error: an invariant of the core is violated, which no input should cause."""
 
 
 @dataclass(frozen=True)
 class Notice:
-    """A warning that travels with an answer: a stable code and a sentence."""
+    """Warning that accompanies a result: a stable code and a sentence."""
 
     code: str
     message: str

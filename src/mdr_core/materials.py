@@ -1,17 +1,13 @@
-"""Two bodies' elastic constants reduced to the effective moduli of the contact."""
+"""Effective moduli of a contact from the elastic constants of two bodies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import Final, Literal
 
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import InputError
 
 RIGID: Final = "rigid"
-
-# Above this |beta| the normal and tangential problems couple noticeably: the coupling error
-# is of order beta. The threshold is a judgement, not a theorem.
-_SIMILARITY_LIMIT: Final = 0.05
 
 
 @dataclass(frozen=True)
@@ -29,33 +25,21 @@ class Body:
 
 @dataclass(frozen=True)
 class Material:
-    """The effective moduli `e_star`, `g_star` [pressure] and Dundurs' `dundurs_beta` [1].
-
-    `g_star` is None where it was not given, `dundurs_beta` where the bodies are unknown.
-    """
+    """Elastic constants of two bodies in contact, or only the effective moduli."""
 
     e_star: float
+    """E* [pressure]."""
     g_star: float | None = None
+    """G* [pressure], None where it is not given."""
     dundurs_beta: float | None = None
+    """Dundurs' beta [1], None where the bodies are unknown."""
+    poissons_ratios: tuple[float, ...] = ()
+    """Poisson's ratios of the elastic bodies [1], empty where they are unknown."""
 
     def __post_init__(self) -> None:
         for name, value in (("e_star", self.e_star), ("g_star", self.g_star)):
             if value is not None and not 0 < value < inf:
                 raise InputError(("material", name), "must be positive and finite")
-
-    @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """`elastic_similarity` where Eq. (5.3) is missed by more than a small beta."""
-        if self.dundurs_beta is None or abs(self.dundurs_beta) <= _SIMILARITY_LIMIT:
-            return ()
-        return (
-            Notice(
-                "elastic_similarity",
-                f"the bodies are not elastically similar (Dundurs beta = {self.dundurs_beta:.3g}): "
-                "normal and tangential contact are coupled, an effect of this relative order "
-                "that the model leaves out",
-            ),
-        )
 
 
 def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
@@ -86,17 +70,18 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
         raise InputError(("material", "bodies"), "exactly two bodies are needed")
     elastic = [(i, body) for i, body in enumerate(bodies) if isinstance(body, Body)]
     if not elastic:
-        raise InputError(("material", "bodies"), "two rigid bodies have no contact mechanics")
+        raise InputError(("material", "bodies"), "at least one body must be elastic")
     for i, body in elastic:
         _check_body(i, body)
     parts = [body for _, body in elastic]
     normal = sum(_normal_compliance(body) for body in parts)
     shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
-    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies))
+    ratios = tuple(body.poissons_ratio for body in parts)
+    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios)
 
 
 def _normal_compliance(body: Body) -> float:
-    """(1 - nu^2)/E, in the factors that keep their digits as nu -> -1."""
+    """(1 - nu^2)/E, in factors free of cancellation as nu -> -1."""
     return (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus
 
 

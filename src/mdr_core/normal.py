@@ -1,58 +1,56 @@
-"""Normal contact: of depth, force and radius, one is given and the others follow."""
+"""Normal contact under a prescribed depth, force or contact radius."""
 
 from dataclasses import dataclass
-from math import inf, isfinite
-from typing import Final, NamedTuple
+from functools import cached_property
+from math import isfinite
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.checks import extremes, first_index, largest, least, require_positive
-from mdr_core.errors import InputError, Notice
-from mdr_core.foundation import (
+from mdr_core import validity
+from mdr_core.broadcasting import solve_cases
+from mdr_core.equivalent_1d import (
     coordinate_from_depth,
     coordinate_from_force,
     coordinate_from_radius,
 )
-from mdr_core.lazy import cached_property
+from mdr_core.errors import InputError, Notice
+from mdr_core.extrema import largest_stress
 from mdr_core.profiles import Profile
-from mdr_core.range import require_range
-from mdr_core.sweeps import BLOCK, in_blocks
-from mdr_core.typing import Array, Parameter
-from mdr_core.validity import normal_notices, top
+from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.validation import (
+    extremes,
+    require_not_negative,
+    require_positive,
+    require_representable,
+)
 
-_FROM: Final = {
+_COORDINATE_FROM: Final = {
     "indentation_depth": coordinate_from_depth,
     "normal_force": coordinate_from_force,
     "contact_radius": coordinate_from_radius,
 }
-
-
-class Load(NamedTuple):
-    """One load's contact, as plain numbers; `edge` is a where it is what was given."""
-
-    profile: Profile
-    e_star: float
-    coordinate: float
-    a: float
-    edge: Array | None
+# Decades that a power of the coordinate may span beside factors of the accepted magnitudes: no
+# energy, in which the coordinate enters with the power 2 n + 1, leaves double precision.
+_DECADES: Final = 150.0
 
 
 @dataclass(frozen=True)
 class NormalContact:
-    """A profile pressed into the half-space, at every load at once.
+    """Profile pressed into a half-space, under any number of loads.
 
-    Each answer is computed when it is first asked for. All are arrays over the loads (and, for
-    a sweep, over the scenes), without dimension where the load was a single number.
+    Results are arrays over the loads and the cases of a sweep, without dimension if the load is a
+    single number. Each is computed on first use.
     """
 
     profile: Profile
     e_star: Parameter
     coordinate: Array
-    """The contact's edge in the profile's own contact coordinate."""
+    """Contact edge in the contact coordinate of the profile."""
     rtol: float = 1e-10
     control: str = "contact_radius"
-    """Which of the three was given: it is the one known exactly."""
+    """Name of the prescribed load, which is exact."""
 
     @cached_property
     def contact_radius(self) -> Array:
@@ -71,12 +69,25 @@ class NormalContact:
 
     @cached_property
     def mean_pressure(self) -> Array:
-        """F_N / (pi a^2) [pressure]; at zero load its limit, infinite on a needle's tip."""
+        """F_N / (pi a^2) [pressure]; its limit at zero load, infinite if sharper than a cone."""
         area = np.pi * (self.contact_radius * self.contact_radius)
-        if least(area) > 0:
+        if extremes(area)[0] > 0:
             return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
         return np.where(area > 0, self.normal_force / np.where(area > 0, area, 1.0), limit)
+
+    @cached_property
+    def maximum_pressure(self) -> Array:
+        """Largest pressure p(r) [pressure], zero without a load.
+
+        Infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
+        """
+        return self.e_star * largest_stress(self.profile, self.coordinate, self.loaded)
+
+    @property
+    def loaded(self) -> Flags:
+        """True where the load is not zero."""
+        return np.asarray(self.coordinate > self.profile.first_coordinate)
 
     @cached_property
     def normal_stiffness(self) -> Array:
@@ -88,48 +99,45 @@ class NormalContact:
         """E* int_0^a (d - g)^2 dx = int_0^d F_N dd [force length]."""
         return self.e_star * self.profile.reduced_energy(self.coordinate)
 
-    @cached_property
-    def loads(self) -> list[Load]:
-        """The loads one by one, for what is answered over the radius."""
-        exact = self.control == "contact_radius"
-        e_star = float(self.e_star)
-        edges, coordinates = np.ravel(self.contact_radius), np.ravel(self.coordinate)
-        return [
-            Load(self.profile, e_star, coordinate, a, np.array([a]) if exact else None)
-            for a, coordinate in zip(edges.tolist(), coordinates.tolist(), strict=True)
-        ]
-
     @property
     def method(self) -> str:
-        """The dearest route that the answers of a normal query need for this profile."""
+        """Most expensive method among the results for this profile."""
         return self.profile.normal_method
 
     @property
+    def error_estimates(self) -> Array:
+        """Upper bound of the relative error of each case, a single number if all have the same."""
+        return np.asarray(self.profile.rounding)
+
+    @property
     def error_estimate(self) -> float:
-        """Bound on the relative error of each answer."""
-        return self.profile.rounding
+        """Largest of `error_estimates` [1]."""
+        return float(np.max(self.error_estimates))
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
-        """What `mdr_core.validity` says, and `singular` and `accuracy` where they apply."""
-        found = list(normal_notices(self.profile, self.contact_radius))
-        if not isfinite(top(self.mean_pressure)):
-            found.append(
-                Notice(
-                    "singular",
-                    "the mean pressure is infinite where the load vanishes: "
-                    "the tip is sharper than a cone",
-                )
-            )
+        """Warnings of the profile, `half_space`, `plastic`, `singular` and `accuracy`."""
+        return (*validity.notices(validity.of_normal_contact(self)), *self.bodiless_warnings)
+
+    @property
+    def bodiless_warnings(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        found = [*self.profile.notices, *validity.notices([validity.table_end(self)])]
+        if not isfinite(extremes(self.mean_pressure)[1]):
+            message = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
+            found.append(Notice("singular", message))
+        if validity.infinite_pressure(self).any():
+            radii = validity.infinite_radii(self)
+            found.append(Notice("singular", f"maximum_pressure is infinite, at radius {radii}"))
         if self.error_estimate > self.rtol:
-            found.append(
-                Notice(
-                    "accuracy",
-                    f"rtol = {self.rtol:.1e} is below what double precision reaches here: "
-                    "see error_estimate",
-                )
-            )
+            found.append(not_reached(self.rtol))
         return tuple(found)
+
+
+def not_reached(rtol: float) -> Notice:
+    """Return the warning that double precision does not reach a relative accuracy."""
+    message = f"rtol = {rtol:.1e} is below what double precision reaches here: see error_estimate"
+    return Notice("accuracy", message)
 
 
 def solve(
@@ -141,10 +149,10 @@ def solve(
     contact_radius: ArrayLike | None = None,
     rtol: float = 1e-10,
 ) -> NormalContact:
-    """Return the normal contact under one given load.
+    """Return the normal contact under a prescribed depth, force or contact radius.
 
-    a(d) inverts d = g(a); F_N = 2 E* int_0^a x g'(x) dx. Closed forms are used wherever they
-    exist; the inverses of the others are solved to rounding, in the contact coordinate.
+    a(d) inverts d = g(a); F_N = 2 E* int_0^a x g'(x) dx. Inverses without a closed form are
+    iterated to rounding error in the contact coordinate.
 
     Source: mdr-5, Eqs. (5.7), (5.14), (5.25)-(5.27), (5.59), (5.61); notes, §1.
 
@@ -154,12 +162,12 @@ def solve(
     e_star : effective modulus [pressure], > 0.
     indentation_depth, normal_force, contact_radius : exactly one, >= 0
         [length], [force], [length]; a number or an array.
-    rtol : relative accuracy asked for, 1e-13 to 1e-3.
+    rtol : relative accuracy, 1e-13 to 1e-3.
 
     Raises
     ------
     InputError : not exactly one load, a load that is negative or not finite, shapes that do not
-        agree, a contact beyond the profile's end, or the radius of a flat punch given as the load.
+        agree, a contact beyond the end of the profile, or a contact radius of a flat punch.
 
     Examples
     --------
@@ -171,67 +179,48 @@ def solve(
     [9.0856e-05, 0.000181712]
     """
     loads = (indentation_depth, normal_force, contact_radius)
-    named = [(name, load) for name, load in zip(_FROM, loads, strict=True) if load is not None]
+    named = [
+        (name, load) for name, load in zip(_COORDINATE_FROM, loads, strict=True) if load is not None
+    ]
     if len(named) != 1:
-        raise InputError(("load",), f"exactly one of {', '.join(_FROM)} is needed")
+        raise InputError(("load",), f"exactly one of {', '.join(_COORDINATE_FROM)} is needed")
     name, load = named[0][0], np.asarray(named[0][1], dtype=float)
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
-    spread = _over_scenes(profile, e_star, name, load)
-    coordinate = _sweep(profile, e_star, name, spread) if spread.size > BLOCK else None
-    if coordinate is None:
-        require_modulus(e_star)
-        _require_load(name, load)
-        coordinate = _FROM[name](profile, _amount(e_star, name, spread))
-        require_range(profile, e_star, name, spread, coordinate)
+    spread = _over_cases(profile, e_star, name, load)
+
+    def coordinates(part: Profile, modulus: Parameter, loads: Array) -> tuple[Array]:
+        return (_coordinate(part, modulus, name, loads),)
+
+    (coordinate,) = solve_cases(coordinates, profile, (e_star, spread))
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
-    # What was given is answered as given, to the last digit.
+    # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread
     return contact
 
 
-def require_modulus(e_star: Parameter) -> None:
-    """Raise InputError unless E* is positive and finite."""
+def _coordinate(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
+    """Contact coordinate of the edge under a load, with input and results checked."""
     require_positive(("material", "e_star"), e_star)
-
-
-def _require_load(name: str, load: Array) -> None:
-    """Raise InputError unless the load is finite and not negative."""
-    # Of many loads one pass says that all are good; only if it does not, which are bad.
-    good = largest(load) < inf if load.ndim and load.flags.c_contiguous else False
-    low, high = (0.0, 0.0) if good else extremes(load)
-    if not (low >= 0 and high < inf):
-        bad = np.asarray(~((load >= 0) & (load < inf)))
-        detail = "must be finite and not negative"
-        raise InputError(("load", name, *first_index(bad)), detail, bad)
-
-
-def _sweep(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array | None:
-    """The coordinate of many scenes; None if one is refused, which no block can name."""
-
-    def block(part: Profile, moduli: Parameter, loads: Array) -> tuple[Array]:
-        # The division waits for the memory anyway: after it the checks find all in the cache.
-        amount = _amount(moduli, name, loads)
-        _require_load(name, loads)
-        coordinate = _FROM[name](part, amount)
-        require_range(part, moduli, name, loads, coordinate)
-        return (coordinate,)
-
-    try:
-        with np.errstate(divide="raise", over="raise", invalid="raise"):
-            (coordinate,) = in_blocks(block, profile, (e_star, load))
-    except (InputError, FloatingPointError):
-        return None
+    require_not_negative(("load", name), load)
+    amount = load / e_star if name == "normal_force" else load
+    coordinate = _COORDINATE_FROM[name](profile, amount)
+    low, high = extremes(coordinate)
+    reach = 10 ** (_DECADES / (2 * profile.steepness + 1))
+    if not 1 / reach < low <= high < reach:
+        contact = NormalContact(profile, e_star, coordinate)
+        with np.errstate(all="ignore"):
+            depth, force, a = (getattr(contact, result) for result in _COORDINATE_FROM)
+            # An energy may underflow, but not overflow.
+            results = a, a * a, depth, force, np.maximum(depth * force, 1.0)
+        # A prescribed radius may be that of a flat, which is in contact without a load.
+        loaded = coordinate > profile.first_coordinate if name == "contact_radius" else load > 0
+        require_representable(("load", name), loaded, *results)
     return coordinate
 
 
-def _amount(e_star: Parameter, name: str, load: Array) -> Array:
-    """What determines the contact: the depth, the radius, or F_N/E*."""
-    return load / e_star if name == "normal_force" else load
-
-
-def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
-    """The load for every scene of a sweep, shapes that do not agree refused."""
+def _over_cases(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
+    """Load of every case of a sweep; shapes that do not agree are rejected."""
     shapes = [
         part.shape
         for part in (e_star, *profile.parameters.values())
@@ -242,9 +231,9 @@ def _over_scenes(profile: Profile, e_star: Parameter, name: str, load: Array) ->
     try:
         shape = np.broadcast_shapes(load.shape, *shapes)
     except ValueError:
-        told = ", ".join(map(str, shapes))
         raise InputError(
             ("load", name),
-            f"the shape {load.shape} of the load does not agree with the parameters' {told}",
+            f"the shape {load.shape} of the load does not agree with the shapes of the parameters, "
+            f"{', '.join(map(str, shapes))}",
         ) from None
     return load if shape == load.shape else np.broadcast_to(load, shape)

@@ -1,54 +1,55 @@
 """Gauss-Legendre rules for integrands that are analytic in a strip about the real axis.
 
 The substitutions of `mdr_core.abel` turn every singular integral of the project into one whose
-integrand h(y) is analytic for |Im y| < pi/2 and grows no faster than exp(growth |Re y|). For such
-functions the error of a rule is known beforehand, so that each integral gets just the nodes that
-its length and the asked tolerance need, and is evaluated once.
+integrand h(y) is analytic for |Im y| < pi/2 and grows no faster than exp(growth |Re y|). The error
+of a rule for such functions is bounded a priori. Each integral therefore takes only the nodes that
+its length and the tolerance need, and nothing is evaluated twice.
 """
 
-from bisect import bisect_left
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from math import ceil, floor, log2, log10, pi
 from typing import Final
 
 import numpy as np
 from scipy.special import roots_legendre
 
-from mdr_core.checks import extremes
-from mdr_core.typing import Array, Chosen, Indices
+from mdr_core.typing import Array, Chosen, Flags, Indices
 
-# h(y, index): y has shape (nodes, m), index (m,) says which integrals they belong to. y is the
-# integrand's own, to be overwritten as it likes.
+# h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals.
 Integrand = Callable[[Array, Chosen], Array]
 
-# Points of the rules on offer: of any integral, and on [-H, H] of an even one over [0, H].
+# Points of the rules for any integral.
 _POINTS: Final = (2, 3, 4, 5, 6, 8, 12, 16, 24, 48)
+# Points of the rules on [-H, H] for an even integrand, of which half are evaluated.
 _EVEN_POINTS: Final = (4, 6, 8, 12, 16, 24, 48)
-# Longest piece of an integral that is cut: the cheapest nodes per unit length.
+# Points of the rule for pieces of a long integral, which has the fewest nodes per unit length.
 _PIECE_POINTS: Final = 24
-# Evaluations at so many nodes take as long as what one more call takes by itself.
+# Nodes evaluated in the time of one more call of an integrand, by measurement.
 _CALL: Final = 2000
+# Logarithm of the largest double, rounded down.
 _LOG_LARGEST: Final = 700.0
-# Of the widest ellipse, where the best one is looked for; and how often a length is halved in.
+# Parts of the widest ellipse among which the best bound is searched.
 _ELLIPSES: Final = np.linspace(0.1, 1.0, 10)
+# Bisections of the logarithm of a half length, to 1e-8.
 _BISECTIONS: Final = 30
-# Nodes of equal pieces by the tolerance: their half length is one in a strip of pi/2.
+# Nodes of pieces of half length 1 in a strip of pi/2, by the smallest tolerance that they reach.
 _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
-# What lies nearer than this to the end of a piece lies on it.
+# Distance from the end of a piece below which a singularity lies on it.
 _NEAREST: Final = 2.0**-52
-# Nodes x integrals handled at once: the temporaries stay in the processor's cache.
+# Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
 
 
 @dataclass(frozen=True)
 class Analytic:
-    """Where an integrand is analytic, |Im y| < strip, and how it grows, exp(growth |Re y|).
+    """Strip |Im y| < strip in which an integrand is analytic, and its growth exp(growth |Re y|).
 
-    The singularities that the substitutions leave sit at |Im y| = pi/2; the strip stays inside.
-    `fewest`: points that an integrand of some degree needs on any interval, however short.
-    `zeros`: how many zeros it may have in or next to the interval, where it is small all over.
+    The singularities that the substitutions leave lie at |Im y| = pi/2, outside the strip.
+    An integrand of high degree needs the `fewest` points on any interval, however short. `zeros`
+    counts the zeros in or next to the interval, near which the integrand is small throughout.
     """
 
     growth: float = 2.0
@@ -72,28 +73,28 @@ def error_bound(points: int | Indices, half_length: float | Array, analytic: Ana
     """Bound the relative error of the `points`-point rule on an interval of length 2H.
 
     For h analytic and |h| <= M in the Bernstein ellipse of parameter rho the error is below
-    (64/15) M rho^(-2n) / (1 - rho^-2); with |h| growing like exp(growth |Re y|) the ellipse that
-    fits the strip, or a smaller one, gives the bound, here relative to the largest h inside. From
-    each zero the ellipse reaches further than the interval by its semi-axis, at most.
+    (64/15) M rho^(-2n)/(1 - rho^-2). With |h| growing like exp(growth |Re y|) the best ellipse
+    within the strip gives the bound, relative to the largest h inside the interval. The ellipse
+    is farther from each zero than the interval by at most its semi-axis.
 
     Source: trefethen, Thm 19.3.
     """
     given = np.asarray(half_length, dtype=float)
     half = np.where(given > 0, given, 1.0)
-    # log(rho), up to the ellipse that touches the strip's edge.
+    # log(rho), up to the ellipse that touches the edge of the strip.
     part = np.multiply.outer(_ELLIPSES, np.arcsinh(analytic.strip / half))
     semi_axis = np.cosh(part)
     log_bound = analytic.growth * half * (semi_axis - 1) - 2 * points * part
     log_bound += analytic.zeros * np.log(semi_axis)
     bound = np.exp(np.minimum(log_bound, _LOG_LARGEST)) / -np.expm1(-2 * part)
-    # An integrand with zeros is by so much less on the average than where it is largest.
+    # The mean of a growing integrand, or of one with zeros, is by so much below its maximum.
     factor = 64 / 15 * (1 + analytic.growth * half) * (1 + analytic.zeros)
     return np.asarray(np.where(given > 0, bound.min(axis=0) * factor, 0.0))
 
 
 @lru_cache(maxsize=512)
-def _longest(rules: tuple[int, ...], decade: int, analytic: Analytic) -> tuple[float, ...]:
-    """Largest half lengths at which the bounds of the rules stay below 10^decade."""
+def _half_lengths(rules: tuple[int, ...], decade: int, analytic: Analytic) -> Array:
+    """Largest half length at which the bound of each rule is below 10^decade, ascending."""
     points = np.array(rules)
     low = np.full(points.shape, min(1e-3, 1e-2 / analytic.growth))
     high = np.full(points.shape, 40.0)
@@ -101,100 +102,115 @@ def _longest(rules: tuple[int, ...], decade: int, analytic: Analytic) -> tuple[f
         middle = np.sqrt(low * high)
         good = error_bound(points, middle, analytic) < 10.0**decade
         low, high = np.where(good, middle, low), np.where(good, high, middle)
-    return tuple(low.tolist())
-
-
-@lru_cache(maxsize=512)
-def _limits(decade: int, analytic: Analytic, rules: tuple[int, ...]) -> tuple[float, ...]:
-    """Half lengths up to which each of the rules suffices."""
-    return tuple(
-        length if points >= analytic.fewest else 0.0
-        for points, length in zip(rules, _longest(rules, decade, analytic), strict=True)
-    )
+    return np.where(points >= analytic.fewest, low, 0.0)
 
 
 def _decade(rtol: float) -> int:
-    """Tolerances are served by whole decades, so that the limits are computed once."""
+    """Decade of a tolerance, so that the half lengths are computed once for each."""
     return max(floor(log10(rtol) + 1e-9), -15)
 
 
+def integrate(
+    h: Integrand,
+    length: Array,
+    rtol: float,
+    lower: Array | None = None,
+    *,
+    even: Flags | bool = True,
+    analytic: Analytic = DEFAULT,
+) -> Array:
+    """Return the integrals of h over [lower, lower + length], h analytic in the strip.
+
+    Source: notes, §5; trefethen, Thm 19.3.
+
+    Parameters
+    ----------
+    h : integrand.
+    length : lengths, accurate also where the ends are close, shape (m,).
+    rtol : relative tolerance.
+    lower : lower ends, shape (m,); None for zero.
+    even : True where h is even in y. If all are, and all begin at zero, half the nodes suffice.
+    analytic : strip and growth of h.
+    """
+    if np.all(even if lower is None else even & (lower == 0)):
+        return integrate_even(h, length, rtol, analytic)
+    return integrate_plain(
+        h, np.zeros_like(length) if lower is None else lower, length, rtol, analytic
+    )
+
+
 def integrate_even(h: Integrand, upper: Array, rtol: float, analytic: Analytic = DEFAULT) -> Array:
-    """Return the integrals of h over [0, upper], h even in y and analytic in the strip.
+    """Return the integrals over [0, upper] of an h that is even in y.
 
     The rule of 2n points on [-upper, upper] costs n evaluations and converges as twice as many.
-    `upper` has shape (m,); what is too long for one rule is cut into pieces.
-    Source: notes, §5; trefethen, Thm 19.3.
+    Parameters: see `integrate`.
     """
 
-    def by_rule(points: int, index: Chosen) -> Array:
+    def by_rule(rule: int, index: Chosen) -> Array:
         length = upper[index]
-        if points:
-            return _apply(h, _half_rule(points), None, length, index)
+        if rule < len(_EVEN_POINTS):
+            return _apply(h, _half_rule(_EVEN_POINTS[rule]), None, length, index)
         return _pieces(h, np.zeros_like(length), length, index, rtol, analytic)
 
-    limits = _limits(_decade(rtol), analytic, _EVEN_POINTS)
-    return _by_groups(by_rule, upper, limits, _EVEN_POINTS, 2)
+    half_lengths = _half_lengths(_EVEN_POINTS, _decade(rtol), analytic)
+    return _by_groups(by_rule, upper, half_lengths, [points // 2 for points in _EVEN_POINTS])
 
 
 def integrate_plain(
     h: Integrand, lower: Array, length: Array, rtol: float, analytic: Analytic = DEFAULT
 ) -> Array:
-    """Return the integrals of h over [lower, lower + length], h analytic in the strip.
+    """Return the integrals of h over [lower, lower + length]. Parameters: see `integrate`."""
 
-    `length` is asked for by itself: as a difference of ends it would lose the digits of a
-    short interval.
-
-    Source: notes, §5; trefethen, Thm 19.3.
-    """
-
-    def by_rule(points: int, index: Chosen) -> Array:
+    def by_rule(rule: int, index: Chosen) -> Array:
         start, span = lower[index], length[index]
-        if points:
-            return _apply(h, composite_rule(points, 1), start, span, index)
+        if rule < len(_POINTS):
+            return _apply(h, composite_rule(_POINTS[rule], 1), start, span, index)
         return _pieces(h, start, span, index, rtol, analytic)
 
-    limits = _limits(_decade(rtol), analytic, _POINTS)
-    return _by_groups(by_rule, length / 2, limits, _POINTS, 1)
+    half_lengths = _half_lengths(_POINTS, _decade(rtol), analytic)
+    return _by_groups(by_rule, length / 2, half_lengths, _POINTS)
 
 
 def _by_groups(
     by_rule: Callable[[int, Chosen], Array],
     half_length: Array,
-    limits: tuple[float, ...],
-    rules: tuple[int, ...],
-    points_a_node: int,
+    longest: Array,
+    nodes: Sequence[int],
 ) -> Array:
-    """Integrate together those that share a rule; of 0 points where none suffices.
+    """Evaluate integrals that share a rule in one call; the rule after the last one uses pieces.
 
-    A few integrals join those of the next finer rule: no call is worth making for them.
+    A few integrals are merged with those of the next finer rule where one more call would take
+    longer than the additional nodes.
+
+    Parameters
+    ----------
+    by_rule : integrals of the given index by the rule of the given number.
+    half_length : half lengths of the integrals, shape (m,).
+    longest : half length up to which each rule meets the tolerance, ascending.
+    nodes : evaluations of each rule.
     """
-    count = half_length.size
-    worth = _CALL * points_a_node
-    low, high = (bisect_left(limits, end) for end in extremes(half_length))
-    if low == high or (high < len(rules) and count * (rules[high] - rules[low]) <= worth):
-        return by_rule((*rules, 0)[high], slice(0, count))
-    # For each rule, and for none before the first, the integrals for which it suffices.
-    suffice = [half_length <= limits[number] for number in range(low, high)]
-    none = np.zeros(count, bool)
-    enough = [none, *suffice, ~none]
-    counts = [int(np.count_nonzero(part)) for part in enough]
-    present = [i for i in range(1, len(enough)) if counts[i] > counts[i - 1]]
-    points = (0, *(*rules, 0)[low : high + 1])
+    if half_length.size * nodes[-1] <= _CALL:
+        finest = int(np.searchsorted(longest, half_length.max(initial=0.0)))
+        return by_rule(finest, slice(0, half_length.size))
+    rule = np.searchsorted(longest, half_length)
+    counts = np.bincount(rule)
+    present = [int(number) for number in counts.nonzero()[0]]
     result = np.empty_like(half_length)
-    more, done = 0, 0
-    for this, finer in zip(present, [*present[1:], 0], strict=True):
-        if points[finer]:
-            more += (counts[this] - counts[done]) * (points[finer] - points[this])
-            if more <= worth:
+    first, waiting, more = 0, 0, 0
+    for this, finer in pairwise([*present, len(nodes)]):
+        waiting += int(counts[this])
+        if finer < len(nodes):
+            more += waiting * (nodes[finer] - nodes[this])
+            if more <= _CALL:
                 continue
-        index = _chosen((enough[this] ^ enough[done]).nonzero()[0])
-        result[index] = by_rule(points[this], index)
-        more, done = 0, this
+        index = _chosen(((rule >= first) & (rule <= this)).nonzero()[0])
+        result[index] = by_rule(this, index)
+        first, waiting, more = this + 1, 0, 0
     return result
 
 
 def _chosen(index: Indices) -> Chosen:
-    """The ascending indices, as a slice where they are neighbours, as of sorted radii they are."""
+    """Ascending indices, as a slice if they are contiguous, as those of sorted radii are."""
     first, last = int(index[0]), int(index[-1])
     return slice(first, last + 1) if last - first + 1 == index.size else index
 
@@ -202,16 +218,16 @@ def _chosen(index: Indices) -> Chosen:
 def _pieces(
     h: Integrand, lower: Array, length: Array, index: Chosen, rtol: float, analytic: Analytic
 ) -> Array:
-    """Cut [lower, lower + length] into equal pieces that one rule carries."""
+    """Integrals over [lower, lower + length] in equal pieces of one rule."""
     half = float(length.max()) / 2
-    count = ceil(half / _longest((_PIECE_POINTS,), _decade(rtol), analytic)[0])
+    count = ceil(half / float(_half_lengths((_PIECE_POINTS,), _decade(rtol), analytic)[0]))
     return _apply(h, composite_rule(_PIECE_POINTS, count), lower, length, index)
 
 
 def _apply(
     h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
 ) -> Array:
-    """Apply a rule on [0, 1] to [lower, lower + length], in blocks that stay in cache."""
+    """Rule on [0, 1] applied to [lower, lower + length], in blocks that stay in the cache."""
     step = max(_BLOCK // rule[0].size, 1)
     if length.size <= step:
         return _at_once(h, rule, lower, length, index)
@@ -248,31 +264,31 @@ def _half_rule(points: int) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=256)
 def composite_rule(points: int, count: int) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], cut into `count` equal pieces."""
+    """Return nodes and weights on [0, 1], cut into `count` equal pieces."""
     nodes, weights = gauss_legendre(points)
     starts = np.arange(count)[:, None]
     return ((starts + (nodes + 1) / 2) / count).ravel(), np.tile(weights / (2 * count), count)
 
 
 def nodes_of_pieces(rtol: float) -> int:
-    """Return how many nodes a piece of length two needs where h is analytic for |Im y| < pi/2."""
+    """Return the number of nodes of a piece of length 2 where h is analytic for |Im y| < pi/2."""
     return next(count for limit, count in _NODES_OF_PIECES if rtol >= limit)
 
 
 @lru_cache(maxsize=256)
 def graded_rule(points: int, halvings: int, count: int = 1) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], cut into equal pieces of which the first halves towards 0."""
+    """Return nodes and weights on [0, 1], in equal pieces of which the first halves towards 0."""
     first = np.append(0.0, 0.5 ** np.arange(halvings, -1, -1))
     return piecewise_rule(points, np.append(first, np.arange(2, count + 1)) / count)
 
 
 def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
-    """Nodes and weights on pieces between all the ends."""
+    """Return nodes and weights on the pieces between the ends."""
     nodes, weights = gauss_legendre(points)
     width = np.diff(ends)[:, None]
     return (ends[:-1, None] + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
 
 
 def halvings_towards(distance: float) -> int:
-    """How often a piece of length one is halved for a singularity so far behind its beginning."""
+    """Return the halvings of a piece of length 1 for a singularity at a distance before it."""
     return max(ceil(-log2(max(distance, _NEAREST))), 0)

@@ -1,68 +1,57 @@
-"""Partial slip under one monotonic tangential load: which part sticks, and how far it moves."""
+"""Partial slip under one monotonic tangential load."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import prod
-from typing import Any, Final, NamedTuple
+from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import annulus, sensitivity
-from mdr_core.checks import require_positive
+from mdr_core import conditioning, equivalent_1d, stick_zone
+from mdr_core.broadcasting import solve_cases
 from mdr_core.errors import InputError, Notice
-from mdr_core.lazy import cached_property
-from mdr_core.normal import Load, NormalContact
-from mdr_core.partial_slip import CONTROLS, state, state_of_sweep
+from mdr_core.extrema import largest_stress
+from mdr_core.normal import NormalContact, not_reached
 from mdr_core.profiles import Profile
-from mdr_core.sweeps import BLOCK, scene_by_scene
+from mdr_core.slip_energy import slip_moment
+from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validity import friction_notices
+from mdr_core.validation import require_positive
 
-# Rounding of the steps over the annulus, in units of the profile's own.
-_STEPS: Final = 40.0
-# What a load is known to.
-_ROUNDINGS: Final = 8 * 2.0**-52
-# What an edge that follows from a load is known to.
-_EDGES: Final = 2 * _ROUNDINGS
+# Rounding error of steps over the annulus, relative to that of the profile's closed forms.
+_STEP_ERROR: Final = 40.0
+# Relative rounding error of a load.
+_LOAD_ERROR: Final = 8 * 2.0**-52
+# Relative rounding error of an edge that follows from a load.
+_EDGE_ERROR: Final = 2 * _LOAD_ERROR
 
-
-class Slip(NamedTuple):
-    """One load's partial slip, as plain numbers."""
-
-    normal: Load
-    friction: float
-    compliance: float
-    g_star: float
-    width: float
-    c: float
-    sign: float
-    full: bool
-    excess: float
+# Step of depth or force between two contact coordinates.
+_Step = Callable[[Profile, Array, Array, Array], Array]
 
 
 @dataclass(frozen=True)
 class TangentialContact:
-    """A normal contact pushed sideways, at every pair of loads at once.
+    """Normal contact under a tangential load, at any number of pairs of loads.
 
-    Each answer is computed when it is first asked for; all are arrays over the broadcast loads.
+    Results are arrays over the broadcast loads. Each is computed on first use.
     """
 
     normal: NormalContact
     g_star: Parameter
     friction_coefficient: Parameter
     stick_coordinate: Array
-    """The stick zone's edge in the profile's contact coordinate; meaningless in full slip."""
+    """Stick radius in the contact coordinate of the profile; undefined in full slip."""
     width: Array
-    """Distance of the stick edge from the contact's edge in that coordinate, with its digits."""
+    """Distance of the stick edge from the contact edge in that coordinate, without cancellation."""
     sign: Array
-    """Direction of the load; a single 1 where all are positive."""
+    """Direction of the load; a single 1 if all are positive."""
     full_slip: Flags
-    """A single false where nowhere everything slips."""
+    """True in full slip; a single False for no case."""
     excess: Array
-    """What the displacement exceeds the one at full slip by [length]; a single 0 for none."""
+    """Displacement beyond that of full slip [length]; a single 0 for no case."""
     control: str = "tangential_displacement"
-    """Which of the three was given."""
+    """Name of the prescribed tangential load."""
 
     @cached_property
     def _coordinate(self) -> Array:
@@ -79,7 +68,7 @@ class TangentialContact:
 
     @cached_property
     def compliance(self) -> Array:
-        """mu E*/G* [1]: depth steps to tangential displacements, Eq. (5.20)."""
+        """mu E*/G* [1], displacement over depth step. Source: mdr-5, Eq. (5.20)."""
         return np.asarray(self.friction_coefficient * self.normal.e_star / self.g_star)
 
     @cached_property
@@ -89,7 +78,8 @@ class TangentialContact:
         if profile.slips_at_once:
             partial = self.limiting_force * self.width
         else:
-            partial = self._over_annulus(_partial_force)
+            factor = self.friction_coefficient * self.normal.e_star
+            partial = self._over_annulus(equivalent_1d.force_step, factor)
         if self.full_slip.any():
             partial = np.where(self.full_slip, self.limiting_force, partial)
         return self._signed(partial)
@@ -102,29 +92,27 @@ class TangentialContact:
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
             partial = self._largest_stick * self.width
         else:
-            partial = self._over_annulus(_partial_displacement)
+            partial = self._over_annulus(equivalent_1d.depth_step, self.compliance)
         if self.full_slip.any():
             partial = np.where(self.full_slip, self._largest_stick, partial) + self.excess
         return self._signed(partial)
 
-    def _over_annulus(self, answer: Callable[..., Array]) -> Array:
-        """What comes from the annulus, of the friction, the moduli and its ends."""
-        values = (
-            self.friction_coefficient,
-            self.normal.e_star,
-            self.g_star,
-            self._coordinate,
-            self.width,
-            self._stick,
-        )
-        return scene_by_scene(self.width.size, answer, self.normal.profile, values)
+    def _over_annulus(self, step: _Step, factor: Parameter) -> Array:
+        """Step of depth or force over the annulus, times a factor."""
+
+        def product(profile: Profile, factor: Array, *ends: Array) -> tuple[Array]:
+            return (np.asarray(factor * step(profile, *ends)),)
+
+        values = factor, self._coordinate, self.width, self._stick
+        (result,) = solve_cases(product, self.normal.profile, values)
+        return result
 
     def _signed(self, size: Array) -> Array:
         return size if self.sign.ndim == 0 and self.sign > 0 else self.sign * size
 
     @cached_property
     def _largest_stick(self) -> Array:
-        """mu (E*/G*) d [length], at which the last point lets go. Source: mdr-5, Eq. (5.17)."""
+        """mu (E*/G*) d [length], at the onset of full slip. Source: mdr-5, Eq. (5.17)."""
         return np.asarray(self.compliance * self.normal.indentation_depth)
 
     @cached_property
@@ -145,8 +133,7 @@ class TangentialContact:
             return np.where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self._stick)
         if c is not self._stick:
-            # The radius of a rounded coordinate may lie beyond the edge by its rounding; where
-            # nothing slips the edges are the same, to the last digit.
+            # By rounding error c may exceed a. Without slip both are bit-identical.
             a = self.normal.contact_radius
             c = np.where(self.width > 0, np.minimum(c, a), a)
         return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
@@ -155,6 +142,23 @@ class TangentialContact:
     def tangential_stiffness(self) -> Array:
         """dF_x/du_x = 2 G* c on further loading [force/length]. Source: mdr-5, Eq. (5.1)."""
         return 2 * self.g_star * self.stick_radius
+
+    @cached_property
+    def maximum_shear_stress(self) -> Array:
+        """Largest |tau(r)| [pressure], zero without a tangential load.
+
+        Infinite where the slip annulus, both ends included, contains a radius of infinite pressure.
+        """
+        loaded = np.asarray(self.tangential_force != 0)
+        stress = largest_stress(self.normal.profile, self._coordinate, loaded, self._slipping)
+        return np.asarray(self.friction_coefficient * self.normal.e_star * stress)
+
+    @property
+    def _slipping(self) -> tuple[Array, Array]:
+        """Width of the slip annulus and stick radius in the contact coordinate."""
+        first = self.normal.profile.first_coordinate
+        width = np.where(self.full_slip, self._coordinate - first, self.width)
+        return width, np.where(self.full_slip, first, self._stick)
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
@@ -166,107 +170,65 @@ class TangentialContact:
 
     @cached_property
     def dissipated_energy(self) -> Array:
-        """Energy lost to friction on the way from zero [force length].
+        """Energy dissipated by friction since the load was zero [force length].
 
-        (2 mu^2 E*^2/G*) int_c^a (g(a) - g)(g - g(c)) dx, a quarter of a cycle's, and mu F_N for
-        every length beyond full slip. Source: notes, §6.
+        (2 mu^2 E*^2/G*) int_c^a (g(a) - g)(g - g(c)) dx, a quarter of that of a cycle, and mu F_N
+        times the displacement beyond full slip. Source: notes, §6.
         """
         profile, e_star = self.normal.profile, self.normal.e_star
         if profile.slips_at_once:
             slipping = np.zeros_like(self.width)
         else:
-            reach = self._coordinate - profile.first_coordinate
-            width = np.where(self.full_slip, reach, self.width)
-            stick = np.where(self.full_slip, profile.first_coordinate, self._stick)
-            moment = annulus.slip_moment(profile, self._coordinate, width, stick)
+            moment = slip_moment(profile, self._coordinate, *self._slipping)
             slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
         return slipping + self.limiting_force * self.excess
 
-    @cached_property
-    def slips(self) -> list[Slip]:
-        """The loads one by one, for what is answered over the radius."""
-        shape = self.width.shape
-        parts = (
-            self.friction_coefficient,
-            self.compliance,
-            self.g_star,
-            self.width,
-            self.stick_radius,
-            self.sign,
-            self.full_slip,
-            self.excess,
-        )
-        # A single load has no need of what makes columns of numbers and arrays.
-        columns = [
-            np.broadcast_to(part, shape).tolist() if shape else [np.asarray(part).item()]
-            for part in parts
-        ]
-        rows: list[Any] = list(zip(*columns, strict=True))
-        pressed = self.normal.loads
-        spread = pressed if len(pressed) == len(rows) else pressed * len(rows)
-        at_once = self.normal.profile.slips_at_once
-        return [
-            # Where nothing slips before all does, the kernel takes the load itself as its width.
-            part._replace(width=part.width * part.normal.coordinate) if at_once else part
-            for part in (Slip(load, *row) for load, row in zip(spread, rows, strict=True))
-        ]
-
     @property
     def method(self) -> str:
-        """The dearest route among the answers."""
+        """Most expensive method among the results."""
         return self.normal.profile.tangential_method
 
     @cached_property
-    def error_estimate(self) -> float:
-        """Bound on the relative error of each answer, what the loads' rounding does included."""
-        known = self.normal.error_estimate
-        felt = _ROUNDINGS * sensitivity.behind_break(self.normal)
+    def load_rounding(self) -> Array:
+        """Relative error of each load's results by the rounding of that load [1]."""
+        error = _LOAD_ERROR * conditioning.beyond_break(self.normal)
         if self.control != "stick_radius":
-            # What is left to full slip is as exact as the normal contact's force or depth.
-            felt += known * self._felt_of_load
+            # The distance from full slip has the error of the limiting force or displacement.
+            error = error + self.normal.error_estimates * self._load_condition
         elif self.normal.control != "contact_radius":
-            felt += _EDGES * sensitivity.narrow_annulus(self._coordinate, self.width)
-        return _STEPS * known + felt
+            error = error + _EDGE_ERROR * conditioning.narrow_annulus(self._coordinate, self.width)
+        return error
 
     @property
-    def _felt_of_load(self) -> float:
-        """The most by which an answer changes relatively for a relative change of the load."""
+    def error_estimates(self) -> Array:
+        """Upper bound of the relative error of each case, rounding of its loads included [1]."""
+        return _STEP_ERROR * self.normal.error_estimates + self.load_rounding
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest of `error_estimates` [1]."""
+        return float(np.max(self.error_estimates))
+
+    @property
+    def _load_condition(self) -> Parameter:
+        """Largest relative condition number of each load's results with respect to it [1]."""
         by_force = self.control == "tangential_force"
         size = np.abs(self.tangential_force if by_force else self.tangential_displacement)
         limit = self.limiting_force if by_force else self._largest_stick
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         if profile.slips_at_once:
-            return 1.0 if by_force else sensitivity.excess_of_travel(size, self.excess)
+            return 1.0 if by_force else conditioning.of_excess_displacement(size, self.excess)
         ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self._stick
-        return sensitivity.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
+        return conditioning.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
-        """Those of the normal contact, `friction`, and `accuracy` where rtol is missed."""
+        """Warnings of the normal contact, and `accuracy` if rtol is not reached."""
         found = [notice for notice in self.normal.warnings if notice.code != "accuracy"]
-        found += friction_notices(self.friction_coefficient, self.normal.e_star, self.g_star)
         if self.error_estimate > self.normal.rtol:
-            found.append(
-                Notice(
-                    "accuracy",
-                    f"rtol = {self.normal.rtol:.1e} is below what double precision reaches here: "
-                    "see error_estimate",
-                )
-            )
+            found.append(not_reached(self.normal.rtol))
         return tuple(found)
-
-
-def _partial_force(
-    profile: Profile, friction: Parameter, e_star: Parameter, _g_star: Parameter, *ends: Array
-) -> Array:
-    return np.asarray(friction * e_star * annulus.force_step(profile, *ends))
-
-
-def _partial_displacement(
-    profile: Profile, friction: Parameter, e_star: Parameter, g_star: Parameter, *ends: Array
-) -> Array:
-    return np.asarray(friction * e_star / g_star * annulus.depth_step(profile, *ends))
 
 
 def solve(
@@ -280,9 +242,9 @@ def solve(
 ) -> TangentialContact:
     """Return the partial slip of a normal contact under one tangential load, applied once.
 
-    F_x = mu [F_N(a) - F_N(c)] and u_x = mu (E*/G*) [d(a) - d(c)] for every profile; slip starts
-    at the edge and the stick radius c falls as the load grows. A flat punch sticks wholly and
-    slides at once, and slip cannot enter the flat of a blunt profile.
+    F_x = mu [F_N(a) - F_N(c)] and u_x = mu (E*/G*) [d(a) - d(c)] for every profile. Slip spreads
+    inwards from the edge as the load grows. A flat punch sticks completely up to full slip, and
+    slip does not spread into the flat of a flat-ended profile.
 
     Source: mdr-5, Eqs. (5.18)-(5.23), (5.33), Problem 3.
 
@@ -296,8 +258,8 @@ def solve(
 
     Raises
     ------
-    InputError : |F_x| > mu F_N, which no equilibrium carries; a stick radius outside the
-        contact or inside the flat; not exactly one load; parameters that are not positive.
+    InputError : |F_x| > mu F_N, without equilibrium; a stick radius outside the contact or inside
+        the flat; not exactly one load; parameters that are not positive.
 
     Examples
     --------
@@ -306,8 +268,8 @@ def solve(
     >>> from mdr_core import normal
     >>> from mdr_core.profiles import Paraboloid
     >>> contact = normal.solve(Paraboloid(0.01), 1.1e11, normal_force=10.0)
-    >>> sideways = solve(contact, 0.9e11, 0.3, tangential_force=[0.0, 2.625])
-    >>> [float(f"{c:.6g}") for c in sideways.stick_radius / contact.contact_radius]
+    >>> partial = solve(contact, 0.9e11, 0.3, tangential_force=[0.0, 2.625])
+    >>> [float(f"{c:.6g}") for c in partial.stick_radius / contact.contact_radius]
     [1.0, 0.5]
     """
     for path, value in (
@@ -324,21 +286,18 @@ def solve(
     shape = np.broadcast_shapes(
         given.shape, contact.coordinate.shape, *(np.shape(one) for one in parameters)
     )
-    sweeps = prod(shape) > BLOCK
-    found = state_of_sweep(contact, *parameters, name, given) if sweeps else None
-    if found is None:
-        found = state(contact, *parameters, name, given)
+    zone = stick_zone.solve(contact, *parameters, name, given)
     result = TangentialContact(
         contact,
         *parameters,
-        found.edge,
-        np.broadcast_to(found.width, shape),
-        found.sign,
-        found.full,
-        found.excess,
+        zone.edge,
+        np.broadcast_to(zone.width, shape),
+        zone.sign,
+        zone.full,
+        zone.excess,
         name,
     )
     if given.shape == shape:
-        # What was given is answered as given, to the last digit.
+        # The prescribed load is returned bit-identical.
         vars(result)[name] = given
     return result

@@ -1,4 +1,4 @@
-"""The array types that all modules share."""
+"""Array types shared by all modules."""
 
 from typing import TypeAlias
 
@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
-# Some of an array's entries: any, or a run of neighbours, which is a view and no copy.
+# Chosen elements of an array: any, or a contiguous range, which is a view and not a copy.
 Chosen: TypeAlias = Indices | slice
 Flags: TypeAlias = NDArray[np.bool_]
-# A profile's parameter: one number, or an array over the scenes of a sweep.
+# Parameter of a profile: one number, or an array over the cases of a sweep.
 Parameter: TypeAlias = float | Array

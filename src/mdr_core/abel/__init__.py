@@ -1,36 +1,12 @@
-"""The singular integrals: Abel transforms forward and back, and the two-limit stress kernel."""
+"""Singular integrals: the two-root rule, the transforms of tables and the displacements."""
 
-from mdr_core.abel.back import back
-from mdr_core.abel.panels import (
-    Jumps,
-    Panels,
-    find_breaks,
-    forward,
-    forward_moment,
-    forward_slope,
-    jumps_at,
-    resolve,
-    slope_source,
-)
-from mdr_core.abel.resolved import smooth_panels, stress_panels
-from mdr_core.abel.roots import arc, between, one_sided
+from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.stress import StressPanels
+from mdr_core.abel.two_root import two_root_integral
 
 __all__ = [
-    "Jumps",
-    "Panels",
+    "Annulus",
+    "InnerEnd",
     "StressPanels",
-    "arc",
-    "back",
-    "between",
-    "find_breaks",
-    "forward",
-    "forward_moment",
-    "forward_slope",
-    "jumps_at",
-    "one_sided",
-    "resolve",
-    "slope_source",
-    "smooth_panels",
-    "stress_panels",
+    "two_root_integral",
 ]

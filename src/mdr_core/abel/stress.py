@@ -1,49 +1,37 @@
-"""The two-limit stress kernel of functions known as panels."""
+"""The two-limit stress kernel of a table, int g'(x)/sqrt(x^2 - r^2) dx over an annulus."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import sqrt
 from typing import Final
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import polynomial
 
-from mdr_core.abel.clusters import FAR, Clusters, add, clusters, masses_at_nodes, nodes_for, pairs
+from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.panel_moments import PLACES, PowerPanels, interpolated, power_panels
-from mdr_core.abel.pieces import DEGREE
-from mdr_core.abel.roots import leg, one_sided
-from mdr_core.lazy import cached_property
-from mdr_core.quadrature import Analytic, gauss_legendre
-from mdr_core.typing import Array, Chosen, Flags, Indices
+from mdr_core.abel.multipole import FAR, Multipoles, add, at_nodes, multipoles, pairs
+from mdr_core.abel.panel_moments import far, near, scaled
+from mdr_core.abel.subpanels import LONGEST, fit_points, fitted
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Chosen
 
-# Of a panel's masses, and of a part of a panel that is seen from afar, where 2 x 14 nodes
-# leave 3.4^-28.
-_MASS_NODES: Final = 16
-_FAR_NODES: Final = 14
-# Interpolation errs by 7.3^-12 of the part of a block: below 1e-13 of the whole.
-_CLUSTER_NODES: Final = 12
-# Parts of the accuracy: what a panel may lose that is expanded anew, and the ends of an annulus.
-_ANEW: Final = 0.1
-_SAME: Final = 1e-3
-# The axis of the first panel: nearer than this nothing changes for a function smooth there.
+# Points in a panel that become masses.
+_MASSES: Final = 16
+# Nodes of a block: interpolation leaves 7.3^-13 = 6e-12 of the block's part, and 1e-13 of the whole
+# in the bank of tables.
+_NODES: Final = 13
+# Points of a panel that is expanded about another edge.
+_POINTS: Final = 24
+# Distance from the axis, over the first panel or the contact, within which a smooth stress is
+# constant.
 _AXIS: Final = 1e-8
-# G(0) below this, relative to the largest G, is what an interpolation leaves of a smooth tip.
-_TIP: Final = 1e-6
-# The panels' polynomials have degree 23.
-_POLYNOMIALS: Final = Analytic(growth=12.0, fewest=24)
-
-
-def _basis(points: Array) -> Array:
-    """The polynomials of a piece at points between -1 and 1 (degree + 1, points)."""
-    return np.asarray(chebyshev.chebvander(points, DEGREE).T, dtype=float)
-
-
-_AT_PLACES: Final = _basis(2 * PLACES - 1)
-_AT_NODES: Final = _basis(gauss_legendre(_MASS_NODES)[0])
 
 
 @dataclass(frozen=True)
-class _Annulus:
-    """Where is integrated: c <= x <= a, `width` = a - c with its digits."""
+class _Ends:
+    """Annulus c <= x <= a; `width` = a - c, accurate however narrow the annulus."""
 
     a: float
     c: float
@@ -52,309 +40,145 @@ class _Annulus:
 
 @dataclass(frozen=True, eq=False)
 class StressPanels:
-    """G = g' between `edges` as polynomials in s = sqrt(x^2 - b^2), b the panel's own left edge.
-
-    There the root that G carries at b is gone; what remains of a jump, `pole`/s, is kept apart.
-    A panel is one piece or several: all other arrays have one entry a piece; `coefficients` are
-    Chebyshev, on [start, stop] in s.
-    """
+    """W = dg/ds as a polynomial in u = s/length, s = sqrt(x^2 - left^2), on each panel."""
 
     edges: Array
-    base: Array
-    start: Array
-    stop: Array
-    pole: Array
-    coefficients: Array
-    error: float
-    accuracy: float
-    """What closed moments next to a point may lose, of the largest value in a panel."""
+    """Ends of the panels, ascending [length], shape (k + 1,)."""
+    length: Array
+    """s at the right end of each panel [length], shape (k,)."""
+    weight: Array
+    """Coefficients of the powers of u, from 0 on [1], shape (k, n)."""
+    smooth_tip: bool
+    """True if the slope on the axis is zero up to interpolation error: its stress is finite."""
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays, which are computed here [byte]."""
+        arrays = self.edges, self.length, self.weight, self._rows
+        return sum(array.nbytes for array in arrays) + self._multipoles.nbytes
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        """The pieces as stretches for the displacement integrals."""
-        return tuple(self._branch(piece) for piece in range(self.base.size))
+        """Panels as intervals for the displacement integrals."""
+        return tuple(self._branch(panel) for panel in range(self.length.size))
 
-    def _branch(self, piece: int) -> Branch:
-        base, start, stop = (float(part[piece]) for part in (self.base, self.start, self.stop))
-        middle, half = (start + stop) / 2, (stop - start) / 2
-        pole, row = float(self.pole[piece]), self.coefficients[piece]
-        row = row[: int(np.flatnonzero(row).max(initial=0)) + 1]
+    def _branch(self, panel: int) -> Branch:
+        left, right = self.edges[panel : panel + 2].tolist()
+        length, row = float(self.length[panel]), self.weight[panel]
 
         def weight(x: Array, s: Array, _index: Chosen) -> Array:
-            value = chebyshev.chebval(np.clip((s - middle) / half, -1, 1), row)
-            return np.asarray((value * s + pole) / x)
+            del x
+            return np.asarray(polynomial.polyval(np.minimum(s / length, 1.0), row))
 
-        return Branch(base, weight, float(self._ends[piece]), start=float(np.hypot(base, start)))
-
-    @cached_property
-    def _first(self) -> Indices:
-        """First piece of each panel, and the number of all."""
-        return np.append(np.flatnonzero(self.start == 0), self.base.size)
+        return Branch(left, weight, right)
 
     @cached_property
-    def _ends(self) -> Array:
-        """Where each piece ends as a radius: the last of a panel on its edge, to the last bit."""
-        ends = np.hypot(self.base, self.stop)
-        ends[self._first[1:] - 1] = self.edges[1:]
-        return np.asarray(ends)
+    def _rows(self) -> Array:
+        return scaled(self.weight.T)
 
     @cached_property
-    def _powers(self) -> PowerPanels:
-        """The panels in powers of s."""
-        left, right = self.edges[:-1], self.edges[1:]
-        pole = self.pole[self._first[:-1]]
-        on_axis = chebyshev.chebval(-1.0, self.coefficients[0])
-        at_left = np.append(on_axis, pole[1:] / left[1:])
-        every = np.arange(left.size)
-        values = self._weights(every, PLACES)
-        powers = power_panels(left, right, values, at_left, self.accuracy)
-        # One piece is resolved; of several, one polynomial may miss what lies between its places.
-        cut = np.flatnonzero((np.diff(self._first) > 1) & powers.known)
-        if not cut.size:
-            return powers
-        between = (PLACES[1:] + PLACES[:-1]) / 2
-        between = np.concatenate([PLACES[:1] * [0.03, 0.3], between])
-        fitted = interpolated(values[cut], between)
-        missed = np.abs(fitted - self._weights(cut, between)).max(axis=1, initial=0.0)
-        powers.known[cut] = missed <= self.accuracy / 4 * np.abs(values[cut]).max(axis=1)
-        return powers
+    def _multipoles(self) -> Multipoles:
+        nodes, weights = gauss_legendre(_MASSES)
+        u = (1 + nodes) / 2
+        powers = u ** np.arange(self.weight.shape[1])[:, None]
+        masses = (self.weight @ powers * (weights / 2)).T * self.length
+        return multipoles(self.edges, at_nodes(np.square(u)[:, None], masses, _NODES), above=False)
 
-    def _weights(self, panel: Indices, places: Array) -> Array:
-        """W = (G s + pole)/x at places in panels of length one (panels, places)."""
-        left = self.edges[panel, None]
-        length = leg(self.edges[panel + 1], left[:, 0])[:, None]
-        s = length * places
-        first = self._first[panel]
-        basis = _AT_PLACES if places is PLACES else _basis(2 * places - 1)
-        value = self.coefficients[first] @ basis
-        cut = np.flatnonzero(np.diff(self._first)[panel] > 1)
-        if cut.size:
-            value[cut] = self._from_pieces(panel[cut], places, s[cut])
-        return np.asarray((value * s + self.pole[first, None]) / np.hypot(left, s))
+    def kernel(self, annulus: Annulus, r: Array) -> Array:
+        """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx, r of shape (m,), r < a.
 
-    def _from_pieces(self, panel: Indices, places: Array, s: Array) -> Array:
-        """G without its pole, in panels of several pieces."""
-        number = np.repeat(np.arange(self.edges.size - 1), np.diff(self._first))
-        at = number + self.start / leg(self.edges[1:], self.edges[:-1])[number]
-        piece = np.searchsorted(at, panel[:, None] + places, side="right") - 1
-        return self._regular(piece, s)
-
-    @cached_property
-    def _clusters(self) -> Clusters:
-        """Whole panels, as they are seen from smaller radii afar."""
-        first = self._first
-        nodes, weights = gauss_legendre(_MASS_NODES)
-        span = self.stop - self.start
-        s = self.start[:, None] + np.multiply.outer(span, (1 + nodes) / 2)
-        # The nodes are in the same places of all pieces.
-        value = self.coefficients @ _AT_NODES * s + self.pole[:, None]
-        masses = span[:, None] / 2 * weights * value / np.hypot(self.base[:, None], s)
-        square = np.diff(self.edges) * (self.edges[1:] + self.edges[:-1])
-        parts = masses_at_nodes(
-            s * s / np.repeat(square, np.diff(first))[:, None],
-            masses,
-            min(nodes_for(self.accuracy), _CLUSTER_NODES),
-        )
-        return clusters(self.edges, np.add.reduceat(parts, first[:-1]), above=False)
-
-    def kernel(
-        self,
-        a: Array,
-        r: Array,
-        rtol: float,
-        width: Array | None = None,
-        inner: Array | None = None,
-    ) -> Array:
-        """Return int_max(r,c)^a G(x)/sqrt(x^2 - r^2) dx, c = a - width.
-
-        a of shape (1,) or (m,), r of shape (m,), r < a. Source: mdr-5, Eqs. (5.68), (5.70).
+        The coordinate of the annulus is the radius. Source: mdr-5, Eqs. (5.68), (5.70).
         """
-        width = a if width is None else width
-        c = a - width if inner is None else inner
+        a, inner, _ = annulus
+        width, c = (a, np.zeros(1)) if inner is None else inner
         annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width)])
         if annuli.shape[1] == 1:
-            return self._sorted(_Annulus(*annuli[:, 0].tolist()), r, rtol)
+            return self._sorted(_Ends(*annuli[:, 0].tolist()), r)
         different, number = np.unique(annuli, axis=1, return_inverse=True)
         result = np.empty_like(r)
         for i, column in enumerate(different.T.tolist()):
             points = np.flatnonzero(number == i)
-            result[points] = self._sorted(_Annulus(*column), r[points], rtol)
+            result[points] = self._sorted(_Ends(*column), r[points])
         return result
 
-    def _sorted(self, annulus: _Annulus, r: Array, rtol: float) -> Array:
+    def _sorted(self, annulus: _Ends, r: Array) -> Array:
         if bool((r[1:] >= r[:-1]).all()):
-            return self._over(annulus, r, rtol)
+            return self._over(annulus, r)
         order = np.argsort(r)
         result = np.empty_like(r)
-        result[order] = self._over(annulus, r[order], rtol)
+        result[order] = self._over(annulus, r[order])
         return result
 
-    def _over(self, annulus: _Annulus, r: Array, rtol: float) -> Array:
-        """The kernel at ascending radii: whole panels, and those that the annulus cuts."""
-        last = int(np.searchsorted(self.edges, annulus.a)) - 1
+    def _over(self, annulus: _Ends, r: Array) -> Array:
+        """Kernel at ascending radii, over whole panels and those at the ends of the annulus."""
+        if self.smooth_tip and self.edges[0] == annulus.c == 0:
+            r = np.maximum(r, _AXIS * min(self.length[0], annulus.a))
+        last = min(int(np.searchsorted(self.edges, annulus.a)), self.length.size) - 1
         first = int(np.searchsorted(self.edges, annulus.c))
-        total = self._whole(first, last, r, rtol) if first < last else np.zeros_like(r)
+        total = self._whole(first, last, r) if first < last else np.zeros_like(r)
         for panel in {last, first - 1} - {-1}:
-            total += self._cut(panel, annulus, r, rtol)
+            total += self._cut(panel, annulus, r)
         return total
 
-    def _whole(self, first: int, last: int, r: Array, rtol: float) -> Array:
-        """Panels first <= i < last: afar in clusters, the others one by one."""
-        low, high = self._clusters.far_from(r, self._clusters.usable(first, last))
-        total = self._clusters.sums(r, None, low, high)
+    def _whole(self, first: int, last: int, r: Array) -> Array:
+        """Panels first <= i < last: as multipoles in the far field, the others one by one."""
+        low, high = self._multipoles.far_from(r, self._multipoles.usable(first, last))
+        total = self._multipoles.sums(r, None, low, high)
         end = np.searchsorted(r, self.edges[first + 1 : last + 1])
         for number, point in pairs(np.minimum(high[first:last], end), end):
-            add(total, point, self._near(number + first, r[point], rtol))
+            panel, at = number + first, r[point]
+            left, right = self.edges[panel], self.edges[panel + 1]
+            above, to_right = (left - at) * (left + at), (right - at) * (right + at)
+            rows = self._rows.take(panel, axis=1)
+            add(total, point, near(rows, self.length[panel], above, to_right))
         return total
 
-    def _near(self, panel: Indices, r: Array, rtol: float) -> Array:
-        """Whole panels, each seen from its own radius."""
-        at, infinite = self._off_axis(panel, r)
-        known = self._powers.known[panel]
-        if known.all():
-            value = self._powers.chosen(panel).integrals(at)
-        else:
-            value = np.empty_like(r)
-            value[known] = self._powers.chosen(panel[known]).integrals(at[known])
-            rest = np.flatnonzero(~known)
-            whole = _Annulus(np.inf, 0.0, np.inf)
-            value[rest] = self._by_rule(panel[rest], at[rest], whole, rtol)
-        value[infinite] = np.inf
-        return value
-
-    def _off_axis(self, panel: Indices, r: Array, c: float = 0.0) -> tuple[Array, Flags]:
-        """Radii moved off the axis, and where a tip makes the integral from c on infinite there.
-
-        G(0) > 0 is a tip, and the integral of G/x over it infinite.
-        """
-        on_axis = (r == 0) & (panel == 0)
-        if not on_axis.any():
-            return r, on_axis
-        if c > 0:
-            return np.where(on_axis, _AXIS * c, r), np.zeros_like(on_axis)
-        row = self.coefficients[0]
-        tip = abs(float(chebyshev.chebval(-1.0, row))) > _TIP * np.abs(self.coefficients).max()
-        return np.where(on_axis, _AXIS * self.stop[0], r), on_axis & tip
-
-    def _cut(self, panel: int, annulus: _Annulus, r: Array, rtol: float) -> Array:
-        """The part of one panel that lies in the annulus."""
-        left = max(float(self.edges[panel]), annulus.c)
+    def _cut(self, panel: int, annulus: _Ends, r: Array) -> Array:
+        """Part of one panel that lies in the annulus."""
+        b, c = float(self.edges[panel]), annulus.c
         right = min(float(self.edges[panel + 1]), annulus.a)
-        powers = self._cut_powers(panel, annulus, left, right)
-        square = (right - left) * (right + left)
-        above = (left - r) * (left + r)
-        far = int(np.searchsorted(-above, -FAR * square, side="right"))
         total = np.zeros_like(r)
-        if powers is None:
-            total[:far] = self._by_nodes(panel, annulus, left, above[:far])
-        else:
-            total[:far] = powers.from_afar(above[:far], self.accuracy)
-        near = slice(far, int(np.searchsorted(r, right)))
-        if near.start < near.stop:
-            every = np.full(near.stop - far, panel)
-            at, infinite = self._off_axis(every, r[near], annulus.c)
-            if powers is None:
-                total[near] = self._by_rule(every, at, annulus, rtol)
-            else:
-                total[near] = powers.chosen(np.zeros_like(every)).integrals(at)
-            total[near][infinite] = np.inf
+        # For radii above c the integral starts at the radius and does not depend on c.
+        beyond = int(np.searchsorted(r, c)) if c > b else 0
+        at = r[beyond : int(np.searchsorted(r, right))]
+        length = sqrt((right - b) * (right + b))
+        rows = self._rows[:, panel] * (length / self.length[panel]) ** np.arange(len(self._rows))
+        above, to_right = (b - at) * (b + at), (right - at) * (right + at)
+        total[beyond : beyond + at.size] = _panel_integral(rows, length, above, to_right)
+        if beyond:
+            whole = (right - c) * (right + c)
+            if right == annulus.a:
+                whole = annulus.width * (right + c)
+            total[:beyond] = self._from_inner(panel, c, whole, r[:beyond])
         return total
 
-    def _cut_powers(
-        self, panel: int, annulus: _Annulus, left: float, right: float
-    ) -> PowerPanels | None:
-        """A panel's part between two radii in powers of its own; None where they are no good."""
-        powers = self._powers.chosen(np.array([panel])).cut(right)
-        if powers.known[0] and left > self.edges[panel]:
-            # Of a narrow annulus the width has digits that its ends have not.
-            miss = abs((annulus.a - annulus.c) - annulus.width)
-            if right == annulus.a and miss > _SAME * self.accuracy * annulus.width:
-                return None
-            powers = powers.begun(left, _ANEW * self.accuracy)
-        return powers if powers.known[0] else None
+    def _from_inner(self, panel: int, c: float, whole: float, r: Array) -> Array:
+        """Part of one panel from c on, `whole` long in x^2, at ascending radii below c.
 
-    def _by_nodes(self, panel: int, annulus: _Annulus, left: float, above: Array) -> Array:
-        """Fixed nodes on a part of a panel for all points far below it, `above` = left^2 - r^2."""
-        pieces = np.arange(self._first[panel], self._first[panel + 1])
-        low, _, span, _ = self._part(pieces, annulus)
-        steps, masses = self._nodes(pieces, low, span, _FAR_NODES)
-        bottom = leg(np.asarray(left), self.base[pieces])
-        gaps = ((low - bottom)[:, None] + steps) * ((low + bottom)[:, None] + steps)
-        total = np.zeros_like(above)
-        for piece in np.flatnonzero(span > 0):
-            root = above[:, None] + gaps[piece]
-            np.sqrt(root, out=root)
-            total += np.divide(1.0, root, out=root) @ masses[piece]
-        return total
-
-    def _part(self, piece: Indices, annulus: _Annulus) -> tuple[Array, Array, Array, Array]:
-        """Where the annulus begins and ends in each piece, its length, and its end as a radius."""
-        base, start, stop = self.base[piece], self.start[piece], self.stop[piece]
-        leg_a, leg_c = leg(np.asarray(annulus.a), base), leg(np.asarray(annulus.c), base)
-        low, high = np.maximum(start, leg_c), np.minimum(stop, leg_a)
-        cut_twice = (low == leg_c) & (high == leg_a) & (leg_c > 0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            width = annulus.width * (annulus.a + annulus.c) / (leg_a + leg_c)
-        span = np.where(cut_twice, width, np.maximum(high - low, 0.0))
-        return low, high, span, np.where(high == leg_a, annulus.a, self._ends[piece])
-
-    def _nodes(self, piece: Indices, low: Array, span: Array, count: int) -> tuple[Array, Array]:
-        """Gauss' nodes of pieces from `low` on, as steps from there, and the masses G dx."""
-        nodes, weights = gauss_legendre(count)
-        steps = np.multiply.outer(span, (1 + nodes) / 2)
-        s = low[:, None] + steps
-        value = self._regular(piece[:, None], s) * s + self.pole[piece, None]
-        return steps, span[:, None] / 2 * weights * value / np.hypot(self.base[piece, None], s)
-
-    def _regular(self, piece: Indices, s: Array) -> Array:
-        """G without its pole."""
-        start, stop = self.start[piece], self.stop[piece]
-        u = np.clip((2 * s - start - stop) / (stop - start), -1, 1)
-        rows = np.moveaxis(self.coefficients[piece], -1, 0)
-        return np.asarray(chebyshev.chebval(u, rows, tensor=False))
-
-    def _by_rule(self, panel: Indices, r: Array, annulus: _Annulus, rtol: float) -> Array:
-        """Two-root rule on the part of each panel that lies in the annulus and above its own r."""
-        counts = self._first[panel + 1] - self._first[panel]
-        number = np.repeat(np.arange(panel.size), counts)
-        piece = (self._first[panel] - np.cumsum(counts) + counts)[number] + np.arange(number.size)
-        low, high, span, edge = self._part(piece, annulus)
-        leg_r = leg(r[number], self.base[piece])
-        # The root at r inside the piece: the rule starts on it, at y = 0, even in y.
-        on_root = leg_r >= low
-        span = np.where(on_root, high, span)
-        begin = np.where(low > self.start[piece], annulus.c, np.hypot(self.base[piece], low))
-        used = np.flatnonzero((span > 0) & (high > leg_r))
-        piece, number = piece[used], number[used]
-        ends = high[used], span[used], edge[used], begin[used]
-        values = self._rule(piece, r[number], ends, rtol)
-        return np.bincount(number, weights=values, minlength=r.size).astype(float, copy=False)
-
-    def _rule(
-        self, piece: Indices, r: Array, ends: tuple[Array, Array, Array, Array], rtol: float
-    ) -> Array:
-        """Two-root rule on each pair of a piece and a point, from high - span to high in s.
-
-        `ends` are high and span, and the radii that go with the upper and the lower end.
+        W is expanded about c, on pieces that are short next to its root at the panel's left edge.
         """
-        high, span, edge, begin = ends
-        start, stop, pole = self.start[piece], self.stop[piece], self.pole[piece]
-        rows = self.coefficients[piece].T
+        b = float(self.edges[panel])
+        past, below = (c - b) * (c + b), (c - r) * (c + r)
+        ends = [0.0]
+        while ends[-1] < whole:
+            ends.append(min(ends[-1] + LONGEST * (past + ends[-1]), whole))
+        points, _, _ = fit_points(_POINTS)
+        degrees = np.arange(self.weight.shape[1])[:, None]
+        total = np.zeros_like(r)
+        for low, high in pairwise(ends):
+            length = sqrt(high - low)
+            own = length * points
+            s = np.sqrt(past + low + own * own)
+            weight = self.weight[panel] @ (s / self.length[panel]) ** degrees * own / s
+            rows = scaled(fitted(weight)[:, None])[:, 0]
+            rows[0] = 0.0
+            total += _panel_integral(rows, length, below + low, below + high)
+        return total
 
-        def weight(x: Array, s: Array, index: Chosen) -> Array:
-            u = np.clip((2 * s - (start + stop)[index]) / (stop - start)[index], -1, 1)
-            value = chebyshev.chebval(u, rows[:, None, index], tensor=False)
-            return np.asarray((value * s + pole[index]) / x)
 
-        return one_sided(
-            weight,
-            self.base[piece],
-            r,
-            high,
-            width=span,
-            edge=edge,
-            inner=begin,
-            odd=False,
-            rtol=rtol,
-            analytic=_POLYNOMIALS,
-        )
+def _panel_integral(rows: Array, length: float, above: Array, to_right: Array) -> Array:
+    """Integral over one panel at ascending radii, in the far and the near field."""
+    begin = int(np.searchsorted(-above, -FAR * length * length, side="right"))
+    every = np.repeat(rows[:, None], above.size - begin, axis=1)
+    parts = far(rows, length, above[:begin]), near(every, length, above[begin:], to_right[begin:])
+    return np.concatenate(parts)

@@ -1,55 +1,83 @@
-"""Fields over the radius, of a contact under one load or at the end of a history."""
+"""Fields over the radius, of a contact or at the end of a load history."""
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core.fields import contact as _contact
-from mdr_core.fields import remembered
+from mdr_core.fields import history_end as _history_end
+from mdr_core.fields import radii as _radii
 from mdr_core.fields.contact import foundation_load, normal_displacement, pressure
-from mdr_core.fields.largest import largest_pressure, largest_shear_stress
-from mdr_core.fields.rows import graded
-from mdr_core.history import State
+from mdr_core.fields.radii import graded
+from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
 
 def shear_stress(
-    contact: TangentialContact | State, radius: ArrayLike, *, rtol: float = 1e-10
+    contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
 ) -> Array:
-    """Return the shear stress over the radius; see `contact` and `remembered`."""
-    if isinstance(contact, State):
-        return remembered.shear_stress(contact, radius, rtol=rtol)
+    """Return the shear stress over the radius; see `contact` and `history_end`."""
+    if isinstance(contact, ContactState):
+        return _history_end.shear_stress(contact, radius, rtol=rtol)
     return _contact.shear_stress(contact, radius, rtol=rtol)
 
 
-def slip(contact: TangentialContact | State, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
-    """Return the slip over the radius; see `contact` and `remembered`."""
-    if isinstance(contact, State):
-        return remembered.slip(contact, radius, rtol=rtol)
+def slip(
+    contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
+) -> Array:
+    """Return the slip over the radius; see `contact` and `history_end`."""
+    if isinstance(contact, ContactState):
+        return _history_end.slip(contact, radius, rtol=rtol)
     return _contact.slip(contact, radius, rtol=rtol)
 
 
-def foundation_shear(contact: TangentialContact | State, radius: ArrayLike) -> Array:
-    """Return the foundation's tangential load over the radius; see `contact` and `remembered`."""
-    if isinstance(contact, State):
-        return remembered.foundation_shear(contact, radius)
+def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
+    """Return the foundation's tangential load over the radius; see `contact` and `history_end`."""
+    if isinstance(contact, ContactState):
+        return _history_end.foundation_shear(contact, radius)
     return _contact.foundation_shear(contact, radius)
 
 
-def grid(contact: NormalContact | TangentialContact | State, points: int) -> Array:
-    """Return radii that crowd towards where the fields are singular; see `contact`."""
-    if isinstance(contact, State):
-        return remembered.grid(contact, points)
+def grid(contact: NormalContact | TangentialContact | ContactState, points: int) -> Array:
+    """Return radii that cluster at the singularities of the fields; see `contact`."""
+    if isinstance(contact, ContactState):
+        return _history_end.grid(contact, points)
     return _contact.grid(contact, points)
 
 
+def edge_error(
+    contact: NormalContact | TangentialContact | ContactState, name: str, radius: ArrayLike
+) -> float:
+    """Return the error of a field by that of the edges, relative to its largest value [1].
+
+    Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
+    units in the last place of an edge are excluded, because the relative error at a root is
+    unbounded.
+
+    Parameters
+    ----------
+    contact : contact, or end of a load history.
+    name : `pressure`, `shear_stress`, `slip` or `foundation_shear`; other fields have no edge.
+    radius : radii of the field [length], shape (m,).
+    """
+    if name not in ("pressure", "shear_stress", "slip", "foundation_shear"):
+        return 0.0
+    edges = (
+        _history_end.edges(contact)
+        if isinstance(contact, ContactState)
+        else _contact.edges(contact)
+    )
+    stress = name in ("pressure", "shear_stress")
+    return _radii.edge_error(edges, np.atleast_1d(np.asarray(radius, dtype=float)), root=stress)
+
+
 __all__ = [
+    "edge_error",
     "foundation_load",
     "foundation_shear",
     "graded",
     "grid",
-    "largest_pressure",
-    "largest_shear_stress",
     "normal_displacement",
     "pressure",
     "shear_stress",

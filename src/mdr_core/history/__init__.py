@@ -1,7 +1,7 @@
-"""Any history of normal and tangential load, exactly: memory in the depth coordinate."""
+"""Load histories of normal and tangential load, with the slip memory of the contact."""
 
-from mdr_core.history.cycles import Cycles, cycles
-from mdr_core.history.solution import History, solve
-from mdr_core.history.state import State, advance, unloaded
+from mdr_core.history.contact_state import ContactState, advance, unloaded
+from mdr_core.history.cycles import LoadCycles, cycles
+from mdr_core.history.solver import LoadHistory, solve
 
-__all__ = ["Cycles", "History", "State", "advance", "cycles", "solve", "unloaded"]
+__all__ = ["ContactState", "LoadCycles", "LoadHistory", "advance", "cycles", "solve", "unloaded"]

@@ -1,42 +1,44 @@
 """Cycles between two tangential loads, under a constant or an oscillating normal load."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from mdr_core.errors import InputError
-from mdr_core.history.solution import History, solve
-from mdr_core.lazy import cached_property
+from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
 
 @dataclass(frozen=True)
-class Cycles:
-    """A history of equal cycles, and what each of them does."""
+class LoadCycles:
+    """Load history of identical cycles, with the energy and the stiffness of each."""
 
-    history: History
+    history: LoadHistory
     count: int
 
     @cached_property
     def energy_per_cycle(self) -> Array:
-        """Energy lost to friction in each cycle, the area of its loop [force length]."""
-        return np.asarray(self._legs(self.history.dissipation).sum(axis=1))
+        """Energy dissipated in each cycle, the area of its loop [force length]."""
+        return np.asarray(self._by_cycle(self.history.dissipation).sum(axis=1))
 
     @cached_property
     def secant_stiffness(self) -> Array:
-        """(F_max - F_min)/(u_max - u_min) of each loop [force/length]; infinite if u is held."""
-        force = self._turns(self.history.tangential_force)
-        shift = self._turns(self.history.tangential_displacement)
-        return np.asarray(np.ptp(force, axis=1) / np.ptp(shift, axis=1))
+        """(F_max - F_min)/(u_max - u_min) of each loop [force/length], infinite at constant u."""
+        force = self._turning_points(self.history.tangential_force)
+        displacement = self._turning_points(self.history.tangential_displacement)
+        return np.asarray(np.ptp(force, axis=1) / np.ptp(displacement, axis=1))
 
-    def _legs(self, values: Array) -> Array:
-        """What belongs to each cycle, as rows: from the upper turning point back to it."""
+    def _by_cycle(self, values: Array) -> Array:
+        """Values in rows, one for each cycle from upper turning point to upper turning point."""
         return values[2 * self.history.path.per_step :].reshape(self.count, -1)
 
-    def _turns(self, values: Array) -> Array:
+    def _turning_points(self, values: Array) -> Array:
         """Values at the turning points of each cycle."""
-        return self._legs(values)[:, self.history.path.per_step - 1 :: self.history.path.per_step]
+        return self._by_cycle(values)[
+            :, self.history.path.per_step - 1 :: self.history.path.per_step
+        ]
 
 
 def cycles(
@@ -53,7 +55,7 @@ def cycles(
     count: int = 1,
     samples_per_step: int = 1,
     rtol: float = 1e-10,
-) -> Cycles:
+) -> LoadCycles:
     """Return cycles of tangential load, the normal load constant or in phase with it.
 
     From the mean normal load to the upper turning point (mean + normal amplitude, + amplitude),
@@ -90,13 +92,13 @@ def cycles(
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:
         raise InputError(("history", "count"), "must be at least 1")
-    swing = np.append([0.0, 1.0], np.tile([-1.0, 1.0], count))
+    phase = np.append([0.0, 1.0], np.tile([-1.0, 1.0], count))
 
     def around(value: float | None) -> Array | None:
-        return None if value is None else value + normal_amplitude * swing
+        return None if value is None else value + normal_amplitude * phase
 
     def turning(value: float | None) -> Array | None:
-        return None if value is None else value * swing
+        return None if value is None else value * phase
 
     history = solve(
         profile,
@@ -110,4 +112,4 @@ def cycles(
         samples_per_step=samples_per_step,
         rtol=rtol,
     )
-    return Cycles(history, count)
+    return LoadCycles(history, count)

@@ -1,18 +1,18 @@
-"""The fifteen kinds of profile, each with what it knows in closed form."""
+"""Fifteen kinds of profile, each with its closed forms."""
 
 from typing import Final
 
-from mdr_core.profiles.blunt import RoundedPunch, TruncatedCone, TruncatedParaboloid
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.capped_paraboloid import CappedParaboloid
 from mdr_core.profiles.flat_punch import FlatPunch
-from mdr_core.profiles.power import Power
-from mdr_core.profiles.power_law import Cone, Paraboloid
-from mdr_core.profiles.profile import Profile
-from mdr_core.profiles.rounded import Ellipsoid, Hyperboloid, Sphere
-from mdr_core.profiles.rounded_cone import RoundedCone
+from mdr_core.profiles.hyperboloid import Hyperboloid
+from mdr_core.profiles.powers import Cone, Paraboloid, Power
 from mdr_core.profiles.series import PowerTerm, Series
 from mdr_core.profiles.spherical_tip_cone import SphericalTipCone
+from mdr_core.profiles.spheroids import Ellipsoid, Sphere
 from mdr_core.profiles.tabulated import Tabulated
+from mdr_core.profiles.tipped import RoundedCone
+from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone, TruncatedParaboloid
 
 _CLASSES: Final[tuple[type[Profile], ...]] = (
     FlatPunch,

@@ -1,7 +1,8 @@
-"""The surface about a spheroid that is pressed in nearly to its equator.
+"""Surface displacements of a spheroid that is indented nearly to its equator.
 
-There g' has a pole just behind the contact's edge, and a radius has no digits of its distance
-from it. In v = artanh(x/R) both are gone: g' dx = h (v sech^2 v + tanh v) dv.
+There g' has a pole just beyond the contact edge, and a radius does not resolve the distance from
+it. The variable v = artanh(x/R) removes the pole and resolves the distance:
+g' dx = h (v sech^2 v + tanh v) dv.
 """
 
 from math import ceil
@@ -12,31 +13,46 @@ import numpy as np
 from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards, nodes_of_pieces
 from mdr_core.typing import Array
 
+# Length of a piece in v; `nodes_of_pieces` returns its number of nodes.
 _PIECE: Final = 2.0
 
 
-def slope_integral_beside(big_radius: float, v: float, r: Array, rtol: float) -> Array:
-    """Return (1/h) int_0^a g'(x) arcsin(x/r) dx for r >= a = R tanh(v), not small against R.
+def slope_integral_outside(big_radius: float, v: float, r: Array, rtol: float) -> Array:
+    """Return (1/h) int_0^a g'(x) arcsin(x/r) dx for a = R tanh(v) near the equator [1].
 
     Source: mdr-5, Eq. (5.75), by parts; notes, §7.
+
+    Parameters
+    ----------
+    big_radius : R [length].
+    v : contact coordinate of a [1].
+    r : radii r >= a [length], shape (m,).
+    rtol : relative tolerance.
     """
     edge = _below_equator(big_radius, v)
     beyond = np.maximum((r - big_radius) + edge, 0.0)
     places, weights = _rule(v, _nearest_root(big_radius, edge, beyond), rtol)
     x, short, density = _stepped(big_radius, np.asarray(v), v * places)
-    leg = np.sqrt(np.add.outer(short, beyond) * np.add.outer(x, r))
-    angle = np.arctan2(x[:, None], leg)
+    root = np.sqrt(np.add.outer(short, beyond) * np.add.outer(x, r))
+    angle = np.arctan2(x[:, None], root)
     return np.asarray(v * ((weights * density) @ angle))
 
 
-def slope_integral_within(
+def slope_integral_inside(
     big_radius: float, v: Array, width: Array, r: Array, rtol: float
 ) -> Array:
-    """Return (1/h) int_c^r g'(x) arccos(x/r) dx for r = R tanh(v), c = R tanh(v - width).
+    """Return (1/h) int_c^r g'(x) arccos(x/r) dx for r = R tanh(v), c = R tanh(v - width) [1].
 
-    With v - `width` u^2 for x the root at r is gone.
+    The substitution v - `width` u^2 for x removes the root at r.
 
     Source: mdr-5, Eq. (5.40), by parts; notes, §7.
+
+    Parameters
+    ----------
+    big_radius : R [length].
+    v, width : r, and the distance of c from it, in the contact coordinate [1], shape (m,).
+    r : radii [length], shape (m,).
+    rtol : relative tolerance.
     """
     u, weights = composite_rule(nodes_of_pieces(rtol), ceil(float(width.max(initial=1.0))))
     x, short, density = _stepped(big_radius, v, np.multiply.outer(u * u, width))
@@ -45,7 +61,7 @@ def slope_integral_within(
 
 
 def _stepped(big_radius: float, v: Array, down: Array) -> tuple[Array, Array, Array]:
-    """x at v - down, how far it lies below R tanh(v), and g' dx/dv / h."""
+    """x at v - down, its distance below R tanh(v), and g' dx/dv / h."""
     at = v - down
     x = big_radius * np.tanh(at)
     short = big_radius * np.sinh(down) / (np.cosh(v) * np.cosh(at))
@@ -58,7 +74,7 @@ def _below_equator(big_radius: float, v: float) -> float:
 
 
 def _nearest_root(big_radius: float, edge: float, beyond: Array) -> float:
-    """How far from the edge in v the nearest of the radii r = a + beyond lies; at most one.
+    """Distance in v of the edge from the nearest of the radii r = a + beyond, at most one.
 
     Beyond the equator there is none: its root has an imaginary part of pi/2.
     """

@@ -1,27 +1,32 @@
-"""The flat cylindrical punch: its radius is given, its depth is free."""
+"""Flat cylindrical punch, whose contact radius does not depend on the load."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from mdr_core.abel.annulus import Annulus
 from mdr_core.errors import InputError
-from mdr_core.profiles.profile import NORMAL_ANSWERS, Profile, require_positive
+from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
 from mdr_core.typing import Array, Parameter
 
 
 @dataclass(frozen=True)
 class FlatPunch(Profile):
-    """A flat of `radius` with a vertical edge; the coordinate is the depth, the radius given.
+    """Flat punch with a vertical edge. The contact coordinate is the depth.
 
     Source: mdr-5, Eqs. (5.31), (5.33); notes, §2.
+
+    Parameters
+    ----------
+    radius : radius of the punch and of every contact [length].
     """
 
     radius: Parameter
 
     kind: ClassVar[str] = "flat_punch"
     formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_ANSWERS, "pressure")
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, "pressure")
 
     def __post_init__(self) -> None:
         require_positive("radius", self.radius)
@@ -56,8 +61,8 @@ class FlatPunch(Profile):
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         raise InputError(
             ("load", "contact_radius"),
-            "the contact radius of a flat punch is its own at every load: "
-            "give the depth or the force",
+            "the contact radius of a flat punch is its radius at every load: "
+            "prescribe indentation_depth or normal_force",
         )
 
     def depth(self, coordinate: Array) -> Array:
@@ -78,20 +83,17 @@ class FlatPunch(Profile):
     def reduced_energy(self, coordinate: Array) -> Array:
         return self.radius * coordinate * coordinate
 
-    def pressure_kernel(
-        self,
-        coordinate: Array,
-        radius: Array,
-        rtol: float,
-        width: Array | None = None,
-        edge: Array | None = None,
-        modulus: float = 1.0,
-        inner: Array | None = None,
-    ) -> Array:
-        """d / (pi sqrt(a^2 - r^2)): the edge term of Eq. (5.34); no slip annulus exists."""
-        depth = coordinate if width is None else width
-        return modulus * depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """d/(pi sqrt(a^2 - r^2)); no slip annulus exists.
+
+        Source: mdr-5, Eq. (5.34). Parameters: see `Profile`.
+        """
+        depth = annulus.outer if annulus.inner is None else annulus.inner.width
+        return depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
-        """(2/pi) d arcsin(a/r): the coordinate of a flat punch is its depth."""
+        """(2/pi) d arcsin(a/r), with the depth as the contact coordinate.
+
+        Parameters: see `Profile`.
+        """
         return np.asarray(2 / np.pi * coordinate * np.arctan2(a, np.sqrt((r - a) * (r + a))))

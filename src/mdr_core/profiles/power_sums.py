@@ -1,6 +1,7 @@
-"""Where a sum of powers with terms of either sign vanishes, and how much its terms cancel.
+"""Zeros and cancellation of sums of powers whose terms have either sign.
 
-Sizes and radii are logarithms here: of steep powers neither need be a double.
+Sizes and radii are logarithms here, because steep powers of ordinary radii leave the range of
+doubles.
 """
 
 from collections.abc import Callable, Iterable
@@ -13,17 +14,16 @@ from scipy.optimize import brentq
 
 from mdr_core.typing import Array
 
-LOG_FARTHEST: Final = 690.0
-"""Radii beyond have no double."""
-_LOG_LARGEST: Final = 700.0
+# Bound on the logarithm of a radius: beyond lengths of 1e-100 to 1e100 there is no root.
+_FARTHEST: Final = 300.0
 _EPS: Final = float(np.finfo(float).eps)
-# Terms are looked at as far about their crossing as sixteen of them can move it, in so many places.
+# Two terms cancel most near their crossing. This is the distance, times the difference of their
+# exponents, by which sixteen more terms can move the place.
 _REACH: Final = 3.0
-_PLACES: Final = 25
-# Rounds of looking closer, each at so many places between those next to the worst.
+# Samples within that distance.
+_SAMPLES: Final = 25
+# Refinements of the samples about the worst one.
 _ROUNDS: Final = 3
-# Nothing positive is left of the sum: a logarithm below all others.
-_NOTHING: Final = -1e290
 
 
 class LogTerm(NamedTuple):
@@ -44,53 +44,37 @@ def log_terms(
     return tuple(LogTerm(copysign(1.0, c), log(abs(c)) + log(factor(n)), n) for c, n in powers)
 
 
-def first_fall(terms: LogTerms) -> float:
-    """Smallest r >= 0 beyond which the sum, ascending in exponent, is negative, or infinity."""
-    if terms[0].sign < 0:
-        return 0.0
-    ends = [*_log_roots(terms), inf]
+def first_negative_radius(terms: LogTerms) -> float:
+    """Return the smallest r >= 0 beyond which the sum is negative, or infinity.
+
+    The terms ascend in the exponent.
+    """
+    ends = [-_FARTHEST, *_log_roots(terms), _FARTHEST]
     for start, end in pairwise(ends):
-        middle = start + 1 if end == inf else (start + end) / 2
-        if _sign_at(terms, middle) < 0:
-            return exp(start) if start < _LOG_LARGEST else inf
+        if _scaled_sum(terms, (start + end) / 2) < 0:
+            return exp(start) if start > -_FARTHEST else 0.0
     return inf
 
 
-def log_radius_of(terms: LogTerms, goal: float, last: float) -> float:
-    """The logarithm of the radius, up to `last`, where that of the sum is the goal."""
+def cancellation(terms: LogTerms, last: float) -> float:
+    """Return the largest sum of the terms' sizes over their total, less one, up to exp(last).
 
-    def excess(u: float) -> float:
-        top = max(term.size + term.exponent * u for term in terms)
-        rest = _sign_at(terms, u)
-        return top - goal + (log(rest) if rest > 0 else _NOTHING)
-
-    if excess(last) <= 0:
-        return last
-    if excess(-LOG_FARTHEST) >= 0:
-        return -LOG_FARTHEST
-    return float(brentq(excess, -LOG_FARTHEST, last, xtol=1e-6))
-
-
-def cancelling(terms: LogTerms, last: float) -> float:
-    """Largest sum of the terms' sizes over their total, less one, up to exp(last).
-
-    Terms cancel where two of either sign are alike, and at the end.
+    Terms cancel most where two of opposite sign are of equal size, or at either end.
     """
-    u = np.linspace(-_REACH, _REACH, _PLACES)
-    centres = [
-        (_crossing(one, other), abs(one.exponent - other.exponent))
+    last = min(last, _FARTHEST)
+    u = np.linspace(-_REACH, _REACH, _SAMPLES)
+    samples = [
+        _crossing(one, other) + u / abs(one.exponent - other.exponent)
         for one in terms
         for other in terms
         if one.sign > 0 > other.sign
     ]
-    places = np.concatenate([[last], *(centre + u / apart for centre, apart in centres)])
-    places = np.unique(places[(np.abs(places) <= LOG_FARTHEST) & (places <= last)])
-    if not places.size:
-        return 0.0
+    places = np.unique(np.concatenate([[-_FARTHEST, last], *samples]))
+    places = places[(places >= -_FARTHEST) & (places <= last)]
     for _ in range(_ROUNDS):
         worst = int(np.argmax(_sizes_over_sum(terms, places)))
         around = places[max(worst - 1, 0)], places[min(worst + 1, places.size - 1)]
-        places = np.append(np.linspace(*around, _PLACES), places[worst])
+        places = np.append(np.linspace(*around, _SAMPLES), places[worst])
         places.sort()
     return float(_sizes_over_sum(terms, places).max() - 1)
 
@@ -103,8 +87,8 @@ def _sizes_over_sum(terms: LogTerms, places: Array) -> Array:
     return np.asarray(parts.sum(axis=0) / np.maximum(total, _EPS))
 
 
-def _sign_at(terms: LogTerms, u: float) -> float:
-    """The sum at r = exp(u), over its largest term: its sign, always within range."""
+def _scaled_sum(terms: LogTerms, u: float) -> float:
+    """The sum at r = exp(u) over its largest term."""
     logs = [term.size + term.exponent * u for term in terms]
     top = max(logs)
     return sum(exp(part - top) * term.sign for part, term in zip(logs, terms, strict=True))
@@ -113,42 +97,24 @@ def _sign_at(terms: LogTerms, u: float) -> float:
 def _log_roots(terms: LogTerms) -> list[float]:
     """All u where the sum vanishes and changes sign, ascending.
 
-    Divided by its lowest power and differentiated, the sum loses one term (Rolle): between the
-    roots of that derivative it is monotone, so each stretch holds at most one root. Times the
-    same power again it keeps its roots, and its exponents to the last digit.
+    Divided by its lowest power and differentiated, the sum loses one term. By Rolle's theorem it
+    is monotone between the roots of that derivative, so each interval holds at most one root.
     """
     if len(terms) == 1:
         return []
     lowest = terms[0].exponent
+    # Multiplied by the lowest power again, which changes neither the roots nor the exponents.
     derivative = tuple(
         LogTerm(sign, size + log(exponent - lowest), exponent) for sign, size, exponent in terms[1:]
     )
-    low, high = _log_bounds(terms)
-    turns = [low, *(u for u in _log_roots(derivative) if low < u < high), high]
+    turns = [-_FARTHEST, *_log_roots(derivative), _FARTHEST]
     return [
-        float(brentq(lambda u: _sign_at(terms, u), start, end, xtol=1e-15))
+        float(brentq(lambda u: _scaled_sum(terms, u), start, end, xtol=1e-15))
         for start, end in pairwise(turns)
-        if _sign_at(terms, start) * _sign_at(terms, end) < 0
+        if _scaled_sum(terms, start) * _scaled_sum(terms, end) < 0
     ]
 
 
-def _log_bounds(terms: LogTerms) -> tuple[float, float]:
-    """Logarithms of radii within which every root lies.
-
-    Below the first the lowest power outweighs all others together, above the second the highest.
-    """
-    shift = log(len(terms))
-    low = min(
-        _crossing(terms[0], other) - shift / (other.exponent - terms[0].exponent)
-        for other in terms[1:]
-    )
-    high = max(
-        _crossing(terms[-1], other) + shift / (terms[-1].exponent - other.exponent)
-        for other in terms[:-1]
-    )
-    return low - 1, high + 1
-
-
 def _crossing(one: LogTerm, other: LogTerm) -> float:
-    """Logarithm of the radius where both are of one size."""
+    """Logarithm of the radius where both terms are of equal size."""
     return (one.size - other.size) / (other.exponent - one.exponent)

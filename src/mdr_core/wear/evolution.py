@@ -1,24 +1,161 @@
-"""Fretting wear over the number of cycles, from the first to the last that wears anything."""
+"""Fretting wear over the number of cycles, from the first cycle to the limiting state."""
 
-from math import inf
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from math import inf, isfinite
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import tangential
-from mdr_core.checks import extremes, first_index
-from mdr_core.errors import InputError
+from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array
-from mdr_core.wear.course import Progress
-from mdr_core.wear.evolving import WearEvolution
-from mdr_core.wear.rates import Control
-from mdr_core.wear.scene import Scene
+from mdr_core.validation import first_index, require_not_negative
+from mdr_core.wear.annulus_state import Held
+from mdr_core.wear.arguments import one_amplitude
+from mdr_core.wear.initial_state import InitialState
+from mdr_core.wear.integrator import Progress
+from mdr_core.wear.worn_surface import WornSurface, worn_surface
 
+# Default of `resolution`, ...
 DEFAULT_RESOLUTION: Final = 24
+# ... its smallest value, ...
 COARSEST: Final = 8
+# ... and its largest.
 FINEST: Final = 96
+FIELDS: Final = ("profile", "worn_depth", "pressure")
+# Evaluations of the rates by both runs, within a factor of 2, whatever the resolution.
+EVALUATIONS: Final = 3000
+SCALARS: Final = (
+    "worn_volume",
+    "indentation_depth",
+    "normal_force",
+    "stick_radius",
+    "contact_radius",
+    "dissipated_energy",
+)
+
+# Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
+_FEWEST: Final = 16
+# The second run of the error estimates: fewer nodes and a looser integrator. The errors fall at
+# least like 1/resolution^2, next to the contact's edge, so that those of the first run are at most
+# 0.8 times the difference; elsewhere they are far smaller.
+_COARSER: Final = 2 / 3
+# Factor of its tolerance.
+_LOOSER: Final = 4.0
+# Factor of the difference in an estimate.
+_SAFETY: Final = 2.0
+# Beyond such an estimate neither of the two runs is near the truth.
+_UNRESOLVED: Final = 0.25
+# Radii at which the two runs are compared besides the given ones, as parts of the worn annulus at
+# up to so many numbers of cycles.
+_CYCLES: Final = 8
+# Radii at which fields are compared at once: bounds the memory.
+_BLOCK: Final = 2_000
+_SAMPLES: Final = np.linspace(0.02, 0.98, 33)
+# They are as near to the given radii as this part of the worn annulus.
+_NEAR: Final = 0.05
+
+
+@dataclass(frozen=True)
+class WearEvolution(WornSurface):
+    """Worn contact at each requested number of cycles, with error estimates."""
+
+    coarse: WornSurface = field(kw_only=True)
+    """Worn contact by fewer nodes and a looser tolerance, for the error estimates."""
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Bound on the relative error of every scalar [1].
+
+        Twice the difference to a run on two thirds of the nodes with a looser integrator, and the
+        rounding error of the contact before wear.
+        """
+        worst = 0.0
+        for name in SCALARS:
+            value, other = getattr(self, name), getattr(self.coarse, name)
+            worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
+        return _SAFETY * worst + self.initial.sideways.error_estimate
+
+    def field_error_estimate(self, radius: ArrayLike, names: Sequence[str] = FIELDS) -> float:
+        """Return a bound on the error of the fields at some radii [1].
+
+        Relative to the largest value of each field at these radii and all cycles; or to the mean
+        pressure F_N/(pi a^2), or the mean depth of the worn annulus, if this is larger.
+
+        Parameters
+        ----------
+        radius : radii r >= 0 [length], (m,).
+        names : fields among `FIELDS`.
+
+        Raises
+        ------
+        InputError : as of `worn_depth`.
+        """
+        r = self._radii(radius)
+        if not self.states or not r.size:
+            return self.initial.sideways.error_estimate
+        c, a = self.stick_radius, self.contact_radius
+        annulus = np.pi * (a - c) * (a + c)
+        least = {
+            "pressure": self.normal_force / (np.pi * a**2),
+            "worn_depth": self.worn_volume / np.where(annulus > 0, annulus, 1.0),
+        }
+        worst = 0.0
+        for name in names:
+            largest, difference = 0.0, self._difference_near(name, r)
+            for block in np.split(r, range(_BLOCK, r.size, _BLOCK)):
+                values, others = (getattr(run, name)(block) for run in (self, self.coarse))
+                difference = max(difference, _largest(values, others))
+                if name == "pressure" and self.initial.held.stick_moves:
+                    # It is singular at an edge whose position has an error of its own.
+                    shifted = block * (1 + self.error_estimate)
+                    moved = self.pressure(np.minimum(shifted, self.initial.contact.profile.domain))
+                    difference = max(difference, _largest(values, moved))
+                largest = max(largest, _largest(values))
+            largest = max(largest, float(np.max(least.get(name, 0.0))))
+            if largest > 0:
+                worst = max(worst, difference / largest)
+        return _SAFETY * worst + self.initial.sideways.error_estimate
+
+    def _difference_near(self, name: str, radius: Array) -> float:
+        """Return the largest difference of a field between the two runs near some radii.
+
+        At single radii the difference may vanish.
+        """
+        worst = 0.0
+        for index in np.unique(np.linspace(0, self.cycles.size - 1, _CYCLES).astype(int)):
+            c, a = self.stick_radius[index], self.contact_radius[index]
+            at = c + (a - c) * _SAMPLES
+            margin = _NEAR * (a - c)
+            at = at[(at > radius.min() - margin) & (at < radius.max() + margin)]
+            if at.size:
+                runs = (run.at(int(index)) for run in (self, self.coarse))
+                values, others = (getattr(run, name)(at) for run in runs)
+                worst = max(worst, _largest(values, others))
+        return worst
+
+    @property
+    def method(self) -> str:
+        """The slope of a worn profile is an integral."""
+        return "quadrature" if self.initial.slips else self.initial.sideways.method
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """Warnings of the contact before wear, and `limit_reached`."""
+        found = list(self.initial.sideways.warnings)
+        if isfinite(self.settled):
+            found.append(
+                Notice(
+                    "limit_reached",
+                    f"wear stops after about {self.settled:.2g} cycles: the profile is the "
+                    "limiting one from there on",
+                )
+            )
+        return tuple(found)
 
 
 def solve(
@@ -34,32 +171,38 @@ def solve(
     rtol: float = 1e-6,
     progress: Progress | None = None,
 ) -> WearEvolution:
-    """Return the wear of a contact that is moved to and fro, over the number of cycles.
+    """Solve for the wear of a contact under an oscillating tangential load.
 
-    df/dN = K mu p(r) S(r), S = 4 |s(r)|: what wears is in proportion to the friction work of a
-    cycle at each place, so that dV/dN = K W. The normal load that was given is held, the force
-    or else the depth, and so is the amplitude.
+    df/dN = K mu p(r) S(r), S = 4 |s(r)|: the wear of a cycle is proportional to its friction work
+    at each place, so that dV/dN = K W. The depth or the normal force of the contact, whichever
+    was prescribed, and the amplitude are held constant.
 
-    Source: mdr-5, Problem 6; dimaki, the law; notes, §11.
+    Source: mdr-5, Problem 6; dimaki, the wear law; notes, §11.
 
     Parameters
     ----------
-    contact : the normal contact before wear, under a single load.
-    g_star, friction_coefficient : as of `mdr_core.tangential.solve`; single numbers.
+    contact : normal contact before wear, under a single load.
+    g_star : effective shear modulus [pressure], > 0.
+    friction_coefficient : mu > 0 [1].
     wear_coefficient : K > 0, worn volume per dissipated energy [1/pressure].
-    cycles : numbers of cycles at which to answer, >= 0, ascending, shape (k,).
+    cycles : numbers of cycles >= 0, ascending, (k,).
     tangential_displacement, tangential_force : exactly one, the amplitude of the oscillation
-        [length], [force]; the force only where the normal force is held as well.
-    resolution : nodes over the worn annulus, 8 to 96.
-    rtol : tolerance of the integration over the cycles, 1e-10 to 1e-3.
-    progress : is told of the values of the profile's g that have been asked for, each time of
-        those since the last; `evaluations` says how many there will be about.
+        [length], [force].
+    resolution : nodes over the worn annulus beyond the least number, 16; 8 to 96.
+    rtol : relative tolerance of the integration over the cycles, 1e-10 to 1e-3.
+    progress : called with the number of evaluations of the rates since its last call;
+        about `EVALUATIONS` in all.
+
+    Returns
+    -------
+    WearEvolution : scalars and fields at each number of cycles.
 
     Raises
     ------
-    InputError : several loads; an amplitude at which the whole contact slides; cycles that are
-        negative or not ascending; a worn contact that reaches the profile's end.
-    AccuracyError : the course could not be resolved.
+    InputError : several loads; an amplitude at which the whole contact slides, at once or, with
+        the depth and the force amplitude held, after some cycles; cycles that are negative or not
+        ascending; a worn contact that reaches the profile's end.
+    AccuracyError : the wear is not resolved.
 
     Examples
     --------
@@ -73,7 +216,7 @@ def solve(
     >>> [float(f"{volume:.4g}") for volume in worn.worn_volume]
     [3.667e-07, 0.7593]
     """
-    amplitude = _amplitude(contact, tangential_displacement, tangential_force)
+    name, size = one_amplitude(tangential_displacement, tangential_force)
     for path, value, low, high in (
         (("wear_coefficient",), wear_coefficient, 0.0, inf),
         (("resolution",), resolution, COARSEST - 1, FINEST + 1),
@@ -81,77 +224,47 @@ def solve(
     ):
         if not low < value < high:
             raise InputError(path, f"must lie between {low} and {high}")
-    for name, number in (
+    for place, number in (
         ("load", contact.contact_radius),
         ("g_star", g_star),
         ("friction_coefficient", friction_coefficient),
+        ("tangential", size),
     ):
         if np.ndim(number):
-            raise InputError((name,), "the wear over the cycles is answered for a single number")
-    sideways = tangential.solve(contact, g_star, friction_coefficient, **amplitude)
+            raise InputError((place,), "a single number is needed: wear has one initial state")
+    sideways = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
     if sideways.full_slip.any():
         raise InputError(
-            ("tangential", *amplitude),
-            "the whole contact slides: no part of it keeps its shape, and it wears without a limit",
+            ("tangential", name),
+            "the whole contact slides: no part of it keeps its profile, and wear is unbounded",
         )
-    control = Control(
-        force=contact.control == "normal_force", displacement=tangential_force is None
-    )
-    found = WearEvolution(
-        Scene(sideways, float(wear_coefficient), control),
-        _checked_cycles(cycles),
-        int(resolution),
-        float(rtol),
-        progress,
-    )
-    # What cannot be answered is to be refused here.
-    _ = found.course
+    held = Held(contact.control == "normal_force", name == "tangential_displacement")
+    initial = InitialState(sideways, float(wear_coefficient), held)
+    numbers = _checked_cycles(cycles)
+    nodes = int(resolution) + _FEWEST
+    run = partial(worn_surface, initial, numbers, progress=progress)
+    fine, coarse = run(nodes, rtol), run(int(nodes * _COARSER), _LOOSER * rtol)
+    parts = fine.states, fine.trail, fine.settled
+    found = WearEvolution(initial, numbers, *parts, coarse=coarse)
+    if not found.error_estimate < _UNRESOLVED:
+        detail = "the worn annulus is not resolved: more nodes may resolve it"
+        raise AccuracyError(detail, ("resolution",))
     return found
 
 
-def evaluations(resolution: int, cycles: int, radii: int = 0) -> int:
-    """Return about how many values of the profile's g a query takes: its cost beforehand.
-
-    The integrator asks for the nodes a few hundred times, and for as many again for each node
-    while it differentiates; the error estimate costs half as much again, cycles and radii next
-    to nothing.
-    """
-    return (_CALLS + _CALLS_A_NODE * resolution) * resolution + cycles * (resolution + 4 * radii)
-
-
-_CALLS: Final = 800
-_CALLS_A_NODE: Final = 60
-
-
-def _amplitude(
-    contact: NormalContact, displacement: float | None, force: float | None
-) -> dict[str, float]:
-    """The one amplitude that was given, by its name."""
-    given = {"tangential_displacement": displacement, "tangential_force": force}
-    found = {name: value for name, value in given.items() if value is not None}
-    if len(found) != 1:
-        raise InputError(("tangential",), f"exactly one of {', '.join(given)} is needed")
-    name, value = next(iter(found.items()))
-    if np.ndim(value):
-        raise InputError(("tangential", name), "a single amplitude is needed")
-    if force is not None and contact.control != "normal_force":
-        raise InputError(
-            ("tangential", name),
-            "with the depth held give the displacement: wear would unload the contact until it "
-            "no longer carries the force",
-        )
-    return {name: abs(value)}
+def _largest(values: Array, others: Array | float = 0.0) -> float:
+    """Return the largest difference of values that are finite."""
+    known = np.isfinite(values) & np.isfinite(others)
+    with np.errstate(invalid="ignore"):
+        return float(np.abs(values - others)[known].max(initial=0.0))
 
 
 def _checked_cycles(cycles: ArrayLike) -> Array:
     numbers = np.asarray(cycles, dtype=float)
     if numbers.ndim != 1 or numbers.size == 0:
         raise InputError(("cycles",), "a list of at least one number is needed")
-    low, high = extremes(numbers)
+    require_not_negative(("cycles",), numbers)
     falls = np.append(False, np.diff(numbers) < 0)
-    if not (low >= 0 and high < inf) or falls.any():
-        bad = ~((numbers >= 0) & (numbers < inf)) | falls
-        raise InputError(
-            ("cycles", *first_index(bad)), "must be finite, not negative, and ascending"
-        )
+    if falls.any():
+        raise InputError(("cycles", *first_index(falls)), "must be ascending")
     return numbers

@@ -1,0 +1,211 @@
+"""The slope g'(x) of a table as polynomials, and depth, force and energy as their integrals.
+
+g' carries a root at every radius b of the table, which s = sqrt(x^2 - b^2) removes: on a panel, and
+on subpanels of long ones, dg/ds and x dg/ds are polynomials in s about their left edge.
+
+Source: notes, §5.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from mdr_core.typing import Array, Indices
+
+# Largest length of a subpanel over its left edge's distance from the next root below, both in x^2.
+# The root is then at u = +-0.91i, or farther: n Chebyshev points leave 4.3^-n, and the coefficients
+# of the powers of u grow no faster than 1.1^n, so that their sum is stable.
+LONGEST: Final = 1.2
+# Points in a subpanel of a spline, whose roots are weak.
+FEW: Final = 12
+# Rounding errors of a Chebyshev coefficient, over the largest value.
+_ROUNDING: Final = 4 * float(np.finfo(float).eps)
+# Newton's method in log u converges quadratically: a step this short is the last one.
+_LAST_STEP: Final = 1e-9
+# Maximum number of steps: bisection alone needs no more.
+_STEPS: Final = 60
+# Relative fall of g that is rounding error.
+_DIP: Final = 1e-12
+# Halvings of the interval between two points of a subpanel, to 1e-10 of it.
+_BISECTIONS: Final = 30
+# Points evaluated at once: their arrays stay in cache.
+_BLOCK: Final = 2048
+
+
+@lru_cache(maxsize=4)
+def fit_points(count: int) -> tuple[Array, Array, Array]:
+    """Return points in [0, 1], and the matrices to Chebyshev coefficients and on to powers of u.
+
+    Each row of the last matrix holds the powers of u in one Chebyshev polynomial.
+    """
+    x = np.asarray(chebyshev.chebpts1(count), dtype=float)
+    to_chebyshev = np.linalg.inv(chebyshev.chebvander(x, count - 1))
+    powers = np.zeros((count, count))
+    for degree in range(count):
+        # T_n(2u - 1) = T_2n(sqrt(u)).
+        powers[degree, : degree + 1] = chebyshev.cheb2poly(np.eye(2 * degree + 1)[-1])[::2]
+    return (1 + x) / 2, to_chebyshev, powers
+
+
+def fitted(values: Array) -> Array:
+    """Return the coefficients of the powers of u of polynomials through values (m, count).
+
+    Coefficients of Chebyshev polynomials within rounding are left out from the last: as powers they
+    would grow.
+
+    Examples
+    --------
+    >>> points, _, _ = fit_points(3)
+    >>> (fitted(2 * points**2 - points).round(12) + 0.0).tolist()
+    [0.0, -1.0, 2.0]
+    """
+    _, to_chebyshev, powers = fit_points(values.shape[-1])
+    coefficients = values @ to_chebyshev.T
+    real = np.abs(coefficients) > _ROUNDING * np.abs(values).max(axis=-1, keepdims=True)
+    needed = np.logical_or.accumulate(real[..., ::-1], axis=-1)[..., ::-1]
+    return np.asarray(np.where(needed, coefficients, 0.0) @ powers)
+
+
+class Dips(NamedTuple):
+    """Intervals of the radius in which g lies below an earlier value, each of shape (m,)."""
+
+    begin: Array
+    end: Array
+    """Ends [length]; the table's end where g does not reach its earlier value again."""
+    top: Array
+    bottom: Array
+    """Earlier and lowest value of g [length]."""
+
+    @property
+    def depth(self) -> Array:
+        """Fall of g [length]."""
+        return self.top - self.bottom
+
+
+@dataclass(frozen=True, eq=False)
+class Subpanels:
+    """Depth g and half force int x dg of a contact as polynomials in u = s/length."""
+
+    edges: Array
+    """Ends of the subpanels, from the axis or the flat's edge on [length], shape (k + 1,)."""
+    length: Array
+    """s at the right end of each subpanel [length], shape (k,)."""
+    depth: Array
+    """Coefficients of u, u^2, ... of g above its value at the left edge [length], shape (k, n)."""
+    half_force: Array
+    """Coefficients of u, u^2, ... of int x dg above its left edge [length^2], shape (k, n)."""
+    at_edges: Array
+    """Depth, half force and energy / E* at each edge, shape (3, k + 1)."""
+    error: float
+    """Largest of the last coefficients, relative to the largest value of a subpanel."""
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays [byte]."""
+        arrays = (self.edges, self.length, self.depth, self.half_force, self.at_edges)
+        return sum(array.nbytes for array in arrays)
+
+    def depth_at(self, panel: Indices, s: Array) -> Array:
+        """Return g at s in the given subpanels [length], shape (m,)."""
+        above = _sum(self.depth, panel, s / self.length[panel])
+        return np.asarray(self.at_edges[0, panel] + above)
+
+    def half_force_at(self, panel: Indices, s: Array) -> Array:
+        """Return int_0^x y dg(y) at s in the given subpanels [length^2], shape (m,)."""
+        above = _sum(self.half_force, panel, s / self.length[panel])
+        return np.asarray(self.at_edges[1, panel] + above)
+
+    def energy_at(self, panel: Indices, s: Array) -> Array:
+        """Return int F/E* dg at s in the given subpanels [length^3], shape (m,)."""
+        u = (s / self.length[panel])[:, None]
+        degrees = np.arange(1, self.depth.shape[1] + 1)
+        depth, half = self.depth[panel] * u**degrees, self.half_force[panel] * u**degrees
+        # int (sum h_m u^m) d(sum d_n u^n) = sum h_m d_n n/(m + n) u^(m + n).
+        product = (half @ (degrees / np.add.outer(degrees, degrees)) * depth).sum(axis=1)
+        below = self.at_edges[1, panel] * depth.sum(axis=1)
+        return np.asarray(self.at_edges[2, panel] + 2 * (below + product))
+
+    def slope_at(self, panel: Indices, s: Array) -> tuple[Array, Array]:
+        """Return dg/ds at s in the given subpanels as J + s R: J [1] and R [1/length], (m,).
+
+        J is the jump of f' at the left edge, on the axis the limit of g'.
+        """
+        length, degrees = self.length[panel], np.arange(1, self.depth.shape[1] + 1)
+        jump, first = self.depth[panel, 0] / length, 2 * self.depth[panel, 1]
+        rest = _sum(self.depth[:, 2:], panel, s / length, degrees[2:])
+        return jump, (first + rest) / np.square(length)
+
+    @property
+    def weight(self) -> Array:
+        """Coefficients of the powers of u, from 0 on, of dg/ds [1], shape (k, n)."""
+        return self.depth * np.arange(1, self.depth.shape[1] + 1) / self.length[:, None]
+
+    def dips(self) -> Dips:
+        """Return the dips of g, found at a dozen points of each subpanel."""
+        u = np.append(fit_points(FEW)[0], 1.0)
+        powers = u ** np.arange(1, self.depth.shape[1] + 1)[:, None]
+        g = np.append(0.0, self.at_edges[0, :-1, None] + self.depth @ powers)
+        highest = np.maximum.accumulate(g)
+        below = g < highest * (1 - _DIP)
+        if not below.any():
+            return Dips(*np.empty((4, 0)))
+        s = np.append(0.0, np.multiply.outer(self.length, u))
+        panel = np.append(0, np.repeat(np.arange(self.length.size), u.size))
+        first = np.flatnonzero(below & ~np.append(False, below[:-1]))
+        last = np.flatnonzero(below & ~np.append(below[1:], False))
+        bottom = np.minimum.reduceat(g, np.stack([first, last], axis=1).ravel())[::2]
+        # g is as high again between two points, the first of which may be a left edge.
+        after = np.minimum(last + 1, g.size - 1)
+        low, high = np.where(panel[after] > panel[last], 0.0, s[last]), s[after]
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            rises = self.depth_at(panel[after], middle) < highest[first]
+            low, high = np.where(rises, middle, low), np.where(rises, high, middle)
+        end = np.where(after > last, self.radius(panel[after], high), self.edges[-1])
+        begin = self.radius(panel[first - 1], s[first - 1])
+        return Dips(begin, end, highest[first], np.minimum(bottom, g[last]))
+
+    def radius(self, panel: Indices, s: Array) -> Array:
+        """Return the radius at s in the given subpanels [length], an edge at its ends."""
+        x = np.hypot(self.edges[panel], s)
+        return np.where(s == self.length[panel], self.edges[panel + 1], x)
+
+    def inverse(self, quantity: int, target: Array) -> tuple[Indices, Array]:
+        """Return subpanel and s at which depth (0) or half force (1) has the given value, (m,).
+
+        Newton's method in log u; a step out of the bracket is replaced by the middle.
+        """
+        values, rows = self.at_edges[quantity], (self.depth, self.half_force)[quantity]
+        panel = np.clip(np.searchsorted(values, target) - 1, 0, self.length.size - 1)
+        above, whole = target - values[panel], np.diff(values)[panel]
+        positive = (above > 0) & (whole > 0)
+        goal, whole = np.where(positive, above, 1.0), np.where(positive, whole, 1.0)
+        # Both grow nearly in proportion to x - b, and so to s^2.
+        u = np.sqrt(np.minimum(goal / whole, 1.0))
+        low, high = np.zeros_like(u), np.ones_like(u)
+        degrees, done = np.arange(1, rows.shape[1] + 1), ~positive
+        for _ in range(_STEPS):
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+                value = _sum(rows, panel, u)
+                step = np.log(goal / value) * value / _sum(rows, panel, u, degrees)
+                moved = u * np.exp(step)
+            low, high = np.where(value < goal, u, low), np.where(value < goal, high, u)
+            moved = np.where((moved >= low) & (moved <= high), moved, (low + high) / 2)
+            done |= np.abs(moved - u) <= _LAST_STEP * u
+            u = moved
+            if done.all():
+                break
+        return panel, np.where(positive, u, 0.0 * above) * self.length[panel]
+
+
+def _sum(rows: Array, panel: Indices, u: Array, factors: Array | None = None) -> Array:
+    """sum_n f_n c_n u^n, n from 1 on, with the coefficients c of each point's subpanel."""
+    if u.size > _BLOCK:
+        blocks = [slice(i, i + _BLOCK) for i in range(0, u.size, _BLOCK)]
+        return np.concatenate([_sum(rows, panel[part], u[part], factors) for part in blocks])
+    terms = rows[panel] if factors is None else rows[panel] * factors
+    powers = np.multiply.accumulate(np.broadcast_to(u[:, None], terms.shape), axis=1)
+    return np.asarray(np.einsum("ij,ij->i", terms, powers))

@@ -1,0 +1,153 @@
+"""Relative condition numbers of partial slip with respect to the loads.
+
+Loads are rounded. Where results change much between neighbouring loads, as the stick radius does
+near full slip, the rounding of the load is part of their error, whatever the method.
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from mdr_core.equivalent_1d import force_slope, stick_from_force
+from mdr_core.inversion import Function
+from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Flags
+
+# Relative step of the difference quotient of the slope next to a break.
+_STEP: Final = 4e-11
+_EPS: Final = float(np.finfo(float).eps)
+# Rounding errors of the contact coordinate over those that are assumed of the load.
+_COORDINATE: Final = 1 / 8
+_TINY: Final = float(np.finfo(float).tiny)
+# Exponent of the width of a narrow annulus in the dissipated energy.
+_CUBE: Final = 3.0
+# Part of full slip up to which all condition numbers are small.
+_LATE: Final = 0.9
+# Relative distance from the limiting force within which the contact slides.
+_SLIDING: Final = 1e-12
+
+
+def near_full_slip(
+    profile: Profile,
+    ends: tuple[Array, Array],
+    ratio: Array,
+    partial: Flags,
+    *,
+    by_force: bool,
+    edges: bool = True,
+) -> Array:
+    """Return the largest condition number of each load's results near full slip [1].
+
+    The distance from full slip is F_N(c) under a force and d(c) under a displacement. Its condition
+    number passes to c by the inverse of the function's elasticity, and from c to all other results.
+
+    Parameters
+    ----------
+    profile : parameters broadcast with the loads.
+    ends : a and c in the contact coordinate.
+    ratio : load over that of full slip [1].
+    partial : True in partial slip.
+    by_force : True if the tangential force is prescribed, False for the displacement.
+    edges : True to include c and a - c beside forces, displacements and energies.
+    """
+    late = partial & (ratio > _LATE)
+    if profile.slips_at_once or not late.any():
+        return np.zeros(late.shape)
+    high, low = ends[0], np.maximum(ends[1], _TINY)
+    load, slope = _load(profile, by_force=by_force)
+    other, other_slope = _load(profile, by_force=not by_force)
+    with np.errstate(all="ignore"):
+        moved = load(low) / (slope(low) * np.maximum(1 - ratio, _EPS / 2))
+        condition = _CUBE * moved * other_slope(low) / (other(high) - other(low))
+        if edges:
+            radial = moved * profile.radius_slope(low)
+            c, a = profile.contact_radius(low), profile.contact_radius(high)
+            condition = np.stack(np.broadcast_arrays(radial / c, radial / (a - c), condition))
+            condition = np.where(np.isfinite(condition), condition, 0.0).max(axis=0)
+    return np.where(late & np.isfinite(condition), condition, 0.0)
+
+
+def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
+    """Return the largest condition number of a history prescribed by forces near full slip [1].
+
+    Parameters
+    ----------
+    contact : normal contact of every load step.
+    size, limit : |F_x| and mu F_N of every load step [force].
+    """
+    partial = (limit > 0) & (size < limit)
+    ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
+    worst = np.argmax(ratio)
+    if contact.profile.slips_at_once or not ratio[worst] > _LATE:
+        return 0.0
+    given = contact.coordinate[worst], ratio[worst], 1 - ratio[worst]
+    edge, _ = stick_from_force(contact.profile, *map(np.asarray, given))
+    ends = np.asarray(given[0]), edge
+    part = ratio[worst], partial[worst]
+    return float(near_full_slip(contact.profile, ends, *part, by_force=True, edges=False))
+
+
+def of_sliding(
+    displacement: Array, force: Array, limit: Array, dissipated: Callable[[], Array]
+) -> float:
+    """Return the condition number of the dissipated energy with respect to sliding distance [1].
+
+    Parameters
+    ----------
+    displacement, force, limit : displacement [length], F_x and mu F_N [force] of every load step.
+    dissipated : dissipated energy of every load step, evaluated only if the contact slides.
+    """
+    slides = (limit > 0) & (np.abs(force) >= limit * (1 - _SLIDING))
+    if not slides.any():
+        return 0.0
+    most = float(np.max(dissipated()))
+    condition = np.max(np.where(slides, limit * np.abs(displacement), 0.0))
+    return float(condition) / most if most > 0 else 0.0
+
+
+def narrow_annulus(coordinate: Array, width: Array) -> Array:
+    """Return the condition number 3 a/(a - c) of each annulus between two edges [1]."""
+    some = width > 0
+    return np.where(some, _CUBE * coordinate / np.where(some, width, 1.0), 0.0)
+
+
+def of_excess_displacement(displacement: Array, excess: Array) -> Array:
+    """Return the condition number u/(u - u_max) of each displacement beyond full slip [1]."""
+    slides = excess > 0
+    return np.where(slides, np.abs(displacement) / np.where(slides, excess, 1.0), 0.0)
+
+
+def beyond_break(contact: NormalContact) -> Array:
+    """Return |d log g'(a) / d log(load)| [1] of each load, large just beyond a break.
+
+    The width of the first slip annulus is inversely proportional to g' at the edge. The contact
+    coordinate of a is rounded as well, and just beyond a knot of a table it does not resolve the
+    distance from it.
+    """
+    profile = contact.profile
+    if not np.size(profile.coordinate_breaks):
+        return np.zeros(np.shape(contact.coordinate))
+    load, slope = _load(profile, by_force=contact.control == "normal_force")
+    if contact.control == "contact_radius":
+        load, slope = profile.contact_radius, profile.radius_slope
+    at = np.where(contact.coordinate > 0, contact.coordinate, np.nan)
+    with np.errstate(all="ignore"):
+        rise = np.log(_radial_slope(profile, at * (1 + _STEP)))
+        rise = rise - np.log(_radial_slope(profile, at * (1 - _STEP)))
+        share = np.maximum(load(at) / (at * slope(at)), _COORDINATE)
+        condition = np.abs(rise) * share / (2 * _STEP)
+    return np.where(np.isfinite(condition), condition, 0.0)
+
+
+def _radial_slope(profile: Profile, coordinate: Array) -> Array:
+    """g'(a) [1]."""
+    return profile.depth_slope(coordinate) / profile.radius_slope(coordinate)
+
+
+def _load(profile: Profile, *, by_force: bool) -> tuple[Function, Function]:
+    """F_N/E* or d as a function of the contact coordinate, and its derivative."""
+    if by_force:
+        return profile.reduced_force, force_slope(profile)
+    return profile.depth, profile.depth_slope

@@ -1,0 +1,331 @@
+"""Equivalent one-dimensional problem: inverses of depth and force, and steps between c and a.
+
+Near incipient slip a difference of two values at a and c suffers cancellation. There the width of
+the slip annulus, in the contact coordinate, is the unknown, and a step over a narrow annulus is an
+integral of the slope.
+
+Source: notes, §1 and §4.
+"""
+
+from collections.abc import Callable
+from math import inf
+from typing import Final
+
+import numpy as np
+
+from mdr_core.errors import InputError
+from mdr_core.inversion import Function, invert
+from mdr_core.profiles import Profile
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Flags
+from mdr_core.validation import first_index
+
+# Width of an annulus, relative to a, up to which a step is an integral: the difference of a wider
+# one loses at most a factor of 20 of the accuracy.
+_NARROW: Final = 0.05
+# Gauss-Legendre nodes of that integral: they integrate powers up to 100 to rounding error.
+_NODES: Final = 16
+# A gap between breaks longer than twice this many times the one before is divided in such ratios.
+_GROWTH: Final = 4.0
+# Part of full slip up to which the width is the unknown; beyond it the stick edge is.
+_EARLY: Final = 0.5
+
+# The slope at a coordinate, given as a break and the distance from it as well.
+_Slope = Callable[[Array, Array, Array], Array]
+
+
+def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
+    """Return the contact coordinate at which g(a) is the indentation depth.
+
+    Source: mdr-5, Eqs. (5.7), (5.59); notes, §1.
+
+    Raises
+    ------
+    InputError : the profile ends before this depth is reached.
+    """
+    closed = profile.coordinate_from_depth(indentation_depth)
+    if closed is not None:
+        return closed
+    name = "indentation_depth"
+    return _inverse(profile, profile.depth, profile.depth_slope, indentation_depth, name)
+
+
+def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
+    """Return the contact coordinate at which F_N/E* has the given value [length^2].
+
+    Source: mdr-5, Eqs. (5.14), (5.61); notes, §1: dF_N/da = 2 E* a g'(a).
+
+    Raises
+    ------
+    InputError : the profile ends before this force is reached.
+    """
+    closed = profile.coordinate_from_reduced_force(reduced_force)
+    if closed is not None:
+        return closed
+    slope = force_slope(profile)
+    return _inverse(profile, profile.reduced_force, slope, reduced_force, "normal_force")
+
+
+def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
+    """Return the contact coordinate of a contact radius.
+
+    Raises
+    ------
+    InputError : the radius is beyond the end of the profile, or the profile is a flat punch.
+    """
+    if not np.all(np.isinf(profile.domain)):
+        _reject(contact_radius > profile.domain, profile, "contact_radius")
+    return profile.coordinate_from_radius(contact_radius)
+
+
+def force_slope(profile: Profile) -> Function:
+    """Return d(F_N/E*)/ds = 2 a d'(s) as a function of the contact coordinate s.
+
+    Source: notes, §1.
+    """
+    return lambda s: 2 * profile.contact_radius(s) * profile.depth_slope(s)
+
+
+def depth_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+    """Return d(a) - d(c) = int_c^a g' dx [length].
+
+    Source: mdr-5, Eq. (5.20); notes, §1.
+
+    Parameters
+    ----------
+    profile : parameters broadcast with the annuli.
+    coordinate : a as a contact coordinate.
+    width, stick : a - c and c in the contact coordinate, each accurate by itself.
+    """
+    closed = profile.depth_step(coordinate, width, stick)
+    if closed is not None:
+        return closed
+    return _step(profile, profile.depth, profile.depth_slope_beyond, (coordinate, width, stick))
+
+
+def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+    """Return (F_N(a) - F_N(c))/E* = 2 int_c^a x g' dx [length^2].
+
+    Source: mdr-5, Eq. (5.19). Parameters: see `depth_step`.
+    """
+    closed = profile.force_step(coordinate, width, stick)
+    if closed is not None:
+        return closed
+
+    def slope(at: Array, start: Array, past: Array) -> Array:
+        return 2 * profile.contact_radius(at) * profile.depth_slope_beyond(at, start, past)
+
+    return _step(profile, profile.reduced_force, slope, (coordinate, width, stick))
+
+
+def stick_from_force(
+    profile: Profile, coordinate: Array, ratio: Array, rest: Array
+) -> tuple[Array, Array]:
+    """Return the stick radius and the width of the slip annulus under a tangential force.
+
+    Source: mdr-5, Eq. (5.19).
+
+    Parameters
+    ----------
+    profile : parameters broadcast with the loads.
+    coordinate : contact radii as contact coordinates.
+    ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), each accurate by itself.
+
+    Returns
+    -------
+    c and a - c in the contact coordinate.
+    """
+    closed = profile.stick_from_force_ratio(coordinate, ratio, rest)
+    if closed is not None:
+        return closed
+    functions = profile.reduced_force, force_slope(profile)
+    return _stick(profile, (coordinate, ratio, rest), functions, force_step, coordinate_from_force)
+
+
+def stick_from_depth(
+    profile: Profile, coordinate: Array, ratio: Array, rest: Array
+) -> tuple[Array, Array]:
+    """Return the stick radius and the width of the slip annulus under a displacement.
+
+    Source: mdr-5, Eq. (5.20).
+
+    Parameters
+    ----------
+    profile, coordinate : see `stick_from_force`.
+    ratio, rest : u_x/u_x,max and 1 - u_x/u_x,max, each accurate by itself.
+
+    Returns
+    -------
+    c and a - c in the contact coordinate.
+    """
+    closed = profile.stick_from_depth_ratio(coordinate, ratio, rest)
+    if closed is not None:
+        return closed
+    functions = profile.depth, profile.depth_slope
+    return _stick(profile, (coordinate, ratio, rest), functions, depth_step, coordinate_from_depth)
+
+
+def _reject(outside: Flags, profile: Profile, name: str) -> None:
+    if outside.any():
+        domain = np.broadcast_to(profile.domain, outside.shape)[outside][0]
+        raise InputError(
+            ("load", name, *first_index(outside)),
+            f"the contact would extend beyond radius {domain}, where the profile ends "
+            "or ceases to be admissible",
+            outside,
+        )
+
+
+def _inverse(
+    profile: Profile, function: Function, slope: Function, target: Array, name: str
+) -> Array:
+    """Solve function(s) = target for a contact coordinate s, from the scale of the profile."""
+    end, shape = profile.last_coordinate, np.broadcast_shapes(target.shape, np.shape(profile.scale))
+    if end is not None:
+        _reject(np.asarray(target > function(np.asarray(end))), profile, name)
+    low = np.full(shape, profile.first_coordinate)
+    high = np.full(shape, np.inf if end is None else end)
+    start = np.minimum(np.broadcast_to(profile.scale, shape), high)
+
+    def log_slope(s: Array, value: Array) -> Array:
+        return s * slope(s) / value
+
+    return invert(function, log_slope, target, start, low, high, profile.kind)
+
+
+def _stick(
+    profile: Profile,
+    load: tuple[Array, Array, Array],
+    functions: tuple[Function, Function],
+    step: Callable[[Profile, Array, Array, Array], Array],
+    inverse: Callable[[Profile, Array], Array],
+) -> tuple[Array, Array]:
+    """Solve function(a) - function(c) = ratio function(a) for c; `load` is a, ratio, 1 - ratio.
+
+    At small ratios the width is the unknown of the `step`, at large ones c by the `inverse`.
+    """
+    coordinate, ratio, rest = load
+    function, slope = functions
+    total = function(coordinate)
+    coordinate, total, ratio = np.broadcast_arrays(coordinate, total, ratio)
+    early = ratio < _EARLY
+    if not early.any():
+        late = inverse(profile, rest * total)
+        return late, coordinate - late
+    target = np.where(early, ratio * total, 0.0)
+    reach = coordinate - profile.first_coordinate
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = slope(coordinate)
+        # An infinite slope gives no first approximation of the width.
+        known = (target > 0) & (first < inf)
+        start = np.where(known, np.minimum(target / first, reach / 2), reach / 2)
+    # A width that underflows is zero.
+    target = np.where(start > 0, target, 0.0)
+
+    def log_slope(width: Array, value: Array) -> Array:
+        return width * slope(coordinate - width) / value
+
+    width = invert(
+        lambda width: step(profile, coordinate, width, coordinate - width),
+        log_slope,
+        target,
+        np.where(start > 0, start, 1.0),
+        np.zeros(target.shape),
+        np.where(reach > 0, reach, 2.0),
+        f"{profile.kind}'s slip annulus",
+    )
+    if early.all():
+        return coordinate - width, width
+    late = inverse(profile, np.where(early, 0.0, rest * total))
+    return np.where(early, coordinate - width, late), np.where(early, width, coordinate - late)
+
+
+def _step(
+    profile: Profile, function: Function, slope: _Slope, ends: tuple[Array, Array, Array]
+) -> Array:
+    """Difference function(a) - function(c), by the integral of the slope in a narrow annulus."""
+    high, width, low = np.broadcast_arrays(*ends)
+    below, before = break_below(profile, high)
+    limit = (high - before) / 2 if has_many_breaks(profile) else _NARROW * high
+    narrow = width <= limit
+    if narrow.all():
+        return _narrow_step(slope, high, width, below)
+    if not narrow.any():
+        return function(high) - function(np.maximum(low, 0.0))
+    if profile.swept:
+        # The functions use the parameters of all cases, so that no case can be left out.
+        wide = function(high) - function(np.maximum(low, 0.0))
+        part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below)
+        return np.where(narrow, part, wide)
+    result = np.zeros(narrow.shape)
+    result[~narrow] = function(high[~narrow]) - function(np.maximum(low[~narrow], 0.0))
+    result[narrow] = _narrow_step(slope, high[narrow], width[narrow], below[narrow])
+    return result
+
+
+def break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
+    """Return the nearest break below each coordinate and the one before it; zero for none."""
+    breaks = profile.coordinate_breaks
+    if has_many_breaks(profile):
+        padded = np.concatenate([[0.0, 0.0], breaks])
+        index = np.maximum(np.searchsorted(padded, high, side="left") - 1, 1)
+        return padded[index], padded[index - 1]
+    nothing = np.zeros_like(high)
+    if not breaks.size:
+        return nothing, nothing
+    # Every case of a sweep has its own break.
+    own = breaks if profile.swept else breaks[0]
+    return np.where(high > own, own, 0.0), nothing
+
+
+def divided_breaks(profile: Profile) -> Array:
+    """Return the coordinates of a profile's breaks, and points that divide long gaps between them.
+
+    The root singularity at one break limits the convergence of quadrature beyond the next.
+    """
+    breaks = profile.coordinate_breaks
+    gaps, added = np.diff(breaks), [breaks]
+    for i in np.flatnonzero(gaps[1:] > 2 * _GROWTH * gaps[:-1]).tolist():
+        count = int(np.log(gaps[i + 1] / (2 * gaps[i])) / np.log(_GROWTH))
+        added.append(breaks[i + 1] + gaps[i] * _GROWTH ** np.arange(1, count + 1))
+    return np.sort(np.concatenate(added))
+
+
+def has_many_breaks(profile: Profile) -> bool:
+    """True for tables, whose parameters are never arrays over the cases of a sweep."""
+    return profile.coordinate_breaks.size > 1 and not profile.swept
+
+
+def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Array:
+    """int slope ds over [high - width, high], split at the break `below` if that is inside.
+
+    Beyond a break the slope is smooth in v, s = break + v^2.
+    """
+    low = high - width
+    # Not low - below: next to a break it is dominated by the rounding error of low.
+    beyond = np.maximum((high - below) - width, 0.0)
+    top, bottom = np.sqrt(high - below), np.sqrt(beyond)
+    inner = np.minimum(width, high - below)
+    nodes, weights = gauss_legendre(_NODES)
+    with np.errstate(invalid="ignore"):
+        half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
+    v = bottom + np.multiply.outer(1 + nodes, half)
+    past = v * v
+    # Rounding must not carry a node beyond the edge, where a break may lie.
+    at = np.minimum(below + past, high)
+    with np.errstate(invalid="ignore"):
+        total = half * in_order(weights, 2 * v * slope(at, below, past))
+    outer = width - inner
+    if np.any(outer > 0):
+        s = low + np.multiply.outer(1 + nodes, outer / 2)
+        values = np.where(outer > 0, slope(s, s, np.zeros_like(s)), 0.0)
+        total = total + outer / 2 * in_order(weights, values)
+    return np.asarray(total)
+
+
+def in_order(weights: Array, values: Array) -> Array:
+    """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
+    total = np.zeros(values.shape[1:])
+    for weight, value in zip(weights, values, strict=True):
+        total = total + weight * value
+    return total

@@ -1,0 +1,195 @@
+"""Largest pressure and shear stress of a contact, searched where no closed form exists."""
+
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from mdr_core.abel import Annulus, InnerEnd
+from mdr_core.broadcasting import with_parameters
+from mdr_core.profiles import Paraboloid, Profile
+from mdr_core.typing import Array, Flags, Indices
+
+# A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
+_Field = Callable[[Indices, Array], Array]
+
+# Relative accuracy of the stress: that of closed forms, whatever the tolerance of the query.
+_RTOL: Final = 1e-13
+# Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
+# narrowest smooth peak, next to the contact edge: four samples lie above half its height.
+_SAMPLES: Final = 24
+# Samples in each interval of a table, whose interpolation may have a peak in every one.
+_FEWEST: Final = 6
+# Nodes of the polynomial through a stress around its peak.
+_NODES: Final = 9
+# Intervals in which the highest point of that polynomial is searched.
+_FINE: Final = 128
+# Factor by which a round narrows the bracket of a smooth peak: three rounds reach rounding error.
+_NARROWER: Final = 16.0
+# Factor by which the bracket widens next to a discontinuity of the curvature, where the polynomial
+# misses the peak.
+_WIDER: Final = 4.0
+# Bound on the number of rounds.
+_ROUNDS: Final = 12
+# Relative change that ends the search, a few units in the last place.
+_SETTLED: Final = 4 * float(np.finfo(float).eps)
+# Samples evaluated at once, so that temporaries stay in the processor's cache.
+_BLOCK: Final = 65_536
+
+
+class _Brackets(NamedTuple):
+    """Intervals of the contact coordinate that may hold the highest peak of a load; all (k,)."""
+
+    load: Indices
+    low: Array
+    high: Array
+    sample: Array
+    """The stress at a point inside."""
+
+
+def largest_stress(
+    profile: Profile, edge: Array, loaded: Flags, slip: tuple[Array, Array] | None = None
+) -> Array:
+    """Return the largest (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx of each contact [1].
+
+    It is p/E* for c = 0 and |tau|/(mu E*) otherwise. Infinite where [c, a] holds a sharp tip, a
+    slope discontinuity or the edge of a flat punch; zero without a load. Under a paraboloid it is
+    (2/(pi R)) sqrt(a^2 - c^2), at r = c.
+
+    Source: mdr-5, Eqs. (5.38), (5.68), (5.70).
+
+    Parameters
+    ----------
+    profile : parameters broadcast with the loads.
+    edge : contact radii a as contact coordinates, shape of the loads.
+    loaded : loads that are not zero.
+    slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
+        c = 0.
+    """
+    if isinstance(profile, Paraboloid):
+        root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
+        return np.asarray(2 * root / (np.pi * profile.radius))
+    shape = loaded.shape
+    parts = [np.broadcast_to(part, shape) for part in (edge, *(slip or ()))]
+    a, c = profile.contact_radius(edge), profile.contact_radius(slip[1]) if slip else 0.0
+    infinite = np.zeros(shape, dtype=bool)
+    for b in profile.infinite_pressure_radii:
+        infinite |= loaded & (c <= b) & (b <= a)
+    result, finite = np.where(infinite, np.inf, 0.0), loaded & ~infinite
+    if not profile.swept:
+        result[finite] = _search(profile, *(part[finite] for part in parts))
+        return result
+    named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
+    for place in zip(*np.nonzero(finite), strict=True):
+        one = with_parameters(profile, {name: float(value[place]) for name, value in named.items()})
+        result[place] = _search(one, *(part[place][None] for part in parts))[0]
+    return result
+
+
+def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
+    """The largest stress of contacts with one profile, where it is finite; shape (loads,).
+
+    The stress is sampled between its singular radii. Every candidate for the highest peak is then
+    refined by polynomial interpolation.
+    """
+    a, c = profile.contact_radius(edge), [profile.contact_radius(part) for part in slip[1:]]
+
+    def field(load: Indices, at: Array) -> Array:
+        r, values = profile.contact_radius(at), np.zeros(at.shape)
+        inside = r < a[load]
+        load = load[inside]
+        inner = InnerEnd(slip[0][load], c[0][load]) if slip else None
+        values[inside] = profile.pressure_kernel(Annulus(edge[load], inner), r[inside], _RTOL)
+        return values
+
+    best = np.zeros(edge.size)
+    fixed = np.append(profile.first_coordinate, profile.coordinate_breaks)
+    count = max(_SAMPLES // max(fixed.size - 1, 1), _FEWEST)
+    step = max(_BLOCK // (fixed.size * count), 1)
+    for start in range(0, edge.size, step):
+        load = np.arange(start, min(start + step, edge.size))
+        same = np.broadcast_to(fixed, (load.size, fixed.size))
+        stops = np.concatenate([same, *(part[load, None] for part in (edge, *slip[1:]))], axis=1)
+        stops = np.sort(np.clip(stops, fixed[0], edge[load, None]), axis=1)
+        _refine(field, _sampled(field, load, _between(stops, count), best), best)
+    return best
+
+
+def _between(stops: Array, count: int) -> Array:
+    """Samples of each load between its stops, at which they cluster; shape (loads, m)."""
+    share = (1 - np.cos(np.pi * np.arange(count) / count)) / 2
+    samples = stops[:, :-1, None] + np.diff(stops)[..., None] * share
+    return np.concatenate([samples.reshape(len(stops), -1), stops[:, -1:]], axis=1)
+
+
+def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brackets:
+    """Brackets around the samples that rise above the others, whose largest value goes to `best`.
+
+    Between its neighbours a peak is taken to exceed the sample by no more than the sample exceeds
+    the lower one of them.
+    """
+    values = field(np.repeat(load, samples.shape[1]), samples.ravel()).reshape(samples.shape)
+    best[load] = values.max(axis=1)
+    before = np.concatenate([values[:, :1], values[:, :-1]], axis=1)
+    after = np.concatenate([values[:, 1:], values[:, -1:]], axis=1)
+    reach = 2 * values - np.minimum(before, after)
+    peak = (values >= before) & (values >= after) & (values > 0)
+    row, at = np.nonzero(peak & (reach >= best[load][:, None]))
+    last = samples.shape[1] - 1
+    ends = samples[row, np.maximum(at - 1, 0)], samples[row, np.minimum(at + 1, last)]
+    return _Brackets(load[row], *ends, values[row, at])
+
+
+def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
+    """Refine each peak to its top, whose value goes to `best`.
+
+    `outer` brackets the top; [low, high] is the part of it around the top of a polynomial.
+    """
+    load, low, high, sample = brackets
+    outer, highest, peak = np.stack([low, high]), low, np.zeros(load.size)
+    for _ in range(_ROUNDS):
+        rows, middle, half = np.arange(load.size), (low + high) / 2, (high - low) / 2
+        at = np.clip(middle[:, None] + half[:, None] * _LOBATTO, low[:, None], high[:, None])
+        values = field(np.repeat(load, _NODES), at.ravel()).reshape(at.shape)
+        place = np.argmax(values, axis=1)
+        first, last = place == 0, place == _NODES - 1
+        rises = values[rows, place] >= peak
+        peak, highest = (
+            np.maximum(peak, values[rows, place]),
+            np.where(rises, at[rows, place], highest),
+        )
+        np.maximum.at(best, load, peak)
+        # The top lies between the neighbours of the highest node, or beyond the last one.
+        inside = rises & ~(first & (low > outer[0])) & ~(last & (high < outer[1]))
+        neighbours = at[rows, np.maximum(place - 1, 0)], at[rows, np.minimum(place + 1, _NODES - 1)]
+        outer[0] = np.where(rises & ~first, neighbours[0], outer[0])
+        outer[1] = np.where(rises & ~last, neighbours[1], outer[1])
+        top, height = _vertex(values @ _TO_FINE.T)
+        centre = np.where(inside, middle + half * top, highest)
+        reach = half * np.where(inside, 1 / _NARROWER, _WIDER)
+        low, high = np.clip(centre - reach, *outer), np.clip(centre + reach, *outer)
+        left = ~inside | (peak < sample) | (height > best[load] * (1 + _SETTLED))
+        if not left.any():
+            break
+        load, low, high, sample = load[left], low[left], high[left], sample[left]
+        outer, highest, peak = outer[:, left], highest[left], peak[left]
+
+
+def _vertex(curve: Array) -> tuple[Array, Array]:
+    """Place in [-1, 1] and height of the highest point of each curve, by the parabola there."""
+    rows, at = np.arange(len(curve)), np.clip(np.argmax(curve, axis=1), 1, _FINE - 1)
+    before, highest, after = (curve[rows, at + step] for step in (-1, 0, 1))
+    bend = 2 * highest - before - after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        offset = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
+    offset = np.clip(offset, -1.0, 1.0)
+    height = np.maximum(np.max(curve, axis=1), highest + offset * (after - before) / 4)
+    return (at + offset) * (2 / _FINE) - 1, height
+
+
+_LOBATTO: Final = -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))
+# From values at the nodes to those of the polynomial at evenly spaced points of [-1, 1].
+_TO_FINE: Final = chebyshev.chebvander(np.linspace(-1, 1, _FINE + 1), _NODES - 1) @ np.linalg.inv(
+    chebyshev.chebvander(_LOBATTO, _NODES - 1)
+)

@@ -1,0 +1,138 @@
+"""Stress, slip and foundation load of an arc that a curved load step leaves in the traction.
+
+On an arc the slope k of the anchors is proportional to the radius or to its inverse. It acts like
+a straight segment under a profile with k g' in place of g': its integrals are those of the
+profile, with an analytic factor. Source: notes, §10.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf, sqrt
+from typing import Final
+
+import numpy as np
+
+from mdr_core.abel import Annulus, InnerEnd, two_root_integral
+from mdr_core.abel.displacement import Branch, arccosine, slope_integral
+from mdr_core.abel.two_root import inverse_hypot
+from mdr_core.profiles import Profile
+from mdr_core.quadrature import Analytic
+from mdr_core.typing import Array, Chosen
+
+# Closer to the axis than this part of the radius at which an arc starts the stress is that on the
+# axis.
+_NEAR_AXIS: Final = 1e-8
+# The same part of the radius at which an arc that starts on the axis ends.
+_NEXT_TO_AXIS: Final = 1e-120
+# Pieces end half way to a pole.
+_HALF: Final = 0.5
+# Nodes on every piece, and the least power to integrate: a table's polynomial with the factor.
+_NODES: Final = 24
+_DEGREE: Final = 14.0
+# Tolerance of the foundation's load, which has none of its own.
+_RTOL: Final = 1e-13
+
+
+@dataclass(frozen=True)
+class Arc:
+    """Interval low < x < high of the foundation on which k = rate 2x, or rate/(2x)."""
+
+    profile: Profile
+    rate: float
+    inverse: bool
+    """k is proportional to 1/x: the depth was prescribed, not the normal force."""
+    low: float
+    high: float
+    width: float
+    """high - low, without cancellation [length]."""
+
+    def stress(self, r: Array, rtol: float) -> Array:
+        """int k g'(x)/sqrt(x^2 - r^2) dx over the arc, from r on [1]; shape (m,)."""
+        result = np.zeros(r.shape)
+        inside = r < self.high
+        if inside.any():
+            result[inside] = sum(self._on(each, r[inside], rtol) for each in self._branches(rtol))
+        return result
+
+    def slip(self, r: Array, rtol: float) -> Array:
+        """(2/pi) int k g'(x) arccos(x/r) dx over the arc, up to r [length]; shape (m,)."""
+        result = np.zeros(r.shape)
+        at = r[r > self.low]
+        if at.size:
+            low, high = np.full(at.shape, self.low), np.minimum(at, self.high)
+            value = slope_integral(self._branches(rtol), low, high, at, arccosine, rtol)
+            result[r > self.low] = 2 / np.pi * value
+        return result
+
+    def anchor_step(self, x: Array) -> Array:
+        """int k g'(x) dx from each radius on the arc to its end [length]; shape (m,)."""
+        end = np.full(x.shape, self.high)
+        branches = self._branches(_RTOL)
+        return slope_integral(branches, x, end, end, lambda at, _root: np.ones_like(at), _RTOL)
+
+    def _branches(self, rtol: float) -> list[Branch]:
+        """Intervals on which k g' is smooth, as those of the profile."""
+        panels = self.profile.panels(rtol)
+        branches = self.profile.branches if panels is None else panels.branches
+        return [
+            self._weighted(each)
+            for each in branches
+            if each.stop > self.low and max(each.base, each.start) < self.high
+        ]
+
+    def _weighted(self, branch: Branch) -> Branch:
+        def weight(x: Array, s: Array, index: Chosen) -> Array:
+            slope = self.rate / (2 * x) if self.inverse else 2 * self.rate * x
+            return np.asarray(slope * branch.weight(x, s, index))
+
+        tip = branch.tip - 1 if self.inverse else branch.tip + 1
+        return replace(branch, weight=weight, tip=tip, steepness=branch.steepness + 1)
+
+    def _on(self, branch: Branch, r: Array, rtol: float) -> Array:
+        """Part of the stress on one smooth interval of g'."""
+        base = branch.base
+        low, high = max(self.low, base, branch.start), min(self.high, branch.stop)
+        if base == 0:
+            r = np.maximum(r, _NEAR_AXIS * low if low > 0 else _NEXT_TO_AXIS * high)
+        growth = max(branch.steepness + 1, _DEGREE)
+        analytic = Analytic(growth=growth, zeros=2, fewest=_NODES)
+        total = np.zeros(r.shape)
+        for start, stop in pairwise([low, *_cuts(branch, low, high), high]):
+            seen = np.flatnonzero(r < stop)
+            if not seen.size:
+                continue
+            legs = inverse_hypot(np.array([start, stop]), base)
+            whole = start == self.low and stop == self.high
+            gap = self.width if whole else stop - start
+            width = np.array([gap * (start + stop) / legs.sum()])
+            inner = InnerEnd(width, np.array([start])) if start > base else None
+            total[seen] += two_root_integral(
+                branch.weight,
+                base,
+                r[seen],
+                Annulus(legs[1:], inner, np.array([stop])),
+                odd=False,
+                rtol=rtol,
+                analytic=analytic,
+            )
+        return total
+
+
+def _cuts(branch: Branch, low: float, high: float) -> list[float]:
+    """Radii between pieces that are no longer than their distance from a pole."""
+    cuts, at = [], low
+    while branch.pole < inf:
+        at = branch.pole - _HALF * (branch.pole - at)
+        if at >= high:
+            break
+        cuts.append(at)
+    if branch.behind < inf:
+        s, base = sqrt((low - branch.base) * (low + branch.base)), branch.base
+        while True:
+            s = 2 * s + branch.behind
+            at = sqrt(base * base + s * s)
+            if at >= high:
+                break
+            if at > low:
+                cuts.append(at)
+    return sorted(cuts)

@@ -1,0 +1,115 @@
+"""Grids of radii, and the error of fields by the rounding error of computed edges.
+
+A contact radius or slip front that follows from a load has a rounding error. A stress has a root at
+each of them, so that its error grows without bound next to an edge. Source: notes, §8.
+"""
+
+from math import inf
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from mdr_core.errors import InputError
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+_EPS: Final = float(np.finfo(float).eps)
+# Relative rounding error of an edge that follows from a load.
+EDGE_ROUNDING: Final = 16 * _EPS
+# Units in the last place of an edge within which the error of a field is not estimated.
+_TOO_CLOSE: Final = 4.0
+# Largest error of a field by that of an edge, relative to its largest value, on a grid with room
+# enough: a tenth of the errors estimated elsewhere.
+_GRID_ERROR: Final = 1e-12
+# End of a grid, in largest contact radii.
+_BEYOND: Final = 1.5
+
+
+class Edges(NamedTuple):
+    """Contact radii and slip fronts with their rounding errors; all of shape (k,)."""
+
+    radius: Array
+    """[length]"""
+    error: Array
+    """Their error [length]."""
+    scale: Array
+    """Distance over which a field changes there [length]."""
+
+
+def edge_error(edges: Edges, radius: Array, *, root: bool) -> float:
+    """Return the error of a field by the error of the edges, relative to its largest value [1].
+
+    Radii within four units in the last place of an edge are excluded, because the relative error
+    at a root is unbounded.
+
+    Parameters
+    ----------
+    edges : edges of all loads.
+    radius : radii of the field [length], shape (m,).
+    root : True for stresses, which have a root at the edges, unlike displacements.
+    """
+    used = (edges.error > 0) & (edges.scale > 0)
+    if not used.any():
+        return 0.0
+    at, error, scale = (part[used] for part in edges)
+    if not root:
+        return float(np.max(2 * error / scale))
+    # The nearest radii on either side of each edge.
+    r, away = np.concatenate([[-inf], np.sort(radius), [inf]]), at * (_TOO_CLOSE * _EPS)
+    below = at - r[np.searchsorted(r, at - away, side="left") - 1]
+    above = r[np.searchsorted(r, at + away, side="right")] - at
+    return float(np.max(error / (2 * np.sqrt(np.minimum(below, above) * scale))))
+
+
+def grid_through(profile: Profile, edges: Edges, points: int) -> Array:
+    """Return radii from 0 to 1.5 times the largest contact radius [length], shape (points,).
+
+    They cluster at the axis, the breaks of the profile and the edges. Instead of an edge with a
+    rounding error the grid takes a radius just inside, where that error is insignificant.
+
+    Raises
+    ------
+    InputError : fewer points than such radii.
+    """
+    breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
+    end = _BEYOND * float(np.max(edges.radius)) or 1.0
+    if not profile.slips_at_once:
+        end = min(end, float(np.max(profile.domain)))
+    exact = edges.error == 0
+    fixed = np.unique(np.concatenate([np.zeros(1), *breaks, edges.radius[exact]]))
+    moving = np.setdiff1d(edges.radius[~exact], fixed)
+    stops = np.union1d(fixed, moving)
+    gaps = np.diff(stops, append=inf)
+    place = np.searchsorted(stops, moving)
+    gap = np.minimum(gaps[place], gaps[place - 1])
+    clear = (EDGE_ROUNDING / (2 * _GRID_ERROR)) ** 2 * np.square(moving) / gap
+    stops[place] = moving - np.minimum(clear, gap / 4)
+    return graded(np.append(stops[stops < end], end), points)
+
+
+def graded(stops: Array, points: int) -> Array:
+    """Return radii from the first stop to the last, clustered at each of them.
+
+    Parameters
+    ----------
+    stops : ascending radii [length].
+    points : number of radii.
+
+    Raises
+    ------
+    InputError : fewer points than stops.
+    """
+    end = stops[-1]
+    if points < stops.size:
+        raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
+    gaps = np.diff(stops)
+    # Every gap gets one point, and a share of the rest in proportion to the root of its length.
+    spare = points - stops.size
+    share = np.sqrt(gaps) / np.sqrt(gaps).sum() * spare
+    counts = np.floor(share).astype(int)
+    counts[np.argsort(counts - share, kind="stable")[: spare - int(counts.sum())]] += 1
+    parts = [
+        low + gap * (1 - np.cos(np.pi * np.arange(count + 1) / (count + 1))) / 2
+        for low, gap, count in zip(stops[:-1], gaps, counts, strict=True)
+    ]
+    return np.append(np.concatenate(parts), end)

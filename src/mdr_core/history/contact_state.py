@@ -1,0 +1,230 @@
+"""State of a contact after a load history, and one straight step from it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from mdr_core.equivalent_1d import coordinate_from_depth, stick_from_depth, stick_from_force
+from mdr_core.errors import InputError
+from mdr_core.history import slip_memory
+from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
+from mdr_core.history.traction_branches import SHORT, TractionBranches
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+from mdr_core.validation import require_positive
+
+
+class TractionSegments(NamedTuple):
+    """Intervals of the contact on which the slope of the anchor has one formula, from the axis."""
+
+    coordinate: Array
+    """Contact coordinates of their ends, shape (n + 1,)."""
+    width: Array
+    """Widths in the contact coordinate, without cancellation, shape (n,)."""
+    slope: Array
+    """Slope of the anchor over depth, from -1 to 1; on an arc it is not constant."""
+    rate: Array
+    """On an arc the slope is rate 2x, or rate/(2x) where `inverse`; zero on straight segments."""
+    inverse: bool = False
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """A contact after any load history, as the polyline of its springs' anchors.
+
+    A spring is identified by the depth w of its first contact. Its anchor U - q_x/(mu E*), with
+    U = G* u_x/(mu E*), is constant while it sticks. The polyline of (w, anchor) determines the
+    traction and every later step, for every profile. Source: notes, §10.
+    """
+
+    profile: Profile
+    e_star: float
+    g_star: float
+    friction_coefficient: float
+    polyline: Polyline
+    """Polyline over depths; chords stand for the arcs of curved load steps."""
+    arcs: TractionSegments | None = None
+    """Segments with the arcs of curved load steps, if there are any."""
+
+    @property
+    def compliance(self) -> float:
+        """mu E*/G* [1], the ratio of a tangential displacement to its reduced value U."""
+        return self.friction_coefficient * self.e_star / self.g_star
+
+    @property
+    def indentation_depth(self) -> float:
+        """d [length]; negative in separation."""
+        return self.polyline.load_point[0]
+
+    @property
+    def tangential_displacement(self) -> float:
+        """u_x [length]."""
+        return self.compliance * self.polyline.load_point[1]
+
+    @property
+    def in_contact(self) -> bool:
+        """True unless the bodies are separated."""
+        return self.polyline.in_contact
+
+    @cached_property
+    def _branches(self) -> TractionBranches:
+        return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), by_force=False)
+
+    @cached_property
+    def depth(self) -> Array:
+        """Depths w of the vertices, from 0 to d [length]; empty in separation."""
+        if not self.in_contact:
+            return _frozen(np.zeros(0))
+        return _frozen(np.append(self._branches.depth[:-1], self.indentation_depth))
+
+    @cached_property
+    def load(self) -> Array:
+        """q_x of the springs at the vertices [force/length]; linear in w between them."""
+        if not self.in_contact:
+            return _frozen(np.zeros(0))
+        tree = self._branches.tree
+        above = np.cumsum((tree.slope * tree.span)[:0:-1])
+        return _frozen(self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0))
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinates of the vertices; empty in separation."""
+        return _frozen(self._branches.coordinate if self.in_contact else np.zeros(0))
+
+    @cached_property
+    def slope(self) -> Array:
+        """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
+        return _frozen(self._branches.tree.slope[1:])
+
+    @cached_property
+    def segments(self) -> TractionSegments:
+        """Segments of the traction, with the arcs of curved load steps; empty in separation."""
+        if self.arcs is not None:
+            return self.arcs
+        tree = self._branches.tree
+        width = widths(self.profile, tree, self.coordinate, by_force=False)
+        straight = np.zeros(self.slope.shape)
+        return TractionSegments(self.coordinate, width, self.slope, straight)
+
+    @property
+    def contact_radius(self) -> float:
+        """a [length]."""
+        return float(self.profile.contact_radius(self.coordinate[-1])) if self.in_contact else 0.0
+
+    @property
+    def slip_fronts(self) -> Array:
+        """Radii inside the contact where the branch of q_x changes, ascending [length]."""
+        if self.profile.slips_at_once:
+            return np.zeros(0)
+        return self.profile.contact_radius(self.segments.coordinate[1:-1])
+
+    @property
+    def tangential_force(self) -> float:
+        """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
+        shear = float(self._branches.shear[-1]) if self.in_contact else 0.0
+        return self.friction_coefficient * self.e_star * shear
+
+
+def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, by_force: bool) -> Array:
+    """Return the widths of a polyline's segments in the contact coordinate, shape (n - 1,).
+
+    Parameters
+    ----------
+    profile : profile of the contact.
+    tree : the polyline.
+    coordinate : contact coordinates of its vertices, shape (n,).
+    by_force : True if its normal coordinates are reduced forces.
+    """
+    width = np.diff(coordinate)
+    short = np.flatnonzero(tree.span[1:] < SHORT * tree.normal[1:])
+    if short.size:
+        upper, span = tree.normal[1:][short], tree.span[1:][short]
+        find = stick_from_force if by_force else stick_from_depth
+        share = span / upper, tree.normal[short] / upper
+        width[short] = find(profile, coordinate[1:][short], *share)[1]
+    return width
+
+
+def _frozen(values: Array) -> Array:
+    """Return the array, marked read-only."""
+    values.flags.writeable = False
+    return values
+
+
+def unloaded(
+    profile: Profile, e_star: float, g_star: float, friction_coefficient: float
+) -> ContactState:
+    """Return the state of bodies before first contact, at zero depth and displacement.
+
+    Parameters
+    ----------
+    profile : profile of any kind, with single numbers as parameters.
+    e_star, g_star : effective moduli [pressure], > 0.
+    friction_coefficient : mu [1], > 0.
+
+    Returns
+    -------
+    The state from which `advance` takes the first step.
+
+    Raises
+    ------
+    InputError : a modulus or a friction coefficient that is not positive and finite.
+    """
+    for path, value in (
+        (("material", "e_star"), e_star),
+        (("material", "g_star"), g_star),
+        (("friction_coefficient",), friction_coefficient),
+    ):
+        require_positive(path, value)
+    polyline = slip_memory.separated(0.0, 0.0)
+    return ContactState(profile, e_star, g_star, friction_coefficient, polyline)
+
+
+def advance(
+    state: ContactState, indentation_depth: float, tangential_displacement: float
+) -> ContactState:
+    """Return the state after one straight step in depth and displacement, exactly.
+
+    Springs that stick keep their anchors, springs that come into contact take the displacement
+    of that moment, springs that would carry more than mu q slip. A depth <= 0 separates the bodies
+    and erases the slip memory. Use it in time-stepping codes that determine the next load from
+    the forces; use `solve` for load histories known a priori.
+
+    Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
+
+    Parameters
+    ----------
+    state : state from `unloaded`, from an earlier step, or at the end of a history. After curved
+        load steps chords stand for the arcs, with a relative error of up to 1e-6.
+    indentation_depth : d after the step [length].
+    tangential_displacement : u_x after the step [length].
+
+    Returns
+    -------
+    The new state; the given one is not changed.
+
+    Raises
+    ------
+    InputError : numbers that are not finite, or a depth beyond the end of the profile.
+
+    Examples
+    --------
+    Eq. (5.15): half of the displacement at full slip, on a cone, is F_x = 3/4 mu F_N.
+
+    >>> from mdr_core.profiles import Cone
+    >>> state = advance(unloaded(Cone(0.1), 1.0, 1.0, 0.5), 2.0, 0.0)
+    >>> state = advance(state, 2.0, 0.5)
+    >>> normal_force = (2.0 / 0.1) ** 2 * 0.1 * 2 / np.pi
+    >>> round(state.tangential_force / (0.5 * normal_force), 12)
+    0.75
+    """
+    depth, displacement = np.array([indentation_depth]), np.array([tangential_displacement])
+    if not (np.isfinite(depth[0]) and np.isfinite(displacement[0])):
+        raise InputError(("history",), "must be finite")
+    coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
+    once = np.zeros(1, dtype=bool), np.zeros(1, dtype=np.intp)
+    points = LoadPoints(depth, displacement / state.compliance, *once)
+    _, _, polyline = slip_memory.apply_steps(state.polyline, points)
+    return replace(state, polyline=polyline, arcs=None)

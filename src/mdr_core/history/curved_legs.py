@@ -1,0 +1,287 @@
+"""Curved load steps, on which one quantity of each pair is prescribed and both change.
+
+On such a step the tangential coordinate is linear in the conjugate y of the normal coordinate n,
+so the load point moves along an arc of the curve y(n), I over d or d over I. The arc is replaced
+by chords between points that are equidistant in the contact coordinate, where n and y need no
+inverse. Results at the samples are extrapolated from three sets of chords; their error falls
+with the third to fourth power of the number of chords. Source: notes, §10.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from mdr_core.history import slip_memory
+from mdr_core.history.contact_state import ContactState, TractionSegments, widths
+from mdr_core.history.load_path import SampledPath
+from mdr_core.history.slip_memory import LoadPoints, Polyline
+from mdr_core.history.step_results import StepResults
+from mdr_core.interval_moments import IntervalMoments
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Indices
+
+# Chords from the axis to the largest contact: enough for the tolerance, as a cube root, within
+# these limits.
+_FEWEST: Final = 64
+# It costs 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
+_MOST: Final = 1024
+# Chords on every curved step, before they are halved.
+_FEWEST_ON_STEP: Final = 8
+# Chords of all steps together, which bounds time and memory.
+_MOST_IN_ALL: Final = 400_000
+# Halvings from the coarsest set of chords to the finest.
+_HALVINGS: Final = 2
+# The error of the extrapolated results, in units of the change by the last halving.
+_SAFETY: Final = 2.0
+# A corner of chords is off its arc by less than this part of its normal coordinate.
+_NEAREST: Final = 1e-3
+# Newton's method converges from a chord to its arc in four steps.
+_NEWTON_STEPS: Final = 6
+
+
+@dataclass(frozen=True)
+class CurvedLegs:
+    """Arcs of a load path, one for each sample; those of straight steps have no rate."""
+
+    path: SampledPath
+    profile: Profile
+    coordinate: Array
+    """Contact coordinate of each sample, after that of zero load; shape (n + 1,)."""
+    normal: Array
+    """Normal coordinate of each sample, after zero; shape (n + 1,)."""
+    conjugate: Array
+    """Prescribed depth or reduced force of each sample, after zero; shape (n + 1,)."""
+    tangential: Array
+    """Tangential coordinate of each sample, after zero; shape (n + 1,)."""
+
+    @cached_property
+    def rate(self) -> Array:
+        """Derivative of the tangential coordinate by the conjugate on each arc, shape (n,)."""
+        rise, moved = np.diff(self.conjugate), np.diff(self.tangential)
+        curved = self.path.curved
+        return np.where(curved, moved / np.where(rise == 0, 1.0, rise), 0.0)
+
+    @property
+    def moments(self) -> IntervalMoments:
+        """Normal coordinate, and the inverse, of the contact coordinate."""
+        return IntervalMoments(self.profile, self.path.by_force)
+
+    def along(self, s: Array) -> Array:
+        """Return the conjugate of a contact coordinate."""
+        return (self.profile.depth if self.path.by_force else self.profile.reduced_force)(s)
+
+    @cached_property
+    def _parts(self) -> tuple[Indices, Array, Array]:
+        """Arc, start and end of the parts on which both coordinate sums are monotonic.
+
+        An arc is as steep as a face of the cone at one radius: |d(tangential)/dn| = 1.
+        """
+        start, stop = self.coordinate[:-1], self.coordinate[1:]
+        with np.errstate(divide="ignore"):
+            turn = np.abs(self.rate) / 2 if self.path.by_force else 1 / (2 * np.abs(self.rate))
+        low, high = np.sort(self.profile.contact_radius(np.stack([start, stop])), axis=0)
+        turned = np.flatnonzero((low < turn) & (turn < high))
+        at = self.profile.coordinate_from_radius(turn[turned])
+        owner = np.concatenate([np.arange(start.size), turned])
+        starts, stops = np.append(start, at), np.append(stop, stop[turned])
+        stops[turned] = at
+        order = np.argsort(owner, kind="stable")
+        return owner[order], starts[order], stops[order]
+
+    def chords(self, finest: int, halvings: int) -> tuple[LoadPoints, Indices]:
+        """Return the ends of the chords, and which of them are the samples.
+
+        `finest` chords reach from the axis to the largest contact, before they are halved.
+        """
+        owner, start, stop = self._parts
+        fewest = min(_FEWEST_ON_STEP, _MOST_IN_ALL / (start.size << _HALVINGS))
+        needed = np.abs(stop - start) / np.max(self.coordinate) * finest / 2**_HALVINGS
+        count = np.ceil(np.maximum(needed, fewest)).astype(int) << halvings
+        count[self.rate[owner] == 0] = 1
+        part = np.repeat(np.arange(count.size), count)
+        last = np.cumsum(count) - 1
+        share = (np.arange(part.size) - np.append(-1, last[:-1])[part]) / count[part]
+        # They cluster at both ends: the axis, and load points from which slip starts.
+        share = np.square(np.sin(np.pi / 2 * share))
+        s = start[part] + (stop - start)[part] * share
+        s[last] = stop
+        arc = owner[part]
+        samples = np.flatnonzero(np.append(np.diff(arc) > 0, True))
+        rise = np.diff(self.conjugate)[arc]
+        climbed = (self.along(s) - self.conjugate[arc]) / np.where(rise == 0, 1.0, rise)
+        tangential = self.tangential[arc] + np.diff(self.tangential)[arc] * climbed
+        normal = self.moments.normal(s)
+        normal[samples], tangential[samples] = self.normal[1:], self.tangential[1:]
+        step = self.path.step[arc]
+        if self.path.by_force:
+            tangential = self.path.within_friction(normal, tangential, step)
+        continues = np.zeros(part.size, dtype=bool)
+        continues[samples] = self.path.continues & (self.rate == 0)
+        return LoadPoints(normal, tangential, continues, step), samples
+
+    def arcs(self, line: Polyline) -> TractionSegments | None:
+        """Return the segments of the last polyline, with one arc for the chords of each step.
+
+        Corners that chords have cut are moved to the arcs. None if no arc is left.
+        """
+        if not line.in_contact:
+            return None
+        tree = slip_memory.as_tree(line)
+        # Of each segment, below the vertex of its index.
+        end = (line.leg + 1) * self.path.per_step
+        on_face = (tree.growth == 0).any(axis=1)
+        rate = np.where(on_face, 0.0, self.rate[end - 1])
+        rate[0] = 0.0
+        if not rate.any():
+            return None
+        coordinate = self.moments.contact_coordinate(tree.normal)
+        chord = rate[1:] != 0
+        corners = np.flatnonzero(chord[:-1] & on_face[2:]) + 1
+        if corners.size:
+            own = np.where(tree.growth[corners + 1, 0] == 0, 0, 1)
+            sums = np.stack([line.forward, line.backward])[own, corners].sum(axis=1)
+            sign = np.where(own == 0, 1.0, -1.0)
+            coordinate[corners] = self._on_arcs(
+                coordinate[corners], end[corners], sign * rate[corners], sign, sums
+            )
+        width = widths(self.profile, tree, coordinate, by_force=self.path.by_force)
+        beside = np.concatenate([corners - 1, corners])
+        width[beside] = np.diff(coordinate)[beside]
+        joined = chord[:-1] & chord[1:] & (line.leg[1:-1] == line.leg[2:])
+        first = np.append(0, np.flatnonzero(~joined) + 1)
+        last = np.append(first[1:], chord.size)
+        return TractionSegments(
+            np.append(coordinate[first], coordinate[-1]),
+            np.add.reduceat(width, first),
+            np.where(chord[first], 0.0, tree.slope[1:][first]),
+            rate[last],
+            inverse=self.path.by_force,
+        )
+
+    def _on_arcs(self, s: Array, end: Indices, rate: Array, sign: Array, sums: Array) -> Array:
+        """Return the contact coordinates at which n +- tangential on arcs is equal to `sums`."""
+        profile, start, normal = self.profile, s, self.moments.normal
+        for _ in range(_NEWTON_STEPS):
+            slope = profile.depth_slope(s)
+            twice = 2 * profile.contact_radius(s)
+            rise = (
+                slope * twice + rate * slope if self.path.by_force else slope + rate * slope * twice
+            )
+            moved = self.along(s) - self.conjugate[end]
+            miss = normal(s) + sign * self.tangential[end] + rate * moved - sums
+            s = np.where(rise > 0, s - miss / np.where(rise > 0, rise, 1.0), np.nan)
+        # Where the arc is all but parallel to the face, the corner of the chords is as good.
+        moved = np.abs(normal(s) - normal(start))
+        return np.where(moved < _NEAREST * normal(start), s, start)
+
+
+@dataclass(frozen=True)
+class ExtrapolatedResults:
+    """Results at the samples of a curved load path, in reduced units; see `StepResults`."""
+
+    legs: CurvedLegs
+    sets: tuple[tuple[StepResults, Indices], ...]
+    """Results on the chords, coarsest first, and which of them are the samples."""
+
+    @cached_property
+    def shear(self) -> Array:
+        """F_x/(mu E*) [length^2]."""
+        return self._extrapolated("shear")[-1]
+
+    @cached_property
+    def displacement(self) -> Array:
+        """G* u_x/(mu E*) [length], from zero on the axis."""
+        return self._extrapolated("displacement")[-1]
+
+    @cached_property
+    def energy(self) -> Array:
+        """Stored tangential energy over (mu E*)^2/G* [length^3], >= 0."""
+        return self._extrapolated("energy")[-1]
+
+    @cached_property
+    def dissipation(self) -> Array:
+        """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
+        return self._extrapolated("dissipation")[-1]
+
+    @property
+    def regime(self) -> Indices:
+        """Index in `REGIMES` of the slip regime."""
+        results, samples = self.sets[-1]
+        return results.regime[samples]
+
+    @property
+    def last(self) -> Polyline:
+        """Polyline after the last step, over normal coordinates, with the finest chords."""
+        return self.sets[-1][0].last
+
+    @cached_property
+    def error(self) -> float:
+        """Bound on the error of the results by the chords, relative to the largest of each."""
+        worst = 0.0
+        for name in ("shear", "displacement", "energy", "dissipation"):
+            coarse, fine = self._extrapolated(name)
+            largest = float(np.max(np.abs(fine)))
+            if largest > 0:
+                worst = max(worst, _SAFETY * float(np.max(np.abs(fine - coarse))) / largest)
+        return worst
+
+    def _extrapolated(self, name: str) -> tuple[Array, Array]:
+        """Richardson's extrapolation of the coarser and of the finer two sets of chords."""
+        values = []
+        for results, samples in self.sets:
+            row = getattr(results, name)
+            begin = np.append(0, samples[:-1] + 1)
+            values.append(np.add.reduceat(row, begin) if name == "dissipation" else row[samples])
+        found = []
+        for coarse, fine in pairwise(values):
+            change = (fine - coarse) / 3
+            if name in {"energy", "dissipation"}:
+                # Below their own error these may not become negative.
+                change = np.where(np.abs(change) < fine / 3, change, 0.0)
+            found.append(fine + change)
+        return found[0], found[1]
+
+
+def results(
+    path: SampledPath, start: ContactState, scale: float, rtol: float
+) -> ExtrapolatedResults:
+    """Return the results of a load path with curved steps.
+
+    Parameters
+    ----------
+    path : samples of the load path.
+    start : the unloaded contact.
+    scale : divides the tangential quantity: mu E*/G* for displacements, mu E* for forces.
+    rtol : relative accuracy that determines the number of chords.
+
+    Raises
+    ------
+    InputError : a tangential force above mu F_N anywhere on the path.
+    """
+    profile, e_star = start.profile, start.e_star
+    samples, conjugate = (
+        path.load_points(profile, e_star, start.friction_coefficient, scale),
+        path.prescribed(e_star),
+    )
+    if path.by_force:
+        # A force that changes while the bodies are separated exceeds friction there.
+        separated = np.minimum(conjugate, np.append(0.0, conjugate[:-1])) < 0
+        path.within_friction(0 * conjugate, np.where(separated & path.curved, 1.0, 0.0), path.step)
+    coordinate = path.contact_coordinate(profile, e_star)
+    rows = samples.normal, conjugate, samples.tangential
+    legs = CurvedLegs(
+        path,
+        profile,
+        np.append(profile.first_coordinate, coordinate),
+        *(np.append(0.0, row) for row in rows),
+    )
+    travel = np.sum(np.abs(np.diff(legs.coordinate))) / np.max(legs.coordinate)
+    finest = int(min(max(rtol ** (-1 / 3), _FEWEST), _MOST, _MOST_IN_ALL / travel))
+    sets = []
+    for halvings in range(_HALVINGS + 1):
+        points, last = legs.chords(finest, halvings)
+        sets.append((StepResults(profile, path.by_force, points, start.polyline), last))
+    return ExtrapolatedResults(legs, tuple(sets))

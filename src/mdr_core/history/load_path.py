@@ -1,0 +1,196 @@
+"""Load path: from the given points to the load points of the slip memory.
+
+A load step is straight where displacements, or forces, are prescribed in both directions. If one
+of each pair is prescribed and both change, the step is curved in either plane: see `curved_legs`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
+from mdr_core.errors import InputError
+from mdr_core.history.slip_memory import LoadPoints
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Flags, Indices
+
+# A force at the onset of full slip differs from mu F_N by the rounding of both.
+_ROUNDING: Final = 8 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class SampledPath:
+    """Samples of a load history, in the quantities that are prescribed."""
+
+    normal_name: str
+    tangential_name: str
+    normal: Array
+    """Depth or normal force at each sample."""
+    tangential: Array
+    """Displacement or tangential force at each sample."""
+    per_step: int
+    """Samples on each load step, the last of which is its given point."""
+
+    @cached_property
+    def step(self) -> Indices:
+        """Load step of each sample: the index of the given point that it ends at."""
+        return np.repeat(np.arange(self.normal.size // self.per_step), self.per_step)
+
+    @property
+    def continues(self) -> Flags:
+        """Samples on the same load step as the one before."""
+        return np.arange(self.normal.size) % self.per_step > 0
+
+    @property
+    def by_force(self) -> bool:
+        """Normal coordinates are reduced forces: the tangential force is prescribed."""
+        return self.tangential_name == "tangential_force"
+
+    @property
+    def by_depth(self) -> bool:
+        """The depth is prescribed, not the normal force."""
+        return self.normal_name == "indentation_depth"
+
+    @property
+    def curved(self) -> Flags:
+        """Samples whose step is straight neither over depths nor over forces."""
+        if self.by_force != self.by_depth:
+            return np.zeros(self.normal.shape, dtype=bool)
+        changes = np.diff(np.stack([self.normal, self.tangential]), axis=1, prepend=0.0)
+        return np.asarray((changes != 0).all(axis=0))
+
+    def prescribed(self, e_star: float) -> Array:
+        """Return the depth [length] or the reduced force F_N/E* [length^2] at each sample."""
+        return self.normal if self.by_depth else self.normal / e_star
+
+    def contact_coordinate(self, profile: Profile, e_star: float) -> Array:
+        """Return the contact coordinate at each sample, that of zero load in separation."""
+        # Equal loads get equal coordinates: the last bit may depend on an element's position.
+        load, index = np.unique(np.maximum(self.prescribed(e_star), 0.0), return_inverse=True)
+        find = coordinate_from_depth if self.by_depth else coordinate_from_force
+        return np.asarray(find(profile, load)[index])
+
+    def normal_coordinate(self, profile: Profile, e_star: float) -> Array:
+        """Return the normal coordinate at each sample, <= 0 in separation."""
+        prescribed = self.prescribed(e_star)
+        if self.by_depth != self.by_force:
+            return prescribed
+        s, index = np.unique(self.contact_coordinate(profile, e_star), return_inverse=True)
+        normal = (profile.reduced_force if self.by_force else profile.depth)(s)[index]
+        return np.where(prescribed > 0, normal, np.minimum(prescribed, 0.0))
+
+    def load_points(
+        self, profile: Profile, e_star: float, friction_coefficient: float, scale: float
+    ) -> LoadPoints:
+        """Return one straight step to each sample.
+
+        Parameters
+        ----------
+        profile : profile of the contact.
+        e_star, friction_coefficient : effective modulus [pressure] and mu [1].
+        scale : divides the tangential load: mu E*/G* for displacements, mu E* for forces.
+
+        Returns
+        -------
+        Normal coordinates, and the reduced tangential loads.
+
+        Raises
+        ------
+        InputError : a tangential force above mu F_N at a sample.
+        """
+        normal, tangential = self.normal_coordinate(profile, e_star), self.tangential / scale
+        within, limit = tangential, scale * normal
+        if self.by_force:
+            within = self.within_friction(normal, tangential, self.step)
+            limit = friction_coefficient * (e_star * normal if self.by_depth else self.normal)
+        # At the given points the rounding of `scale` does not decide between the regimes.
+        near = np.abs(np.abs(tangential) - normal) <= 2 * _ROUNDING * normal
+        below = np.abs(self.tangential) < limit
+        least, most = np.nextafter(normal, 0.0), np.nextafter(normal, 2 * normal)
+        size = np.where(below, np.minimum(np.abs(tangential), least), normal)
+        if not self.by_force:
+            beyond = np.abs(self.tangential) > limit
+            size = np.where(beyond, np.maximum(np.abs(tangential), most), size)
+        given = np.append(~self.continues[1:], True)
+        tangential = np.where(near & given, np.copysign(size, tangential), within)
+        return LoadPoints(normal, tangential, self.continues, self.step)
+
+    def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
+        """Return tangential forces that do not exceed friction.
+
+        Parameters
+        ----------
+        normal, tangential : reduced forces F_N/E* and F_x/(mu E*) [length^2], shape (n,).
+        step : load step of each.
+
+        Raises
+        ------
+        InputError : a tangential force above mu F_N, by the index of its load step.
+        """
+        limit = np.maximum(normal, 0.0)
+        beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + _ROUNDING))
+        if beyond.size:
+            raise InputError(
+                ("history", "tangential", self.tangential_name, int(step[beyond[0]])),
+                "no equilibrium: between the point before and this one the force exceeds "
+                "friction_coefficient x normal_force",
+            )
+        # At the limit, up to rounding error, all springs slip.
+        at_limit = np.abs(tangential) >= limit * (1 - _ROUNDING)
+        return np.where(at_limit, np.copysign(limit, tangential), tangential)
+
+
+def build(
+    normal: tuple[str, ArrayLike], tangential: tuple[str, ArrayLike], samples_per_step: int
+) -> SampledPath:
+    """Return the samples on the straight steps between the given points, from zero load.
+
+    Parameters
+    ----------
+    normal, tangential : name and points, shape (n,) or, for one of the two, a single value.
+    samples_per_step : evenly spaced samples on each step, >= 1.
+
+    Raises
+    ------
+    InputError : lengths that differ and are not 1, no points, numbers that are not finite, a
+        negative normal force, or less than one sample per step.
+    """
+    if samples_per_step < 1:
+        raise InputError(("history", "samples_per_step"), "must be at least 1")
+    normal_points = _checked("normal", *normal)
+    tangential_points = _checked("tangential", *tangential)
+    sizes = normal_points.size, tangential_points.size
+    if sizes[0] != sizes[1] and 1 not in sizes:
+        raise InputError(
+            ("history", "tangential", tangential[0]),
+            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}",
+        )
+    first, second = np.broadcast_arrays(normal_points, tangential_points)
+    samples = _along(first, samples_per_step), _along(second, samples_per_step)
+    return SampledPath(normal[0], tangential[0], *samples, samples_per_step)
+
+
+def _along(points: Array, count: int) -> Array:
+    """Samples that divide the steps between points evenly, the last of which is the point."""
+    start = np.append(0.0, points[:-1])[:, None]
+    stop = points[:, None]
+    share = np.arange(1, count + 1)
+    # Two forces in proportion remain so up to rounding, even where they approach zero.
+    samples = start * ((count - share) / count) + stop * (share / count)
+    return np.asarray(np.where(start == stop, stop, samples).ravel())
+
+
+def _checked(axis: str, name: str, value: ArrayLike) -> Array:
+    """Points of one load, checked to be finite and one-dimensional."""
+    points = np.atleast_1d(np.asarray(value, dtype=float))
+    if points.ndim != 1 or points.size == 0:
+        raise InputError(("history", axis, name), "must be a list of at least one number")
+    negative = (points < 0) & (name == "normal_force")
+    bad = np.flatnonzero(~np.isfinite(points) | negative)
+    if bad.size:
+        sign = " and not negative" if name == "normal_force" else ""
+        raise InputError(("history", axis, name, int(bad[0])), f"must be finite{sign}")
+    return points

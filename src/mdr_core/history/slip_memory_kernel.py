@@ -1,0 +1,346 @@
+"""Sequential loop of `slip_memory`: the polyline after each load point.
+
+Every load point depends on the one before, so there is nothing for NumPy to vectorise. Cython
+compiles this file as it stands, with the C types of `slip_memory_kernel.pxd`; uncompiled it gives
+the same bits, about a hundred times slower.
+
+The polyline is a stack of vertices. On a random path branch prediction fails, so what can be
+selected by an index is not selected by an `if`.
+"""
+
+from mdr_core.typing import Array, Indices
+
+# Column of the sum normal + anchor.
+FORWARD = 0
+# Column of the sum normal - anchor.
+BACKWARD = 1
+# Mark of a segment on which both sums grow.
+NEITHER = 2
+# Place of the new load point on the stack.
+POINT = 0
+# Place of the corner that it makes.
+CORNER = 1
+# Place of its mirror image, below the axis as a vertex that it never exceeds.
+MIRROR = 2
+# Place of the vertex on the axis.
+AXIS = 3
+
+
+class PolylineStack:
+    """Vertices of the polyline, and the arrays that the loop fills.
+
+    Coordinate sums are unevaluated sums high + low of two doubles. `growth` is the growth of both
+    sums over the segment below a vertex, `constant` the sum that is constant on it, `number` the
+    index of the vertex among all that were made, `leg` the load step that laid the segment.
+    """
+
+    def __init__(
+        self,
+        high: Array,
+        low: Array,
+        growth: Array,
+        constant: Indices,
+        number: Indices,
+        leg: Indices,
+        top: int,
+    ) -> None:
+        self.high = high
+        self.low = low
+        self.growth = growth
+        self.constant = constant
+        self.number = number
+        self.leg = leg
+        self.top = top
+
+    def record(
+        self,
+        made: int,
+        parent: Indices,
+        normal: Array,
+        steps: Array,
+        moved: Array,
+        front_step: Indices,
+        front: Array,
+    ) -> None:
+        """Set the arrays to be filled.
+
+        Parameters
+        ----------
+        made : number of vertices that the next three arrays hold already.
+        parent, normal, steps : parent, normal coordinate and growth of every vertex.
+        moved : decrease of both sums of the load point over each step.
+        front_step, front : step of each visit of the slip front, and its row of `_visit`.
+        """
+        self.made = made
+        self.parent = parent
+        self.normal = normal
+        self.steps = steps
+        self.moved = moved
+        self.front_step = front_step
+        self.front = front
+        self.visited = 0
+
+    def run(
+        self,
+        normal: Array,
+        tangential: Array,
+        continues: Array,
+        legs: Indices,
+        tops: Indices,
+        start_normal: float,
+        start_tangential: float,
+    ) -> None:
+        """Move the load point along all steps.
+
+        Parameters
+        ----------
+        normal, tangential : coordinates of the load points, shape (n,).
+        continues : nonzero for steps on the straight line of the step before.
+        legs : load step that each belongs to.
+        tops : receives the vertex of each load point, -1 in separation.
+        start_normal, start_tangential : load point before the first step.
+        """
+        at = self.top
+        x0 = start_normal
+        y0 = start_tangential
+        straight = False
+        for i in range(len(normal)):
+            x = normal[i]
+            y = tangential[i]
+            contact = x > 0
+            if contact and at < AXIS:
+                # Contact begins where the straight step crosses normal coordinate zero.
+                y0 = y0 + (y - y0) * (-x0 / (x - x0))
+                x0 = 0.0
+                at = self._touch(y0)
+            elif not contact and at >= AXIS:
+                # The last springs slip until the straight step crosses normal coordinate zero.
+                y = y0 + (y - y0) * (x0 / (x0 - x))
+                x = 0.0
+            if at >= AXIS:
+                self._aim(x, y)
+                rise = self._excess(at, POINT, FORWARD)
+                fall = self._excess(at, POINT, BACKWARD)
+                if max(rise, fall) > 0:
+                    self.moved[i, FORWARD] = rise
+                    self.moved[i, BACKWARD] = fall
+                    at = self._slip(at, x, i)
+                    straight = False
+                else:
+                    straight = straight and continues[i]
+                    if rise < 0 or fall < 0:
+                        at = self._stick(at, x - x0, y - y0, rise, fall, straight, x, legs[i])
+                        straight = True
+            if not contact:
+                at = MIRROR
+                straight = False
+            tops[i] = self.number[at]
+            x0 = normal[i]
+            y0 = tangential[i]
+        self.top = at
+
+    def _touch(self, tangential: float) -> int:
+        """Put the first vertex on the axis."""
+        self._put(AXIS, FORWARD, tangential, 0.0, 1.0)
+        self._put(AXIS, BACKWARD, -tangential, 0.0, 1.0)
+        self._make(AXIS, 0.0)
+        return AXIS
+
+    def _aim(self, x: float, y: float) -> None:
+        """Set the load point and its mirror image."""
+        forward = x + y
+        backward = x - y
+        forward_low = _rounding(x, y, forward)
+        backward_low = _rounding(x, -y, backward)
+        self._put(POINT, FORWARD, forward, forward_low, 0.0)
+        self._put(POINT, BACKWARD, backward, backward_low, 0.0)
+        self._put(MIRROR, FORWARD, -backward, -backward_low, 0.0)
+        self._put(MIRROR, BACKWARD, -forward, -forward_low, 0.0)
+
+    def _stick(
+        self,
+        at: int,
+        deeper: float,
+        further: float,
+        rise: float,
+        fall: float,
+        continues: bool,  # noqa: FBT001 -- positional, as C takes it
+        x: float,
+        leg: int,
+    ) -> int:
+        """Extend the polyline straight to the load point; return the place of its vertex.
+
+        Where one sum is constant both coordinates move by the same number.
+        """
+        forward_step = max(deeper + further, 0.0) if rise < 0 else 0.0
+        backward_step = max(deeper - further, 0.0) if fall < 0 else 0.0
+        if continues and at > AXIS:
+            # One segment for one straight line.
+            forward_step += self.growth[at, FORWARD]
+            backward_step += self.growth[at, BACKWARD]
+            at -= 1
+        return self._extend(at, forward_step, backward_step, x, leg)
+
+    def _slip(self, start: int, x: float, step: int) -> int:
+        """Cut the polyline where it exceeds the load point; return the place of its vertex."""
+        self._visit(start, start, step)
+        lower = start - 1
+        # The mirror image never exceeds the load point.
+        while max(self._excess(lower, POINT, FORWARD), self._excess(lower, POINT, BACKWARD)) > 0:
+            self._visit(start, lower, step)
+            lower -= 1
+        upper = lower + 1
+        # The cut is in the sum `own`; on a face of an earlier cone the other one is constant.
+        other = self.constant[upper]
+        if upper == AXIS:
+            other = BACKWARD if self._excess(AXIS, POINT, FORWARD) > 0 else FORWARD
+        elif other == NEITHER:
+            other = self._last_reached(lower, upper)
+        own = 1 - other
+        keep = self._excess(POINT, lower, own)
+        full = upper == AXIS
+        if keep <= 0:
+            if not full:
+                self._visit(start, lower, step)
+            forward_step = self._excess(POINT, lower, FORWARD)
+            backward_step = self._excess(POINT, lower, BACKWARD)
+            return self._extend(lower, forward_step, backward_step, x, self.leg[upper])
+        # In full slip the corner is that of the mirror image, and both sums grow from the axis.
+        source = upper - full
+        rest = keep * full
+        if self.constant[upper] == NEITHER:
+            self._cut(lower, upper, own, other, keep)
+            source = CORNER
+            rest = self.growth[CORNER, other]
+        high = self.high[source, other]
+        low = self.low[source, other]
+        if not full:
+            self._settle(CORNER, own)
+            self._put(CORNER, other, high, low, rest)
+            self._visit(start, CORNER, step)
+        self._put(upper, own, self.high[POINT, own], self.low[POINT, own], keep)
+        self._put(upper, other, high, low, rest)
+        self._make(upper, self._normal(upper))
+        reach = (self.high[POINT, other] - high) + (self.low[POINT, other] - low)
+        if reach <= 0:
+            # The corner is the load point.
+            self._put(upper, other, self.high[POINT, other], self.low[POINT, other], rest)
+            return upper
+        at = upper + 1
+        self._put(at, own, self.high[POINT, own], self.low[POINT, own], 0.0)
+        self._put(at, other, self.high[POINT, other], self.low[POINT, other], reach)
+        self.constant[at] = own
+        self._make(at, x)
+        return at
+
+    def _cut(self, lower: int, upper: int, own: int, other: int, keep: float) -> None:
+        """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
+        growth = self.growth[upper, other]
+        ratio = growth / self.growth[upper, own]
+        over = self._excess(upper, POINT, own)
+        # From the nearer end, so that the distances to both are free of cancellation.
+        near = keep <= over
+        base = lower if near else upper
+        move = keep * ratio if near else -over * ratio
+        rest = max(move if near else growth + move, 0.0)
+        high = self.high[base, other]
+        total = high + move
+        low = _rounding(high, move, total) + self.low[base, other]
+        self._put(CORNER, other, total + low, _rounding(total, low, total + low), rest)
+        if rest <= 0:
+            self.constant[upper] = other
+
+    def _last_reached(self, lower: int, upper: int) -> int:
+        """Sum in which the load point is reached further out on a segment where both grow."""
+        over_forward = self._excess(upper, POINT, FORWARD)
+        over_backward = self._excess(upper, POINT, BACKWARD)
+        # Parts of the segment, compared crosswise.
+        forward = self._excess(POINT, lower, FORWARD) * self.growth[upper, BACKWARD]
+        backward = self._excess(POINT, lower, BACKWARD) * self.growth[upper, FORWARD]
+        first = (over_forward > 0) & ((over_backward <= 0) | (forward <= backward))
+        return BACKWARD if first else FORWARD
+
+    def _extend(
+        self, below: int, forward_step: float, backward_step: float, x: float, leg: int
+    ) -> int:
+        """Push the load point; two segments on the same face become one."""
+        if below > AXIS and (
+            (backward_step <= 0 and self.growth[below, BACKWARD] == 0)
+            or (forward_step <= 0 and self.growth[below, FORWARD] == 0)
+        ):
+            below -= 1
+            forward_step = self._excess(POINT, below, FORWARD)
+            backward_step = self._excess(POINT, below, BACKWARD)
+        at = below
+        if forward_step > 0 or backward_step > 0:
+            at = below + 1
+            self.growth[at, FORWARD] = max(forward_step, 0.0)
+            self.growth[at, BACKWARD] = max(backward_step, 0.0)
+            self.constant[at] = NEITHER
+            if backward_step <= 0:
+                self.constant[at] = BACKWARD
+            elif forward_step <= 0:
+                self.constant[at] = FORWARD
+            self.leg[at] = leg
+            self._make(at, x)
+        self._settle(at, FORWARD)
+        self._settle(at, BACKWARD)
+        return at
+
+    def _settle(self, at: int, own: int) -> None:
+        """Copy a sum of the load point to a vertex."""
+        self.high[at, own] = self.high[POINT, own]
+        self.low[at, own] = self.low[POINT, own]
+
+    def _make(self, at: int, normal: float) -> None:
+        """Number the vertex; record its parent, its normal coordinate and the growth below it."""
+        new = self.made
+        self.made = new + 1
+        self.number[at] = new
+        self.parent[new] = self.number[at - 1]
+        self.normal[new] = normal
+        self.steps[new, FORWARD] = self.growth[at, FORWARD]
+        self.steps[new, BACKWARD] = self.growth[at, BACKWARD]
+
+    def _visit(self, start: int, at: int, step: int) -> None:
+        """Record a vertex that the slip front reaches: distances from the start, normal coordinate.
+
+        On the axis, where all springs slip, -1 takes the place of the coordinate.
+        """
+        row = self.visited
+        self.visited = row + 1
+        self.front_step[row] = step
+        self.front[row, FORWARD] = self._excess(start, at, FORWARD)
+        self.front[row, BACKWARD] = self._excess(start, at, BACKWARD)
+        self.front[row, 2] = -1.0 if at == AXIS else self._normal(at)
+
+    def _put(self, at: int, own: int, high: float, low: float, growth: float) -> None:
+        self.high[at, own] = high
+        self.low[at, own] = low
+        self.growth[at, own] = growth
+
+    def _excess(self, upper: int, lower: int, own: int) -> float:
+        """Difference of a sum between two vertices."""
+        difference: float = (self.high[upper, own] - self.high[lower, own]) + (
+            self.low[upper, own] - self.low[lower, own]
+        )
+        return difference
+
+    def _normal(self, at: int) -> float:
+        """Normal coordinate of a vertex, half of both sums."""
+        high: float = self.high[at, FORWARD] + self.high[at, BACKWARD]
+        low: float = self.low[at, FORWARD] + self.low[at, BACKWARD]
+        return max(high + low, 0.0) / 2
+
+
+def accumulate(parent: Indices, step: Array, total: Array) -> None:
+    """Add to the step of each vertex the total of its parent, which precedes it."""
+    for i in range(len(parent)):
+        below = parent[i]
+        total[i] = 0.0 if below < 0 else total[below] + step[i]
+
+
+def _rounding(a: float, b: float, total: float) -> float:
+    """Rounding error of total = a + b, exactly (Knuth's two-sum)."""
+    part = total - a
+    return (a - (total - part)) + (b - part)

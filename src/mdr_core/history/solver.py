@@ -1,0 +1,266 @@
+"""Load histories: forces, displacements, energies and slip regimes at every sample."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core import conditioning, normal
+from mdr_core.errors import InputError, Notice
+from mdr_core.history import curved_legs, load_path, slip_memory
+from mdr_core.history.contact_state import ContactState, unloaded
+from mdr_core.history.curved_legs import ExtrapolatedResults
+from mdr_core.history.load_path import SampledPath
+from mdr_core.history.slip_memory import Polyline
+from mdr_core.history.step_results import REGIMES, StepResults
+from mdr_core.history.traction_branches import TractionBranches
+from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Indices
+
+# Rounding error of the sums over the branches, relative to that of the profile.
+_SUMS: Final = 40.0
+
+
+@dataclass(frozen=True)
+class LoadHistory:
+    """Results of a load history at every sample; each is computed on first use."""
+
+    path: SampledPath
+    start: ContactState
+    """The unloaded contact."""
+    results: StepResults | ExtrapolatedResults
+    """Results of the tangential foundation in reduced units."""
+    rtol: float
+
+    @cached_property
+    def contact(self) -> NormalContact:
+        """Normal contact of every sample, with zero load in separation."""
+        loads = {self.path.normal_name: np.maximum(self.path.normal, 0.0)}
+        return normal.solve(self.start.profile, self.start.e_star, **loads, rtol=self.rtol)
+
+    @property
+    def step(self) -> Indices:
+        """Index of the given point at which the load step of each sample ends."""
+        return self.path.step
+
+    @cached_property
+    def indentation_depth(self) -> Array:
+        """d [length]; negative in separation."""
+        return self.path.normal if self.path.by_depth else self.contact.indentation_depth
+
+    @cached_property
+    def normal_force(self) -> Array:
+        """F_N [force]."""
+        return self.contact.normal_force
+
+    @cached_property
+    def contact_radius(self) -> Array:
+        """a [length]; zero in separation."""
+        separated = self.path.normal < 0
+        return np.where(separated, 0.0, self.contact.contact_radius)
+
+    @cached_property
+    def elastic_energy(self) -> Array:
+        """Energy stored by the normal load, int F_N dd [force length]."""
+        return self.contact.elastic_energy
+
+    @cached_property
+    def tangential_force(self) -> Array:
+        """F_x = mu E* sum k_i (I_i - I_i-1) over the branches [force]. Source: notes, §10."""
+        return self.path.tangential if self.path.by_force else self._friction * self.results.shear
+
+    @cached_property
+    def tangential_displacement(self) -> Array:
+        """u_x = mu (E*/G*) sum k_i (w_i - w_i-1) over the branches [length].
+
+        Source: notes, §10. After full slip under a prescribed force, which leaves it undetermined,
+        it counts from the axis.
+        """
+        if self.path.by_force:
+            return self.start.compliance * self.results.displacement
+        return self.path.tangential
+
+    @cached_property
+    def tangential_energy(self) -> Array:
+        """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length], >= 0."""
+        return self._friction * self.start.compliance * self.results.energy
+
+    @cached_property
+    def dissipation(self) -> Array:
+        """Energy dissipated by friction since the sample before [force length], >= 0."""
+        return self._friction * self.start.compliance * self.results.dissipation
+
+    @cached_property
+    def dissipated_energy(self) -> Array:
+        """Energy dissipated by friction since the start [force length]."""
+        return np.cumsum(self.dissipation)
+
+    @cached_property
+    def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
+        """Slip regime: "no_contact", "stick", "partial_slip" or "full_slip".
+
+        Determined by the springs at their friction limit: none, the outermost, or all.
+        """
+        return np.array(REGIMES)[self.results.regime]
+
+    @cached_property
+    def state(self) -> ContactState:
+        """State of the contact at the end of the history."""
+        line = self.results.last
+        arcs = None
+        if isinstance(self.results, ExtrapolatedResults):
+            arcs = self.results.legs.arcs(line)
+        if self.path.by_force:
+            line = self._over_depths(line)
+        return replace(self.start, polyline=line, arcs=arcs)
+
+    def _over_depths(self, line: Polyline) -> Polyline:
+        """Return a polyline over reduced forces as one over depths, with the same slopes."""
+        if not line.in_contact:
+            return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
+        part = TractionBranches(self.start.profile, slip_memory.as_tree(line), by_force=True)
+        span, slope = part.depth_step[1:], part.tree.slope[1:]
+        growth = np.stack([span * (1 + slope), span * (1 - slope)], axis=1)
+        return slip_memory.stacked(growth, line.leg[1:])
+
+    @property
+    def slip_fronts(self) -> Array:
+        """Radii of the slip fronts at the end of the history, ascending [length]."""
+        return self.state.slip_fronts
+
+    @property
+    def method(self) -> str:
+        """Most expensive method among the results."""
+        return self.contact.profile.tangential_method
+
+    @property
+    def error_estimate(self) -> float:
+        """Bound on the error of each result, relative to its largest value in the history."""
+        rounding = (_SUMS + self._condition_number) * self.contact.error_estimate
+        curved = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
+        return rounding + curved
+
+    @cached_property
+    def _condition_number(self) -> float:
+        """Largest relative condition number of the results with respect to the loads."""
+        limit = self.start.friction_coefficient * np.asarray(self.normal_force)
+        if self.path.by_force:
+            return conditioning.of_forces(self.contact, np.abs(self.path.tangential), limit)
+        loads = self.path.tangential, self.tangential_force, limit
+        return conditioning.of_sliding(*loads, lambda: self.dissipation)
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """Warnings of the normal contacts, and `accuracy` if rtol is not reached."""
+        found = [notice for notice in self.contact.warnings if notice.code != "accuracy"]
+        if self.error_estimate > self.rtol:
+            text = f"rtol = {self.rtol:.1e} was not reached on this load path; see error_estimate"
+            found.append(Notice("accuracy", text))
+        return tuple(found)
+
+    @property
+    def _friction(self) -> float:
+        """mu E* [pressure]."""
+        return self.start.friction_coefficient * self.start.e_star
+
+
+def solve(
+    profile: Profile,
+    e_star: float,
+    g_star: float,
+    friction_coefficient: float,
+    *,
+    indentation_depth: ArrayLike | None = None,
+    normal_force: ArrayLike | None = None,
+    tangential_displacement: ArrayLike | None = None,
+    tangential_force: ArrayLike | None = None,
+    samples_per_step: int = 1,
+    rtol: float = 1e-10,
+) -> LoadHistory:
+    """Return the results of a load history that starts from the unloaded bodies.
+
+    The load varies linearly, in the prescribed quantities, from zero to the first point and from
+    each point to the next. If depths and displacements are prescribed, or normal and tangential
+    forces, every step is exact. A negative depth separates the bodies and erases the slip memory.
+
+    If depth and tangential force are prescribed, or normal force and displacement, steps on which
+    both change are replaced by chords, and results are extrapolated: their relative error is
+    mostly 1e-9 to 1e-7, and at most about 1e-5. `error_estimate` bounds it, and the warning
+    `accuracy` is raised where it exceeds `rtol`.
+
+    Source: mdr-5, Eqs. (5.4)-(5.9), (5.19)-(5.23), (5.71); notes, §10.
+
+    Parameters
+    ----------
+    profile : profile of any kind, with single numbers as parameters.
+    e_star, g_star : effective moduli [pressure], > 0.
+    friction_coefficient : mu [1], > 0.
+    indentation_depth, normal_force : exactly one, the points [length], [force], shape (n,).
+    tangential_displacement, tangential_force : exactly one, the points [length], [force] of either
+        sign, shape (n,). One of the two may be a single value for all points.
+    samples_per_step : evenly spaced samples from each point to the next, >= 1.
+    rtol : relative accuracy, 1e-13 to 1e-3.
+
+    Returns
+    -------
+    The results at n x samples_per_step samples, arrays of that length.
+
+    Raises
+    ------
+    InputError : not exactly one of each pair, points that are not finite, a negative normal force,
+        a depth beyond the end of the profile, or |F_x| > mu F_N anywhere on the path.
+
+    Examples
+    --------
+    Unloading a tangential force to zero leaves a displacement, Eq. (5.16) and Masing's rule.
+
+    >>> from mdr_core.profiles import Paraboloid
+    >>> history = solve(Paraboloid(0.01), 1.1e11, 0.9e11, 0.3,
+    ...                 normal_force=10.0, tangential_force=[0.0, 2.0, 0.0])
+    >>> u = history.tangential_displacement
+    >>> rho = 2.0 / 3.0
+    >>> residual = (1 - (1 - rho) ** (2 / 3)) - 2 * (1 - (1 - rho / 2) ** (2 / 3))
+    >>> bool(abs(u[2] / u[1] - residual / (1 - (1 - rho) ** (2 / 3))) < 1e-13)
+    True
+    """
+    start = unloaded(profile, e_star, g_star, friction_coefficient)
+    normal_load = {"indentation_depth": indentation_depth, "normal_force": normal_force}
+    tangential_load = {
+        "tangential_displacement": tangential_displacement,
+        "tangential_force": tangential_force,
+    }
+    path = load_path.build(
+        _one("normal", normal_load), _one("tangential", tangential_load), samples_per_step
+    )
+    _require_within_domain(start, path)
+    scale = friction_coefficient * e_star / (1.0 if path.by_force else g_star)
+    # Under a flat punch depth and force are proportional, so that every step is straight.
+    if path.curved.any() and not profile.slips_at_once:
+        return LoadHistory(path, start, curved_legs.results(path, start, scale, rtol), rtol)
+    points = path.load_points(profile, e_star, friction_coefficient, scale)
+    return LoadHistory(
+        path, start, StepResults(profile, path.by_force, points, start.polyline), rtol
+    )
+
+
+def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]:
+    """Return name and points of the one load that is given."""
+    named = [(name, value) for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        raise InputError(("history", axis), f"exactly one of {', '.join(given)} is needed")
+    return named[0]
+
+
+def _require_within_domain(start: ContactState, path: SampledPath) -> None:
+    """Raise InputError if the largest normal load is beyond the end of the profile."""
+    name = path.normal_name
+    try:
+        normal.solve(start.profile, start.e_star, **{name: max(float(path.normal.max()), 0.0)})
+    except InputError as error:
+        if error.path[:1] != ("load",):
+            raise
+        at = ("history", "normal", name, int(path.step[path.normal.argmax()]))
+        raise InputError(at, error.detail) from None

@@ -1,0 +1,116 @@
+"""Force, displacement and stored energy of the tangential foundation, from its polyline.
+
+Along the polyline the anchor grows by k dw, where w is the depth at which a spring comes into
+contact. With I(w) = F_N/E* of the contact of depth w,
+
+    F_x/(mu E*) = sum k_i (I_i - I_i-1),    I = 2 int a dw,
+
+for every profile. Where forces are prescribed the normal coordinate is I itself, and the anchors
+follow from the same slopes: u_x G*/(mu E*) = sum k_i (w_i - w_i-1). Source: notes, §10.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from mdr_core.history.slip_memory import VertexTree
+from mdr_core.interval_moments import IntervalMoments
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+# Up to this part of its normal coordinate a segment is so short that a difference over it would
+# lose more than three of sixteen digits.
+SHORT: Final = 2e-3
+
+
+@dataclass(frozen=True)
+class TractionBranches:
+    """Vertices of the polyline, with the contact whose edge each of them is."""
+
+    profile: Profile
+    tree: VertexTree
+    by_force: bool
+    """The normal coordinate is I = F_N/E* [length^2], not the depth [length]."""
+
+    @cached_property
+    def _moments(self) -> IntervalMoments:
+        return IntervalMoments(self.profile, self.by_force)
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinate of each vertex."""
+        return self._moments.contact_coordinate(self.tree.normal)
+
+    @cached_property
+    def radius(self) -> Array:
+        """Contact radius of each vertex [length]."""
+        return self.profile.contact_radius(self.coordinate)
+
+    @cached_property
+    def depth(self) -> Array:
+        """Depth w of each vertex [length]."""
+        return self.profile.depth(self.coordinate) if self.by_force else self.tree.normal
+
+    @cached_property
+    def depth_step(self) -> Array:
+        """Depth of each vertex above that of its parent [length]."""
+        return self._conjugate_step if self.by_force else self.tree.span
+
+    @cached_property
+    def force_step(self) -> Array:
+        """Reduced force I of each vertex above that of its parent [length^2]."""
+        return self.tree.span if self.by_force else self._conjugate_step
+
+    @cached_property
+    def shear(self) -> Array:
+        """F_x/(mu E*) of each vertex as the load point [length^2]."""
+        return self.tree.summed(self.tree.slope * self.force_step)
+
+    @cached_property
+    def anchor(self) -> Array:
+        """Anchor of each vertex above that of the axis, a depth [length]."""
+        return self.tree.summed(self.tree.slope * self.depth_step)
+
+    @cached_property
+    def square(self) -> Array:
+        """int (anchor of the vertex - anchor)^2 dx over 0 < x < a of each vertex [length^3].
+
+        With the mean m = F_x/(2 mu E* a) it is a m^2 + V, by the theorem of parallel axes. The
+        variance V does not depend on the load point and grows along the polyline by squares:
+        the energy of every traction is a sum of squares.
+        """
+        tree, radius = self.tree, self.radius
+        below = np.maximum(tree.parent, 0)
+        some = np.flatnonzero((tree.parent >= 0) & (self.depth_step > 0))
+        moments = IntervalMoments(self.profile, by_force=False)
+        # The measure of the moments is 2 dx.
+        weights = np.zeros((3, tree.normal.size))
+        weights[:, some] = moments.over(self.depth[below[some]], self.depth_step[some]).weights / 2
+        low, middle, high = weights
+        width = low + middle + high
+        inner, outer = radius[below], np.where(radius > 0, radius, 1.0)
+        some_width, some_inner = np.where(width > 0, width, 1.0), np.where(inner > 0, inner, 1.0)
+        # Anchors of a segment: mean above its lower end in parts of their growth, and variance.
+        mean, spread = (high + middle / 2) / some_width, low * high - np.square(middle) / 4
+        growth = tree.slope * self.depth_step
+        apart = growth * mean + np.where(inner > 0, self.shear[below] / (2 * some_inner), 0.0)
+        added = np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
+        return np.asarray(np.square(self.shear) / (4 * outer) + tree.summed(added))
+
+    @cached_property
+    def _conjugate_step(self) -> Array:
+        """Conjugate of each vertex above that of its parent."""
+        profile, tree = self.profile, self.tree
+        conjugate = self.depth if self.by_force else profile.reduced_force(self.coordinate)
+        if profile.slips_at_once:
+            # Depth and force are proportional.
+            some = np.where(tree.normal > 0, tree.normal, 1.0)
+            return np.asarray(conjugate / some * tree.span)
+        step = conjugate - conjugate[tree.parent]
+        short = np.flatnonzero(tree.span < SHORT * tree.normal)
+        if short.size:
+            lower = tree.normal[tree.parent[short]]
+            step[short] = self._moments.conjugate_step(lower, tree.span[short])
+        return np.asarray(step)

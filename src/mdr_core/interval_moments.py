@@ -1,0 +1,320 @@
+"""Moments of the conjugate's slope over intervals of the normal coordinate.
+
+The normal coordinate n of a contact is its depth d, where displacements are prescribed, or its
+reduced force I = F_N/E*, where forces are. The other of the two is its conjugate y. From
+dI = 2 a dd the slope y' = dy/dn is 2a or 1/(2a): it is monotonic, so |dy'| is a positive measure.
+Over depths it counts the foundation springs, 2 dx, that come into contact.
+
+Steps of the conjugate and all energies of a load history are integrals of polynomials of degree
+0 to 2 over this measure. Formed from the three moments below, none of them suffers cancellation,
+however narrow the interval and however small the amplitude. Source: notes, §6 and §10.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import inf
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from mdr_core.broadcasting import with_parameters
+from mdr_core.equivalent_1d import (
+    break_below,
+    coordinate_from_depth,
+    coordinate_from_force,
+    divided_breaks,
+    has_many_breaks,
+    in_order,
+)
+from mdr_core.inversion import Function
+from mdr_core.profiles import Profile
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Flags, Indices
+
+# Gauss nodes on an interval without a break. Beyond a break the remainder is of the order of
+# 2.4^-32 of the interval's moments, see notes, §10.
+_POINTS: Final = 16
+# An interval is wide if the contact coordinate or, before the first break, the normal coordinate
+# grows by more than this factor on it. Differences of closed forms over a wide interval do not
+# suffer cancellation.
+_WIDE: Final = 16.0
+# The factor of the contact coordinate before the first break,
+_WIDE_FROM_AXIS: Final = 400.0
+# and beyond it.
+_WIDE_BEYOND_BREAK: Final = 2.5
+# Up to this many radii of its flat the radius of a contact hardly changes: differences cancel.
+_SHALLOW: Final = 1.5
+# The width of an interval is taken from its ends if it is larger than this part of them, otherwise
+# from the slope at its upper end.
+_THIN: Final = 1e-10
+# So far below a break, as a part of it, all functions are those of the panel that ends there.
+_BELOW: Final = 1e-11
+_EPS: Final = float(np.finfo(float).eps)
+
+
+class Moments(NamedTuple):
+    """Bernstein moments int (1-t)^2, int 2t(1-t) and int t^2 of |dy'|, t from 0 to 1 upwards."""
+
+    span: Array
+    """Length of each interval in the normal coordinate, shape (m,)."""
+    weights: Array
+    """The three moments of each interval, >= 0, shape (3, m)."""
+
+    def joined(self, upper: "Moments") -> "Moments":
+        """Return the moments over each interval and its upper neighbour together."""
+        span = self.span + upper.span
+        low = np.divide(self.span, span, where=span > 0, out=np.ones_like(span))
+        high = np.divide(upper.span, span, where=span > 0, out=np.zeros_like(span))
+        a, b = self.weights, upper.weights
+        weights = [
+            a[0] + high * a[1] + high * high * (a[2] + b[0]),
+            low * a[1] + 2 * low * high * (a[2] + b[0]) + high * b[1],
+            low * low * (a[2] + b[0]) + low * b[1] + b[2],
+        ]
+        return Moments(span, np.stack(weights))
+
+    def at(self, index: Indices | slice) -> "Moments":
+        """Return the moments of some of the intervals."""
+        return Moments(self.span[index], self.weights[:, index])
+
+
+@dataclass(frozen=True)
+class IntervalMoments:
+    """Moments of one profile, over intervals of depth or of reduced force."""
+
+    profile: Profile
+    by_force: bool
+    """The normal coordinate is the reduced force [length^2], not the depth [length]."""
+
+    @property
+    def normal(self) -> Function:
+        """Normal coordinate of a contact coordinate."""
+        return self.profile.reduced_force if self.by_force else self.profile.depth
+
+    def contact_coordinate(self, normal: Array) -> Array:
+        """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
+        find = coordinate_from_force if self.by_force else coordinate_from_depth
+        return find(self.profile, np.minimum(normal, self._largest))
+
+    @cached_property
+    def _largest(self) -> float:
+        """Normal coordinate at the end of the profile's domain."""
+        end = self.profile.last_coordinate
+        return inf if end is None else float(self.normal(np.asarray(end)))
+
+    def over(self, low: Array, span: Array) -> Moments:
+        """Return the moments over the intervals [low, low + span], shape (m,)."""
+        if self.profile.slips_at_once:
+            # The contact radius is constant.
+            return Moments(span, np.zeros((3, span.size)))
+        return self.between(low, span, self.contact_coordinate(np.stack([low, low + span])))
+
+    def between(self, low: Array, span: Array, ends: Array) -> Moments:
+        """Return the moments over intervals whose ends in the contact coordinate are known.
+
+        The profile is not a flat punch; its parameters may be arrays over the intervals.
+        """
+        if not has_many_breaks(self.profile):
+            return self._by_break(low, span, ends)
+        breaks, levels = self._breaks
+        first = np.searchsorted(levels, low, side="right")
+        last = np.searchsorted(levels, low + span, side="left")
+        base = np.append(0.0, breaks)[first]
+        crossed = np.flatnonzero(last > first)
+        start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
+        next_break = first[crossed]
+        stop[crossed], length[crossed] = breaks[next_break], levels[next_break] - low[crossed]
+        found = self._smooth(low, length, np.stack([start, stop]), base)
+        if not crossed.size:
+            return found
+        between = self._chained(found.at(crossed), next_break, last[crossed] - 1)
+        top = np.maximum(span[crossed] - between.span, 0.0)
+        base = breaks[last[crossed] - 1]
+        ends = np.stack([base, np.maximum(ends[1][crossed], base)])
+        upper = self._smooth(levels[last[crossed] - 1], top, ends, base)
+        found.weights[:, crossed] = between.joined(upper).weights
+        return Moments(span, found.weights)
+
+    def _by_break(self, low: Array, span: Array, ends: Array) -> Moments:
+        """Return the moments for a profile with one break at most, or one in each case."""
+        base, _ = break_below(self.profile, ends[1])
+        crossed = base > ends[0]
+        if not crossed.any():
+            return self._smooth(low, span, ends, base)
+        part = np.where(crossed, np.clip(_from_below(self.normal, base) - low, 0.0, span), 0.0)
+        inside = np.maximum(base, ends[0])
+        lower = self._smooth(low, part, np.stack([ends[0], inside]), np.zeros_like(base))
+        upper = self._smooth(low + part, span - part, np.stack([inside, ends[1]]), base)
+        # The first moment is infinite on the axis where forces are prescribed.
+        with np.errstate(invalid="ignore"):
+            joined = lower.joined(upper).weights
+        return Moments(span, np.where(crossed, joined, upper.weights))
+
+    def conjugate_step(self, low: Array, span: Array) -> Array:
+        """Return what the conjugate grows by over each interval, a sum of positive terms."""
+        part = self.over(low, span)
+        lower, middle, upper = part.weights
+        at = low + span if self.by_force else low
+        a = self.profile.contact_radius(self.contact_coordinate(at))
+        if self.by_force:
+            return np.asarray(span * (1 / (2 * a) + upper + middle / 2))
+        return np.asarray(span * (2 * a + lower + middle / 2))
+
+    def conjugate_mean(self, low: Array, span: Array) -> Array:
+        """Return the mean depth's conjugate, the reduced force, over each interval of depth."""
+        at = self.contact_coordinate(low)
+        force, a = self.profile.reduced_force(at), self.profile.contact_radius(at)
+        return np.asarray(force + span * (a + self.over(low, span).weights[0] / 2))
+
+    @cached_property
+    def _breaks(self) -> tuple[Array, Array]:
+        """Coordinates of the profile's breaks, long gaps divided, and their normal coordinates."""
+        breaks = divided_breaks(self.profile)
+        breaks = breaks[breaks > self.profile.first_coordinate]
+        # A break that no load reaches may have no normal coordinate in doubles.
+        with np.errstate(over="ignore", invalid="ignore"):
+            levels = _from_below(self.normal, breaks)
+        # Where the slope is zero the normal coordinate is constant, and does not round.
+        level = np.append(False, self._slope((breaks[:-1] + breaks[1:]) / 2) == 0)
+        start = np.maximum.accumulate(np.where(level, 0, np.arange(breaks.size)))
+        return breaks, levels[start]
+
+    def _slope(self, s: Array) -> Array:
+        """Derivative of the normal coordinate with respect to the contact coordinate."""
+        slope = self.profile.depth_slope(s)
+        return 2 * self.profile.contact_radius(s) * slope if self.by_force else slope
+
+    @cached_property
+    def _chains(self) -> list[Moments]:
+        """Moments from each break to the 2^k-th next, for k = 0, 1, ..."""
+        breaks, levels = self._breaks
+        ends = np.stack([breaks[:-1], breaks[1:]])
+        chains, size = [self._smooth(levels[:-1], np.diff(levels), ends, ends[0])], 1
+        # On a level the measure is concentrated at one normal coordinate.
+        level = levels[:-1] == levels[1:]
+        twice = 2 * self.profile.contact_radius(ends[:, level])
+        chains[0].weights[2, level] = np.abs(np.diff(1 / twice if self.by_force else twice, axis=0))
+        while chains[-1].span.size > size:
+            last = chains[-1]
+            chains.append(last.at(slice(None, -size)).joined(last.at(slice(size, None))))
+            size *= 2
+        return chains
+
+    def _chained(self, lower: Moments, first: Indices, last: Indices) -> Moments:
+        """Return the moments of intervals that end at the break `first`, extended to `last`."""
+        count, at = last - first, first.copy()
+        if not count.any():
+            return lower
+        span, weights = lower.span.copy(), lower.weights.copy()
+        for k, chain in enumerate(self._chains):
+            some = np.flatnonzero(count >> k & 1)
+            if some.size:
+                part = Moments(span[some], weights[:, some]).joined(chain.at(at[some]))
+                span[some], weights[:, some] = part
+                at[some] += 1 << k
+        return Moments(span, weights)
+
+    def _smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
+        """Return the moments over intervals without a break inside; `base` is the one below."""
+        profile, weights = self.profile, np.zeros((3, low.size))
+        flat = profile.contact_radius(np.asarray(profile.first_coordinate))
+        shallow = (base == 0) & (profile.contact_radius(ends[1]) < _SHALLOW * flat)
+        limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
+        wide = (ends[1] > limit * ends[0]) | ((base == 0) & (low + span > _WIDE * low))
+        closed, by_rule = wide & ~shallow & (span > 0), (~wide | shallow) & (span > 0)
+        if closed.any():
+            found = self._part(closed).over_wide(span[closed], ends[:, closed], base[closed])
+            weights[:, closed] = found
+        if by_rule.any():
+            beyond = (shallow | (base > 0))[by_rule]
+            at = span[by_rule], ends[:, by_rule], base[by_rule]
+            weights[:, by_rule] = self._part(by_rule).over_narrow(*at, beyond)
+        return Moments(span, weights)
+
+    def _part(self, chosen: Flags) -> "IntervalMoments":
+        """The chosen cases of a sweep."""
+        profile = self.profile
+        if not profile.swept:
+            return self
+        part = {name: profile.parameters[name][chosen] for name in profile.swept}
+        return IntervalMoments(with_parameters(profile, part), self.by_force)
+
+    def over_wide(self, span: Array, ends: Array, base: Array) -> Array:
+        """Moments over wide intervals, by parts, in closed form."""
+        profile = self.profile
+        at_break = (base > 0) & (ends[0] == base)
+
+        def values(function: Function) -> Array:
+            low, high = function(ends)
+            return np.stack([np.where(at_break, _from_below(function, base), low), high])
+
+        twice = 2 * profile.contact_radius(ends)
+        depth, force, energy = map(
+            values, (profile.depth, profile.reduced_force, profile.reduced_energy)
+        )
+        if self.by_force:
+            with np.errstate(divide="ignore"):
+                slope = 1 / twice
+            conjugate, integral, sign = depth, depth * force - energy, -1.0
+        else:
+            slope, conjugate, integral, sign = twice, force, energy, 1.0
+        rise = (conjugate[1] - conjugate[0]) / span
+        mean = ((integral[1] - integral[0]) / span - conjugate[0]) / span
+        first, second = sign * (slope[1] - rise), sign * (slope[1] - 2 * (rise - mean))
+        # The measure itself is infinite on the axis where forces are prescribed.
+        whole = sign * (slope[1] - slope[0])
+        return np.stack([whole - 2 * first + second, 2 * (first - second), second])
+
+    def over_narrow(self, span: Array, ends: Array, base: Array, beyond: Flags) -> Array:
+        """Moments over narrow intervals, by Gauss' rule in the contact coordinate.
+
+        `beyond` a break or a flat's edge all is smooth in the root of the distance from this
+        `base`, elsewhere in the logarithm.
+        """
+        profile, (start, stop) = self.profile, ends
+        with np.errstate(divide="ignore"):
+            estimate = span / self._slope(stop)
+        thin = (stop - start < _THIN * stop) & (estimate > 0)
+        width = np.where(thin, np.minimum(estimate, stop), stop - start)
+        nodes, weights = gauss_legendre(_POINTS)
+        share, weights = ((1 + nodes) / 2)[:, None], (weights / 2)[:, None]
+        # By rounding an interval may end below the break at its start.
+        top = np.sqrt(np.where(beyond, np.maximum(stop - base, 0.0), 0.0))
+        below = np.where(thin, top * top - width, start - base)
+        bottom = np.sqrt(np.where(beyond, np.maximum(below, 0.0), 0.0))
+        climb = np.where(beyond, width / np.where(top > 0, top + bottom, 1.0), 0.0)
+        root = bottom + climb * share
+        part = np.where(beyond, 0.0, np.minimum(width / stop, 1 - _EPS))
+        stretch = -np.log1p(-part)
+        log_place = stop * np.exp(-stretch * (1 - share))
+        place = np.where(beyond, np.minimum(base + root * root, stop), log_place)
+        moved = np.where(beyond, 2 * root * climb, log_place * stretch)
+        origin = np.where(beyond, base, place)
+        rise = moved * profile.depth_slope_beyond(place, origin, np.where(beyond, root * root, 0.0))
+        twice = 2 * profile.contact_radius(place)
+        measure = 2 * weights * moved * profile.radius_slope(place)
+        if self.by_force:
+            rise, measure = rise * twice, measure / np.square(twice)
+        # Both scale with the width, which has fewer digits than the span.
+        total = in_order(weights, rise)
+        # Where g is constant between the breaks of a table, the span is rounding error.
+        total = np.where(total > 0, total, inf)
+        t = in_order(_cumulative().T[:, :, None], rise[:, None]) / total
+        measure = measure * (span / total)
+        return in_order(measure, np.stack([np.square(1 - t), 2 * t * (1 - t), t * t], axis=1))
+
+
+def _from_below(function: Function, breaks: Array) -> Array:
+    """Limit of a function from below: above, an infinite slope magnifies rounding errors."""
+    return 2 * function(breaks * (1 - _BELOW)) - function(breaks * (1 - 2 * _BELOW))
+
+
+@lru_cache(maxsize=1)
+def _cumulative() -> Array:
+    """Matrix of the integrals from 0 to each node of [0, 1], of the values at the nodes."""
+    nodes, _ = gauss_legendre(_POINTS)
+    vander = legendre.legvander(nodes, _POINTS - 1)
+    integrals = [legendre.legint(row, lbnd=-1) for row in np.eye(_POINTS)]
+    values = np.stack([legendre.legval(nodes, row) for row in integrals], axis=1)
+    return np.asarray(values @ np.linalg.inv(vander)) / 2

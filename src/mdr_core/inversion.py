@@ -1,0 +1,106 @@
+"""Inverse of an increasing function, accurate relative to its value at every scale."""
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from mdr_core.errors import DefectError
+from mdr_core.typing import Array
+
+Function = Callable[[Array], Array]
+
+# Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
+_MOST_STEPS: Final = 200
+# Newton's step at which the next error is rounding error, because convergence is quadratic.
+_LAST_STEP: Final = 1e-10
+# Last step where no slope is known: residual steps converge linearly.
+_LAST_STEP_WITHOUT_SLOPE: Final = 1e-14
+# Distance from the target, in log, below which the step has converged on a steep rise as well:
+# just above a kink it is short long before.
+_CLOSE: Final = 1e-8
+# Relative width of a bracket without a double inside.
+_ADJACENT: Final = 2.0**-51
+# Factor by which an open bracket grows.
+_STRIDE: Final = 16.0
+# Largest step in log.
+_LONGEST_STEP: Final = 30.0
+# Bound of the roots: beyond it the root or its function value is not representable.
+_LARGEST: Final = 1e307
+
+
+def invert(
+    function: Function,
+    log_slope: Callable[[Array, Array], Array],
+    target: Array,
+    start: Array,
+    low: Array,
+    high: Array,
+    name: str,
+) -> Array:
+    """Return s with function(s) = target for an increasing function.
+
+    Newton's method in log(s) and log(function), which all profiles make nearly straight. [low,
+    high] brackets the root and shrinks by the signs of the residual; a step that leaves it is
+    replaced by its middle.
+
+    Parameters
+    ----------
+    function : increasing and not negative, of arrays of one shape.
+    log_slope : derivative of log(function) by log(s), from s and function(s).
+    target : values >= 0; where it is zero, `low` is returned.
+    start : first approximation, inside the bracket.
+    low, high : bracket of the root; `high` may be infinite.
+    name : name of the function, for the error message.
+
+    Returns
+    -------
+    Array of the common shape; zero or infinite where the root leaves double precision, and NaN
+    where the function does.
+
+    Raises
+    ------
+    DefectError : the iteration does not converge.
+    """
+    positive = target > 0
+    goal = np.where(positive, target, 1.0)
+    s, root_at_zero = start, low
+    done, settling = ~positive, np.zeros_like(positive)
+    for _ in range(_MOST_STEPS):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+            value = function(s)
+            residual = np.log(goal / value)
+            slope = log_slope(s, value)
+            # Without a finite slope, as at a kink, the residual gives the direction alone.
+            known = (slope > 0) & (slope < np.inf)
+            step = np.where(known, residual / slope, residual)
+            proposed = s * np.exp(np.clip(step, -_LONGEST_STEP, _LONGEST_STEP))
+        low = np.where(value < goal, s, low)
+        high = np.where(value > goal, s, high)
+        # A short step alone may only mean that the function is steep here.
+        short = np.abs(step) <= np.where(known, _LAST_STEP, _LAST_STEP_WITHOUT_SLOPE)
+        short &= np.abs(residual) <= _CLOSE
+        last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
+        usable = ((proposed > low) & (proposed < high)) | last
+        moved = proposed if usable.all() else np.where(usable, proposed, _middle(low, high))
+        moved = np.where(moved < _LARGEST, np.where(moved > 1 / _LARGEST, moved, 0.0), np.inf)
+        # A converged root stays: it does not depend on how long the others take.
+        s = np.where(done, s, moved)
+        # One more step than the criterion requires: at a kink the slope may be the other side's.
+        done = done | settling
+        if done.all():
+            break
+        settling = last | (high - low <= np.where(high < np.inf, _ADJACENT * high, 0.0))
+    root = np.where(positive, np.maximum(s, root_at_zero), root_at_zero)
+    if done.all():
+        return root
+    if known[~done].any():
+        raise DefectError(f"the inverse of a {name} did not converge")
+    return np.where(done, root, np.nan)
+
+
+def _middle(low: Array, high: Array) -> Array:
+    """Geometric middle of the bracket, or a stride where it is still open."""
+    with np.errstate(invalid="ignore"):
+        middle = np.sqrt(low) * np.sqrt(high)
+    return np.where(low == 0, high / _STRIDE, np.where(np.isinf(high), low * _STRIDE, middle))

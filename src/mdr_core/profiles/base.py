@@ -1,0 +1,366 @@
+"""Interface of a profile, with a general method for every quantity that a kind may override.
+
+The interface is one class, and therefore one file of over 350 lines.
+"""
+
+from abc import ABC, abstractmethod
+from math import inf
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from mdr_core import validation
+from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integral
+from mdr_core.abel.stress import StressPanels
+from mdr_core.errors import Notice
+from mdr_core.profiles.energy import energy_integral
+from mdr_core.typing import Array, Parameter
+
+# Quantities of a normal contact, as `Profile.closed_forms` names them.
+NORMAL_QUANTITIES: Final = (
+    "indentation_depth",
+    "normal_force",
+    "contact_radius",
+    "mean_pressure",
+    "maximum_pressure",
+    "normal_stiffness",
+    "elastic_energy",
+)
+_NO_BREAKS: Final = np.empty(0)
+
+
+def require_positive(name: str, value: Parameter) -> None:
+    """Raise InputError unless the profile's parameter is positive and finite."""
+    validation.require_positive(("profile", name), value)
+
+
+class Profile(ABC):
+    """Rigid axisymmetric profile f(r) with f(0) = 0 and its equivalent profile g(x).
+
+    The contact edge is described by the *contact coordinate* of the kind, a number in which
+    radius, depth and force are all accurate: the radius a, or sqrt(a^2 - b^2) beyond a flat of
+    radius b, next to which a does not resolve them. At zero load it is `first_coordinate`.
+
+    A kind defines f, f', g, g', F_N/E* and its closed forms. Every other
+    method has a general implementation here. Parameters may be arrays over the cases of a sweep;
+    they broadcast with the loads. Arrays called c, r, x, coordinate have the dimension [length]
+    unless stated otherwise.
+    """
+
+    kind: ClassVar[str]
+    formula: ClassVar[str]
+    # Quantities in closed form; the others need quadrature or iteration.
+    closed_forms: ClassVar[tuple[str, ...]]
+    # Bound on the relative rounding error of the closed forms.
+    rounding: Parameter = 3e-14
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Parameters by name, if they fully define the profile; otherwise empty."""
+        names: tuple[str, ...] = getattr(self, "__match_args__", ())
+        return {name: getattr(self, name) for name in names}
+
+    @property
+    def swept(self) -> tuple[str, ...]:
+        """Names of the parameters that are arrays over the cases of a sweep."""
+        return tuple(
+            name
+            for name, value in self.parameters.items()
+            if isinstance(value, np.ndarray) and value.ndim
+        )
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """Warnings about the profile itself."""
+        return ()
+
+    @property
+    def normal_method(self) -> str:
+        """Most expensive method among the quantities of a normal contact."""
+        closed = set(NORMAL_QUANTITIES) <= set(self.closed_forms)
+        return "closed_form" if closed else "quadrature"
+
+    @property
+    def tangential_method(self) -> str:
+        """Most expensive method among the quantities of a tangential contact."""
+        closed = "closed_form" if "slip" in self.closed_forms else "quadrature"
+        return closed if self.normal_method == "closed_form" else self.normal_method
+
+    # The shape.
+
+    @abstractmethod
+    def f(self, radius: Array) -> Array:
+        """Shape f(r) [length]."""
+
+    @abstractmethod
+    def df(self, radius: Array) -> Array:
+        """Slope f'(r) [1]; at a break, the limit from outside."""
+
+    @abstractmethod
+    def g(self, x: Array) -> Array:
+        """Equivalent profile g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr [length].
+
+        Source: mdr-5, Eq. (5.74).
+        """
+
+    @abstractmethod
+    def dg(self, x: Array) -> Array:
+        """Slope g'(x) of the equivalent profile [1]; infinite at a break where f' jumps."""
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        """Radii where f' or one of its derivatives jumps [length]."""
+        return ()
+
+    @property
+    def domain(self) -> Parameter:
+        """Radius up to which the profile is defined and admissible [length]."""
+        return inf
+
+    @property
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        """Radii at which the pressure of every contact that contains them is infinite [length].
+
+        In a sweep one for each case, infinite for a case that has none.
+        """
+        return ()
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        """Limit of mean pressure / E* as the load vanishes [1]: zero for smooth and blunt tips."""
+        return 0.0
+
+    @property
+    def slips_at_once(self) -> bool:
+        """True if there is no partial slip: the whole contact sticks up to full slip."""
+        return False
+
+    @property
+    def steepness(self) -> float:
+        """Highest power that g resembles over part of the contact, which sets the resolution."""
+        return 3.5
+
+    @property
+    def tip_exponent(self) -> float:
+        """Lower bound of the exponent of g at the axis, at most 1."""
+        return 1.0
+
+    # The contact coordinate.
+
+    @property
+    def first_coordinate(self) -> float:
+        """Contact coordinate at zero load."""
+        return 0.0
+
+    @property
+    def last_coordinate(self) -> float | None:
+        """Contact coordinate at the end of the domain; None if there is no end."""
+        return None
+
+    @property
+    def scale(self) -> Parameter:
+        """Characteristic contact coordinate, such as that of a break."""
+        raise NotImplementedError(f"a {self.kind} has no scale, because its inverses are closed")
+
+    @property
+    def coordinate_breaks(self) -> Array:
+        """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
+        return _NO_BREAKS
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        """Contact coordinate of a contact radius."""
+        return contact_radius
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        """Contact radius a [length]."""
+        return coordinate
+
+    def radius_slope(self, coordinate: Array) -> Array:
+        """Derivative of the contact radius with respect to the contact coordinate."""
+        return np.ones_like(coordinate)
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        """Difference s_a - s_c of two contact coordinates, as accurate as a - c.
+
+        Parameters
+        ----------
+        a, c : contact radii, a >= c [length].
+        s_a, s_c : their contact coordinates.
+        """
+        return a - c
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        """Difference a - c of the radii at the contact coordinates s_a and s_a - width [length]."""
+        return width
+
+    def radial(self, annulus: Annulus) -> Annulus:
+        """Return the annulus in the radius instead of the contact coordinate."""
+        outer, inner, a = annulus
+        if inner is not None:
+            inner = InnerEnd(self.radius_width(outer, inner.width), inner.radius)
+        return Annulus(self.contact_radius(outer) if a is None else a, inner)
+
+    # The normal contact.
+
+    def depth(self, coordinate: Array) -> Array:
+        """Indentation depth d = g(a) [length]."""
+        return self.g(coordinate)
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        """Derivative of the depth with respect to the contact coordinate."""
+        return self.dg(coordinate)
+
+    def depth_slope_beyond(self, coordinate: Array, start: Array, past: Array) -> Array:
+        """`depth_slope` at start + past, as accurate as `past` beyond a break at `start`.
+
+        Parameters
+        ----------
+        coordinate : start + past.
+        start : contact coordinate of the break below.
+        past : distance from it.
+        """
+        return self.depth_slope(coordinate)
+
+    @abstractmethod
+    def reduced_force(self, coordinate: Array) -> Array:
+        """Normal force over E*, F_N/E* = 2 int_0^a x g'(x) dx [length^2]."""
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
+        return energy_integral(
+            lambda s: self.reduced_force(s) * self.depth_slope(s), coordinate, self.scale
+        )
+
+    def coordinate_from_depth(self, depth: Array) -> Array | None:
+        """Inverse of `depth` where it has a closed form, else None."""
+        return None
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array | None:
+        """Inverse of `reduced_force` where it has a closed form, else None."""
+        return None
+
+    # The slip annulus.
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array] | None:
+        """Contact coordinate of the stick edge and its distance from the edge, where closed.
+
+        Source: mdr-5, Eqs. (5.16), (5.31), (5.49).
+
+        Parameters
+        ----------
+        coordinate : contact coordinate of the edge.
+        ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), both accurate [1].
+        """
+        return None
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array] | None:
+        """Contact coordinate of the stick edge and its distance from the edge, where closed.
+
+        Source: mdr-5, Eqs. (5.12), (5.29), (5.47).
+
+        Parameters
+        ----------
+        coordinate : contact coordinate of the edge.
+        ratio, rest : u_x/u_max and 1 - u_x/u_max, both accurate [1].
+        """
+        return None
+
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
+        """Difference F(a)/E* - F(c)/E* where it is closed without cancellation, else None.
+
+        Parameters
+        ----------
+        coordinate : contact coordinate of a.
+        width : coordinate - stick, accurate in a narrow annulus.
+        stick : contact coordinate of c, accurate in a wide annulus.
+        """
+        return None
+
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
+        """Difference d(a) - d(c) where it is closed without cancellation, else None.
+
+        Parameters: see `force_step`.
+        """
+        return None
+
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
+        """Integral int_c^a (g(a) - g)(g - g(c)) dx where it is closed, else None [length^3].
+
+        Parameters: see `force_step`.
+        """
+        return None
+
+    # Fields.
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        """Intervals on which g' is smooth except for the root at the start of each."""
+        tip, steepness = self.tip_exponent, self.steepness
+        return (Branch(0.0, lambda x, _s, _: self.dg(x), tip=tip, steepness=steepness),)
+
+    def panels(self, rtol: float) -> StressPanels | None:
+        """Panels of g', resolved to a tolerance, for a profile given by panels; else None."""
+        return None
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """Slip S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
+
+        S(0; r) is the profile itself. Source: mdr-5, Eqs. (5.40), (5.41).
+
+        Parameters
+        ----------
+        c, r : stick radii and radii, 0 <= c <= r [length], shape (m,).
+        rtol : relative tolerance.
+        """
+        # Next to the axis arccos(x/r) = pi/2 - x/r, of which the integrals are closed.
+        near = np.maximum(c, np.cbrt(rtol) * r)
+        value = slope_integral(self._resolved_branches(rtol), near, r, r, arccosine, rtol)
+        if np.any(near > c):
+            value += np.pi / 2 * (self.g(near) - self.g(c))
+            step = self._force_within(near) - self._force_within(c)
+            value -= step / (2 * np.where(r > 0, r, 1.0))
+        return 2 / np.pi * value
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        """Displacement (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx of the surface [length].
+
+        Source: mdr-5, Eq. (5.75), with the foundation's displacement d - g.
+
+        Parameters
+        ----------
+        a, r : contact radius and radii r >= a [length], shape (m,).
+        rtol : relative tolerance.
+        coordinate : contact coordinate of a, which may be the more accurate of the two.
+        """
+        # Next to the axis arcsin(x/r) = x/r, of which the integral is closed.
+        near = np.minimum(a, np.sqrt(rtol) * r)
+        value = slope_integral(self._resolved_branches(rtol), near, a, r, arcsine, rtol)
+        value += self._force_within(near) / (2 * r)
+        return 2 / np.pi * value
+
+    def _resolved_branches(self, rtol: float) -> tuple[Branch, ...]:
+        panels = self.panels(rtol)
+        return self.branches if panels is None else panels.branches
+
+    def _force_within(self, x: Array) -> Array:
+        """2 int_0^x x g'(x) dx, zero on a flat [length^2]."""
+        flat = self.contact_radius(np.zeros_like(x))
+        return self.reduced_force(self.coordinate_from_radius(np.maximum(x, flat)))
+
+    @abstractmethod
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """Stress integral (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1].
+
+        Source: mdr-5, Eqs. (5.68), (5.70), (5.79).
+
+        Parameters
+        ----------
+        annulus : a and c in the contact coordinate.
+        radius : radii 0 <= r < a [length], shape (m,).
+        rtol : relative tolerance.
+        """

@@ -1,0 +1,179 @@
+"""Powers C r^n of the radius and their differences over an annulus.
+
+Source: notes, §4.
+"""
+
+from collections.abc import Sequence
+from math import ceil, log2
+from typing import Final
+
+import numpy as np
+from scipy.special import beta
+
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.typing import Array, Parameter
+
+# Exponent up to which powers of lengths from 1e-50 to 1e50 are representable.
+_DIRECT: Final = 4.0
+# Inverse of 2^-20, at which exponents are split: with up to 9 bits of octaves, both products fit in
+# 53 bits.
+_COARSE: Final = 2.0**20
+# Exponents for which NumPy calls another function if a single exponent is given.
+_EXACT: Final = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
+# Gauss-Legendre nodes of a piece of the slip moment.
+_NODES: Final = 16
+# Length of its first piece times the largest rate: 16 nodes integrate e^-u over 12 to 1e-18.
+_FIRST_LENGTH: Final = 12.0
+# Value of u above which e^-u is below rounding error.
+_VANISHED: Final = 40.0
+# Values of exponentials evaluated at once, so that temporaries stay in the processor's cache.
+_BLOCK: Final = 65_536
+
+
+def raised(base: Parameter, exponent: Parameter) -> Array:
+    """Return base^exponent, bit-identical for one number and for many.
+
+    NumPy squares, or takes a root, if a single exponent is given. The same functions are applied
+    here to arrays of exponents, so that a sweep is bit-identical to its cases.
+    """
+    result = np.asarray(np.power(base, exponent))
+    if np.ndim(exponent):
+        for special, exact in _EXACT:
+            there = exponent == special
+            if np.any(there):
+                result = np.where(there, exact(base), result)
+    return result
+
+
+def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
+    """Return C r^n."""
+    factor, scale = _scaled(coefficient, exponent)
+    with np.errstate(over="ignore", under="ignore"):
+        return np.asarray(factor * raised(r * scale, exponent))
+
+
+def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
+    """Return C n r^(n-1), infinite at r = 0 for n < 1."""
+    factor, scale = _scaled(coefficient, exponent)
+    with np.errstate(divide="ignore", over="ignore", under="ignore"):
+        return np.asarray((factor * scale * exponent) * raised(r * scale, exponent - 1))
+
+
+def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Parameter]:
+    """Factor and scale of C r^n = factor (scale r)^n, where r^n alone might not be representable.
+
+    The scale is the power of two next to |C|^(1/n), so that it adds no rounding error.
+    """
+    if isinstance(exponent, float) and exponent <= _DIRECT:
+        return coefficient, 1.0
+    n = np.asarray(exponent, dtype=float)
+    octaves = np.where(n > _DIRECT, np.rint(np.log2(np.abs(coefficient)) / n), 0.0)
+    # Both products are exact, where octaves x n would be rounded.
+    coarse = np.rint(n * _COARSE) / _COARSE
+    factor = coefficient * np.exp2(-octaves * coarse) * np.exp2(-octaves * (n - coarse))
+    return factor, np.exp2(octaves)
+
+
+def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Array:
+    """Return (value/C)^(1/n).
+
+    The rounding error of 1/n costs eps log(value/C)/n; one step of Newton's method removes it.
+    """
+    n = np.asarray(exponent, dtype=float)
+    with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
+        root = raised(value / coefficient, 1 / n)
+        miss = (value - power(coefficient, root, n)) / np.where(value > 0, value, 1.0)
+        polished = root * (1 + miss / n)
+    return np.asarray(np.where((value > 0) & np.isfinite(root), polished, root))
+
+
+def kappa(exponent: Parameter) -> Array:
+    """Return kappa_n = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2) [1]: g = kappa_n C x^n.
+
+    Source: mdr-5, Eq. (5.25), as pi/B((n + 1)/2, 1/2).
+    """
+    return np.asarray(np.pi / beta((np.asarray(exponent, dtype=float) + 1) / 2, 0.5))
+
+
+def power_stick(a: Array, ratio: Array, rest: Array, exponent: Array) -> tuple[Array, Array]:
+    """Return c and a - c where 1 - (c/a)^m = ratio = 1 - rest, both accurate [length].
+
+    Source: mdr-5, Eqs. (5.29), (5.31); notes, §4.
+
+    Parameters
+    ----------
+    a : contact radius [length].
+    ratio, rest : load over that of full slip, and 1 - ratio, both accurate [1].
+    exponent : m > 0 [1].
+    """
+    with np.errstate(divide="ignore"):
+        exact = np.where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
+    e = exact / exponent
+    return np.asarray(a * np.exp(e)), np.asarray(-a * np.expm1(e))
+
+
+def log_annulus(a: Array, width: Array, c: Array) -> Array:
+    """Return log(a/c) [1], from the width while the annulus is narrow; infinite for c = 0."""
+    safe = np.where(a > 0, a, 1.0)
+    part = np.minimum(width / safe, 0.5)
+    with np.errstate(divide="ignore"):
+        wide = np.log(np.maximum(c, 0.0) / safe)
+    return -np.where(width < safe / 2, np.log1p(-part), wide)
+
+
+def power_step(a: Array, width: Array, c: Array, exponent: Array) -> Array:
+    """Return 1 - (c/a)^m [1].
+
+    Parameters
+    ----------
+    a, width, c : outer radius, a - c and inner radius [length].
+    exponent : m > 0 [1].
+    """
+    return np.asarray(-np.expm1(-exponent * log_annulus(a, width, c)))
+
+
+def slip_moment(
+    depths: Sequence[Array], exponents: Sequence[Parameter], a: Array, width: Array, c: Array
+) -> Array:
+    """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx of g = sum d_i (x/a)^n_i [length^3].
+
+    With u = log(a/x) every factor is a sum of exponentials. The pieces double in length, because
+    a term that decays faster than a piece is long has already decayed where that piece begins.
+    Source: notes, §6.
+
+    Parameters
+    ----------
+    depths, exponents : d_i [length] and n_i > 0 [1].
+    a, width, c : outer radius, a - c and inner radius [length].
+    """
+    shape = np.broadcast_shapes(np.shape(a), *map(np.shape, (*depths, *exponents, width, c)))
+    d, n = (
+        np.stack([np.broadcast_to(part, shape).ravel() for part in parts])
+        for parts in (depths, exponents)
+    )
+    a, width, c = (np.broadcast_to(part, shape).ravel() for part in (a, width, c))
+    length = log_annulus(a, width, c)
+    # The largest rate at which the integrand changes.
+    rate = 1 + 2 * n.max(axis=0)
+    count = ceil(log2(_VANISHED * float(rate.max(initial=1.0)) / _FIRST_LENGTH)) + 1
+    doubled = _FIRST_LENGTH * 2.0 ** np.arange(count)
+    result = np.empty(a.size)
+    step = max(_BLOCK // (n.shape[0] * (count + 1) * _NODES), 1)
+    for start in range(0, a.size, step):
+        part = slice(start, start + step)
+        ends = np.minimum(np.append(0.0, doubled)[:, None] / rate[part], length[part])
+        sizes = d[:, None, None, part], n[:, None, None, part], length[part]
+        result[part] = _moment_of_exponentials(ends, *sizes)
+    return np.asarray((result * a).reshape(shape))
+
+
+def _moment_of_exponentials(ends: Array, d: Array, n: Array, length: Array) -> Array:
+    """int_0^length e^-u sum d_i (1 - e^(-n_i u)) sum d_j (e^(-n_j u) - e^(-n_j length)) du."""
+    nodes, weights = (part[:, None, None] for part in gauss_legendre(_NODES))
+    half = np.diff(ends, axis=0) / 2
+    u = ends[:-1] + half * (1 + nodes)
+    above = (d * -np.expm1(-n * u)).sum(axis=0)
+    below = (d * (np.exp(-n * u) * -np.expm1(-n * (length - u)))).sum(axis=0)
+    # Summed in one order, whatever the number of loads: a sweep is bit-identical to its cases.
+    of_pieces = np.cumsum(weights * above * below * np.exp(-u), axis=0)[-1]
+    return np.asarray(np.cumsum(half * of_pieces, axis=0)[-1])

@@ -1,0 +1,347 @@
+"""Powers of the radius: cone, paraboloid and C r^n."""
+
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar, Final
+
+import numpy as np
+
+from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.power_moments import log_ratio, power_moment, root_step
+from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
+from mdr_core.profiles.cancellation_free import atan_gap
+from mdr_core.profiles.power_functions import (
+    kappa,
+    power,
+    power_root,
+    power_slope,
+    power_step,
+    power_stick,
+    slip_moment,
+)
+from mdr_core.typing import Array, Parameter
+
+_EVERYTHING: Final = (
+    *NORMAL_QUANTITIES,
+    "pressure",
+    "shear_stress",
+    "slip",
+    "normal_displacement",
+)
+
+
+@dataclass(frozen=True)
+class Cone(Profile):
+    """Cone f = t r with g(x) = (pi/2) t x and F_N(a)/E* = (pi/2) t a^2.
+
+    Source: mdr-5, Eqs. (5.46)-(5.53).
+
+    Parameters
+    ----------
+    slope : t = tan(theta) of the flank against the plane [1].
+    """
+
+    slope: Parameter
+
+    kind: ClassVar[str] = "cone"
+    formula: ClassVar[str] = "slope·r"
+    closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
+
+    def __post_init__(self) -> None:
+        require_positive("slope", self.slope)
+
+    @property
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return (0.0,)
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        return self.slope / 2
+
+    def f(self, radius: Array) -> Array:
+        return self.slope * radius
+
+    def df(self, radius: Array) -> Array:
+        return self.slope * np.ones_like(radius)
+
+    def g(self, x: Array) -> Array:
+        return (pi / 2) * self.slope * x
+
+    def dg(self, x: Array) -> Array:
+        return (pi / 2) * self.slope * np.ones_like(x)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        return (pi / 2) * self.slope * coordinate * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        return depth / ((pi / 2) * self.slope)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        return np.asarray(np.sqrt(reduced_force / ((pi / 2) * self.slope)))
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        return np.square(self.g(coordinate)) * coordinate / 3
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c/a = sqrt(1 - rho). Source: mdr-5, Eq. (5.49). Parameters: see `Profile`."""
+        k = np.sqrt(rest)
+        return coordinate * k, coordinate * (ratio / (1 + k))
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """Source: mdr-5, Eq. (5.47). Parameters: see `Profile`."""
+        return coordinate * rest, coordinate * ratio
+
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: mdr-5, Eq. (5.48). Parameters: see `Profile`."""
+        return (pi / 2) * self.slope * width * (2 * coordinate - width)
+
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: mdr-5, Eq. (5.47). Parameters: see `Profile`."""
+        return self.g(width + np.zeros_like(coordinate))
+
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """(pi^2 t^2/24) (a - c)^3. Source: notes, §6. Parameters: see `Profile`."""
+        rise = np.square((pi / 2) * self.slope) + np.zeros_like(coordinate)
+        return rise * np.square(width) * width / 6
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """t [sqrt(r^2 - c^2) - c arccos(c/r)]. Source: notes, §4. Parameters: see `Profile`."""
+        root = np.sqrt((r - c) * (r + c))
+        return np.asarray(self.slope * np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), r))
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))].
+
+        Source: notes, §7. Parameters: see `Profile`.
+        """
+        half = a / (r + np.sqrt((r - a) * (r + a)))
+        return np.asarray(self.slope * a * (2 * np.arctan(half) - half))
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """(t/2) [arccosh(a/r) - arccosh(c/r)].
+
+        Source: mdr-5, Eq. (5.53). Parameters: see `Profile`.
+        """
+        return (self.slope / 2) * log_ratio(annulus, radius)
+
+
+@dataclass(frozen=True)
+class Paraboloid(Profile):
+    """Paraboloid f = r^2/(2R) with g(x) = x^2/R and F_N(a)/E* = 4a^3/(3R).
+
+    Source: mdr-5, Eqs. (5.5)-(5.17).
+
+    Parameters
+    ----------
+    radius : radius of curvature R [length].
+    """
+
+    radius: Parameter
+
+    kind: ClassVar[str] = "paraboloid"
+    formula: ClassVar[str] = "r²/(2·radius)"
+    closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+
+    def f(self, radius: Array) -> Array:
+        return radius * radius / (2 * self.radius)
+
+    def df(self, radius: Array) -> Array:
+        return radius / self.radius
+
+    def g(self, x: Array) -> Array:
+        return x * x / self.radius
+
+    def dg(self, x: Array) -> Array:
+        return 2 * x / self.radius
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        return coordinate * coordinate * coordinate * (4 / (3 * self.radius))
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        return np.sqrt(self.radius * depth)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        return np.cbrt(0.75 * reduced_force * self.radius)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        return np.square(self.g(coordinate)) * coordinate * (8 / 15)
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c/a = (1 - rho)^(1/3). Source: mdr-5, Eq. (5.16). Parameters: see `Profile`."""
+        k = np.cbrt(rest)
+        return coordinate * k, coordinate * (ratio / (1 + k * (1 + k)))
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c^2 = R (d - G* u/(E* mu)).
+
+        Source: mdr-5, Eqs. (5.11), (5.12). Parameters: see `Profile`.
+        """
+        k = np.sqrt(rest)
+        return coordinate * k, coordinate * (ratio / (1 + k))
+
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: mdr-5, Eq. (5.15). Parameters: see `Profile`."""
+        cubes = 3 * coordinate * (coordinate - width) + width * width
+        return width * cubes * (4 / (3 * self.radius))
+
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: mdr-5, Eq. (5.12). Parameters: see `Profile`."""
+        return width * (2 * coordinate - width) / self.radius
+
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2).
+
+        Source: mdr-5, section 5.2; notes, §6. Parameters: see `Profile`.
+        """
+        a, c = coordinate, coordinate - width
+        squares = (a * a + 3 * a * c + c * c) / np.square(self.radius)
+        return 2 / 15 * np.square(width) * width * squares
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
+
+        Source: mdr-5, Eq. (5.45). Parameters: see `Profile`.
+        """
+        square = (r - c) * (r + c)
+        root = np.sqrt(square)
+        gap = atan_gap(root, np.where(c > 0, c, 1.0))
+        return np.asarray((c * gap + square * np.arctan2(root, c)) / (pi * self.radius))
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).
+
+        Source: johnson, Eq. (3.42a); notes, §7. Parameters: see `Profile`.
+        """
+        root = np.sqrt((r - a) * (r + a))
+        gap = atan_gap(a, np.where(root > 0, root, 1.0))
+        return np.asarray((a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius))
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)].
+
+        Source: mdr-5, Eq. (5.38). Parameters: see `Profile`.
+        """
+        return 2 / (pi * self.radius) * root_step(annulus, radius)
+
+
+@dataclass(frozen=True)
+class Power(Profile):
+    """Power f = C r^n with g(x) = kappa_n C x^n and F_N(a)/E* = (2n/(n + 1)) kappa_n C a^(n+1).
+
+    Source: mdr-5, Eqs. (5.24)-(5.33).
+
+    Parameters
+    ----------
+    coefficient : C > 0 [length^(1-n)].
+    exponent : n > 0, any real number [1].
+    """
+
+    coefficient: Parameter
+    exponent: Parameter
+
+    kind: ClassVar[str] = "power"
+    formula: ClassVar[str] = "coefficient·r^exponent"
+    closed_forms: ClassVar[tuple[str, ...]] = tuple(
+        name for name in NORMAL_QUANTITIES if name != "maximum_pressure"
+    )
+
+    def __post_init__(self) -> None:
+        require_positive("coefficient", self.coefficient)
+        require_positive("exponent", self.exponent)
+
+    @property
+    def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
+        # r^n carries n times the rounding error of the scaled radius.
+        return 2e-14 + 8e-15 * self.exponent
+
+    @property
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        sharp = np.asarray(self.exponent) <= 1
+        return (np.where(sharp, 0.0, np.inf)[()],) if sharp.any() else ()
+
+    @property
+    def tip_pressure(self) -> Parameter:
+        n = np.asarray(self.exponent)
+        cone = np.asarray(self.coefficient) / 2
+        return np.where(n < 1, np.inf, np.where(n == 1, cone, 0.0))
+
+    @property
+    def steepness(self) -> float:
+        return max(3.5, float(np.max(self.exponent)))
+
+    @property
+    def tip_exponent(self) -> float:
+        return min(1.0, float(np.min(self.exponent)))
+
+    def f(self, radius: Array) -> Array:
+        return power(self.coefficient, radius, self.exponent)
+
+    def df(self, radius: Array) -> Array:
+        return power_slope(self.coefficient, radius, self.exponent)
+
+    def g(self, x: Array) -> Array:
+        return kappa(self.exponent) * self.f(x)
+
+    def dg(self, x: Array) -> Array:
+        return kappa(self.exponent) * self.df(x)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        n = self.exponent
+        with np.errstate(over="ignore", invalid="ignore"):
+            return (2 * n / (n + 1)) * self.g(coordinate) * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        n = self.exponent
+        return power_root(depth / kappa(n), self.coefficient, n)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        n = np.asarray(self.exponent)
+        part = reduced_force * ((n + 1) / (2 * n * kappa(self.exponent)))
+        return power_root(part, self.coefficient, n + 1)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        n = self.exponent
+        factor = 2 * n * n / ((n + 1) * (2 * n + 1))
+        with np.errstate(over="ignore"):
+            return np.square(self.g(coordinate)) * coordinate * factor
+
+    def stick_from_force_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """c/a = (1 - rho)^(1/(n+1)). Source: mdr-5, Eq. (5.31). Parameters: see `Profile`."""
+        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent) + 1)
+
+    def stick_from_depth_ratio(
+        self, coordinate: Array, ratio: Array, rest: Array
+    ) -> tuple[Array, Array]:
+        """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
+        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent))
+
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: mdr-5, Eq. (5.30). Parameters: see `Profile`."""
+        step = power_step(coordinate, width, stick, np.asarray(self.exponent) + 1)
+        return self.reduced_force(coordinate) * step
+
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
+        return self.g(coordinate) * power_step(coordinate, width, stick, np.asarray(self.exponent))
+
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Source: notes, §6. Parameters: see `Profile`."""
+        return slip_moment([self.g(coordinate)], [self.exponent], coordinate, width, stick)
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """Source: mdr-5, Eqs. (5.68), (5.70). Parameters: see `Profile`."""
+        moment = power_moment(float(self.exponent) - 1, annulus, radius, rtol)
+        return self.dg(annulus.outer) / pi * moment

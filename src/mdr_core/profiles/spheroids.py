@@ -1,0 +1,264 @@
+"""Spheroids: sphere and ellipsoid."""
+
+from dataclasses import dataclass
+from math import log, pi
+from typing import ClassVar, Final
+
+import numpy as np
+
+from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.displacement import Branch
+from mdr_core.abel.two_root import arcsinh_difference
+from mdr_core.errors import InputError
+from mdr_core.profiles.base import Profile, require_positive
+from mdr_core.profiles.cancellation_free import tanh_gap
+from mdr_core.profiles.equator import slope_integral_inside, slope_integral_outside
+from mdr_core.quadrature import integrate
+from mdr_core.typing import Array, Chosen, Parameter
+from mdr_core.validation import first_index
+
+# artanh(1 - 4 eps): closer to the equator R - a is dominated by rounding error.
+_EQUATOR: Final = -log(2 * float(np.finfo(float).eps)) / 2
+# Contact coordinate, a tenth of R before the equator, beyond which a radius does not resolve the
+# distance from the pole there.
+_NEAR_EQUATOR: Final = 1.5
+_CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
+
+
+class Spheroid(Profile):
+    """Spheroid f = h (1 - sqrt(1 - r^2/R^2)) of semi-axes R = `radius` and h = `height`.
+
+    g(x) = (h/R) x artanh(x/R), F_N(a)/E* = h R [t^3 + (1 + t^2)(v - t)] with t = a/R. The contact
+    coordinate is v = artanh(a/R), because a alone is not accurate near the equator.
+
+    Source: notes, §2 and §4.
+    """
+
+    radius: Parameter
+    height: Parameter
+
+    closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
+
+    @property
+    def domain(self) -> Parameter:
+        return self.radius
+
+    @property
+    def last_coordinate(self) -> float:
+        return _EQUATOR
+
+    @property
+    def scale(self) -> Parameter:
+        return 1.0
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        equator = float(np.asarray(self.radius))
+        return (Branch(0.0, lambda x, _s, _index: self.dg(x), pole=equator),)
+
+    def f(self, radius: Array) -> Array:
+        q = np.square(radius / self.radius)
+        return np.asarray(self.height * q / (1 + np.sqrt(1 - q)))
+
+    def df(self, radius: Array) -> Array:
+        root = np.sqrt((self.radius - radius) * (self.radius + radius))
+        return np.asarray(self.height / self.radius * radius / root)
+
+    def g(self, x: Array) -> Array:
+        return self.depth(artanh_ratio(x, self.radius))
+
+    def dg(self, x: Array) -> Array:
+        pole = x * self.radius / ((self.radius - x) * (self.radius + x))
+        return np.asarray(self.height / self.radius * (artanh_ratio(x, self.radius) + pole))
+
+    def coordinate_from_radius(self, contact_radius: Array) -> Array:
+        outside = np.asarray(contact_radius >= self.radius)
+        if outside.any():
+            raise InputError(
+                ("load", "contact_radius", *first_index(outside)),
+                f"must be below the radius of the body, {self.radius}",
+                outside,
+            )
+        return artanh_ratio(contact_radius, self.radius)
+
+    def contact_radius(self, coordinate: Array) -> Array:
+        return self.radius * np.tanh(coordinate)
+
+    def radius_slope(self, coordinate: Array) -> Array:
+        return np.asarray(self.radius / np.square(np.cosh(coordinate)))
+
+    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
+        """Parameters: see `Profile`."""
+        return artanh_ratio_difference(a - c, a, c, self.radius, s_a - s_c)
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        cosh = np.cosh(s_a) * np.cosh(s_a - width)
+        return np.asarray(self.radius * np.sinh(width) / cosh)
+
+    def depth(self, coordinate: Array) -> Array:
+        return self.height * coordinate * np.tanh(coordinate)
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        sech = 1 / np.cosh(coordinate)
+        return self.height * (np.tanh(coordinate) + coordinate * sech * sech)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        t = np.tanh(coordinate)
+        bracket = t * t * t + (1 + t * t) * tanh_gap(coordinate)
+        return self.height * self.radius * bracket
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """Integrated in v next to the equator. Parameters: see `Profile`."""
+        v = artanh_ratio(r, self.radius)
+        if not v.max(initial=0.0) > _NEAR_EQUATOR:
+            return super().slip_kernel(c, r, rtol)
+        width = self.coordinate_width(r, c, v, artanh_ratio(c, self.radius))
+        equator, height = self._axes
+        return 2 / pi * height * slope_integral_inside(equator, v, width, r, rtol)
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        """Integrated in v next to the equator. Parameters: see `Profile`."""
+        if not coordinate > _NEAR_EQUATOR:
+            return super().outer_displacement(a, r, rtol, coordinate)
+        equator, height = self._axes
+        return 2 / pi * height * slope_integral_outside(equator, coordinate, r, rtol)
+
+    @property
+    def _axes(self) -> tuple[float, float]:
+        return float(np.asarray(self.radius)), float(np.asarray(self.height))
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """h/R times that of the sphere. Parameters: see `Profile`."""
+        kernel = sphere_kernel(self.radius, annulus, radius, rtol)
+        kernel *= self.height / self.radius
+        return kernel
+
+
+def artanh_ratio(x: Array, equator: Parameter) -> Array:
+    """Return artanh(x/R) [1], as accurate as R - x."""
+    return np.asarray(0.5 * np.log1p(2 * x / (equator - x)))
+
+
+def artanh_ratio_difference(
+    width: Array, a: Array, c: Array, equator: Parameter, wide: Array
+) -> Array:
+    """Return artanh(a/R) - artanh(c/R) [1], as accurate as the width of a narrow annulus.
+
+    Parameters
+    ----------
+    width, a, c : a - c and the radii themselves, a >= c [length].
+    equator : R [length].
+    wide : the plain difference, for a wide annulus [1].
+    """
+    big = np.asarray(equator)
+    difference = big * width / (big * (big - a) + a * (big - c))
+    narrow = np.arctanh(np.minimum(difference, 0.5))
+    return np.asarray(np.where(difference < 0.5, narrow, wide))
+
+
+def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -> Array:
+    """Return the stress integral of a sphere [1].
+
+    With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the pole
+    at R vanish, and the pole's part is elementary:
+    P = (1/pi) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
+
+    Source: notes, §2.
+
+    Parameters
+    ----------
+    equator : R [length].
+    annulus : a and c in v = artanh(x/R).
+    r : radii 0 <= r < a [length], shape (m,).
+    rtol : relative tolerance.
+    """
+    v, inner, edge = annulus
+    square = (equator - r) * (equator + r)
+    tilt2 = r * r / square
+    stretch = equator / np.sqrt(square)
+
+    def h(y: Array, index: Chosen) -> Array:
+        z = np.sinh(y)
+        z *= stretch[index]
+        z *= z
+        z += tilt2[index]
+        np.sqrt(z, out=z)
+        np.cosh(y, out=y)
+        y *= z
+        np.arcsinh(z, out=z)
+        z /= y
+        return z
+
+    top = _sphere_root(equator, v, r, edge)
+    if inner is None:
+        length = np.arcsinh(top)
+        smooth = integrate(h, length, rtol)
+    else:
+        width, inmost = inner.width, v - inner.width
+        bottom = _sphere_root(equator, inmost, r, inner.radius)
+        cosh_top = np.cosh(v) / stretch
+        cosh_bottom = np.maximum(np.cosh(inmost) / stretch, 1.0)
+        gap2 = np.sinh(width) * np.sinh(2 * v - width) / (stretch * stretch)
+        length = arcsinh_difference(top, cosh_top, bottom, cosh_bottom, gap2)
+        smooth = integrate(h, length, rtol, np.arcsinh(bottom))
+    stretch *= length
+    smooth += stretch
+    smooth /= pi
+    return smooth
+
+
+def _sphere_root(equator: Parameter, v: Array, r: Array, edge: Array | None) -> Array:
+    """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
+    a = equator * np.tanh(v) if edge is None else edge
+    root = np.maximum(a - r, 0.0)
+    root *= a + r
+    np.sqrt(root, out=root)
+    root *= np.cosh(v) / equator
+    return root
+
+
+@dataclass(frozen=True)
+class Sphere(Spheroid):
+    """Sphere f = R - sqrt(R^2 - r^2), not approximated, with g(x) = x artanh(x/R).
+
+    F_N(a)/E* = (R^2 + a^2) artanh(a/R) - a R. Source: notes, §2.
+
+    Parameters
+    ----------
+    radius : R [length].
+    """
+
+    radius: Parameter
+
+    kind: ClassVar[str] = "sphere"
+    formula: ClassVar[str] = "radius − √(radius² − r²), contact radius < radius"
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+
+    @property
+    def height(self) -> Parameter:  # type: ignore[override]  # a field of the ellipsoid
+        return self.radius
+
+
+@dataclass(frozen=True)
+class Ellipsoid(Spheroid):
+    """Spheroid f = h (1 - sqrt(1 - r^2/R^2)) with g(x) = (h/R) x artanh(x/R).
+
+    F_N(a)/E* is h/R times that of the sphere. Source: notes, §2.
+
+    Parameters
+    ----------
+    radius : semi-axis R across the axis of symmetry [length].
+    height : semi-axis h along it [length].
+    """
+
+    radius: Parameter
+    height: Parameter
+
+    kind: ClassVar[str] = "ellipsoid"
+    formula: ClassVar[str] = "height·(1 − √(1 − r²/radius²)), contact radius < radius"
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+        require_positive("height", self.height)

@@ -1,0 +1,247 @@
+"""Cones with a rounded tip, and the rounded cone as the one with a parabolic tip."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from math import inf, pi
+from typing import ClassVar, Final
+
+import numpy as np
+
+from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.displacement import Branch
+from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
+from mdr_core.profiles.base import Profile, require_positive
+from mdr_core.profiles.energy import energy_integral
+from mdr_core.profiles.powers import Paraboloid
+from mdr_core.profiles.spheroids import Sphere
+from mdr_core.quadrature import DEFAULT, Analytic
+from mdr_core.typing import Array, Flags, Parameter
+
+# Width of the strip of analyticity over the distance of the singularity.
+_INSIDE: Final = 0.9
+
+
+class TippedCone(Profile):
+    """Cone of slope t whose tip is another profile up to the tangent radius b.
+
+    The flank is given in x and s = sqrt(x^2 - b^2). Up to b the contact coordinate is that of the
+    tip, and beyond it a linear function of the radius.
+    """
+
+    slope: Parameter
+    tip_radius: Parameter
+
+    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
+
+    @property
+    @abstractmethod
+    def tangent_radius(self) -> Parameter:
+        """Radius b at which the tip ends in the cone [length]."""
+
+    @property
+    @abstractmethod
+    def _tip(self) -> Paraboloid | Sphere:
+        """Profile up to b."""
+
+    @abstractmethod
+    def _flank_depth(self, x: Array, s: Array) -> Array:
+        """g(x) beyond b [length]."""
+
+    @abstractmethod
+    def _flank_slope(self, x: Array, s: Array) -> Array:
+        """g'(x) beyond b [1]."""
+
+    @abstractmethod
+    def _flank_force(self, x: Array, s: Array) -> Array:
+        """F_N(x)/E* beyond b [length^2]."""
+
+    @abstractmethod
+    def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
+        """Stress integral of the tip over radii up to a <= b [1]."""
+
+    @property
+    def _flank_rate(self) -> Parameter:
+        """Derivative of the radius with respect to the contact coordinate beyond b."""
+        return 1.0
+
+    @property
+    def _pole(self) -> float:
+        """Radius beyond b at which g' of the tip is infinite [length]."""
+        return inf
+
+    @property
+    def _behind(self) -> Parameter:
+        """Distance of the flank's singularity at s = -`_behind` [length]."""
+        return inf
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        return (self.tangent_radius,)
+
+    @property
+    def scale(self) -> Parameter:
+        return self.tangent_radius
+
+    @property
+    def coordinate_breaks(self) -> Array:
+        return np.atleast_1d(np.asarray(self.scale, dtype=float))
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        b, behind = float(np.asarray(self.tangent_radius)), float(np.asarray(self._behind))
+        return (
+            Branch(0.0, lambda x, _s, _index: self._tip.dg(x), b, pole=self._pole),
+            Branch(b, lambda x, s, _index: self._flank_weight(x, s), behind=behind),
+        )
+
+    def _flank_weight(self, x: Array, s: Array) -> Array:
+        """dg/ds = g'(x) s/x beyond b [1]."""
+        return self._flank_slope(x, s) * s / x
+
+    def _outer(self, past: Array) -> tuple[Array, Array]:
+        """x and s on the flank from past = x - b; b and 0 within the tip."""
+        b, past = self.tangent_radius, np.maximum(past, 0.0)
+        return b + past, np.sqrt(past * (2 * b + past))
+
+    def _split(self, coordinate: Array) -> tuple[Flags, Array, tuple[Array, Array]]:
+        """Contacts that end on the tip, their coordinate in it, and x and s on the flank."""
+        past = (coordinate - self.scale) * self._flank_rate
+        return past < 0, np.minimum(coordinate, self.scale), self._outer(past)
+
+    def f(self, radius: Array) -> Array:
+        b = self.tangent_radius
+        return self._tip.f(np.minimum(radius, b)) + self.slope * np.maximum(radius - b, 0.0)
+
+    def df(self, radius: Array) -> Array:
+        b = self.tangent_radius
+        return np.where(radius < b, self._tip.df(np.minimum(radius, b)), self.slope)
+
+    def g(self, x: Array) -> Array:
+        b = self.tangent_radius
+        return np.where(
+            x < b, self._tip.g(np.minimum(x, b)), self._flank_depth(*self._outer(x - b))
+        )
+
+    def dg(self, x: Array) -> Array:
+        b = self.tangent_radius
+        return np.where(
+            x < b, self._tip.dg(np.minimum(x, b)), self._flank_slope(*self._outer(x - b))
+        )
+
+    def depth(self, coordinate: Array) -> Array:
+        on_tip, within, outer = self._split(coordinate)
+        return np.where(on_tip, self._tip.depth(within), self._flank_depth(*outer))
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        on_tip, within, outer = self._split(coordinate)
+        flank = self._flank_slope(*outer) * self._flank_rate
+        return np.where(on_tip, self._tip.depth_slope(within), flank)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        on_tip, within, outer = self._split(coordinate)
+        return np.where(on_tip, self._tip.reduced_force(within), self._flank_force(*outer))
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        b = self.tangent_radius
+
+        def density(s: Array) -> Array:
+            x = np.hypot(b, s)
+            return self._flank_force(x, s) * self._flank_weight(x, s)
+
+        _, within, (_, s) = self._split(coordinate)
+        flank = energy_integral(density, s, np.minimum(b, self._behind))
+        return self._tip.reduced_energy(within) + flank
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""
+        outer, inner, _ = self.radial(annulus)
+
+        def spread(part: Parameter) -> Array:
+            return np.broadcast_to(np.asarray(part, dtype=float), radius.shape)
+
+        a, b = spread(outer), spread(self.tangent_radius)
+        width, c = (a, 0 * a) if inner is None else map(spread, inner)
+        flank = a > b
+        total = np.zeros(radius.shape)
+        # A narrow annulus that ends on b lies in the tip, even if rounding moves c onto b.
+        tip = (radius < b) & ((c < b) | ~flank)
+        if tip.any():
+            top = np.minimum(a, b)
+            part = np.where(width < b / 2, width - (a - top), top - c)
+            ends = InnerEnd(np.maximum(part, 0.0)[tip], np.minimum(c, b)[tip])
+            total[tip] = self._tip_kernel(top[tip], ends, radius[tip], rtol)
+        if flank.any():
+            ends = InnerEnd(width[flank], c[flank])
+            total[flank] += self._flank_kernel(a[flank], ends, b[flank], radius[flank], rtol)
+        return total
+
+    def _flank_kernel(self, a: Array, inner: InnerEnd, b: Array, r: Array, rtol: float) -> Array:
+        """Stress integral of the flank over radii up to a > b [1]."""
+        width, c = inner
+        s = inverse_hypot(a, b)
+        square = np.where(c > b, width * (2 * a - width), 0.0)
+        span = np.where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
+        value = two_root_integral(
+            lambda x, s, _: self._flank_weight(x, s),
+            b,
+            r,
+            Annulus(s, InnerEnd(span, c), a),
+            odd=False,
+            rtol=rtol,
+            analytic=self._flank_analytic,
+        )
+        return value / pi
+
+    @property
+    def _flank_analytic(self) -> Analytic:
+        """Strip in which the flank's weight is analytic."""
+        distance = float(np.min(np.arcsinh(self._behind / np.asarray(self.tangent_radius))))
+        return Analytic(strip=min(DEFAULT.strip, _INSIDE * distance))
+
+
+@dataclass(frozen=True)
+class RoundedCone(TippedCone):
+    """Paraboloid f = r^2/(2R) up to b = R t, then its tangent cone.
+
+    Beyond b, with s = sqrt(x^2 - b^2) and phi = arctan(s/b), g(x) = t x [b/(x + s) + phi] and
+    F_N(a)/E* = t [a^2 phi + (4/3) a^2 b/(a + s) + b s/3]. Source: notes, §2.
+
+    Parameters
+    ----------
+    slope : t of the cone [1].
+    tip_radius : radius of curvature R of the tip [length].
+    """
+
+    slope: Parameter
+    tip_radius: Parameter
+
+    kind: ClassVar[str] = "rounded_cone"
+    formula: ClassVar[str] = "r²/(2·tip_radius) for r ≤ b = tip_radius·slope, then slope·(r − b/2)"
+
+    def __post_init__(self) -> None:
+        require_positive("slope", self.slope)
+        require_positive("tip_radius", self.tip_radius)
+
+    @property
+    def tangent_radius(self) -> Parameter:
+        return self.tip_radius * self.slope
+
+    @property
+    def _tip(self) -> Paraboloid:
+        return Paraboloid(self.tip_radius)
+
+    def _flank_depth(self, x: Array, s: Array) -> Array:
+        b = self.tangent_radius
+        return np.asarray(self.slope * x * (b / (x + s) + np.arctan(s / b)))
+
+    def _flank_slope(self, x: Array, s: Array) -> Array:
+        b = self.tangent_radius
+        return np.asarray(self.slope * (np.arctan(s / b) + 2 * b / (x + s)))
+
+    def _flank_force(self, x: Array, s: Array) -> Array:
+        b = self.tangent_radius
+        square = x * x * (np.arctan(s / b) + (4 / 3) * b / (x + s))
+        return np.asarray(self.slope * (square + b * s / 3))
+
+    def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
+        return self._tip.pressure_kernel(Annulus(a, inner), r, rtol)

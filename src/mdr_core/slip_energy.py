@@ -1,0 +1,49 @@
+"""Moment of the slip annulus, to which the energy dissipated by monotonic loading is proportional.
+
+Source: notes, §6.
+"""
+
+from typing import Final
+
+import numpy as np
+
+from mdr_core.broadcasting import in_blocks
+from mdr_core.equivalent_1d import depth_step
+from mdr_core.interval_moments import IntervalMoments
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+# Cases evaluated at once, so that their nodes stay in the processor's cache.
+_BLOCK: Final = 4096
+
+
+def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+    """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx [length^3].
+
+    It is D^2/4 int 2t(1-t) 2 dx, where D = g(a) - g(c), and t from 0 to 1 is the part of it up to
+    x: a moment of the springs, without cancellation.
+
+    Source: notes, §6.
+
+    Parameters
+    ----------
+    profile : parameters broadcast with the annuli.
+    coordinate : a as a contact coordinate.
+    width, stick : a - c and c in the contact coordinate, each accurate by itself.
+    """
+    closed = profile.slip_moment(coordinate, width, stick)
+    if closed is not None:
+        return closed
+
+    def moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
+        span = depth_step(profile, high, width, low)
+        found = IntervalMoments(profile, by_force=False).between(
+            profile.depth(low), span, np.stack([low, high])
+        )
+        return (np.square(span) * found.weights[1] / 4,)
+
+    ends = coordinate, width, stick
+    swept = [profile.parameters[name] for name in profile.swept]
+    shape = np.broadcast_shapes(*map(np.shape, (*ends, *swept)))
+    (result,) = in_blocks(moment, profile, [np.atleast_1d(end) for end in ends], _BLOCK)
+    return result.reshape(shape)

@@ -1,0 +1,66 @@
+"""Bounds of inputs and of results, cheap enough for a sweep over millions of cases."""
+
+from math import inf
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core.errors import InputError
+from mdr_core.typing import Array, Flags
+
+# Smallest result of which sums of a few products keep full precision.
+_SMALLEST: Final = 1e-290
+# Largest such result.
+_LARGEST: Final = 1e290
+
+
+def extremes(values: float | ArrayLike) -> tuple[float, float]:
+    """Return the smallest and the largest value: NaN if one is NaN or there is none."""
+    if isinstance(values, (int, float)):
+        # A single number needs no reduction; NumPy's doubles are floats as well.
+        return float(values), float(values)
+    array = np.asarray(values, dtype=float)
+    if array.ndim == 0:
+        return float(array), float(array)
+    if array.size == 0:
+        return float("nan"), float("nan")
+    return float(array.min()), float(array.max())
+
+
+def first_index(bad: Flags) -> tuple[int, ...]:
+    """Return the index of the first true element, empty where `bad` has no dimension."""
+    return (int(np.flatnonzero(bad)[0]),) if bad.ndim else ()
+
+
+def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
+    """Raise InputError at the path unless all of the value is positive and finite."""
+    low, high = extremes(value)
+    if not (low > 0 and high < inf):
+        raise InputError(path, "must be positive and finite")
+
+
+def require_not_negative(path: tuple[str | int, ...], values: Array) -> None:
+    """Raise InputError at the first of the values that is negative or not finite."""
+    low, high = extremes(values)
+    if not (low >= 0 and high < inf):
+        bad = np.asarray(~((values >= 0) & (values < inf)))
+        detail = "must be finite and not negative"
+        raise InputError((*path, *first_index(bad)), detail, bad)
+
+
+def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
+    """Raise InputError at the first load whose results leave the range of double precision.
+
+    Parameters
+    ----------
+    path : the load in the request.
+    used : loads that are not zero.
+    results : positive quantities under these loads.
+    """
+    bad = np.zeros(used.shape, dtype=bool)
+    for values in results:
+        bad |= used & ~((values > _SMALLEST) & (values < _LARGEST))
+    if bad.any():
+        detail = "the contact under this load leaves the range of double precision"
+        raise InputError((*path, *first_index(bad)), detail, bad)

@@ -1,0 +1,200 @@
+"""State of the worn annulus, and the quantities that follow from it.
+
+Lengths along the surface are in units of b_0 = sqrt(a_0^2 - c_0^2), depths in units of
+D_0 = d_0 - g_0(c_0), cycles in units of b_0/(kappa E* D_0), kappa = 4 K mu^2 E*/G*.
+
+A slipping point has |s| = mu (E*/G*) sigma, sigma = (2/pi) int_c^r gamma(x)/sqrt(r^2 - x^2) dx with
+gamma(x) = g(x) - (d - D), and wears by dh/dN = kappa p sigma. D is the displacement amplitude
+divided by its compliance mu E*/G*. Source: notes, §11.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from mdr_core.typing import Array
+from mdr_core.wear.annulus_maps import AnnulusMaps
+from mdr_core.wear.surface_tilt import SurfaceTilt
+
+
+class Held(NamedTuple):
+    """Quantities that are held constant over the cycles."""
+
+    force: bool
+    """The normal force, so that the depth grows; otherwise the depth."""
+    displacement: bool
+    """The displacement amplitude, and with it D; otherwise the amplitude of the force."""
+
+    @property
+    def stick_grows(self) -> bool:
+        """The growing depth moves the stick edge outwards, over worn material."""
+        return self.force and self.displacement
+
+    @property
+    def stick_shrinks(self) -> bool:
+        """The falling normal force moves the stick edge inwards, over unworn material."""
+        return not (self.force or self.displacement)
+
+    @property
+    def stick_moves(self) -> bool:
+        """The stick edge is not at rest."""
+        return self.force == self.displacement
+
+
+class UnwornShape(Protocol):
+    """Equivalent profile g_0 before wear, in the units of the annulus."""
+
+    def rise(self, shift: float, offset: Array) -> Array:
+        """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
+
+    def slope(self, x: Array) -> Array:
+        """Return g_0'(x)."""
+
+
+@dataclass(frozen=True)
+class AnnulusState:
+    """The worn annulus at one number of cycles, from the vector of the integrator.
+
+    The vector holds (sigma - S_0)/s at all nodes but the last, S_0 being sigma of the unworn
+    shape; b, c - c_0, d - d_0, the work so far; and the surface's tilt outside the contact.
+    """
+
+    model: "AnnulusModel"
+    vector: Array
+
+    @property
+    def end(self) -> float:
+        """b = sqrt(a^2 - c^2)."""
+        return float(self.vector[self.model.first_edge])
+
+    @property
+    def shift(self) -> float:
+        """c - c_0, without the rounding error of c in a narrow annulus."""
+        return float(self.vector[self.model.first_edge + 1])
+
+    @property
+    def stick(self) -> float:
+        """c."""
+        return self.model.first_stick + self.shift
+
+    @property
+    def risen(self) -> float:
+        """d - d_0."""
+        return float(self.vector[self.model.first_edge + 2])
+
+    @property
+    def work(self) -> float:
+        """Integral of the power over the cycles."""
+        return float(self.vector[self.model.first_edge + 3])
+
+    @cached_property
+    def passed(self) -> float:
+        """w_c = g(c) - g_0(c): wear that the springs keep when the growing stick zone gets there.
+
+        At a stick edge at rest w_c is the height of g's step that is inside the stick zone.
+        """
+        return self.risen - self._stick_rise if self.model.held.stick_grows else 0.0
+
+    @cached_property
+    def _stick_rise(self) -> float:
+        """g_0(c) - g_0(c_0)."""
+        return -float(self.model.shape.rise(self.shift, np.array([-self.shift]))[0])
+
+    @cached_property
+    def drive(self) -> float:
+        """D."""
+        if self.model.held.displacement:
+            return 1.0
+        return 1.0 + self.risen - (self._stick_rise if self.model.held.stick_shrinks else 0.0)
+
+    @cached_property
+    def x(self) -> Array:
+        """Radii of the nodes; the last one is a."""
+        return np.sqrt(self.stick**2 + self.end**2 * self.model.maps.squares)
+
+    @cached_property
+    def offset(self) -> Array:
+        """x - c."""
+        return np.asarray(self.end**2 * self.model.maps.squares / (self.x + self.stick))
+
+    @cached_property
+    def growth(self) -> float:
+        """a - a_0."""
+        return self.shift + float(self.offset[-1]) - self.model.first_width
+
+    @cached_property
+    def unworn(self) -> Array:
+        """(g_0(x) - g_0(c))/x."""
+        return self.model.shape.rise(self.shift, self.offset) / self.x
+
+    @cached_property
+    def tilt(self) -> tuple[float, float]:
+        """Tilt of the surface at the contact's edge, and its slope."""
+        tilt = self.model.tilt
+        return tilt.at(self.vector[-tilt.count :], self.growth) if tilt else (0.0, 0.0)
+
+    @cached_property
+    def worn(self) -> Array:
+        """(sigma - S_0)/s: while the stick edge rests, the worn depth divided by s."""
+        return np.append(self.vector[: self.model.first_edge], self.tilt[0] / self.end)
+
+    @cached_property
+    def omega(self) -> Array:
+        """gamma/x."""
+        return np.asarray(self.unworn + self.model.maps.from_slip @ self.worn)
+
+    @cached_property
+    def gamma(self) -> Array:
+        """g(x) - (d - D)."""
+        return self.x * self.omega
+
+    @cached_property
+    def pressure(self) -> Array:
+        """p/E* at the nodes."""
+        return np.asarray(self.model.maps.to_pressure @ self.gamma) / self.end
+
+    @cached_property
+    def slip(self) -> Array:
+        """v = sigma/s."""
+        return np.asarray(self.model.maps.to_slip @ self.unworn + self.worn)
+
+    @property
+    def lifted(self) -> float:
+        """int_c^a gamma dx."""
+        maps = self.model.maps
+        return float(self.end**2 * (maps.mean @ self.omega))
+
+    @cached_property
+    def power(self) -> float:
+        """int_c^a (D - gamma) gamma dx, the friction work of a cycle. Source: notes, §6."""
+        maps, omega = self.model.maps, self.omega
+        return float(self.end**2 * (self.drive * maps.mean - self.gamma @ maps.product) @ omega)
+
+
+@dataclass(frozen=True)
+class AnnulusModel:
+    """Nodes of the annulus, its unworn shape, and the quantities that are constant."""
+
+    maps: AnnulusMaps
+    shape: UnwornShape
+    held: Held
+    first_stick: float
+    """c_0."""
+    first_width: float
+    """a_0 - c_0."""
+    tilt: SurfaceTilt | None = None
+    """Only with a growing stick zone."""
+
+    @property
+    def first_edge(self) -> int:
+        """Index of b in the vector."""
+        return self.maps.squares.size - 1
+
+    @property
+    def start(self) -> Array:
+        """Vector before the first cycle."""
+        edges = (1.0, 0.0, 0.0, 0.0)
+        tilt = np.zeros(self.tilt.count if self.tilt else 0)
+        return np.concatenate([np.zeros(self.first_edge), edges, tilt])

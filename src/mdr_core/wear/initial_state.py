@@ -1,0 +1,137 @@
+"""Partial slip before the first cycle: what is held, the units of the rates, the unworn shape."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from mdr_core.normal import NormalContact
+from mdr_core.quadrature import gauss_legendre
+from mdr_core.tangential import TangentialContact
+from mdr_core.typing import Array
+from mdr_core.wear.annulus_maps import annulus_maps
+from mdr_core.wear.annulus_state import Held
+from mdr_core.wear.rates import WearModel
+from mdr_core.wear.surface_tilt import SurfaceTilt
+
+# Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
+# contact of a paraboloid grows by half a width, that of a power 100 by less.
+_GROWTH: Final = 4.0
+# Full slip: the stick zone has shrunk to this part of its first distance from the flat or the axis.
+_VANISHED: Final = 1e-3
+# As near to the end of a profile as its functions are evaluated: they may be infinite there.
+_ALMOST: Final = 1 - 1e-9
+# Up to this part of the stick radius a step of g is the integral of its slope: a difference has
+# a rounding error of 1e-16/_NARROW, the rule of 8 points an error of _NARROW^16.
+_NARROW: Final = 0.05
+# Points of this rule.
+_POINTS: Final = 8
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """A contact in partial slip before the first cycle."""
+
+    sideways: TangentialContact
+    wear_coefficient: float
+    held: Held
+
+    @property
+    def contact(self) -> NormalContact:
+        """Normal contact before wear."""
+        return self.sideways.normal
+
+    @property
+    def slips(self) -> bool:
+        """There is a slip annulus, and so wear."""
+        return float(self.sideways.slip_width) > 0
+
+    @cached_property
+    def stick(self) -> float:
+        """c_0 [length]."""
+        return float(self.sideways.stick_radius)
+
+    @cached_property
+    def length_unit(self) -> float:
+        """b_0 = sqrt(a_0^2 - c_0^2) [length]."""
+        width = float(self.sideways.slip_width)
+        return float(np.sqrt(width * (2 * self.stick + width)))
+
+    @cached_property
+    def depth_unit(self) -> float:
+        """D_0 = d_0 - g(c_0) [length], the tangential displacement over its compliance."""
+        moved = abs(float(self.sideways.tangential_displacement))
+        return moved / float(self.sideways.compliance)
+
+    @cached_property
+    def cycle_unit(self) -> float:
+        """b_0 G*/(4 K mu^2 E*^2 D_0) [1], about the number of cycles that wear the annulus."""
+        friction = float(np.asarray(self.sideways.friction_coefficient))
+        slipped = 4 * float(self.sideways.compliance) * self.depth_unit
+        pressed = float(np.asarray(self.contact.e_star)) * self.depth_unit / self.length_unit
+        return self.depth_unit / (self.wear_coefficient * friction * pressed * slipped)
+
+    @property
+    def domain(self) -> float:
+        """Radius up to which the profile is evaluated [length]."""
+        return _ALMOST * float(np.asarray(self.contact.profile.domain))
+
+    @property
+    def room(self) -> float:
+        """Length by which the contact may grow before it reaches the profile's end [length]."""
+        return self.domain - float(self.contact.contact_radius)
+
+    @cached_property
+    def reach(self) -> float:
+        """Length by which the contact may grow in this method [length]."""
+        if not self.held.stick_grows:
+            return self.room
+        wide = 1 + float(self.sideways.slip_width) / self.stick
+        return min(self.room, _GROWTH * float(self.sideways.slip_width) * wide**2)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """`reach` and the smallest stick radius, where the integration ends, in its unit."""
+        profile = self.contact.profile
+        flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+        least = flat + _VANISHED * (self.stick - flat)
+        return self.reach / self.length_unit, least / self.length_unit
+
+    def model(self, nodes: int) -> WearModel:
+        """Return the rates of wear on so many nodes, in their units.
+
+        A shrinking stick zone takes half as many again: the front behind it is eight times thinner
+        than its distance from the edge, elsewhere both are alike. Source: notes, §11.
+        """
+        nodes = nodes * 3 // 2 if self.held.stick_shrinks else nodes
+        unit = self.length_unit
+        stick, width = self.stick / unit, float(self.sideways.slip_width) / unit
+        tilt = SurfaceTilt(stick, width, self.reach / unit) if self.held.stick_grows else None
+        return WearModel(annulus_maps(nodes), _Unworn(self), self.held, stick, width, tilt)
+
+
+@dataclass(frozen=True)
+class _Unworn:
+    """Equivalent profile before wear, in the units of the rates."""
+
+    state: InitialState
+
+    def rise(self, shift: float, offset: Array) -> Array:
+        """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
+        state, profile = self.state, self.state.contact.profile
+        unit = state.length_unit
+        stick, by = state.stick + unit * shift, unit * offset
+        if by[-1] > _NARROW * stick:
+            end = state.domain
+            g = profile.g(np.minimum(np.append(stick, stick + by), end))
+            return np.asarray((g[1:] - g[0]) / state.depth_unit)
+        nodes, weights = gauss_legendre(_POINTS)
+        at = stick + np.multiply.outer(by, (1 + nodes) / 2)
+        return np.asarray(by / 2 * (profile.dg(at) @ weights) / state.depth_unit)
+
+    def slope(self, x: Array) -> Array:
+        """Return g_0'(x)."""
+        state, unit = self.state, self.state.length_unit
+        slope = state.contact.profile.dg(np.minimum(x * unit, state.domain))
+        return np.asarray(slope * (unit / state.depth_unit))

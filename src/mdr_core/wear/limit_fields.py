@@ -1,0 +1,95 @@
+"""Worn depth and pressure of the limiting state over the radius, for all loads at once."""
+
+from collections.abc import Callable
+from math import inf
+from typing import Final
+
+import numpy as np
+
+from mdr_core.abel import Annulus
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Flags, Indices
+from mdr_core.wear.limiting_stick import LimitingStick
+from mdr_core.wear.worn_annulus import WornAnnulus
+
+# Pairs of loads and radii handled at once: bounds the memory, whatever their number.
+_BLOCK: Final = 8192
+
+
+def worn_depth(
+    stuck: LimitingStick, annulus: WornAnnulus, outer: Array, r: Array, rtol: float
+) -> Array:
+    """Return (2/pi) int_c^r (d - g(x))/sqrt(r^2 - x^2) dx in the annulus up to `outer` [length].
+
+    Source: mdr-5, Eqs. (5.75), (5.82).
+
+    Parameters
+    ----------
+    stuck : stick zones of the limit, (loads,).
+    annulus : worn annuli, (loads,).
+    outer : outer radii of the annuli [length], (loads,).
+    r : radii [length], (m,).
+    rtol : relative tolerance of the slip kernel.
+    """
+    profile, step = annulus.profile, np.ravel(stuck.step)
+    inner, end = annulus.stick[:, None], np.ravel(outer)[:, None]
+    # In full slip the axis wears as well, and a flat punch wears up to its edge.
+    worn = (r <= end if profile.slips_at_once else r < end) & ((r > inner) | (inner == 0))
+    worn &= (step > 0)[:, None]
+
+    def values(load: Indices, at: Array) -> Array:
+        annuli = annulus.chosen(load)
+        width = annuli.at(at)
+        # S(0; r) is the profile itself.
+        lag = np.where(profile.slips_at_once, 0.0, profile.f(at))
+        some = np.flatnonzero(annuli.stick > 0)
+        if some.size and "slip" in profile.closed_forms:
+            lag[some] = profile.slip_kernel(annuli.stick[some], at[some], rtol)
+        elif some.size:
+            lag[some] = annuli.chosen(some).slip_kernel(width[some], rtol)
+        share = np.where(at > 0, 2 / np.pi * annuli.angle(width), 1.0)
+        # At the outer edge of the annulus the terms cancel but for rounding error.
+        return np.asarray(np.maximum(share * step[load] - lag, 0.0))
+
+    result = _filled(worn, r, values)
+    result[np.ravel(stuck.endless)] = inf
+    return result.reshape(outer.shape + r.shape)
+
+
+def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array, rtol: float) -> Array:
+    """Return (E*/pi) [int_r^c g'/sqrt(x^2 - r^2) dx + (d - g(c))/sqrt(c^2 - r^2)] [pressure].
+
+    Source: mdr-5, Eqs. (5.34), (5.79), (5.82).
+
+    Parameters
+    ----------
+    profile : profile before wear.
+    stuck : stick zones of the limit, (loads,).
+    e_star : effective modulus E* [pressure].
+    r : radii [length], (m,).
+    rtol : relative tolerance.
+    """
+    # In full slip the limiting pressure is zero.
+    held = np.where(stuck.lost | stuck.endless, 0.0, stuck.radius)
+    c, step, edge = (np.ravel(part) for part in (held, stuck.step, stuck.coordinate))
+    moduli = np.ravel(np.broadcast_to(e_star, held.shape))
+
+    def values(load: Indices, at: Array) -> Array:
+        inner = profile.pressure_kernel(Annulus(edge[load]), at, rtol)
+        annulus = step[load] / (np.pi * np.sqrt((c[load] - at) * (c[load] + at)))
+        return np.asarray(moduli[load] * (inner + annulus))
+
+    result = _filled(r < c[:, None], r, values)
+    singular = (c > 0) & ((step > 0) | (profile.slips_at_once & (edge > 0)))
+    result[(r == c[:, None]) & singular[:, None]] = inf
+    return result.reshape(held.shape + r.shape)
+
+
+def _filled(where: Flags, r: Array, values: Callable[[Indices, Array], Array]) -> Array:
+    """Return `values(load, radius)` at the chosen pairs of (loads, m), zero elsewhere."""
+    result = np.zeros(where.shape)
+    load, place = np.nonzero(where)
+    for start in range(0, load.size, _BLOCK):
+        which, at = load[start : start + _BLOCK], place[start : start + _BLOCK]
+        result[which, at] = values(which, r[at])
+    return result

@@ -1,0 +1,250 @@
+"""Stick zone in the limiting state of wear, for each pair of constant quantities.
+
+The surface inside it never slips and keeps its profile, so that the stick radius c and the step
+d - g(c) at the stick edge describe the whole limiting state. Source: notes, §9.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core import equivalent_1d
+from mdr_core.errors import InputError
+from mdr_core.inversion import invert
+from mdr_core.tangential import TangentialContact
+from mdr_core.typing import Array, Flags
+from mdr_core.validation import first_index
+
+# Points of the search for the largest of several possible stick zones ...
+_POINTS: Final = 65
+# ... and bisections about the best of them.
+_HALVINGS: Final = 40
+
+
+@dataclass(frozen=True)
+class LimitingStick:
+    """Stick zone in the limit; all arrays of one shape.
+
+    In full slip c is zero, and the step is the depth.
+    """
+
+    coordinate: Array
+    """c in the profile's contact coordinate."""
+    radius: Array
+    """c [length]."""
+    step: Array
+    """d - g(c) in the limit [length], free of cancellation."""
+    slip_width: Array
+    """a - c before wear [length]: about the width of the worn annulus."""
+    lost: Flags
+    """Full slip at a constant depth: the contact wears until nothing touches."""
+    endless: Flags
+    """Full slip under a constant normal force: wear is unbounded."""
+
+
+def by_depth_and_displacement(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+    """Return the stick zone before wear: G* u = mu E* (d - g(c)) holds at all times.
+
+    Source: mdr-5, Eq. (5.80).
+    """
+    depth = sideways.normal.indentation_depth
+    step = np.where(sideways.full_slip, depth, amplitude / sideways.compliance)
+    return _from(sideways, step, lost=sideways.full_slip)
+
+
+def by_forces(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+    """Return the stick zone before wear: F_N(c) = F_N - F_x/mu is constant, and the depth grows.
+
+    In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
+    """
+    step = _carried(sideways, amplitude, sideways.stick_radius)
+    return _from(sideways, step, endless=sideways.full_slip)
+
+
+def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+    """Return the stick zone with F_N = F_N(c) + 2 E* c (d - g(c)), d - g(c) = G* u/(mu E*).
+
+    The book's limit neglects that the stick edge moves outwards, over worn material, as the depth
+    grows. Source: mdr-5, Eq. (5.90), for any profile.
+    """
+    contact, profile = sideways.normal, sideways.normal.profile
+    step = np.broadcast_to(amplitude / sideways.compliance, sideways.width.shape)
+    endless = sideways.full_slip
+    if profile.slips_at_once:
+        return _from(sideways, step, endless=endless)
+    top = np.broadcast_to(contact.coordinate, step.shape)
+    target = np.where(endless | (sideways.width <= 0), 0.0, step)
+
+    def step_by_force(width: Array) -> Array:
+        """Return (F_N(a) - F_N(c))/(2 E* c)."""
+        edge = top - width
+        gained = equivalent_1d.force_step(profile, top, width, edge)
+        return np.asarray(gained / (2 * profile.contact_radius(edge)))
+
+    def log_slope(width: Array, value: Array) -> Array:
+        edge = top - width
+        c = profile.contact_radius(edge)
+        rise = profile.depth_slope(edge) / value + profile.radius_slope(edge) / c
+        return np.asarray(width * rise)
+
+    # The stick edge before wear lies further in: there the annulus outside carries load as well.
+    widest = np.where(target > 0, sideways.width, 1.0)
+    width = invert(
+        step_by_force,
+        log_slope,
+        target,
+        widest / 2,
+        np.zeros_like(target),
+        widest,
+        f"{profile.kind}'s stick edge under a constant force",
+    )
+    moved = np.where(endless, sideways.stick_coordinate, top - width)
+    radius = np.where(width > 0, profile.contact_radius(moved), sideways.stick_radius)
+    reach = profile.radius_width(top, width)
+    return _from(sideways, step, endless=endless, moved=(moved, radius, reach))
+
+
+def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+    """Return the stick zone of the largest c with 2 mu E* c (d - g(c)) = F_x.
+
+    Wear at a constant depth reduces F_N, and with it F_N(c) = F_N - F_x/mu: the stick zone shrinks,
+    over unworn material, until it carries the whole remaining load. Source: notes, §9.
+
+    Raises
+    ------
+    InputError : a force that no stick zone carries: the wear ends in full slip, without a limit.
+    """
+    contact, profile = sideways.normal, sideways.normal.profile
+    share = _carried(sideways, amplitude, np.ones(()))
+    share = np.broadcast_to(share, sideways.width.shape)
+    if profile.slips_at_once:
+        _refuse_overload(sideways, amplitude, sideways.full_slip, sideways.limiting_force)
+        return _from(sideways, np.zeros_like(share))
+    top = np.broadcast_to(contact.coordinate, share.shape)
+
+    def carried(width: Array) -> Array:
+        """Return c (d - g(c)) at the coordinate `width` below the contact edge before wear."""
+        edge = np.maximum(top - width, profile.first_coordinate)
+        return np.asarray(
+            profile.contact_radius(edge) * equivalent_1d.depth_step(profile, top, width, edge)
+        )
+
+    def slope(width: Array) -> Array:
+        edge = np.maximum(top - width, profile.first_coordinate)
+        step = equivalent_1d.depth_step(profile, top, width, edge)
+        shrinks = profile.radius_slope(edge) * step
+        return np.asarray(profile.contact_radius(edge) * profile.depth_slope(edge) - shrinks)
+
+    reach = top - profile.first_coordinate
+    target = np.where(reach > 0, share, 0.0)
+    low, high, most = _first_crossing(carried, slope, reach, target)
+    largest = 2 * sideways.friction_coefficient * contact.e_star * most
+    _refuse_overload(sideways, amplitude, most < target, largest)
+    width = invert(
+        carried,
+        lambda width, value: np.asarray(width * slope(width) / value),
+        target,
+        np.where(target > 0, (low + high) / 2, 1.0),
+        low,
+        np.where(target > 0, high, 2.0),
+        f"{profile.kind}'s stick edge at a constant depth",
+    )
+    edge = top - width
+    radius = np.where(width > 0, profile.contact_radius(edge), contact.contact_radius)
+    moved = edge, radius, profile.radius_width(top, width)
+    return _from(sideways, _carried(sideways, amplitude, radius), moved=moved)
+
+
+def _first_crossing(
+    function: Callable[[Array], Array],
+    slope: Callable[[Array], Array],
+    reach: Array,
+    target: Array,
+) -> tuple[Array, Array, Array]:
+    """Return the ends of the first interval on which the function rises to the target.
+
+    And its largest value in [0, reach]: if this is below the target, there is no such interval.
+    For a profile with a slope discontinuity the function can rise, fall and rise again.
+    """
+    places = np.multiply.outer(np.linspace(0.0, 1.0, _POINTS), reach)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        values = np.array([function(place) for place in places])
+        peak = np.argmax(values, axis=0)[None]
+        left = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
+        right = np.take_along_axis(places, np.minimum(peak + 1, _POINTS - 1), axis=0)[0]
+        for _ in range(_HALVINGS):
+            middle = (left + right) / 2
+            rising = slope(middle) > 0
+            left, right = np.where(rising, middle, left), np.where(rising, right, middle)
+        at_peak = function(left)
+    reached = values >= target
+    found = reached.any(axis=0)
+    index = np.argmax(reached, axis=0)[None]
+    before = np.take_along_axis(places, np.maximum(index - 1, 0), axis=0)[0]
+    at = np.take_along_axis(places, index, axis=0)[0]
+    start = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
+    most = np.maximum(at_peak, values.max(axis=0))
+    return np.where(found, before, start), np.where(found, at, left), most
+
+
+def _refuse_overload(
+    sideways: TangentialContact, force: Array, beyond: Flags, largest: Array
+) -> None:
+    if not np.any(beyond):
+        return
+    beyond, most = np.broadcast_arrays(beyond, largest)
+    raise InputError(
+        ("tangential", "tangential_force", *(first_index(beyond) if force.ndim else ())),
+        "wear at this depth reduces the normal force until the whole contact slips: a stick zone "
+        f"remains only under amplitudes below {float(most[beyond][0]):.12g}",
+    )
+
+
+# By the constant load and the prescribed amplitude.
+_BY_CONTROL: Final = {
+    ("indentation_depth", "tangential_displacement"): by_depth_and_displacement,
+    ("indentation_depth", "tangential_force"): by_depth_and_force,
+    ("normal_force", "tangential_force"): by_forces,
+    ("normal_force", "tangential_displacement"): by_force_and_displacement,
+}
+
+
+def find(sideways: TangentialContact, name: str, size: Array) -> LimitingStick:
+    """Return the stick zone in the limit under a constant amplitude of this name and size."""
+    return _BY_CONTROL[sideways.normal.control, name](sideways, size)
+
+
+def _carried(sideways: TangentialContact, force: Array, radius: Array) -> Array:
+    """Return F_x/(2 mu E* c), zero for c = 0."""
+    resistance = 2 * sideways.friction_coefficient * sideways.normal.e_star * radius
+    return np.where(resistance > 0, force / np.where(resistance > 0, resistance, 1.0), 0.0)
+
+
+def _from(
+    sideways: TangentialContact,
+    step: Array,
+    *,
+    lost: Flags | None = None,
+    endless: Flags | None = None,
+    moved: tuple[Array, Array, Array] | None = None,
+) -> LimitingStick:
+    """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`."""
+    first = sideways.stick_coordinate, sideways.stick_radius, sideways.slip_width
+    coordinate, radius, reach = first if moved is None else moved
+    contact = sideways.normal
+    # Without a normal load nothing wears.
+    loaded = np.asarray(contact.coordinate > contact.profile.first_coordinate)
+    # A flat punch either sticks or slides as a whole.
+    rests = (reach <= 0) | ~loaded
+    nowhere = np.zeros((), dtype=bool)
+    parts = (
+        np.where(rests, contact.coordinate, coordinate),
+        np.where(rests, contact.contact_radius, radius),
+        np.where(rests, 0.0, step),
+        np.where(rests, 0.0, reach),
+        nowhere if lost is None else lost & loaded,
+        nowhere if endless is None else endless & loaded,
+    )
+    return LimitingStick(*(np.broadcast_to(part, sideways.width.shape) for part in parts))

@@ -1,0 +1,163 @@
+"""Annulus c < r < c + w outside the stick zone, with the relative accuracy of its width w.
+
+The worn depth follows from g - g(c) in the annulus. Near incipient slip the annulus is narrow: its
+width is the unknown, and every integral is taken over the width, never between two radii.
+Source: notes, §9.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core.abel.displacement import Kernel, annulus_integral, arccosine
+from mdr_core.inversion import invert
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Indices
+
+# Annuli handled at once: bounds the memory, whatever their number.
+_BLOCK: Final = 4096
+# Relative tolerance of the integrals, about 500 times the rounding error.
+_RTOL: Final = 1e-13
+# A pole of g' is approached up to here: beyond, its distance is dominated by rounding error.
+_BEFORE_POLE: Final = 1e-12
+# Angle up to which t - sin t is summed as a series.
+_THRESHOLD: Final = 1.0
+# 1/((2k + 2)(2k + 3)), from the last term of the series used to the first.
+_SINE: Final = tuple(1 / ((2 * k + 2) * (2 * k + 3)) for k in range(9, 0, -1))
+
+
+@dataclass(frozen=True)
+class WornAnnulus:
+    """Worn annuli about the stick zones of contacts with one profile; arrays of shape (m,)."""
+
+    profile: Profile
+    stick: Array
+    """c, the inner edge [length]."""
+    coordinate: Array
+    """c in the profile's contact coordinate; undefined where c lies inside the flat."""
+
+    @property
+    def flat(self) -> float:
+        """Radius of the profile's flat, zero for none."""
+        return float(self.profile.contact_radius(np.asarray(self.profile.first_coordinate)))
+
+    @property
+    def room(self) -> Array:
+        """Width at which the annulus reaches the end of the profile [length]."""
+        ends = [float(self.profile.domain)]
+        # An interval that ends before its pole does not reach it.
+        ends += [b.pole * (1 - _BEFORE_POLE) for b in self.profile.branches if b.stop >= b.pole]
+        return np.asarray(min(ends) - self.stick)
+
+    def at(self, radius: Array) -> Array:
+        """Return the width of the annulus that ends at a radius >= c [length]."""
+        return np.asarray((radius - self.flat) - self.below(self.flat))
+
+    def below(self, radius: float) -> Array:
+        """Return c - radius [length]; for the flat or a break, as accurate as the coordinate."""
+        plain, profile = self.stick - radius, self.profile
+        if profile.slips_at_once or radius not in self._special:
+            return plain
+        start = profile.coordinate_from_radius(np.asarray(radius))
+        beyond = (self.stick >= radius) & (self.coordinate >= start)
+        edge = np.where(beyond, self.coordinate, start)
+        return np.where(beyond, profile.radius_width(edge, edge - start), plain)
+
+    @property
+    def _special(self) -> set[float]:
+        """Radii at which a coordinate starts; none is needed at the axis."""
+        breaks = (float(np.asarray(b)) for b in self.profile.breaks)
+        return {self.flat, *breaks} - {0.0}
+
+    def chosen(self, which: Indices) -> "WornAnnulus":
+        """Return some of the annuli."""
+        return WornAnnulus(self.profile, self.stick[which], self.coordinate[which])
+
+    def slip_kernel(self, width: Array, rtol: float = _RTOL) -> Array:
+        """Return S(c; c + w) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
+
+        Source: mdr-5, Eq. (5.41).
+        """
+        return 2 / np.pi * self._integral(width, arccosine, rtol)
+
+    def mean_rise(self, width: Array) -> Array:
+        """Return the mean of g(r cos(t)) - g(c) over 0 < t < arccos(c/r), r = c + w [length].
+
+        At the outer edge, where the worn depth vanishes, it equals d - g(c), Eq. (5.88). It grows
+        with the width wherever g does. Source: notes, §9.
+        """
+        return self._integral(width, arccosine) / self.angle(width)
+
+    def angle(self, width: Array) -> Array:
+        """Return arccos(c/r) [1]."""
+        return np.asarray(np.arctan2(np.sqrt(width * (2 * self.stick + width)), self.stick))
+
+    def worn_volume(self, width: Array, step: Array) -> Array:
+        """Return 4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx = 2 pi int_c^r h r dr [length^3].
+
+        `step` = d - g(c). At the outer edge the derivative by the width vanishes with the worn
+        depth h, so that the rounding error of the width has no effect. Source: notes, §9.
+        """
+        constant = _segment(self.stick, np.sqrt(width * (2 * self.stick + width)))
+        return np.asarray(4 * (step * constant - self._integral(width, _segment)))
+
+    def width_where_worn(self, step: Array, start: Array) -> Array:
+        """Return the width at which `mean_rise` equals the step; NaN if it is not representable.
+
+        Source: mdr-5, Eq. (5.88), for any profile.
+        """
+
+        def log_slope(width: Array, value: Array) -> Array:
+            angle, r = self.angle(width), self.stick + width
+            rate = self.stick / (r * np.sqrt(width * (2 * self.stick + width)))
+            return np.asarray(
+                width * (self._integral(width, _rate) / (value * angle) - rate / angle)
+            )
+
+        return invert(
+            self.mean_rise,
+            log_slope,
+            step,
+            start,
+            np.zeros_like(step),
+            self.room,
+            f"{self.profile.kind}'s worn annulus",
+        )
+
+    def _integral(self, width: Array, kernel: Kernel, rtol: float = _RTOL) -> Array:
+        """Return int_c^r g'(x) K dx."""
+        if self.profile.slips_at_once:
+            return np.zeros_like(width)
+        branches, result = self.profile.branches, np.empty_like(width)
+        for start in range(0, width.size, _BLOCK):
+            part = np.arange(start, min(start + _BLOCK, width.size))
+            some = self.chosen(part)
+            result[part] = annulus_integral(
+                branches, some.stick, width[part], some.below, kernel, rtol
+            )
+        return result
+
+
+def _rate(x: Array, leg: Array) -> Array:
+    """Return d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2))."""
+    return np.asarray(x / (leg * np.hypot(x, leg)))
+
+
+def _segment(x: Array, leg: Array) -> Array:
+    """Return int_x^r sqrt(r^2 - t^2) dt = (r^2/4) (2 theta - sin(2 theta)), theta = arccos(x/r)."""
+    r2 = x * x + leg * leg
+    return np.asarray(r2 / 4 * sine_gap(2 * np.arctan2(leg, x)))
+
+
+def sine_gap(t: Array) -> Array:
+    """Return t - sin(t) for 0 <= t <= pi [1], about t^3/6 for small t.
+
+    >>> float(f"{sine_gap(np.array(1e-3)):.6g}")
+    1.66667e-10
+    """
+    small = np.minimum(t, _THRESHOLD)
+    t2, series = small * small, np.ones_like(small)
+    for factor in _SINE:
+        series = 1 - t2 * factor * series
+    return np.asarray(np.where(t < _THRESHOLD, small * t2 / 6 * series, t - np.sin(t)))
