@@ -1,1 +1,1 @@
-"""The wire: HTTP in front of :mod:`mdr_core`; no physics and no arithmetic live here."""
+"""HTTP service for :mod:`mdr_core`, without physics of its own."""

@@ -1,37 +1,68 @@
-"""The application, put together."""
+"""The ASGI application."""
 
+import multiprocessing
+import os
+import signal
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
-from mdr_service import handlers, openapi, routes
-from mdr_service.compute import COMPUTE
+from mdr_service import health, middleware, openapi
+from mdr_service.api import explorer, operations, queries
+from mdr_service.settings import SETTINGS
+from mdr_service.transfers import Transfers
+from mdr_service.workers import WorkerPool
+
+if TYPE_CHECKING:
+    from multiprocessing.process import BaseProcess
 
 
 @asynccontextmanager
-async def _lifespan(_app: FastAPI) -> AsyncIterator[None]:
-    async with COMPUTE.ready():
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    if supervisor := multiprocessing.parent_process():
+        # A terminal signals all processes; the supervisor then ends the workers.
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        threading.Thread(target=_end_with, args=(supervisor,), daemon=True).start()
+    async with app.state.workers.started(health.self_test):
         yield
 
 
+def _end_with(supervisor: "BaseProcess") -> None:
+    supervisor.join()
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
 def create_app() -> FastAPI:
-    """Return the application, ready to serve."""
-    # The framework's own pages load their scripts from other hosts.
+    """Return the application."""
     app = FastAPI(
-        routes=routes.router.routes,
-        openapi_url=None,
+        # Routes of an included router would take some microseconds longer per request.
+        routes=[*queries.router.routes, *operations.router.routes, *explorer.router.routes],
+        title="MDR",
+        version=version("mdr"),
+        description=openapi.DESCRIPTION,
+        openapi_tags=openapi.TAGS,
+        license_info={"name": "MIT", "identifier": "MIT"},
+        contact={"name": "The MDR authors"},
+        # Relative to the document, so that it holds below a root path as well.
+        servers=[{"url": ".", "description": "This service"}],
+        separate_input_output_schemas=False,
+        # The framework's own pages load their scripts from other hosts.
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
-        # It would look for a collector at every request; `/metrics` tells more.
+        # It would search for a collector on every request; `/metrics` covers more.
         telemetry={"tracing": False, "metrics": False, "logs": False},
         lifespan=_lifespan,
     )
-    handlers.install(app, routes.ENDPOINTS)
-    app.state.openapi = openapi.document(version("mdr"), app.routes)
+    app.state.transfers = Transfers(SETTINGS.max_transfer_bytes)
+    app.state.workers = WorkerPool(SETTINGS, app.state.transfers)
+    middleware.install(app)
+    openapi.extend(app)
     app.mount("/docs/swagger", StaticFiles(packages=[("fastapi_swagger", "resources")]))
     app.mount("/docs/page", StaticFiles(packages=[("mdr_service", "page")]))
     return app

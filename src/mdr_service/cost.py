@@ -1,112 +1,137 @@
-"""What an answer costs, in seconds, known before any work is done.
+"""Expected computing time of a query, from its sizes alone.
 
-The work on a query is counted by `sizes`, and each count has a rate, measured on one machine for
-every kind of profile (``rates.json``, written by `make rates`). The sum is what the answer takes
-there; how much slower this machine is, `compute` finds out when it starts.
+It decides whether a query runs at once, on the event loop, or in a compute process, where the
+deadline is the guarantee. A query of usual size takes at most four times as long, and an evolution
+with little wear far less; a query that is expected to take longer than four times the deadline is
+rejected.
 """
 
-from collections.abc import Iterator, Mapping
-from importlib.resources import files
-from typing import Any, Final
+from typing import Final
 
-import orjson
+from pydantic import BaseModel
 
-from mdr_service import problems, sizes
-from mdr_service.problems import Error, ServiceError
-from mdr_service.schemas.queries import Query
-from mdr_service.sizes import Sizes
+from mdr_service import problems
+from mdr_service.problems import ServiceError
+from mdr_service.schemas.batch import BatchQuery
+from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
+from mdr_service.schemas.fields import FieldQuery, StressQuery
+from mdr_service.schemas.load_paths import HistoryQuery
+from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
+from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.serializers import svg
+from mdr_service.settings import SETTINGS
 
-_MEASURED: Final[dict[str, Any]] = orjson.loads(
-    files("mdr_service").joinpath("rates.json").read_bytes()
-)
-REFERENCE_SECONDS: Final[float] = _MEASURED["reference_seconds"]
-"""What the machine of the rates takes for `REFERENCE`."""
-REFERENCE: Final[Mapping[str, Any]] = {
-    "profile": {"kind": "sphere", "radius": 1.0},
-    "material": {"e_star": 1.0, "g_star": 0.8},
-    "load": {"indentation_depth": 0.01},
-    "friction_coefficient": 0.3,
-    "tangential": {"tangential_force": 1e-4},
+# Times on one core of a server of 2023 [s]: of a query about a single load of a cone, ...
+_START: Final[dict[type[Query], float]] = {
+    NormalQuery: 5e-5,
+    TangentialQuery: 1.5e-4,
+    StressQuery: 1e-4,
+    HistoryQuery: 5e-4,
+    WearQuery: 1e-3,
+    EvolutionQuery: 1e-3,
 }
-"""A tangential contact that takes about a millisecond, of every kind of work some."""
-RATES: Final[Mapping[str, Mapping[str, float]]] = _MEASURED["rates"]
-"""Seconds per count, by kind of profile, and under `WRITING` for all of them."""
-WRITING: Final = "writing"
-PER_LENGTH: Final = "length * "
-"""Before a rate per point of a table, or per term of a series."""
+# ... of each load, load with friction or sample, load with wear, number of cycles, ...
+_LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
+# ... normal load of a table, whose largest pressure is searched for, ...
+_SEARCH = 5e-6
+# ... value over the radius, and of drawing a picture.
+_VALUE, _PICTURE = 2.5e-7, 0.3
+# Multiples of these for profiles without closed inverses, per term of a series, for tables.
+_IMPLICIT, _TERM, _TABLE = 10.0, 4.0, 80.0
+_EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
+# Of each nonlinear load step, and of each node of an evolution, besides its least number of nodes.
+# Of these, of cycles and of stresses and slip only the fourth root of the multiples is taken.
+_NONLINEAR_STEP, _NODE, _LEAST_NODES = 2.5e-3, 7.5e-3, 16
+# Of the stress at a point beneath the surface, and points that a search for its peak takes.
+_POINT, _POINT_OF_TABLE, _SEARCHED = 4e-6, 1.2e-4, 1500
+# Well beyond the deadline, since few queries take less than a quarter of the expected time.
+_LONGEST: Final = 4.0 * SETTINGS.budget_seconds
 
 
-def seconds(question: str, query: Query, media_type: str) -> float:
-    """Return what the answer takes on the machine of the rates."""
-    return estimated(sizes.of(question, query, media_type))
+def seconds(query: BaseModel) -> float:
+    """Return the expected time of a query or a batch."""
+    if isinstance(query, BatchQuery):
+        times = [seconds(item.query) for item in query.queries if isinstance(item.query, Query)]
+        # A query that is rejected alone takes no time.
+        return sum(time for time in times if time <= _LONGEST)
+    if not isinstance(query, Query):
+        raise TypeError(f"{type(query).__name__} is not a query")
+    if isinstance(query, SubsurfaceQuery):
+        return _beneath(query)
+    scale = _complexity(query.profile)
+    path = query.path if isinstance(query, HistoryQuery | StressQuery) else None
+    # Times that are multiplied in full, and those multiplied by the fourth root.
+    evaluated, integrated = _START[type(query)], 0.0
+    if isinstance(query, FieldQuery):
+        if "normal_displacement" in query.quantities:
+            evaluated += _VALUE * query.numbers
+        else:
+            integrated += _VALUE * query.numbers
+    if isinstance(query, EvolutionQuery):
+        integrated += _NODE * (_LEAST_NODES + query.resolution) + _CYCLE * query.loads
+    elif isinstance(query, WearQuery):
+        evaluated += _WEAR * query.loads
+    elif path:
+        evaluated += _FRICTION * path.samples
+        integrated += _NONLINEAR_STEP * path.steps if path.nonlinear else 0.0
+    else:
+        with_friction = query.has("friction_coefficient")
+        evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
+        if isinstance(query.profile, TabulatedProfile) and isinstance(query, NormalQuery):
+            evaluated += _SEARCH * query.load.count
+    root: float = scale**0.25
+    return scale * evaluated + root * integrated
 
 
-def estimated(found: Sizes) -> float:
-    """Return what an answer of these sizes takes on the machine of the rates."""
-    rates = RATES[found.profile]
-    total = 0.0
-    for name, count in sizes.counts(found):
-        rate = rates[name]
-        if found.length:
-            rate += rates[PER_LENGTH + name] * found.length
-        total += rate * count
-    writing = RATES[WRITING]
-    for name, count in sizes.written(found):
-        total += writing[name] * count
-    return total
+def _beneath(query: SubsurfaceQuery) -> float:
+    """Return the expected time of stresses beneath the surface."""
+    frictions = 2 if query.has("friction_coefficient") else 1
+    searches = 2 * query.largest + 20 * query.material.has("yield_strength")
+    points = query.positions + _SEARCHED * searches * frictions
+    each = _POINT_OF_TABLE if isinstance(query.profile, TabulatedProfile) else _POINT
+    return _START[NormalQuery] + query.loads * frictions * points * each
 
 
-def too_costly(
-    question: str, query: Query, media_type: str, most: float, slowness: float = 1.0
-) -> ServiceError:
-    """Return the refusal of what takes more than `most` seconds, with the numbers that would fit.
+def require_feasible(query: BaseModel, media_type: str) -> float:
+    """Return the expected time of a response.
 
-    The seconds are those of the machine of the rates, and this one is slower by a factor.
+    Raises
+    ------
+    ServiceError : the query would certainly exceed the time limit.
     """
-    found = sizes.of(question, query, media_type)
-    fits = list(_fits(query, found, most))
-    return beyond(estimated(found) * slowness, most * slowness, fits)
+    expected = seconds(query) + (_PICTURE if media_type == svg.MEDIA_TYPE else 0.0)
+    limit = SETTINGS.budget_seconds
+    if expected > _LONGEST:
+        part = limit / expected
+        detail = f"estimated time of {expected:.2g} s exceeds the limit of {limit:.2g} s"
+        fits = [
+            (f"/{name}", f"{detail}; about {int(part * count)} would fit")
+            for name, count in _sizes(query).items()
+        ]
+        raise ServiceError(problems.TOO_COSTLY, detail, fits)
+    return expected
 
 
-def beyond(taken: float, most: float, fits: list[Error]) -> ServiceError:
-    """Return the refusal of what would take so many seconds on this machine."""
-    detail = f"it takes about {taken:.2g} s, and at most {most:.2g} s are given to one request"
-    named = ", or ".join(fit for _, fit in fits)
-    return ServiceError(problems.TOO_COSTLY, f"{detail}; {named}" if named else detail, fits)
+def _complexity(profile: Profile) -> float:
+    if isinstance(profile, TabulatedProfile):
+        return _TABLE
+    if isinstance(profile, SeriesProfile):
+        return _IMPLICIT + _TERM * len(profile.terms)
+    return 1.0 if profile.kind in _EXPLICIT else _IMPLICIT
 
 
-# What may be given less of, the field of the sizes, and where in the request it may be.
-_KNOBS: Final = (
-    ("numbers of cycles", "loads", ("cycles",)),
-    ("loads", "loads", ("load",)),
-    ("samples", "samples", ("history", "cycles")),
-    ("radii", "radii", ("radius", "points")),
-    ("nodes", "nodes", ("resolution", "profile")),
-    ("terms or points", "length", ("profile",)),
-)
-
-
-# What is counted besides, and becomes less alike.
-_PARTS: Final = {"samples": ("curved", "forced"), "loads": ("inverted",)}
-
-
-def _fits(query: Query, found: Sizes, most: float) -> Iterator[Error]:
-    """Yield what would fit, and where it would be given; of one field the first that is there."""
-    done = set()
-    for what, field, places in _KNOBS:
-        place = next((name for name in places if name in query.model_fields_set), None)
-        if place and field not in done and (number := _largest(found, field, most)):
-            done.add(field)
-            yield f"/{place}", f"{number} {what} would fit"
-
-
-def _largest(found: Sizes, field: str, most: float) -> int:
-    """Return the largest number that fits in place of one, 0 if none does."""
-    low, high = 0, int(getattr(found, field))
-    while high - low > 1:
-        middle = (low + high) // 2
-        tried: dict[str, Any] = {field: middle}
-        for part in _PARTS.get(field, ()):
-            tried[part] = getattr(found, part) * middle // getattr(found, field)
-        low, high = (middle, high) if estimated(found._replace(**tried)) <= most else (low, middle)
-    return low
+def _sizes(query: BaseModel) -> dict[str, int]:
+    """Return the sizes that can be reduced, by the member of the request."""
+    if isinstance(query, BatchQuery):
+        return {"queries": len(query.queries)}
+    found: dict[str, int] = {}
+    if isinstance(query, HistoryQuery | StressQuery) and query.path:
+        found = {"history" if query.has("history") else "cycles": query.path.samples}
+    elif isinstance(query, Query):
+        found = {"cycles" if isinstance(query, EvolutionQuery) else "load": query.loads}
+    if isinstance(query, SubsurfaceQuery):
+        found["points" if query.points else "x"] = query.points or len(query.x or ())
+    if isinstance(query, FieldQuery) and query.radii:
+        found["points" if query.points else "radius"] = query.radii
+    return {name: count for name, count in found.items() if count > 1}

@@ -1,8 +1,4 @@
-"""Every failure as one document, ``application/problem+json`` (RFC 9457).
-
-A document never repeats what the caller sent (but for the names of fields, in pointers) and
-never grows past four kilobytes. Nothing here knows of HTTP but the numbers of its statuses.
-"""
+"""Problem documents of failed requests (RFC 9457)."""
 
 import itertools
 from collections.abc import Iterable, Iterator
@@ -14,89 +10,95 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from mdr_core.errors import AccuracyError, InputError
-from mdr_service.schemas.queries import UNION_FIELDS, UNION_ITEMS
+from mdr_service.schemas.contacts import UNION_FIELDS, UNION_ITEMS
 
 MEDIA_TYPE: Final = "application/problem+json"
+# Enough to show a pattern, in a document below 4 kB.
 MAX_ERRORS: Final = 20
-# All errors together; what surrounds them fits well into the rest of 4 kB.
+# A document has at most 4 kB; the members beside `errors` fit in the rest.
 _MAX_ERROR_BYTES: Final = 3000
+# Longer than any field name of a request; a longer name is text of the client.
 MAX_NAME: Final = 64
+# Pydantic builds the list of all errors: in 2 ms up to this number, in half a second for 10⁵.
+_MAX_BUILT: Final = 10_000
 
 
 @dataclass(frozen=True)
-class Kind:
-    """A kind of failure: what it is called, for machines and for people."""
+class ProblemType:
+    """Name, HTTP status and title of a type of problem."""
 
     name: str
     status: int
     title: str
 
     @property
-    def type(self) -> str:
-        """The URI of this kind; it names and does not locate."""
+    def uri(self) -> str:
+        """The `type` member: a name, not a location."""
         return f"urn:mdr:problem:{self.name}"
 
 
-MALFORMED_JSON = Kind("malformed-json", 400, "The body is not JSON")
-NOT_FOUND = Kind("not-found", 404, "There is nothing at this address")
-METHOD_NOT_ALLOWED = Kind("method-not-allowed", 405, "This address knows other methods")
-NOT_ACCEPTABLE = Kind("not-acceptable", 406, "The answer has no such form")
-BODY_TOO_SLOW = Kind("body-too-slow", 408, "The body did not arrive in time")
-BODY_TOO_LARGE = Kind("body-too-large", 413, "The body is too long")
-UNSUPPORTED_MEDIA_TYPE = Kind("unsupported-media-type", 415, "The body must be JSON")
-INVALID_REQUEST = Kind("invalid-request", 422, "The request cannot be answered as it stands")
-TOO_COSTLY = Kind("too-costly", 422, "The answer takes longer than is given to one request")
-ACCURACY = Kind("accuracy-not-reachable", 422, "The tolerance cannot be reached")
-INTERNAL = Kind("internal-error", 500, "The service is at fault")
-BUSY = Kind("busy", 503, "The service has more to do than it can answer soon")
-LOST = Kind("process-lost", 503, "The process that worked on the answer has ended")
-NOT_READY = Kind("not-ready", 503, "The service does not get a known answer right")
-TIME_EXCEEDED = Kind("time-exceeded", 504, "The answer took longer than is given to one request")
+MALFORMED_HTTP = ProblemType("malformed-http", 400, "Request is not valid HTTP/1.1")
+MALFORMED_JSON = ProblemType("malformed-json", 400, "Body is not valid JSON")
+NOT_FOUND = ProblemType("not-found", 404, "Unknown URL")
+METHOD_NOT_ALLOWED = ProblemType("method-not-allowed", 405, "Method not allowed")
+NOT_ACCEPTABLE = ProblemType("not-acceptable", 406, "Format not available")
+HEADERS_TOO_SLOW = ProblemType("headers-too-slow", 408, "Headers not received in time")
+BODY_TOO_SLOW = ProblemType("body-too-slow", 408, "Body not received in time")
+BODY_TOO_LARGE = ProblemType("body-too-large", 413, "Body too large")
+UNSUPPORTED_MEDIA_TYPE = ProblemType("unsupported-media-type", 415, "Body must be JSON")
+INVALID_REQUEST = ProblemType("invalid-request", 422, "Invalid request")
+TOO_COSTLY = ProblemType("too-costly", 422, "Query exceeds the time limit")
+ACCURACY = ProblemType("accuracy-not-reachable", 422, "Tolerance cannot be reached")
+HEADERS_TOO_LARGE = ProblemType("headers-too-large", 431, "Headers too large")
+INTERNAL = ProblemType("internal-error", 500, "Internal error")
+BUSY = ProblemType("busy", 503, "Service is busy")
+LOST = ProblemType("process-lost", 503, "Compute process lost")
+NOT_READY = ProblemType("not-ready", 503, "Self-test failed")
+STOPPING = ProblemType("stopping", 503, "Service is shutting down")
+TIME_EXCEEDED = ProblemType("time-exceeded", 504, "Time limit exceeded")
 
-KINDS: Final = (
-    MALFORMED_JSON,
-    NOT_FOUND,
-    METHOD_NOT_ALLOWED,
-    NOT_ACCEPTABLE,
-    BODY_TOO_SLOW,
-    BODY_TOO_LARGE,
-    UNSUPPORTED_MEDIA_TYPE,
-    INVALID_REQUEST,
-    TOO_COSTLY,
-    ACCURACY,
-    INTERNAL,
-    BUSY,
-    LOST,
-    NOT_READY,
-    TIME_EXCEEDED,
+PROBLEM_TYPES: Final = tuple(
+    each for each in list(globals().values()) if isinstance(each, ProblemType)
 )
 
 Error = tuple[str, str]
+"""JSON pointer into the request, and the reason."""
 
 
 class ServiceError(Exception):
-    """A failure that the service itself found; `errors` are pairs of pointer and detail.
+    """Failure of a request, with the members of its problem document.
 
-    Where the same request may be answered later, `retry_after` says in how many seconds.
+    Parameters
+    ----------
+    type_ : type of problem.
+    detail : explanation of this occurrence.
+    errors : JSON pointers into the request, each with the reason.
+    retry_after : seconds after which the same request may succeed.
     """
 
     def __init__(
-        self, kind: Kind, detail: str, errors: Iterable[Error] = (), retry_after: int | None = None
+        self,
+        type_: ProblemType,
+        detail: str,
+        errors: Iterable[Error] = (),
+        retry_after: int | None = None,
     ) -> None:
         super().__init__(detail)
-        self.kind = kind
+        self.type = type_
         self.detail = detail
         self.errors = tuple(errors)
         self.retry_after = retry_after
 
 
-DEFECT: Final = ServiceError(INTERNAL, "the request met a defect of the service")
-# What a query may fail by, besides a defect: all of it has a document.
+INTERNAL_ERROR: Final = ServiceError(
+    INTERNAL, "the service has failed on this request; report it with the instance"
+)
 FAILURES: Final = (ServiceError, InputError, AccuracyError)
+"""Exceptions with a problem document of their own; any other is an internal error."""
 
 
-def told(error: Exception) -> ServiceError:
-    """Return one of the `FAILURES` as the service tells it."""
+def to_problem(error: Exception) -> ServiceError:
+    """Return one of the `FAILURES` as a `ServiceError`."""
     if isinstance(error, InputError):
         return ServiceError(INVALID_REQUEST, error.detail, [(pointer(error.path), error.detail)])
     if isinstance(error, AccuracyError):
@@ -107,11 +109,11 @@ def told(error: Exception) -> ServiceError:
 
 
 def document(error: ServiceError) -> dict[str, Any]:
-    """Return the document of one failure."""
+    """Return the problem document."""
     found: dict[str, Any] = {
-        "type": error.kind.type,
-        "title": error.kind.title,
-        "status": error.kind.status,
+        "type": error.type.uri,
+        "title": error.type.title,
+        "status": error.type.status,
         "detail": error.detail,
     }
     if listed := _bounded(error.errors):
@@ -119,14 +121,18 @@ def document(error: ServiceError) -> dict[str, Any]:
     return found
 
 
-def invalid(error: ValidationError) -> ServiceError:
-    """Return the failure that a request model found, without what was sent."""
-    found = error.errors(include_url=False, include_input=False)
+def from_validation(error: ValidationError) -> ServiceError:
+    """Return the failure of a request model, without the values sent."""
+    count = error.error_count()
+    if count > _MAX_BUILT:
+        detail = f"{count} values are invalid, too many to list"
+        return ServiceError(INVALID_REQUEST, detail, [("", detail)])
+    found = error.errors(include_url=False, include_context=False, include_input=False)
     if found[0]["type"] == "json_invalid":
         return ServiceError(MALFORMED_JSON, found[0]["msg"], [("", found[0]["msg"])])
     return ServiceError(
         INVALID_REQUEST,
-        "some values of the request are not acceptable",
+        "some values are invalid",
         [(pointer(_location(each)), _sentence(each)) for each in found[:MAX_ERRORS]],
     )
 
@@ -134,14 +140,14 @@ def invalid(error: ValidationError) -> ServiceError:
 def pointer(path: Iterable[str | int]) -> str:
     """Return the JSON pointer (RFC 6901) to `path`.
 
-    A name longer than any of ours is the caller's own text: the pointer ends above it.
+    It ends before a name that is longer than any field name, which is the client's own text.
     """
     steps = itertools.takewhile(lambda step: len(step) <= MAX_NAME, map(str, path))
     return "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in steps)
 
 
 def _bounded(errors: Iterable[Error]) -> list[dict[str, str]]:
-    """Return as many of the errors as fit, the first ones first."""
+    """Return the first errors, as many as fit into the document."""
     listed: list[dict[str, str]] = []
     size = 0
     for where, detail in itertools.islice(errors, MAX_ERRORS):
@@ -167,12 +173,19 @@ def _location(error: ErrorDetails) -> Iterator[str | int]:
         yield "kind"
 
 
-# Pydantic's own sentences repeat what was sent, or speak of tags.
+# Pydantic's own sentences repeat the value sent, or name the tags of its union.
 _ABOUT_KIND: Final = {
     "union_tag_invalid": "there is no such kind of profile; GET /v1/profiles lists them",
     "union_tag_not_found": "the kind of profile is missing; GET /v1/profiles lists them",
 }
+# In queries of a batch, pydantic names the types of Python.
+_IN_JSON: Final = {
+    "model_type": "Input should be an object",
+    "model_attributes_type": "Input should be an object",
+    "dict_type": "Input should be an object",
+    "list_type": "Input should be a valid array",
+}
 
 
 def _sentence(error: ErrorDetails) -> str:
-    return _ABOUT_KIND.get(error["type"], error["msg"])
+    return (_ABOUT_KIND | _IN_JSON).get(error["type"], error["msg"])

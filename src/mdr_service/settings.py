@@ -1,73 +1,72 @@
-"""What this process allows, read once from the environment (prefix ``MDR_``).
+"""Limits of the service, read once from environment variables with the prefix ``MDR_``.
 
-The sizes are part of the request models (a list that is too long is refused while it is being
-parsed, and OpenAPI shows the bound), so they are fixed when the service starts.
+The sizes are part of the request models, which reject a list that is too long while it is parsed,
+and of the OpenAPI document. They are therefore fixed when the service starts.
 """
 
 import os
 from collections.abc import Mapping
-from typing import Final, Self
+from typing import Annotated, Final, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 PREFIX: Final = "MDR_"
 
 
+_Origin = Annotated[str, Field(pattern=r"^(\*|https?://[^/\s]+)$")]
+
+
+def _separated(text: object) -> object:
+    return [part.strip() for part in text.split(",") if part] if isinstance(text, str) else text
+
+
 class Settings(BaseModel):
-    """Limits of one process; each is set by ``MDR_`` and its name in capitals."""
+    """Limits of a server process; the variable is ``MDR_`` and the name in capitals."""
 
     model_config = ConfigDict(frozen=True)
 
     max_body_bytes: int = Field(
-        default=4 * 1024**2, ge=1024, description="Longest request body, in bytes."
+        4 * 1024**2, ge=1024, description="Length of a request body [bytes]."
     )
-    max_loads: int = Field(default=100_000, ge=1, description="Most loads in one request.")
-    max_radii: int = Field(
-        default=100_000, ge=2, description="Most radii at which fields are asked for."
-    )
+    max_loads: int = Field(100_000, ge=1, description="Number of loads in a request.")
+    max_radii: int = Field(100_000, ge=2, description="Number of radii in a request.")
     max_numbers: int = Field(
-        default=1_000_000, ge=2, description="Most loads times radii in one request."
+        1_000_000, ge=2, description="Number of values in a response: loads × radii × quantities."
     )
     max_samples: int = Field(
-        default=100_000, ge=1, description="Most points times samples_per_step of a history."
+        100_000, ge=1, description="Number of samples of a history: points × samples_per_step."
     )
     max_cycles: int = Field(
-        default=100_000, ge=1, description="Most cycles of a history, or numbers of cycles of wear."
+        100_000, ge=1, description="Number of cycles, and of cycle counts of wear."
     )
-    max_batch: int = Field(default=1_000, ge=1, description="Most queries in one batch.")
-    max_table_points: int = Field(
-        default=2_000, ge=2, description="Most points of a tabulated profile."
+    max_batch: int = Field(1_000, ge=1, description="Number of queries in a batch.")
+    max_table_points: int = Field(2_000, ge=2, description="Number of points of a table.")
+    max_series_terms: int = Field(100, ge=1, description="Number of terms of a series.")
+    max_transfer_bytes: int = Field(
+        32 * 1024**2,
+        ge=0,
+        description="Total length of long bodies in transfer, beside one [bytes].",
     )
-    max_series_terms: int = Field(default=100, ge=1, description="Most terms of a series profile.")
-    compute_processes: int = Field(
-        default=2, ge=1, le=1_000, description="Processes that longer queries are answered by."
+    table_cache_bytes: int = Field(
+        32 * 1024**2, ge=0, description="Memory of the tables that a process keeps [bytes]."
     )
+    compute_processes: int = Field(2, ge=1, le=1_000, description="Number of compute processes.")
     budget_seconds: float = Field(
-        default=10.0,
-        gt=0,
-        le=86_400,
-        description="How long one request may be worked on; what is estimated to take more than "
-        "half of it is refused beforehand.",
+        10.0, gt=0, le=86_400, description="Time of a query in a compute process [s]."
     )
-    queue_length: int = Field(
-        default=16, ge=0, description="Most requests that wait for a process."
-    )
+    queue_length: int = Field(16, ge=0, description="Number of queries that wait for a process.")
     queue_seconds: float = Field(
-        default=4.0,
-        gt=0,
-        le=86_400,
-        description="How long one request may wait for a process; what is estimated to wait more "
-        "than half of it is refused beforehand.",
+        4.0, gt=0, le=86_400, description="Time for which a query waits for a process [s]."
     )
-    body_seconds: float = Field(
-        default=10.0, gt=0, le=86_400, description="How long a request's body may take to arrive."
+    request_seconds: float = Field(
+        10.0, gt=0, le=86_400, description="Time in which a request arrives, headers and body [s]."
     )
     shutdown_seconds: int = Field(
-        default=15,
-        ge=1,
-        description="How long requests in flight may take after SIGTERM; more than waiting and "
-        "work together.",
+        15, ge=1, description="Time for requests in flight after SIGTERM [s]."
+    )
+    cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
+        (), description="Origins of other pages that may ask, separated by commas."
     )
 
     @model_validator(mode="after")
@@ -80,9 +79,9 @@ class Settings(BaseModel):
 
 
 def from_environment(environment: Mapping[str, str]) -> Settings:
-    """Return the settings that `environment` asks for, defaults for the rest.
+    """Return the settings in `environment`, with defaults for the rest.
 
-    A setting that makes no sense ends the process: nobody would notice it later.
+    An invalid setting terminates the process at its start, with one line per error.
     """
     given = {
         name: environment[PREFIX + name.upper()]
@@ -96,7 +95,7 @@ def from_environment(environment: Mapping[str, str]) -> Settings:
 
 
 def _complaint(error: ValidationError) -> str:
-    # What is about no single setting is about the last one of them, which has to follow the others.
+    # An error of the model as a whole is about `shutdown_seconds`, which depends on two others.
     faults = [((*fault["loc"], "shutdown_seconds")[0], fault["msg"]) for fault in error.errors()]
     return "\n".join(f"{PREFIX}{str(name).upper()}: {message}" for name, message in faults)
 

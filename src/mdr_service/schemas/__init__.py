@@ -1,1 +1,1 @@
-"""What the wire accepts and returns: names, bounds, dimensions, examples."""
+"""Requests and responses: names, bounds, dimensions and examples."""

@@ -1,270 +1,294 @@
-"""The answers, as OpenAPI documents them; the service writes them straight from arrays."""
+"""Responses: the members that queries compute, in this order, and OpenAPI documents."""
 
-from typing import Any, Literal
+from functools import partial
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from mdr_service.schemas.quantities import drop_null_defaults, quantity
+from mdr_service.schemas.quantities import drop_null_defaults, left_out, quantity
+
+_number = partial(quantity, "1")
+_length = partial(quantity, "length")
+_force = partial(quantity, "force")
+_pressure = partial(quantity, "pressure")
+_stiffness = partial(quantity, "force/length")
+_energy = partial(quantity, "force*length")
+_volume = partial(quantity, "length^3")
+
+_Field = list[list[float | None]]
+_Map = list[list[list[float | None]]]
+_NULL = "null where infinite, with a warning `singular`"
+_UNBOUNDED = "null if wear is unbounded"
 
 
 class Answer(BaseModel):
-    """A part of an answer; a test holds every answer to it."""
+    """Part of a response; tests validate every response with it."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(
+        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra=drop_null_defaults
+    )
 
 
 class AnswerWarning(Answer):
-    """Something that the caller should know about an answer that is right."""
+    """Warning about a response, for example that a limit of validity is exceeded."""
 
     code: str = Field(description="Stable name of the warning.")
-    message: str = Field(description="What it means here.")
+    message: str = Field(description="Explanation in this case.")
 
 
 class Known(Answer):
-    """How an answer was found, and what to know about it."""
+    """Method, accuracy and warnings of every response."""
 
-    method: str = Field(description="The cheapest route that meets the tolerance, as taken.")
-    error_estimate: float = quantity("1", "Upper bound of the relative error of all numbers")
-    warnings: list[AnswerWarning] = Field(description="What the caller should know.")
+    method: str = Field(description="Method used, the cheapest that meets the tolerance.")
+    error_estimate: float = _number("Upper bound of the relative error of all numbers")
+    warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 
 class NormalAnswer(Known):
     """One entry per load in every list."""
 
-    indentation_depth: list[float] = quantity("length", "Depth d of indentation")
-    normal_force: list[float] = quantity("force", "Normal force F_N, positive in compression")
-    contact_radius: list[float] = quantity("length", "Radius a of the contact")
-    mean_pressure: list[float | None] = quantity(
-        "pressure", "F_N/(π a²); null where it is infinite, with a warning `singular`"
-    )
-    normal_stiffness: list[float] = quantity("force/length", "dF_N/dd = 2 E* a")
-    elastic_energy: list[float] = quantity("force*length", "Energy stored in the contact")
+    indentation_depth: list[float] = _length("Indentation depth d")
+    normal_force: list[float] = _force("Normal force F_N, positive in compression")
+    contact_radius: list[float] = _length("Contact radius a")
+    mean_pressure: list[float | None] = _pressure(f"Mean pressure F_N/(π a²); {_NULL}")
+    maximum_pressure: list[float | None] = _pressure(f"Largest pressure p(r); {_NULL}")
+    normal_stiffness: list[float] = _stiffness("Normal stiffness dF_N/dd = 2 E* a")
+    elastic_energy: list[float] = _energy("Elastic energy of the contact")
 
 
 class HistoryAnswer(Known):
-    """One entry per sample in every list but the last ones.
+    """One entry per sample in every list, but for `slip_fronts` and the lists over the cycles."""
 
-    Those are about the end of the history, and about each of the cycles where there are any.
-    """
-
-    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
-
-    step: list[int] = quantity("1", "Index of the point that the load goes to, from 0")
-    indentation_depth: list[float] = quantity("length", "Depth d of indentation, below 0 a gap")
-    normal_force: list[float] = quantity("force", "Normal force F_N, positive in compression")
-    contact_radius: list[float] = quantity("length", "Radius a of the contact, 0 in a gap")
-    tangential_displacement: list[float] = quantity(
-        "length", "Tangential displacement u_x of the bodies"
-    )
-    tangential_force: list[float] = quantity("force", "Tangential force F_x")
-    dissipated_energy: list[float] = quantity(
-        "force*length", "Energy dissipated by slip since the start"
-    )
-    elastic_energy: list[float] = quantity("force*length", "Energy stored by the normal load")
-    tangential_energy: list[float] = quantity(
-        "force*length", "Energy stored by the tangential load"
-    )
+    step: list[int] = _number("Index of the load step, from 0")
+    indentation_depth: list[float] = _length("Indentation depth d; below 0 a separation")
+    normal_force: list[float] = _force("Normal force F_N, positive in compression")
+    contact_radius: list[float] = _length("Contact radius a, 0 in separation")
+    tangential_displacement: list[float] = _length("Tangential displacement u_x of the bodies")
+    tangential_force: list[float] = _force("Tangential force F_x")
+    dissipated_energy: list[float] = _energy("Energy dissipated by slip since the start")
+    elastic_energy: list[float] = _energy("Elastic energy of the normal load")
+    tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
     regime: list[Literal["no_contact", "stick", "partial_slip", "full_slip"]] = Field(
-        description="Whether the bodies touch, and nothing, the rim or all of the contact slips."
+        description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
     )
-    slip_fronts: list[float] = quantity(
-        "length",
-        "Radii inside the contact, ascending, between which the load of the foundation goes "
-        "another way: what the contact remembers at the end",
+    slip_fronts: list[float] = _length("Radii of the slip fronts at the end, ascending")
+    energy_per_cycle: list[float] = _energy(
+        "Energy dissipated in each cycle, the area of its loop", default=None
     )
-    energy_per_cycle: list[float] = quantity(
-        "force*length", "Energy dissipated in each cycle, the area of its loop", default=None
-    )
-    secant_stiffness: list[float] = quantity(
-        "force/length",
-        "Of each cycle, the range of F_x over the range of u_x at its turning points",
-        default=None,
+    secant_stiffness: list[float] = _stiffness(
+        "Range of F_x over the range of u_x in each cycle, at its turning points", default=None
     )
 
 
 class TangentialAnswer(NormalAnswer):
     """One entry per pair of normal and tangential load in every list."""
 
-    tangential_force: list[float] = quantity("force", "Tangential force F_x")
-    tangential_displacement: list[float] = quantity(
-        "length", "Tangential displacement u_x of the bodies"
+    tangential_force: list[float] = _force("Tangential force F_x")
+    tangential_displacement: list[float] = _length("Tangential displacement u_x of the bodies")
+    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
+    slip_width: list[float] = _length("Width a − c of the slip zone")
+    tangential_stiffness: list[float] = _stiffness(
+        "Tangential stiffness dF_x/du_x = 2 G* c on further loading"
     )
-    stick_radius: list[float] = quantity("length", "Radius c of the stick zone, 0 in full slip")
-    slip_width: list[float] = quantity("length", "Width a − c of the slip zone")
-    tangential_stiffness: list[float] = quantity(
-        "force/length", "dF_x/du_x = 2 G* c on further loading"
-    )
+    dissipated_energy: list[float] = _energy("Energy dissipated by slip in tangential loading")
     regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
-        description="Whether nothing, the rim or all of the contact slips."
+        description="Slip regime: `stick`, `partial_slip` or `full_slip`."
     )
-    dissipated_energy: list[float] = quantity(
-        "force*length", "Energy dissipated by slip on the way to this load"
-    )
-
-
-_Field = list[list[float | None]]
-
-
-def _field(dimension: str, meaning: str) -> Any:
-    return quantity(dimension, f"{meaning}, by load and radius", default=None)
 
 
 class StressAnswer(Known):
-    """The fields that were asked for, by load and radius; the others are left out."""
+    """Requested fields by load and radius; the others are absent."""
 
-    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
+    radius: list[float] = _length("Radii r, requested or chosen")
+    pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
+    shear_stress: _Field = _pressure(
+        "Tangential traction τ(r), by load and radius, positive in the direction of a positive "
+        f"tangential force; {_NULL}",
+        default=None,
+    )
+    slip: _Field = _length(
+        "Slip s(r), by load and radius: tangential displacement of the surface in the slip zone "
+        "relative to the stick zone, negative for a positive displacement of the bodies",
+        default=None,
+    )
+    normal_displacement: _Field = _length(
+        "Displacement u_z(r) of the surface into the half-space, by load and radius", default=None
+    )
+    foundation_load: _Field = _stiffness(
+        "Load q of the equivalent foundation at x = r, by load and radius", default=None
+    )
+    foundation_shear: _Field = _stiffness(
+        "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
+        default=None,
+    )
 
-    radius: list[float] = quantity("length", "The radii r, as asked for or chosen")
-    pressure: _Field = _field(
-        "pressure", "Pressure p(r); null where infinite, with a warning `singular`"
+
+class LargestStress(Answer):
+    """Largest value of a stress in the whole body and its place, one entry per load."""
+
+    value: list[float | None] = _pressure(f"Largest value; {_NULL}")
+    x: list[float] = _length("Coordinate along the tangential force")
+    y: list[float] = _length("Coordinate across it, ≥ 0: the field is symmetric")
+    z: list[float] = _length("Depth")
+
+
+class LargestStresses(Answer):
+    """Largest stresses; their places are accurate to about a thousandth of the contact radius."""
+
+    von_mises: LargestStress
+    maximum_shear: LargestStress
+
+
+class YieldOnsetForce(Answer):
+    """Normal force at which yield begins, at the ratio of forces of each load.
+
+    Zero where a stress is infinite under any load, null where no load reaches the yield strength.
+    """
+
+    tresca: list[float | None] = _force("By Tresca's criterion")
+    von_mises: list[float | None] = _force("By von Mises' criterion")
+
+
+class SubsurfaceAnswer(Known):
+    """Requested stresses by load, z and x, relative to the largest of them; tension is positive."""
+
+    x: list[float] = _length("Coordinates along the tangential force, requested or chosen")
+    z: list[float] = _length("Depths, requested or chosen")
+    stress_xx: _Map = _pressure(f"Normal stress σ_xx; {_NULL}", default=None)
+    stress_yy: _Map = _pressure(f"Normal stress σ_yy; {_NULL}", default=None)
+    stress_zz: _Map = _pressure(f"Normal stress σ_zz; {_NULL}", default=None)
+    stress_xy: _Map = _pressure(f"Shear stress τ_xy; {_NULL}", default=None)
+    stress_xz: _Map = _pressure(f"Shear stress τ_xz; {_NULL}", default=None)
+    stress_yz: _Map = _pressure(f"Shear stress τ_yz; {_NULL}", default=None)
+    von_mises: _Map = _pressure(f"Von Mises' equivalent stress; {_NULL}", default=None)
+    maximum_shear: _Map = _pressure(f"Largest shear stress; {_NULL}", default=None)
+    principal_1: _Map = _pressure(f"Largest principal stress; {_NULL}", default=None)
+    principal_2: _Map = _pressure(f"Middle principal stress; {_NULL}", default=None)
+    principal_3: _Map = _pressure(f"Smallest principal stress; {_NULL}", default=None)
+    mean_stress: _Map = _pressure(f"Mean stress; {_NULL}", default=None)
+    largest: LargestStresses = left_out("Largest stresses of the whole body, if requested.")
+    yield_onset_force: YieldOnsetForce = left_out(
+        "Normal force at the onset of yield, with `yield_strength`."
     )
-    shear_stress: _Field = _field(
-        "pressure",
-        "Tangential traction τ(r), positive in the direction of a positive force; null where "
-        "infinite, with a warning `singular`",
-    )
-    slip: _Field = _field(
-        "length",
-        "Tangential displacement of the surface in the slip zone relative to the stick zone, "
-        "negative for a positive displacement of the bodies",
-    )
-    normal_displacement: _Field = _field(
-        "length", "Displacement of the surface into the half-space, inside and outside the contact"
-    )
-    foundation_load: _Field = _field("force/length", "Load q of the equivalent foundation at x = r")
-    foundation_shear: _Field = _field(
-        "force/length", "Tangential load q_x of the equivalent foundation at x = r"
+    search_error_estimate: float = _number(
+        "Relative error of `largest` and `yield_onset_force`, which `error_estimate` leaves out",
+        default=None,
     )
 
 
 class WearAnswer(Known):
-    """One entry per pair of load and amplitude in every list; what was not asked for is left out.
+    """One entry per pair of load and amplitude in every list; fields only if requested.
 
-    Where everything slips under a held force the wear has no end: what grows with it is null, with
-    a warning `endless_wear`.
+    In full slip under a constant force wear is unbounded: quantities that grow with it are null,
+    with a warning `endless_wear`.
     """
 
-    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
-
-    stick_radius: list[float] = quantity("length", "Radius c inside which nothing ever wears")
-    wear_radius: list[float | None] = quantity(
-        "length", "Outer radius ã of the worn rim; null where the wear has no end"
+    stick_radius: list[float] = _length("Stick radius c, inside which there is no wear")
+    wear_radius: list[float | None] = _length(f"Outer radius ã of the worn annulus; {_UNBOUNDED}")
+    indentation_depth: list[float | None] = _length(
+        f"Indentation depth d in the limiting state; {_UNBOUNDED}"
     )
-    indentation_depth: list[float | None] = quantity(
-        "length", "Depth d in the limit; null where the wear has no end"
-    )
-    normal_force: list[float] = quantity("force", "Normal force F_N in the limit")
-    worn_volume: list[float | None] = quantity(
-        "length^3", "Volume that has worn off; null where the wear has no end"
-    )
+    normal_force: list[float] = _force("Normal force F_N in the limiting state")
+    worn_volume: list[float | None] = _volume(f"Worn volume V; {_UNBOUNDED}")
     regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
-        description="Whether nothing, the rim or all of the contact slips, and so wears."
+        description="Slip regime: `stick`, `partial_slip` or `full_slip`."
     )
-    radius: list[float] = quantity("length", "The radii r, as asked for or chosen", default=None)
-    initial_profile: list[float | None] = quantity(
-        "length",
-        "Profile f₀(r) before any wear, by radius: the same for all loads; null outside a flat "
-        "punch, where it is infinite, with a warning `singular`",
+    radius: list[float] = _length("Radii r, requested or chosen", default=None)
+    initial_profile: list[float | None] = _length(
+        f"Initial profile f₀(r) by radius, the same for all loads; {_NULL}, outside a flat punch",
         default=None,
     )
-    limiting_profile: _Field = _field(
-        "length",
-        "Profile f(r) in the limit; null where the wear has no end, and outside a flat punch",
+    limiting_profile: _Field = _length(
+        f"Limiting profile f(r), by load and radius; {_UNBOUNDED}, and outside a flat punch",
+        default=None,
     )
-    worn_depth: _Field = _field("length", "f(r) − f₀(r); null where the wear has no end")
-    pressure: _Field = _field(
-        "pressure",
-        "Pressure p(r) in the limit; null where infinite, at c, with a warning `singular`",
+    worn_depth: _Field = _length(
+        f"Worn depth f(r) − f₀(r), by load and radius; {_UNBOUNDED}", default=None
+    )
+    pressure: _Field = _pressure(
+        f"Pressure p(r) in the limiting state, by load and radius; {_NULL}, at c", default=None
     )
 
 
 class EvolutionAnswer(Known):
-    """One entry per number of cycles in every list; what was not asked for is left out.
+    """One entry per number of cycles in every list; fields only if requested.
 
-    `error_estimate` is that of all but the pressure; of profile and worn depth, relative to the
-    depth d.
+    `error_estimate` bounds the error of the quantities without a radius.
     """
 
-    model_config = ConfigDict(json_schema_extra=drop_null_defaults)
-
-    cycles: list[float] = quantity("1", "The numbers of cycles, as asked for")
-    worn_volume: list[float] = quantity("length^3", "Volume V that has worn off so far")
-    indentation_depth: list[float] = quantity("length", "Depth d; grows where F_N is held")
-    normal_force: list[float] = quantity("force", "Normal force F_N; falls where d is held")
-    stick_radius: list[float] = quantity("length", "Radius c of the stick zone")
-    contact_radius: list[float] = quantity("length", "Radius a of the contact")
-    dissipated_energy: list[float] = quantity(
-        "force*length", "Energy dissipated by slip in all cycles so far"
-    )
-    radius: list[float] = quantity("length", "The radii r, as asked for or chosen", default=None)
-    profile: _Field = quantity(
-        "length",
-        "Worn profile f(r), by number of cycles and radius; null outside a flat punch, where it "
-        "is infinite, with a warning `singular`",
+    cycles: list[float] = _number("Numbers of cycles, as requested")
+    worn_volume: list[float] = _volume("Worn volume V")
+    indentation_depth: list[float] = _length("Indentation depth d; it grows if F_N is constant")
+    normal_force: list[float] = _force("Normal force F_N; it falls if d is constant")
+    stick_radius: list[float] = _length("Stick radius c")
+    contact_radius: list[float] = _length("Contact radius a")
+    dissipated_energy: list[float] = _energy("Energy dissipated by slip in all cycles")
+    field_error_estimate: float = _number(
+        "Upper bound of the error of each field, relative to its largest value or the mean in the "
+        "contact; absent without fields",
         default=None,
     )
-    worn_depth: list[list[float]] = quantity(
-        "length", "f(r) − f₀(r), by number of cycles and radius", default=None
-    )
-    pressure: _Field = quantity(
-        "pressure",
-        "Pressure p(r), by number of cycles and radius; null where infinite, with a warning "
-        "`singular`",
+    radius: list[float] = _length("Radii r, requested or chosen", default=None)
+    profile: _Field = _length(
+        f"Worn profile f(r), by number of cycles and radius; {_NULL}, outside a flat punch",
         default=None,
+    )
+    worn_depth: list[list[float]] = _length(
+        "Worn depth f(r) − f₀(r), by number of cycles and radius", default=None
+    )
+    pressure: _Field = _pressure(
+        f"Pressure p(r), by number of cycles and radius; {_NULL}", default=None
     )
 
 
 class ProfileField(Answer):
-    """One parameter of a kind of profile."""
+    """Field of a kind of profile."""
 
-    name: str = Field(description="The field's name in a request.")
-    dimension: str = Field(description="Its dimension, in the caller's units.")
-    description: str = Field(description="What it is.")
-    required: bool = Field(description="Whether it may be left out.")
+    name: str = Field(description="Name of the field in a request.")
+    dimension: str = Field(description="Dimension, in the caller's units.")
+    description: str = Field(description="Meaning of the field.")
+    required: bool = Field(description="True if the field is required.")
 
 
 class ProfileKind(Answer):
-    """One kind of profile."""
+    """Kind of profile."""
 
-    kind: str = Field(description="The name to ask for it by.")
-    formula: str = Field(description="f(r), a length as a function of the radius.")
-    fields: list[ProfileField] = Field(description="Its parameters.")
-    closed_forms: list[str] = Field(
-        description="The quantities that are answered from a closed form."
-    )
+    kind: str = Field(description="Value of `kind` in a request.")
+    formula: str = Field(description="Shape f(r), a length as a function of the radius.")
+    fields: list[ProfileField] = Field(description="Fields of the kind.")
+    closed_forms: list[str] = Field(description="Quantities that have a closed form.")
 
 
 class Catalogue(Answer):
-    """Every kind of profile that can be asked for."""
+    """All kinds of profile."""
 
     profiles: list[ProfileKind] = Field(description="The kinds.")
 
 
 class Health(Answer):
-    """The service is ready."""
+    """State of the service."""
 
-    status: Literal["ok"]
+    status: Literal["ok"] = Field(description="State: `ok`.")
 
 
 class ProblemError(Answer):
-    """What is wrong with one value of the request."""
+    """Invalid value of a request."""
 
     pointer: str = Field(description="JSON pointer to the value (RFC 6901).")
-    detail: str = Field(description="What is wrong with it.")
+    detail: str = Field(description="Reason, and what to change.")
 
 
 class Problem(Answer):
-    """A failure (RFC 9457)."""
+    """Problem document (RFC 9457)."""
 
-    type: str = Field(description="Stable name of the kind of failure, a URI.")
-    title: str = Field(description="The kind of failure in words; the same for all of a type.")
+    type: str = Field(description="Stable name of the type of problem, a URI.")
+    title: str = Field(description="Title of the type of problem.")
     status: int = Field(description="The HTTP status.")
-    detail: str = Field(description="What went wrong this time.")
+    detail: str = Field(description="Explanation of this occurrence.")
     instance: str = Field(
         default="",
-        description="Of a failure of the service the name of the request, a URI with its "
-        "`X-Request-Id`.",
+        description="URI of the request with its `X-Request-Id`, if the service is at fault.",
     )
     errors: list[ProblemError] = Field(
-        default=[], max_length=20, description="The values at fault, the first twenty of them."
+        default=[], max_length=20, description="Invalid values of the request, at most twenty."
     )

@@ -1,8 +1,10 @@
-"""Several queries of any kind in one request, and their answers."""
+"""Several queries in one request, and their responses."""
 
-from typing import Any, Literal
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, Final, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from mdr_service.schemas.answers import (
     Answer,
@@ -11,29 +13,54 @@ from mdr_service.schemas.answers import (
     NormalAnswer,
     Problem,
     StressAnswer,
+    SubsurfaceAnswer,
     TangentialAnswer,
     WearAnswer,
 )
-from mdr_service.schemas.quantities import Strict, drop_null_defaults
-from mdr_service.schemas.queries import left_out
+from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
+from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.load_paths import HistoryQuery
+from mdr_service.schemas.quantities import Strict, drop_null_defaults, left_out
+from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.settings import SETTINGS
+
+_MODELS: Final[Mapping[str, type[Query]]] = {
+    "normal": NormalQuery,
+    "tangential": TangentialQuery,
+    "history": HistoryQuery,
+    "stress": StressQuery,
+    "subsurface": SubsurfaceQuery,
+    "wear": WearQuery,
+    "evolution": EvolutionQuery,
+}
 
 
 class BatchItem(Strict):
-    """One query of a batch."""
+    """Query of a batch."""
 
-    ask: Literal["normal", "tangential", "history", "stress", "wear", "evolution"] = Field(
-        description="Which query it is; `history` is that of `/v1/tangential/history`, "
-        "`evolution` that of `/v1/wear/evolution`."
+    ask: Literal["normal", "tangential", "history", "stress", "subsurface", "wear", "evolution"] = (
+        Field(
+            description="Name of the query; `history` is that of `/v1/tangential/history`, "
+            "`evolution` that of `/v1/wear/evolution`."
+        )
     )
     request: dict[str, Any] = Field(
-        description="The request as it would be sent on its own: `NormalQuery` for `normal`, and "
-        "so on."
+        description="Request of the query, as of its own endpoint: `NormalQuery` for `normal`, "
+        "and so on."
     )
+
+    @cached_property
+    def query(self) -> Query | ValidationError:
+        """Query, or the reason why the request is invalid."""
+        try:
+            return _MODELS[self.ask].model_validate(self.request)
+        except ValidationError as error:
+            return error
 
 
 class BatchQuery(Strict):
-    """Queries of any kind, each of which is answered on its own."""
+    """Queries of any kind, each with its own response."""
 
     queries: list[BatchItem] = Field(
         description="The queries.", min_length=1, max_length=SETTINGS.max_batch
@@ -41,23 +68,24 @@ class BatchQuery(Strict):
 
 
 class BatchItemAnswer(Answer, json_schema_extra=drop_null_defaults):
-    """What became of one query: its answer, or else its problem."""
+    """Response to one query: its answer or its problem."""
 
-    status: int = Field(description="The HTTP status that it would have had on its own.")
+    status: int = Field(description="HTTP status that the query has at its own endpoint.")
     answer: (
         NormalAnswer
         | TangentialAnswer
         | HistoryAnswer
         | StressAnswer
+        | SubsurfaceAnswer
         | WearAnswer
         | EvolutionAnswer
-    ) = left_out("The answer that it would have had on its own.")
+    ) = left_out("Response of the query at its own endpoint.")
     problem: Problem = left_out(
-        "Why there is none, as it would have been told; the pointers are into its own `request`."
+        "Problem of the query at its own endpoint; pointers are into its own `request`."
     )
 
 
 class BatchAnswer(Answer):
-    """One entry per query, in their order."""
+    """Responses to the queries, in their order."""
 
-    answers: list[BatchItemAnswer] = Field(description="What became of each query.")
+    answers: list[BatchItemAnswer] = Field(description="One entry for each query.")

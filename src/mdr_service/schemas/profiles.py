@@ -1,6 +1,6 @@
-"""The fifteen shapes, discriminated by ``kind``; field names are those of the core."""
+"""Profiles by ``kind``; fields have the names of the parameters of the core."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -10,35 +10,35 @@ from mdr_service.settings import SETTINGS
 _COEFFICIENT = "length^(1-exponent)"
 
 
-class FlatPunch(Strict):
+class FlatPunchProfile(Strict):
     """A flat-ended rigid cylinder: 0 for r ≤ radius, then a wall."""
 
     kind: Literal["flat_punch"]
     radius: float = positive("length", "Radius of the flat face")
 
 
-class Cone(Strict):
+class ConeProfile(Strict):
     """A cone: slope·r."""
 
     kind: Literal["cone"]
     slope: float = positive("1", "Slope of the flank, tan θ against the plane", low=1e-15, high=1e6)
 
 
-class Paraboloid(Strict):
+class ParaboloidProfile(Strict):
     """A paraboloid, the shape of Hertz: r²/(2·radius)."""
 
     kind: Literal["paraboloid"]
     radius: float = positive("length", "Radius of curvature at the tip")
 
 
-class Sphere(Strict):
+class SphereProfile(Strict):
     """An exact sphere: radius − √(radius² − r²); the contact radius stays below its radius."""
 
     kind: Literal["sphere"]
     radius: float = positive("length", "Radius of the sphere")
 
 
-class Ellipsoid(Strict):
+class EllipsoidProfile(Strict):
     """Half an ellipsoid of revolution: height·(1 − √(1 − r²/radius²))."""
 
     kind: Literal["ellipsoid"]
@@ -46,28 +46,26 @@ class Ellipsoid(Strict):
     height: float = positive("length", "Semi-axis along the normal")
 
 
-class Power(Strict):
+class PowerProfile(Strict):
     """A power law with a real exponent: coefficient·r^exponent."""
 
     kind: Literal["power"]
-    coefficient: float = positive(_COEFFICIENT, "Factor of the power", low=1e-300, high=1e300)
-    exponent: float = positive("1", "Real exponent", low=0.05, high=200)
+    coefficient: float = positive(_COEFFICIENT, "Factor of the power")
+    exponent: float = positive("1", "Real exponent", low=0.05, high=100)
 
 
-class PowerTerm(Strict):
+class SeriesTerm(Strict):
     """One term coefficient·r^exponent of a series."""
 
-    coefficient: float = quantity(
-        _COEFFICIENT, "Factor of the power, not 0 and of either sign", ge=-1e300, le=1e300
-    )
-    exponent: float = positive("1", "Real exponent", low=0.05, high=200)
+    coefficient: Signed = quantity(_COEFFICIENT, "Factor of the power, not 0 and of either sign")
+    exponent: float = positive("1", "Real exponent", low=0.05, high=100)
 
 
-class Series(Strict):
+class SeriesProfile(Strict):
     """A sum of powers: Σ coefficientᵢ·r^exponentᵢ."""
 
     kind: Literal["series"]
-    terms: list[PowerTerm] = quantity(
+    terms: list[SeriesTerm] = quantity(
         "list",
         "The terms of the sum, each a coefficient and an exponent",
         min_length=1,
@@ -75,7 +73,7 @@ class Series(Strict):
     )
 
 
-class RoundedPunch(Strict):
+class RoundedPunchProfile(Strict):
     """A flat face with a parabolically rounded rim: 0, then (r − flat_radius)²/(2·R)."""
 
     kind: Literal["rounded_punch"]
@@ -83,7 +81,7 @@ class RoundedPunch(Strict):
     rounding_radius: float = positive("length", "Radius R of the rounding")
 
 
-class TruncatedCone(Strict):
+class TruncatedConeProfile(Strict):
     """A cone with a flat tip: 0, then slope·(r − flat_radius)."""
 
     kind: Literal["truncated_cone"]
@@ -91,7 +89,7 @@ class TruncatedCone(Strict):
     slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
 
 
-class TruncatedParaboloid(Strict):
+class TruncatedParaboloidProfile(Strict):
     """A paraboloid with a flat (worn) tip: 0, then (r² − flat_radius²)/(2·radius)."""
 
     kind: Literal["truncated_paraboloid"]
@@ -99,7 +97,7 @@ class TruncatedParaboloid(Strict):
     radius: float = positive("length", "Radius of curvature of the paraboloid")
 
 
-class RoundedCone(Strict):
+class RoundedConeProfile(Strict):
     """A cone with a parabolic tip: r²/(2·tip_radius), then the tangent cone."""
 
     kind: Literal["rounded_cone"]
@@ -107,7 +105,7 @@ class RoundedCone(Strict):
     tip_radius: float = positive("length", "Radius of curvature at the tip")
 
 
-class SphericalTipCone(Strict):
+class SphericalTipConeProfile(Strict):
     """A cone with an exact spherical tip up to the tangent point, then the cone."""
 
     kind: Literal["spherical_tip_cone"]
@@ -115,7 +113,7 @@ class SphericalTipCone(Strict):
     tip_radius: float = positive("length", "Radius of the spherical tip")
 
 
-class Hyperboloid(Strict):
+class HyperboloidProfile(Strict):
     """A hyperboloid: R·t²·(√(1 + r²/(R·t)²) − 1), t the slope of its asymptote."""
 
     kind: Literal["hyperboloid"]
@@ -123,7 +121,7 @@ class Hyperboloid(Strict):
     tip_radius: float = positive("length", "Radius of curvature R at the tip")
 
 
-class CappedParaboloid(Strict):
+class CappedParaboloidProfile(Strict):
     """A paraboloid with a flatter, worn cap: curvature 1/R₁ inside cap_radius, 1/R₂ outside."""
 
     kind: Literal["capped_paraboloid"]
@@ -132,7 +130,7 @@ class CappedParaboloid(Strict):
     radius: float = positive("length", "Radius of curvature R₂ ≤ R₁ outside the cap")
 
 
-class Tabulated(Strict):
+class TabulatedProfile(Strict):
     """A measured profile through points; it is never extrapolated."""
 
     kind: Literal["tabulated"]
@@ -150,8 +148,12 @@ class Tabulated(Strict):
         max_length=SETTINGS.max_table_points,
         fail_fast=True,
     )
-    interpolation: Literal["cubic", "pchip", "linear"] = quantity(
-        "text", "The curve through the points; cubic is not-a-knot", default="cubic"
+    interpolation: Literal["auto", "cubic", "pchip", "linear"] = quantity(
+        "text",
+        "Curve through the points: cubic (not-a-knot spline), pchip, linear, or auto: cubic with "
+        "its slopes limited where it falls slightly, and pchip where it falls further, with the "
+        "warning `interpolation` that names the radius",
+        default="auto",
     )
     breaks: list[Size] = quantity(
         "length",
@@ -163,38 +165,22 @@ class Tabulated(Strict):
 
 
 Profile = Annotated[
-    FlatPunch
-    | Cone
-    | Paraboloid
-    | Sphere
-    | Ellipsoid
-    | Power
-    | Series
-    | RoundedPunch
-    | TruncatedCone
-    | TruncatedParaboloid
-    | RoundedCone
-    | SphericalTipCone
-    | Hyperboloid
-    | CappedParaboloid
-    | Tabulated,
+    FlatPunchProfile
+    | ConeProfile
+    | ParaboloidProfile
+    | SphereProfile
+    | EllipsoidProfile
+    | PowerProfile
+    | SeriesProfile
+    | RoundedPunchProfile
+    | TruncatedConeProfile
+    | TruncatedParaboloidProfile
+    | RoundedConeProfile
+    | SphericalTipConeProfile
+    | HyperboloidProfile
+    | CappedParaboloidProfile
+    | TabulatedProfile,
     Field(discriminator="kind", description="The shape of the indenter, f(r), by its kind."),
 ]
 
-MODELS: tuple[type[Strict], ...] = (
-    FlatPunch,
-    Cone,
-    Paraboloid,
-    Sphere,
-    Ellipsoid,
-    Power,
-    Series,
-    RoundedPunch,
-    TruncatedCone,
-    TruncatedParaboloid,
-    RoundedCone,
-    SphericalTipCone,
-    Hyperboloid,
-    CappedParaboloid,
-    Tabulated,
-)
+MODELS: tuple[type[Strict], ...] = get_args(get_args(Profile)[0])

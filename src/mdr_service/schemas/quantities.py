@@ -1,57 +1,89 @@
-"""Numbers as the wire knows them: strict, finite, bounded, each with its dimension."""
+"""Numbers of a request: strict, finite, bounded, each with its dimension."""
 
 from typing import Annotated, Any, Final
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic_core import PydanticCustomError
 
 from mdr_service.settings import SETTINGS
 
-# Any unit system fits in here, and products of a few such numbers stay finite.
-SMALLEST: Final = 1e-30
-LARGEST: Final = 1e30
-# Less load than this, but not none, leaves no digits for its squares and cubes.
-SMALLEST_LOAD: Final = 1e-90
+SMALLEST: Final = 1e-50
+"""Smallest magnitude of a number that is not 0: any unit system fits."""
+LARGEST: Final = 1e50
+"""Largest magnitude of a number."""
 
 
 def drop_null_defaults(schema: dict[str, Any]) -> None:
-    """Remove ``default: null``: a field may be left out, but null is refused."""
+    """Remove ``default: null`` from a schema: optional fields may be absent, but not null."""
     for field in schema.get("properties", {}).values():
         if "default" in field and field["default"] is None:
             del field["default"]
 
 
 class Strict(BaseModel):
-    """A part of a request: nothing is coerced, nothing unknown is ignored."""
+    """Part of a request: no value is converted, no unknown field is ignored."""
 
     model_config = ConfigDict(
         strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra=drop_null_defaults
     )
 
+    def has(self, name: str) -> bool:
+        """Return True if a field is given."""
+        return name in self.model_fields_set
+
 
 def positive(
     dimension: str, meaning: str, *, low: float = SMALLEST, high: float = LARGEST, **field: Any
 ) -> Any:
-    """Return the field of a positive number of this `dimension`."""
+    """Return the field of a positive number.
+
+    Parameters
+    ----------
+    dimension : dimension of the number, for example ``length``.
+    meaning : description of the number.
+    low, high : bounds, both included.
+    field : other arguments of `pydantic.Field`.
+    """
     return quantity(dimension, meaning, ge=low, le=high, **field)
 
 
 def quantity(dimension: str, meaning: str, **field: Any) -> Any:
-    """Return a field whose description ends in its dimension."""
+    """Return a field whose description ends with its dimension."""
     return Field(
-        description=f"{meaning} [{dimension}]", json_schema_extra={"dimension": dimension}, **field
+        description=f"{meaning} [{dimension}]",
+        json_schema_extra={"x-dimension": dimension},
+        **field,
     )
+
+
+def left_out(description: str) -> Any:
+    """Return a field that is optional, but not null."""
+    return Field(default=None, description=description)
+
+
+def one_of(*names: str) -> dict[str, Any]:
+    """Return the schema that requires exactly one of the fields."""
+    return {"oneOf": [{"required": [name]} for name in names]}
 
 
 def _scalar_or_array(value: object) -> str:
     return "array" if isinstance(value, list) else "scalar"
 
 
-Size = Annotated[float, Field(ge=0, le=LARGEST)]
-Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-# One bad element is told, not a hundred thousand.
+def _not_tiny(value: float) -> float:
+    if -SMALLEST < value < SMALLEST and value != 0:
+        raise PydanticCustomError("tiny", f"Input should be 0 or at least {SMALLEST} in magnitude")
+    return value
+
+
+_NotTiny = AfterValidator(_not_tiny)
+_KEYWORD: Final = {"x-smallest-magnitude": SMALLEST}
+Size = Annotated[float, Field(ge=0, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
+Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
+# The first invalid element is reported, not all of a hundred thousand.
 _Many = Field(min_length=1, max_length=SETTINGS.max_loads, fail_fast=True)
 
-# The discriminator keeps the errors of the branch that was not meant out of the answer.
+# The discriminator reports errors for the branch that the value belongs to only.
 ScalarOrArray = Annotated[
     Annotated[Size, Tag("scalar")] | Annotated[list[Size], _Many, Tag("array")],
     Discriminator(_scalar_or_array),

@@ -1,0 +1,1 @@
+"""Endpoints, one short function each."""

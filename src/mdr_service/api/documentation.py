@@ -1,0 +1,70 @@
+"""Responses of the endpoints, as OpenAPI documents them."""
+
+from typing import Any, Final
+
+from mdr_service import problems
+from mdr_service.content_negotiation import FORMATS
+from mdr_service.problems import ProblemType
+
+Responses = dict[int | str, dict[str, Any]]
+
+_COMPUTATION: Final = (
+    problems.NOT_ACCEPTABLE,
+    problems.INVALID_REQUEST,
+    problems.TOO_COSTLY,
+    problems.ACCURACY,
+    problems.BUSY,
+    problems.LOST,
+    problems.TIME_EXCEEDED,
+)
+_BODY: Final = (
+    problems.MALFORMED_JSON,
+    problems.BODY_TOO_SLOW,
+    problems.BODY_TOO_LARGE,
+    problems.UNSUPPORTED_MEDIA_TYPE,
+)
+_TABLE: Final = """\
+One column per quantity, one row per load, sample or number of cycles. With radii one row per load
+and radius; the first column is the index of the load, if there are several, or the number of
+cycles."""
+_SCHEMAS: Final = {
+    "csv": {"type": "string", "description": _TABLE},
+    "npz": {
+        "contentMediaType": FORMATS["npz"],
+        "description": "Archive for `numpy.load`: one array per member of the JSON response.",
+    },
+    "svg": {
+        "type": "string",
+        "description": "Picture: dense curves, with the requested values as points.",
+    },
+}
+_PROBLEM: Final = {"$ref": "#/components/schemas/Problem"}
+
+
+def failures(*types: ProblemType) -> Responses:
+    """Return the problem responses of an endpoint."""
+    meanings: dict[int | str, list[str]] = {}
+    for each in (*types, problems.INTERNAL):
+        meanings.setdefault(each.status, []).append(f"`{each.uri}`: {each.title}")
+    return {
+        status: {
+            "description": "\n".join(lines),
+            "content": {problems.MEDIA_TYPE: {"schema": _PROBLEM}},
+        }
+        for status, lines in meanings.items()
+    }
+
+
+BATCH_RESPONSES: Final = failures(*_BODY, *_COMPUTATION)
+_RESULT: Final[Responses] = {
+    200: {
+        "description": "Result of the query",
+        "content": {FORMATS[name]: {"schema": schema} for name, schema in _SCHEMAS.items()},
+    }
+}
+POST_RESPONSES: Final = _RESULT | BATCH_RESPONSES
+GET_RESPONSES: Final[Responses] = {
+    **_RESULT,
+    304: {"description": "The response that `If-None-Match` names is still valid"},
+    **failures(*_COMPUTATION),
+}

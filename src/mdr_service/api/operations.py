@@ -1,0 +1,113 @@
+"""Operation of the service, its documentation and the catalogue of profiles."""
+
+from importlib.resources import files
+from typing import TYPE_CHECKING, Final
+
+from fastapi import APIRouter, Request
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
+
+from mdr_core import profiles
+from mdr_service import health, observability, problems
+from mdr_service.api.documentation import failures
+from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
+from mdr_service.schemas.profiles import MODELS
+from mdr_service.settings import SETTINGS, Settings
+
+if TYPE_CHECKING:
+    from mdr_service.workers import WorkerPool
+
+router = APIRouter(responses=failures())
+
+_DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
+# The browser connects to no other host, whatever the page shows.
+_DOCS_HEADERS: Final = {
+    "Content-Security-Policy": (
+        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
+    )
+}
+_OK: Final = Health(status="ok")
+
+
+def _catalogue() -> Catalogue:
+    return Catalogue(
+        profiles=[
+            ProfileKind(
+                kind=kind,
+                formula=known.formula,
+                fields=[
+                    ProfileField(
+                        name=name,
+                        dimension=str(extra["x-dimension"]),
+                        description=str(field.description).rpartition(" [")[0],
+                        required=field.is_required(),
+                    )
+                    for name, field in model.model_fields.items()
+                    if isinstance(extra := field.json_schema_extra, dict)
+                ],
+                closed_forms=list(known.closed_forms),
+            )
+            for (kind, known), model in zip(profiles.KINDS.items(), MODELS, strict=True)
+        ]
+    )
+
+
+_CATALOGUE: Final = _catalogue()
+
+
+@router.get("/v1/profiles", operation_id="profiles", tags=["catalogue"], summary="Profile kinds")
+async def list_profiles() -> Catalogue:
+    """List the kinds of profile with their formulas, fields and closed forms."""
+    return _CATALOGUE
+
+
+@router.get("/v1/limits", operation_id="limits", tags=["operation"], summary="Limits of a request")
+async def list_limits() -> Settings:
+    """Return the limits of this process, so that clients can adapt their requests."""
+    return SETTINGS
+
+
+@router.get("/health", operation_id="health", tags=["operation"], summary="State of the service")
+async def health_() -> Health:
+    """Return 200 if requests are served."""
+    return _OK
+
+
+@router.get("/health/live", operation_id="live", tags=["operation"], summary="Liveness probe")
+async def live() -> Health:
+    """Return 200 without any work. Restart an instance that does not."""
+    return _OK
+
+
+@router.get(
+    "/health/ready",
+    operation_id="ready",
+    tags=["operation"],
+    summary="Readiness probe",
+    responses=failures(problems.BUSY, *health.FAILURES),
+)
+async def ready(request: Request) -> Health:
+    """Return 200 if a compute process solves a Hertzian contact correctly.
+
+    An instance that is busy is not ready for the moment.
+    """
+    workers: WorkerPool = request.app.state.workers
+    await workers.check()
+    return _OK
+
+
+@router.get(
+    "/metrics",
+    operation_id="metrics",
+    tags=["operation"],
+    summary="Prometheus metrics",
+    response_class=PlainTextResponse,
+)
+async def metrics() -> Response:
+    """Return requests and latencies by route, problems by type, and the state of the queue."""
+    return Response(observability.metrics(), media_type=observability.METRICS_MEDIA_TYPE)
+
+
+@router.get("/docs", include_in_schema=False)
+async def docs() -> Response:
+    """Return the documentation page, whose files are all of this host."""
+    return HTMLResponse(_DOCS_PAGE, headers=_DOCS_HEADERS)

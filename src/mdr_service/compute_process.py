@@ -1,0 +1,223 @@
+"""A compute process: its handle in the server, and the loop that it runs.
+
+Calls and outcomes are pickled and preceded by their length. The process sets an alarm for the
+time limit of a call, whose default action terminates it during any computation. A process that
+still exists after the limit is stopped or hung, and is killed.
+"""
+
+import os
+import pickle
+import signal
+import sys
+import threading
+import traceback
+from asyncio import StreamReader, StreamWriter, create_subprocess_exec, subprocess, timeout
+from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager, suppress
+from time import sleep
+from typing import Any, Final, NamedTuple, Self, TypeVar, cast
+
+from anyio import CancelScope
+
+from mdr_core.errors import DefectError
+from mdr_service import observability, problems
+from mdr_service.problems import Error, ProblemType, ServiceError
+from mdr_service.table_cache import TABLES, Lookups
+
+_Result = TypeVar("_Result")
+Room = Callable[[int], AbstractAsyncContextManager[None]]
+"""Context in which a result of a given length is read; it raises ServiceError to reject that."""
+
+# Bytes of the length before each message.
+_HEAD: Final = 8
+# Length above which a result is read without unpickling, in the room that `Room` provides [bytes].
+_LARGE: Final = 65_536
+# The server's replies to the length of a large result.
+_SEND, _DISCARD = b"+", b"-"
+# Time for the alarm to take effect, or for the outcome to be read, on a busy machine.
+_GRACE_SECONDS: Final = 1.0
+# Interval at which a process checks that its parent exists.
+_PARENT_SECONDS: Final = 0.5
+# With fewer cores than processes, the event loop has priority.
+_NICENESS: Final = 5
+
+
+class ProcessLostError(Exception):
+    """The process ended or did not respond."""
+
+
+class _Outcome(NamedTuple):
+    """Result of a call, or the reason that there is none; exceptions do not pickle reliably."""
+
+    result: Any = None
+    failure: tuple[ProblemType, str, tuple[Error, ...], int | None] | None = None
+    defect: str | None = None
+    length: int = 0
+    """Length of a large `result`, which is sent separately if there is room for it."""
+    tables: Lookups = Lookups()
+
+
+class ComputeProcess:
+    """Handle of a compute process, `usable` until a call takes too long or is cancelled."""
+
+    def __init__(self, process: subprocess.Process, room: Room) -> None:
+        self._process = process
+        self._room = room
+        self._calls = cast("StreamWriter", process.stdin)
+        self._outcomes = cast("StreamReader", process.stdout)
+        self._table_bytes = 0
+        self.usable = True
+
+    @classmethod
+    async def start(cls, seconds: float, self_test: Callable[[], object], room: Room) -> Self:
+        """Start a process, and run a function in it within a time limit.
+
+        Parameters
+        ----------
+        seconds : time limit [s].
+        self_test : function of a module, which raises an error if the process is unusable.
+        room : context in which a large result is read.
+
+        Raises
+        ------
+        OSError : the process cannot be started.
+        DefectError, ServiceError, TimeoutError, ProcessLostError : see `call`.
+        """
+        # More BLAS threads than cores slow each other down. Modules are found as in the server.
+        environment = {"OPENBLAS_NUM_THREADS": "1", **os.environ}
+        environment["PYTHONPATH"] = os.pathsep.join(sys.path)
+        command = (sys.executable, "-P", "-c", f"from {__name__} import serve; serve()")
+        pipe = subprocess.PIPE
+        process = cls(
+            await create_subprocess_exec(*command, env=environment, stdin=pipe, stdout=pipe), room
+        )
+        try:
+            await process.call(seconds, self_test)
+        except BaseException:
+            with CancelScope(shield=True):
+                await process.close()
+            raise
+        return process
+
+    async def call(
+        self, seconds: float, function: Callable[..., _Result], *arguments: Any
+    ) -> _Result:
+        """Return the result of a function of a module, computed in the process.
+
+        Raises
+        ------
+        ServiceError : if the function fails with a problem document, or its result has no room.
+        DefectError : if it fails otherwise.
+        TimeoutError : if it takes longer than `seconds`.
+        ProcessLostError : if the process ends or does not respond.
+        """
+        message = pickle.dumps((seconds, function, arguments))
+        try:
+            async with timeout(seconds + _GRACE_SECONDS):
+                outcome = await self._exchange(message)
+        except TimeoutError:
+            self.kill()
+            raise ProcessLostError from None
+        except BaseException:
+            self.kill()
+            raise
+        if outcome is None:
+            self.kill()
+            if self._process.returncode == -signal.SIGALRM:
+                raise TimeoutError
+            raise ProcessLostError
+        if outcome.failure:
+            raise ServiceError(*outcome.failure)
+        if outcome.defect:
+            raise DefectError(f"in a compute process: {outcome.defect}")
+        result: _Result = outcome.result
+        return result
+
+    async def _exchange(self, message: bytes) -> _Outcome | None:
+        """Return the outcome of a call, or None once the process has ended."""
+        try:
+            self._calls.writelines((len(message).to_bytes(_HEAD), message))
+            await self._calls.drain()
+            length = int.from_bytes(await self._outcomes.readexactly(_HEAD))
+            # The pipe's other end is the server's own code.
+            outcome: _Outcome = pickle.loads(  # noqa: S301
+                await self._outcomes.readexactly(length)
+            )
+            self._count(outcome.tables)
+            if not outcome.length:
+                return outcome
+            async with self._room(outcome.length):
+                self._calls.write(_SEND)
+                return _Outcome(await self._outcomes.readexactly(outcome.length))
+        except ServiceError as error:
+            self._calls.write(_DISCARD)
+            return _failed(error)
+        except (EOFError, OSError):
+            # A signal to a process that is ending would compete with its exit status.
+            await self._process.wait()
+            return None
+
+    def _count(self, tables: Lookups) -> None:
+        observability.TABLES.labels("hit").inc(tables.hits)
+        observability.TABLES.labels("miss").inc(tables.misses)
+        observability.TABLE_BYTES.inc(tables.size - self._table_bytes)
+        self._table_bytes = tables.size
+
+    def kill(self) -> None:
+        """Terminate the process at once."""
+        self.usable = False
+        self._count(Lookups())
+        self._calls.close()
+        with suppress(ProcessLookupError):
+            self._process.kill()
+
+    async def close(self) -> None:
+        """Terminate the process and wait for its end."""
+        self.kill()
+        await self._process.wait()
+
+
+def serve() -> None:
+    """Compute until the server closes the pipe or ends."""
+    # A signal to the process group is for the server, which first completes its requests.
+    for each in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.SIG_IGN)
+    os.nice(_NICENESS)
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+    calls, outcomes = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
+    # The pipe is for outcomes alone: printed text goes to standard error.
+    os.dup2(2, 1)
+    while head := calls.read(_HEAD):
+        outcome, content = _attempt(calls.read(int.from_bytes(head))), b""
+        if isinstance(outcome.result, bytes) and len(outcome.result) > _LARGE:
+            content = outcome.result
+            outcome = outcome._replace(result=None, length=len(content))
+        text = pickle.dumps(outcome._replace(tables=TABLES.report()))
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        outcomes.write(len(text).to_bytes(_HEAD) + text)
+        outcomes.flush()
+        if content and calls.read(1) == _SEND:
+            outcomes.write(content)
+            outcomes.flush()
+
+
+def _attempt(text: bytes) -> _Outcome:
+    try:
+        # The pipe's other end is the server's own code.
+        seconds, function, arguments = pickle.loads(text)  # noqa: S301
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        return _Outcome(function(*arguments))
+    except problems.FAILURES as error:
+        return _failed(problems.to_problem(error))
+    except Exception:  # noqa: BLE001 -- the server logs it and responds
+        return _Outcome(defect=traceback.format_exc())
+
+
+def _failed(error: ServiceError) -> _Outcome:
+    return _Outcome(failure=(error.type, error.detail, error.errors, error.retry_after))
+
+
+def _end_with(parent: int) -> None:
+    while os.getppid() == parent:
+        sleep(_PARENT_SECONDS)
+    os._exit(1)

@@ -1,0 +1,60 @@
+"""Media type of a response: by the parameter ``format``, or else by the header ``Accept``."""
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from mdr_service import problems
+from mdr_service.serializers import csv, json, npz, svg
+
+FORMATS: Final = {
+    "json": json.MEDIA_TYPE,
+    "csv": csv.MEDIA_TYPE,
+    "npz": npz.MEDIA_TYPE,
+    "svg": svg.MEDIA_TYPE,
+}
+_WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
+
+
+def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FORMATS)) -> str:
+    """Return the media type of a response.
+
+    Parameters
+    ----------
+    name : name of the format; None leaves the choice to `accept`.
+    accept : value of the header ``Accept``, which prefers the first offered format of equals.
+    offered : names of the formats.
+
+    Raises
+    ------
+    ServiceError : no offered format is accepted.
+    """
+    types = [FORMATS[each] for each in offered]
+    if name is not None:
+        types = [FORMATS[name]] if name in offered else []
+        accept = "*/*"
+    ranges = dict(map(_range, (accept.strip() or "*/*").lower().split(",")))
+    best = max(types, key=lambda each: _preference(each, ranges), default=None)
+    if best is None or _preference(best, ranges) <= 0:
+        formats = ", ".join(f"{each} ({FORMATS[each]})" for each in offered)
+        raise problems.ServiceError(problems.NOT_ACCEPTABLE, f"available formats: {formats}")
+    return best
+
+
+def _range(text: str) -> tuple[str, float]:
+    """Return a media range and its weight; an invalid weight counts as 1."""
+    media_range, *parameters = (part.strip() for part in text.split(";"))
+    for parameter in parameters:
+        name, _, value = parameter.partition("=")
+        if name.strip() == "q" and _WEIGHT.fullmatch(value.strip()):
+            return media_range, float(value)
+    return media_range, 1.0
+
+
+def _preference(media_type: str, ranges: dict[str, float]) -> float:
+    """Return the weight of a media type, that of the most specific range (RFC 9110, 12.5.1)."""
+    main_type = media_type.partition("/")[0]
+    for media_range in (media_type, f"{main_type}/*", "*/*"):
+        if media_range in ranges:
+            return ranges[media_range]
+    return 0.0

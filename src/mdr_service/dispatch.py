@@ -1,0 +1,119 @@
+"""Response content of a query: parse, compute, serialize.
+
+Endpoints, compute processes and the command line call these functions, and get identical bytes.
+"""
+
+import logging
+from collections.abc import Callable, Mapping
+from typing import Any, Final, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+
+from mdr_service import cost, problems
+from mdr_service.plots import PLOTS
+from mdr_service.problems import ServiceError
+from mdr_service.queries import QUERIES
+from mdr_service.schemas.batch import BatchItem, BatchQuery
+from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.fields import FieldQuery
+from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.serializers import csv, json, npz, svg
+from mdr_service.settings import SETTINGS
+
+_Model = TypeVar("_Model", bound=BaseModel)
+_WRITERS: Final[Mapping[str, Callable[[Mapping[str, Any]], bytes]]] = {
+    json.MEDIA_TYPE: json.write,
+    csv.MEDIA_TYPE: csv.write,
+    npz.MEDIA_TYPE: npz.write,
+}
+
+_logger: Final = logging.getLogger(__name__)
+
+
+def parse(model: type[_Model], text: bytes) -> _Model:
+    """Return the request in a JSON text.
+
+    Raises
+    ------
+    ServiceError : the text is not JSON, or not a valid request.
+    """
+    try:
+        return model.model_validate_json(text)
+    except ValidationError as error:
+        raise problems.from_validation(error) from None
+
+
+def respond(
+    name: str, query: BaseModel, media_type: str, **progress: Callable[[int], None]
+) -> bytes:
+    """Return the response content of a query or a batch.
+
+    Parameters
+    ----------
+    name : name of the query, a key of `QUERIES`, or ``batch``.
+    query : the request.
+    media_type : media type of the content.
+    progress : for an evolution, see `queries.wear.solve_evolution`.
+
+    Raises
+    ------
+    InputError, AccuracyError, ServiceError : the query has no result.
+    """
+    if isinstance(query, BatchQuery):
+        return _respond_to_batch(query)
+    # Results are checked for overflow at their end.
+    with np.errstate(all="ignore"):
+        kind = QUERIES[name]
+        source = kind.solve(query, **progress)
+        result = kind.result(query, source)
+        if media_type == svg.MEDIA_TYPE:
+            plot = PLOTS[name](query, source, result)
+            return svg.write(plot)
+    return _WRITERS[media_type](result)
+
+
+def respond_to_text(name: str, text: bytes, media_type: str) -> bytes:
+    """Return the response content of a query in a JSON text; see `parse` and `respond`."""
+    query = parse(BatchQuery if name == "batch" else QUERIES[name].model, text)
+    cost.require_feasible(query, media_type)
+    return respond(name, query, media_type)
+
+
+def _respond_to_batch(batch: BatchQuery) -> bytes:
+    _require_few_numbers(batch)
+    return b'{"answers":[' + b",".join(map(_entry, batch.queries)) + b"]}"
+
+
+def _require_few_numbers(batch: BatchQuery) -> None:
+    """Raise ServiceError if the responses would hold more numbers than one may."""
+    numbers, most = 0, SETTINGS.max_numbers
+    for index, item in enumerate(batch.queries):
+        if isinstance(item.query, Query):
+            own = item.query.loads
+            if isinstance(item.query, FieldQuery | SubsurfaceQuery):
+                own = max(own, item.query.numbers)
+            # A query that is too large alone is rejected alone.
+            numbers += own if own <= most else 0
+        if numbers > most:
+            detail = f"the responses must not hold more than {most} numbers in total"
+            place = problems.pointer(("queries", index))
+            raise ServiceError(problems.INVALID_REQUEST, detail, [(place, detail)])
+
+
+def _entry(item: BatchItem) -> bytes:
+    if isinstance(item.query, ValidationError):
+        return _problem(problems.from_validation(item.query))
+    try:
+        cost.require_feasible(item.query, json.MEDIA_TYPE)
+        content = respond(item.ask, item.query, json.MEDIA_TYPE)
+    except problems.FAILURES as error:
+        return _problem(problems.to_problem(error))
+    except Exception:
+        _logger.exception("internal error in an entry of a batch")
+        return _problem(problems.INTERNAL_ERROR)
+    return b'{"status":200,"answer":' + content + b"}"
+
+
+def _problem(error: ServiceError) -> bytes:
+    return json.write({"status": error.type.status, "problem": problems.document(error)})

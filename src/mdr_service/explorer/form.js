@@ -1,0 +1,102 @@
+// Fields of the form: a number with its unit and a slider, or a choice.
+
+import { read, shown, unit } from "./units.js";
+
+const SPAN = 100;
+
+function sliderOf(field, value, reference) {
+  const { range, logarithmic } = field;
+  if (range && !logarithmic) return { min: range[0], max: range[1], to: (x) => x, from: (x) => x };
+  const [low, high] = range ?? [
+    Math.min(reference / SPAN, value), Math.max(reference * SPAN, value),
+  ];
+  return { min: Math.log10(low), max: Math.log10(high), to: Math.log10, from: (x) => 10 ** x };
+}
+
+/**
+ * Return a row of the form for a field.
+ *
+ * `change(key, value)` is called with the new SI value while the slider moves and when a text
+ * is a number. `reference` is the value in whose neighbourhood the slider moves.
+ */
+export function row(field, scene, reference, change) {
+  return field.choices ? choiceRow(field, scene, change) : numberRow(field, scene, reference, change);
+}
+
+function choiceRow(field, scene, change) {
+  const label = document.createElement("label");
+  label.className = "row";
+  const name = document.createElement("span");
+  name.textContent = field.label;
+  const select = document.createElement("select");
+  select.id = `field-${field.key}`;
+  for (const { value, label: text } of field.choices) {
+    select.add(new Option(text, value, false, String(scene[field.key]) === String(value)));
+  }
+  select.addEventListener("change", () => {
+    const { value } = field.choices[select.selectedIndex];
+    change(field.key, value);
+  });
+  label.append(name, select);
+  return label;
+}
+
+function numberRow(field, scene, reference, change) {
+  const { key, dimension } = field;
+  const { name } = unit(dimension, scene);
+  const element = document.createElement("div");
+  element.className = "field";
+  element.dataset.key = key;
+  element.innerHTML = `<label class="row"><span></span><input type="text" inputmode="decimal" id="field-${key}"><span class="unit"></span></label><input type="range" step="any"><p class="problem" role="alert"></p>`;
+  const [text, slider] = element.querySelectorAll("input");
+  element.querySelector("span").textContent = field.label;
+  element.querySelector(".unit").textContent = name;
+  slider.setAttribute("aria-label", `${field.label}, slider`);
+  const { min, max, to, from } = sliderOf(field, scene[key], reference);
+  Object.assign(slider, { min, max, step: (max - min) / 400, value: to(scene[key]) });
+  const tell = (value) => slider.setAttribute("aria-valuetext", `${shown(value, dimension, scene)} ${name}`);
+  text.value = shown(scene[key], dimension, scene);
+  tell(scene[key]);
+  slider.addEventListener("input", () => {
+    const value = Number(from(Number(slider.value)).toPrecision(3));
+    text.value = shown(value, dimension, scene);
+    tell(value);
+    change(key, value);
+  });
+  text.addEventListener("input", () => {
+    const value = read(text.value, dimension, scene);
+    const wrong = Number.isNaN(value);
+    element.querySelector(".problem").textContent = wrong ? "not a number" : "";
+    text.setAttribute("aria-invalid", String(wrong));
+    if (wrong) return;
+    slider.value = to(value);
+    tell(value);
+    change(key, value);
+  });
+  return element;
+}
+
+/** Return the table that a text holds: pairs of r and f, one a line. */
+export function readTable(text) {
+  const table = { r: [], f: [] };
+  const rowOf = [];
+  text.split(/\r?\n/).forEach((line, i) => {
+    const words = line.trim().split(/[\s,;]+/).filter(Boolean);
+    if (words.length === 0 || line.startsWith("#")) return;
+    const numbers = words.map(Number);
+    // A first line of words is a heading.
+    if (numbers.some(Number.isNaN) && table.r.length === 0 && i === 0) return;
+    if (words.length !== 2 || numbers.some((x) => !Number.isFinite(x))) {
+      throw new Error(`Line ${i + 1}: two numbers are expected, r and f`);
+    }
+    table.r.push(numbers[0]);
+    table.f.push(numbers[1]);
+    rowOf.push(i + 1);
+  });
+  return { table, rowOf };
+}
+
+/** Return a table as the text of its field. */
+export function tableText({ r, f }) {
+  return r.map((x, i) => `${x}, ${f[i]}`).join("\n");
+}

@@ -1,0 +1,67 @@
+// Requests to the service, and their forms for other tools.
+
+/** The service refused a request; `problem` is its problem+json. */
+export class Refusal extends Error {
+  constructor(problem) {
+    super(problem.errors?.[0]?.detail ?? problem.detail ?? problem.title);
+    this.problem = problem;
+  }
+}
+
+async function post(path, body, accept, signal) {
+  const headers = { "content-type": "application/json", accept };
+  const response = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+  if (response.ok) return response;
+  const problem = await response.json().catch(() => ({ title: `The service answered ${response.status}` }));
+  throw new Refusal(problem);
+}
+
+/** Return the answer to a query. */
+export async function ask(path, body) {
+  return (await post(path, body, "application/json")).json();
+}
+
+/** Return the answer to a query as CSV. */
+export async function askCsv(path, body) {
+  return (await post(path, body, "text/csv")).text();
+}
+
+/**
+ * Return a function that runs `work` with at most one run at a time: a call during a run
+ * waits for its end, and only the newest waiting call runs.
+ */
+export function newestWins(work) {
+  let [running, waiting] = [false, false];
+  return async function run() {
+    if (running) {
+      waiting = true;
+      return;
+    }
+    running = true;
+    do {
+      waiting = false;
+      await work(() => waiting);
+    } while (waiting);
+    running = false;
+  };
+}
+
+/** Return a request as source in a language. */
+export function source(language, { path, body }) {
+  const url = new URL(path, document.baseURI).href;
+  if (language === "JSON") return JSON.stringify(body, null, 2);
+  if (language === "Python") {
+    const json = JSON.stringify(body).replace(/([:,])(?=["[{\d-])/g, "$1 ");
+    return `import httpx\n\nanswer = httpx.post(\n    "${url}",\n    json=${json},\n).raise_for_status().json()\n`;
+  }
+  return `curl -s ${url} \\\n  -H 'content-type: application/json' \\\n  -d '${JSON.stringify(body)}'\n`;
+}
+
+/** Offer text or a blob as a download. */
+export function download(name, content, type) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}

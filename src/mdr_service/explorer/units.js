@@ -1,0 +1,69 @@
+// Display units. The scene and the wire are in SI units throughout.
+
+const FACTORS = {
+  length: { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 },
+  displacement: { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 },
+  force: { kN: 1e3, N: 1, mN: 1e-3, "µN": 1e-6 },
+  pressure: { GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 },
+};
+
+// Dimension of a base unit -> its key in the scene and its label in the form.
+export const BASE_UNITS = {
+  length: { key: "ul", label: "Lengths", units: Object.keys(FACTORS.length) },
+  displacement: { key: "ud", label: "Depths", units: Object.keys(FACTORS.displacement) },
+  force: { key: "uf", label: "Forces", units: Object.keys(FACTORS.force) },
+  pressure: { key: "up", label: "Pressures", units: Object.keys(FACTORS.pressure) },
+};
+
+// Derived dimension -> powers of the base units.
+const DERIVED = {
+  modulus: { fixed: "GPa", factor: 1e9 },
+  energy: { force: 1, displacement: 1 },
+  stiffness: { force: 1, displacement: -1 },
+  volume: { length: 3 },
+  "1/pressure": { fixed: "1/Pa", factor: 1 },
+  1: { fixed: "", factor: 1 },
+};
+
+const SUPERSCRIPTS = { 1: "", 2: "²", 3: "³" };
+
+/** Return the display unit `{name, factor}` of a dimension: SI value = shown value × factor. */
+export function unit(dimension, scene) {
+  const base = BASE_UNITS[dimension];
+  if (base) return { name: scene[base.key], factor: FACTORS[dimension][scene[base.key]] };
+  const derived = DERIVED[dimension];
+  if (!derived) return { name: dimension.replace("length", "m"), factor: 1 };
+  if (derived.fixed !== undefined) return { name: derived.fixed, factor: derived.factor };
+  let [above, below, factor] = [[], [], 1];
+  for (const [part, power] of Object.entries(derived)) {
+    const { name, factor: each } = unit(part, scene);
+    factor *= each ** power;
+    (power > 0 ? above : below).push(name + SUPERSCRIPTS[Math.abs(power)]);
+  }
+  return { name: above.join("·") + (below.length ? "/" + below.join("·") : ""), factor };
+}
+
+/** Return a number with `digits` significant digits, without trailing zeros. */
+export function format(value, digits = 5) {
+  if (value === null || value === undefined) return "∞";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    return `${mantissa.replace(/\.?0+$/, "").replace("-", "−")}e${Number(exponent)}`;
+  }
+  return String(Number(value.toPrecision(digits))).replace("-", "−");
+}
+
+/** Return an SI value as text for an input in its display unit. */
+export function shown(value, dimension, scene) {
+  return String(Number((value / unit(dimension, scene).factor).toPrecision(12)));
+}
+
+/** Return the SI value of a text in its display unit, or NaN. */
+export function read(text, dimension, scene) {
+  const cleaned = text.trim().replace("−", "-");
+  if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(cleaned)) return NaN;
+  // The product of a decimal number and a power of ten, without its rounding error.
+  return Number((Number(cleaned) * unit(dimension, scene).factor).toPrecision(15));
+}

@@ -1,0 +1,263 @@
+"""ASGI middleware: request log, problem documents, request bodies and large responses."""
+
+import logging
+import os
+import re
+from asyncio import CancelledError
+from collections.abc import Mapping
+from typing import Final
+
+import orjson
+from anyio import move_on_after
+from fastapi import FastAPI, Request
+from starlette.exceptions import HTTPException
+from starlette.middleware.cors import CORSMiddleware
+from starlette.requests import ClientDisconnect
+from starlette.responses import Response
+from starlette.routing import Match, Route
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from mdr_service import observability, problems
+from mdr_service.observability import RequestRecord
+from mdr_service.problems import ServiceError
+from mdr_service.serializers import json
+from mdr_service.settings import SETTINGS
+from mdr_service.transfers import LONG, Transfers
+
+# Ids that a client can give to its requests.
+_ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
+# Status in the log for a client that disconnected before the response, as of nginx.
+_CLIENT_CLOSED_REQUEST: Final = 499
+# Status sent before the body was read to its end.
+_UNREAD: Final = problems.BODY_TOO_LARGE.status
+# Time for a client on the same continent to read a response.
+_LINGER_SECONDS: Final = 1.0
+_CLOSE: Final = ((b"connection", b"close"),)
+_ALWAYS: Final = ((b"x-content-type-options", b"nosniff"),)
+
+_logger: Final = logging.getLogger(__name__)
+
+
+def install(app: FastAPI) -> None:
+    """Add the middleware and the exception handlers to `app`."""
+    for failure in problems.FAILURES:
+        app.exception_handler(failure)(_failure)
+    app.exception_handler(HTTPException)(_http_exception)
+    app.add_middleware(ServiceMiddleware, transfers=app.state.transfers)
+    if SETTINGS.cors_origins:
+        # Outside of all, so that a page can read problems as well.
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=SETTINGS.cors_origins,
+            allow_methods=("GET", "POST"),
+            allow_headers=("Content-Type", "If-None-Match", "X-Request-Id"),
+            expose_headers=("ETag", "Retry-After", "X-Request-Id"),
+        )
+
+
+class ServiceMiddleware:
+    """Outermost layer of the application.
+
+    An exception that reaches the server drops the connection, and with it the next request of a
+    client that reuses connections. The innermost handler of all exceptions is therefore here.
+    """
+
+    def __init__(self, app: ASGIApp, transfers: Transfers) -> None:
+        self.app = app
+        self.transfers = transfers
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Handle one request; respond with a problem document if it fails."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        given = header(scope, b"x-request-id")
+        name = given if _ID.fullmatch(given) else os.urandom(8).hex()
+        record = RequestRecord(name, scope["method"])
+        observability.CURRENT.set(record)
+        sender = _Sender(self.transfers, record, receive, send)
+        if scope["method"] == "HEAD":
+            # The server leaves out the body.
+            scope = {**scope, "method": "GET"}
+        try:
+            await self.app(scope, receive, sender)
+        except ClientDisconnect:
+            record.status = _CLIENT_CLOSED_REQUEST
+        except CancelledError:
+            # The server is shutting down, and its time limit for this request has passed.
+            if record.status:
+                raise
+            stopping = ServiceError(problems.STOPPING, "send the request again", retry_after=1)
+            await problem_response(stopping)(scope, receive, sender)
+        except Exception:
+            if record.status:
+                raise
+            _logger.exception("internal error, response 500")
+            await problem_response(problems.INTERNAL_ERROR)(scope, receive, sender)
+        finally:
+            self.transfers.remove(record)
+            observability.end(record, _routed(scope))
+
+
+class _Sender:
+    """Sends one response: adds the common headers, and sends a long body in pieces.
+
+    The server buffers what the client does not read. A piece waits until the one before it is
+    written, and the end of a long response until all of it is.
+    """
+
+    def __init__(
+        self, transfers: Transfers, record: RequestRecord, receive: Receive, send: Send
+    ) -> None:
+        self.transfers = transfers
+        self.record = record
+        self.receive = receive
+        self.send = send
+        self.start: Message = {}
+
+    async def __call__(self, message: Message) -> None:
+        if message["type"] == "http.response.start":
+            self.start = message
+            return
+        size = len(message.get("body", b""))
+        if size > LONG and not self.record.status:
+            try:
+                self.transfers.add_response(self.record, size)
+            except ServiceError as error:
+                message, size = self._replace(problem_response(error)), 0
+        if size > LONG:
+            with self.transfers.sending() as scope:
+                await self._send_in_pieces(message, size)
+            if scope.cancelled_caught:
+                raise ClientDisconnect
+        elif self.start.get("status") == _UNREAD:
+            await self._linger(message)
+        else:
+            await self._send(message)
+
+    async def _send(self, message: Message) -> None:
+        """Send a message, the first one after the start of the response."""
+        if not self.record.status:
+            self.record.status = self.start["status"]
+            marks = (b"x-request-id", self.record.id.encode("ascii"))
+            closing = _CLOSE if self.record.status == _UNREAD else ()
+            headers = [*self.start["headers"], marks, *_ALWAYS, *closing]
+            await self.send({**self.start, "headers": headers})
+        await self.send(message)
+
+    async def _send_in_pieces(self, message: Message, size: int) -> None:
+        body = memoryview(message["body"])
+        for begin in range(0, size, LONG):
+            piece = body[begin : begin + LONG]
+            await self._send({"type": message["type"], "body": piece, "more_body": True})
+        await self._send({**message, "body": b""})
+
+    async def _linger(self, message: Message) -> None:
+        """Send the whole response, then discard the request body for a while.
+
+        A connection closed with unread data is reset, and the client may lose the response.
+        """
+        await self._send({**message, "more_body": True})
+        with move_on_after(_LINGER_SECONDS):
+            while (await self.receive()).get("more_body"):
+                pass
+        await self._send({"type": "http.response.body"})
+
+    def _replace(self, response: Response) -> Message:
+        """Replace the start of the response; return the message with the new body."""
+        headers = response.raw_headers
+        self.start = {**self.start, "status": response.status_code, "headers": headers}
+        return {"type": "http.response.body", "body": response.body}
+
+
+def problem_response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:
+    """Return the response to a request that failed."""
+    observability.PROBLEMS.labels(error.type.name).inc()
+    document = problems.document(error)
+    record = observability.CURRENT.get()
+    if record and error.type.status >= problems.INTERNAL.status:
+        # The log of the service has the details of an internal error under this id.
+        document["instance"] = f"urn:mdr:request:{record.id}"
+    # A failure can be transient, so it must not be cached.
+    headers = {"Cache-Control": "no-store", **(headers or {})}
+    if error.retry_after is not None:
+        headers["Retry-After"] = str(error.retry_after)
+    return Response(orjson.dumps(document), error.type.status, headers, problems.MEDIA_TYPE)
+
+
+def header(scope: Scope, name: bytes, default: str = "") -> str:
+    """Return the first header of a lower-case name.
+
+    The framework's mapping of all headers takes longer to build than this search.
+    """
+    for each, value in scope["headers"]:
+        if each == name:
+            found: str = value.decode("latin-1")
+            return found
+    return default
+
+
+async def read_body(request: Request) -> bytes:
+    """Return the body; reject it early if it is too large or not JSON.
+
+    The server's protocol bounds the time in which it arrives.
+    """
+    media_type = header(request.scope, b"content-type").partition(";")[0].strip().lower()
+    if media_type != json.MEDIA_TYPE:
+        detail = f"the Content-Type must be {json.MEDIA_TYPE}"
+        raise ServiceError(problems.UNSUPPORTED_MEDIA_TYPE, detail)
+    announced = header(request.scope, b"content-length")
+    if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:
+        raise _too_large()
+    chunks: list[bytes] = []
+    size = 0
+    more = True
+    while more:
+        message = await request.receive()
+        if message["type"] == "http.disconnect":
+            raise ClientDisconnect
+        chunk = message.get("body", b"")
+        size += len(chunk)
+        if size > SETTINGS.max_body_bytes:
+            raise _too_large()
+        if size > LONG:
+            request.app.state.transfers.add_received(observability.CURRENT.get(), len(chunk))
+        chunks.append(chunk)
+        more = message.get("more_body", False)
+    return b"".join(chunks)
+
+
+def _too_large() -> ServiceError:
+    detail = f"the limit is {SETTINGS.max_body_bytes} bytes"
+    return ServiceError(problems.BODY_TOO_LARGE, detail)
+
+
+def _routed(scope: Scope) -> str | None:
+    route = scope.get("route")
+    return route.path if isinstance(route, Route) else None
+
+
+def _failure(_request: Request, error: Exception) -> Response:
+    return problem_response(problems.to_problem(error))
+
+
+def _http_exception(request: Request, error: HTTPException) -> Response:
+    """Return the problem document of an unknown path or method, found by the framework."""
+    if error.status_code == problems.NOT_FOUND.status:
+        return problem_response(ServiceError(problems.NOT_FOUND, "GET /docs lists the endpoints"))
+    if error.status_code == problems.METHOD_NOT_ALLOWED.status:
+        detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed here"
+        failure = ServiceError(problems.METHOD_NOT_ALLOWED, detail)
+        return problem_response(failure, {"Allow": _allowed(request)})
+    raise error
+
+
+def _allowed(request: Request) -> str:
+    """Return the methods of all routes of a path; the framework names those of one."""
+    scope = {**request.scope, "method": ""}
+    routes = [route for route in request.app.routes if isinstance(route, Route)]
+    methods = [
+        route.methods or set() for route in routes if route.matches(scope)[0] is not Match.NONE
+    ]
+    allowed = set().union(*methods)
+    return ", ".join(sorted(allowed | ({"HEAD"} if "GET" in allowed else set())))

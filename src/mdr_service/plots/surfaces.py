@@ -1,0 +1,218 @@
+"""Fields and worn profiles over the radius."""
+
+from typing import Any, Final, TypeVar
+
+import numpy as np
+
+from mdr_core import fields
+from mdr_core import normal as normal_contact
+from mdr_core.errors import InputError
+from mdr_core.history import LoadHistory
+from mdr_core.tangential import TangentialContact
+from mdr_core.typing import Array
+from mdr_core.wear import limit as wear_limit
+from mdr_core.wear.evolution import WearEvolution
+from mdr_core.wear.limit import LimitingWear
+from mdr_service.plots.plot import (
+    LABELS,
+    MOST_CURVES,
+    NOTHING,
+    POINTS,
+    SYMBOLS,
+    VISIBLE,
+    Curve,
+    Mark,
+    Panel,
+    Plot,
+    some,
+)
+from mdr_service.queries.contacts import body, control, friction
+from mdr_service.queries.fields import at_end, field, solve_stress
+from mdr_service.queries.wear import evolution_grid, solve_wear
+from mdr_service.results import Contact, Result, unworn
+from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+
+_Query = TypeVar("_Query", StressQuery, WearQuery)
+
+# A stress is cut above what it exceeds on 3 % of the axis only, if its peak is twice as high.
+_USUAL, _PEAK, _HEADROOM = 0.97, 2.0, 1.15
+_CUT: Final = frozenset({"pressure", "shear_stress"})
+_REQUESTED: Final = "requested radii"
+
+
+def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
+    """Return each requested field over the radius, with the breaks b, the edges a and c marked."""
+    shown = source if query.loads <= MOST_CURVES else solve_stress(_first_loads(query))
+    contact, partial = end = at_end(shown)
+    edges, fronts = np.ravel(contact.contact_radius), _slip_fronts(shown)
+    breaks = [float(b) for b in contact.profile.breaks]
+    grid = fields.grid(partial or contact, POINTS + edges.size + fronts.size + len(breaks))
+    requested = result["radius"]
+    window = (
+        (0.0, max(grid[-1], requested[0]))
+        if np.ptp(requested) == 0
+        else (requested.min(), requested.max())
+    )
+    radius = np.unique([*grid[(grid >= window[0]) & (grid <= window[1])], *_evenly(*window)])
+    panels = []
+    for name in query.quantities:
+        dense = field(name, end, radius, VISIBLE)
+        dense = np.broadcast_to(dense, (min(query.loads, MOST_CURVES), radius.size))
+        panels.append(_panel(name, radius, dense, _load_names(query), requested, result[name]))
+    marks = [Mark(b, "b") for b in breaks[:MOST_CURVES]] + _edge_marks(edges, "a")
+    if query.has("history"):
+        marks += [Mark(front, "c") for front in fronts.tolist() if fronts.size <= MOST_CURVES]
+    else:
+        marks += _edge_marks(fronts, "c")
+    note = some(min(query.loads, MOST_CURVES), query.loads, "loads")
+    marks = [mark for mark in marks if mark.place > 0]
+    return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
+
+
+def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
+    """Return the initial and the limiting profile over the radius, and other requested fields."""
+    shown = limit if query.loads <= MOST_CURVES else solve_wear(_first_loads(query))
+    loads = min(query.loads, MOST_CURVES)
+    profile = unworn(shown).normal.profile
+    requested = result.get("radius", NOTHING)
+    radius = _to_last(shown.grid(POINTS + 3 * loads + len(profile.breaks)), requested)
+    bounded = np.isfinite(np.ravel(shown.wear_radius))
+    names = [
+        (name or "limiting") + ("" if ends else ": unbounded")
+        for name, ends in zip(_load_names(query), bounded, strict=True)
+    ]
+    panels = []
+    for name in ("limiting_profile", *(n for n in ("worn_depth", "pressure") if n in result)):
+        dense = np.atleast_2d(getattr(shown, name)(radius))
+        panels.append(_panel(name, radius, dense, names, requested, result.get(name)))
+    initial = Curve(radius, shown.initial_profile(radius), "initial", style="--")
+    panels[0] = panels[0]._replace(curves=[*panels[0].curves, initial])
+    marks = [
+        mark for index in np.flatnonzero(bounded).tolist() for mark in _wear_marks(shown, index)
+    ]
+    note = some(loads, query.loads, "loads")
+    return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
+
+
+def evolution(query: EvolutionQuery, worn: WearEvolution, result: Result) -> Plot:
+    """Return profile and pressure over the radius at some of the numbers of cycles."""
+    size = worn.cycles.size
+    shown = np.unique(np.linspace(0, size - 1, min(size, MOST_CURVES)).round().astype(int))
+    names = [f"N = {worn.cycles[index]:.4g}" for index in shown]
+    profile = unworn(worn).normal.profile
+    requested = result.get("radius", NOTHING)
+    radius = _to_last(evolution_grid(worn, POINTS + len(profile.breaks)), requested)
+    panels = []
+    for name in ("profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])):
+        dense = getattr(worn, name)(radius)[shown]
+        points = result[name][shown] if name in result else None
+        panels.append(_panel(name, radius, dense, names, requested, points))
+    more = [Curve(radius, profile.f(radius), "initial", style="--")]
+    marks = [Mark(float(worn.stick_radius[-1]), "c")]
+    limit = _limit_of(query)
+    if limit is not None and np.isfinite(limit.wear_radius).all():
+        more.append(Curve(radius, np.ravel(limit.limiting_profile(radius)), "limiting", style=":"))
+        marks = _wear_marks(limit, 0)
+    panels[0] = panels[0]._replace(curves=[*panels[0].curves, *more])
+    marks = [mark._replace(curve=None) for mark in marks]
+    note = some(shown.size, size, "numbers of cycles")
+    return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
+
+
+def _panel(
+    name: str, radius: Array, dense: Array, names: list[str], requested: Array, values: Array | None
+) -> Panel:
+    """Return the panel of a field, with a curve for each row and its requested values."""
+    points: Any = [(NOTHING, NOTHING)] * len(dense)
+    if values is not None:
+        order = np.argsort(requested)
+        points = [(requested[order], row[order]) for row in values[: len(dense)]]
+    curves = [
+        Curve(radius, row, label, *at) for row, label, at in zip(dense, names, points, strict=True)
+    ]
+    return Panel(LABELS[name], curves, _limits(curves) if name in _CUT else None)
+
+
+def _limits(curves: list[Curve]) -> tuple[float, float]:
+    """Return y limits that show the usual values of fields with narrow or infinite peaks."""
+    ends = []
+    for sign in (1, -1):
+        sizes = [np.where(np.isfinite(curve.y), sign * curve.y, 0.0).clip(0.0) for curve in curves]
+        even = [np.interp(_evenly(*_ends(c.x)), c.x, y) for c, y in zip(curves, sizes, strict=True)]
+        usual = float(max(np.quantile(y, _USUAL) for y in even))
+        peak = float(max(y.max() for y in sizes))
+        ends.append(_HEADROOM * usual if peak > _PEAK * usual > 0 else peak)
+    margin = 0.05 * sum(ends) or 1.0
+    return -ends[1] - margin * (ends[1] > 0), ends[0] + margin * (ends[0] > 0 or ends[1] == 0)
+
+
+def _evenly(start: float, stop: float) -> Array:
+    return np.linspace(start, stop, POINTS)
+
+
+def _ends(radius: Array) -> tuple[float, float]:
+    return float(radius[0]), float(radius[-1])
+
+
+def _to_last(grid: Array, requested: Array) -> Array:
+    """Return the grid, extended to the largest requested radius."""
+    return np.unique([*grid, *_evenly(0.0, float(max(grid[-1], *requested, 0.0)))])
+
+
+def _first_loads(query: _Query) -> _Query:
+    """Return the query with its first loads only."""
+    names = [name for name in ("load", "tangential", "oscillation") if getattr(query, name, None)]
+    choices = {name: getattr(query, name) for name in names}
+    shorter = {
+        name: choice.model_copy(update={choice.control: choice.value[:MOST_CURVES]})
+        for name, choice in choices.items()
+        if isinstance(choice.value, list)
+    }
+    return query.model_copy(update=shorter)
+
+
+def _load_names(query: StressQuery | WearQuery) -> list[str]:
+    """Return the labels of the loads: the controls that differ between them."""
+    listed = {each.control: each.value for each in query.controls if isinstance(each.value, list)}
+    return [
+        ", ".join(
+            f"{SYMBOLS[name]} = {values[index]:.4g}"
+            for name, values in listed.items()
+            if len(values) > 1
+        )
+        for index in range(min(query.loads, MOST_CURVES))
+    ]
+
+
+def _slip_fronts(source: Contact) -> Array:
+    if isinstance(source, LoadHistory):
+        return source.slip_fronts
+    return np.ravel(source.stick_radius) if isinstance(source, TangentialContact) else NOTHING
+
+
+def _edge_marks(radii: Array, symbol: str) -> list[Mark]:
+    """Return a mark for each load, in the colour of its curve if there are several."""
+    several = radii.size > 1
+    return [Mark(r, symbol, index if several else None) for index, r in enumerate(radii.tolist())]
+
+
+def _wear_marks(limit: LimitingWear, index: int) -> list[Mark]:
+    """Return marks at the stick radius c and the wear radius of a load."""
+    c, end = (float(np.ravel(r)[index]) for r in (limit.stick_radius, limit.wear_radius))
+    curve = index if limit.wear_radius.size > 1 else None
+    return [Mark(c, "c", curve), Mark(end, "ã", curve)][: 1 + (end > c)]
+
+
+def _limit_of(query: EvolutionQuery) -> LimitingWear | None:
+    """Return the limiting state, None if it depends on the path or the profile ends before it."""
+    if (query.load.control, query.oscillation.control) == (
+        "normal_force",
+        "tangential_displacement",
+    ):
+        return None
+    contact = normal_contact.solve(**body(query), **control(query.load))
+    try:
+        return wear_limit.solve(contact, **friction(query), **control(query.oscillation))
+    except InputError:
+        return None

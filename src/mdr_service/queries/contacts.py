@@ -1,0 +1,98 @@
+"""Queries about contacts: profile, material and load -> contact of the core -> result."""
+
+from collections.abc import Iterable
+from typing import Any, Final
+
+import numpy as np
+
+from mdr_core import normal as normal_contact
+from mdr_core import profiles
+from mdr_core import tangential as tangential_contact
+from mdr_core.errors import InputError, Notice
+from mdr_core.normal import NormalContact
+from mdr_core.tangential import TangentialContact
+from mdr_service.results import Result, about, by_load, checked, members, notices
+from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
+from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
+from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
+from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.table_cache import TABLES
+
+Arguments = dict[str, Any]
+FrictionQuery = TangentialQuery | StressQuery | SubsurfaceQuery | WearQuery | EvolutionQuery
+
+_NORMAL: Final = members(NormalAnswer)
+_PARTIAL_SLIP: Final = members(TangentialAnswer, _NORMAL)
+
+
+def solve_normal(query: NormalQuery | StressQuery | WearQuery) -> NormalContact:
+    """Return the normal contact of a query."""
+    return normal_contact.solve(**body(query), **control(query.load), rtol=query.rtol)
+
+
+def normal_result(query: NormalQuery, contact: NormalContact) -> Result:
+    """Return the quantities of a frictionless normal contact."""
+    return _result(query, contact, by_load(contact, _NORMAL, query.loads))
+
+
+def solve_tangential(query: TangentialQuery | StressQuery | SubsurfaceQuery) -> TangentialContact:
+    """Return the contact with friction of a query."""
+    tangential = paired("tangential", query.tangential, query.load)
+    return tangential_contact.solve(solve_normal(query), **friction(query), **tangential)
+
+
+def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Result:
+    """Return the quantities of a contact in partial slip under a tangential load."""
+    values = by_load(contact.normal, _NORMAL, query.loads)
+    return _result(query, contact, values | by_load(contact, _PARTIAL_SLIP, query.loads))
+
+
+def profile(model: Profile) -> profiles.Profile:
+    """Return the profile; fields have the same names in the model and in the core."""
+    if isinstance(model, TabulatedProfile):
+        return TABLES.resolved(model)
+    given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
+    if isinstance(model, SeriesProfile):
+        given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
+    return profiles.KINDS[model.kind](**given)
+
+
+def body(query: Query) -> Arguments:
+    """Return profile and effective modulus, as arguments of the core."""
+    return {"profile": profile(query.profile), "e_star": query.material.effective.e_star}
+
+
+def friction(query: Any) -> Arguments:
+    """Return shear modulus and coefficient of friction, as arguments of the core."""
+    g_star = query.material.effective.g_star
+    if g_star is None:
+        raise InputError(("material", "g_star"), "is needed where there is friction")
+    return {"g_star": g_star, "friction_coefficient": query.friction_coefficient}
+
+
+def control(given: Choice) -> Arguments:
+    """Return the given control by its name, as an argument of the core."""
+    value = given.value
+    return {given.control: np.array(value, dtype=float) if isinstance(value, list) else value}
+
+
+def paired(name: str, given: Choice, load: Choice) -> Arguments:
+    """Return the tangential control: one value for all normal loads, or one for each."""
+    if given.count > 1 and load.count not in {1, given.count}:
+        detail = f"{given.count} values for {load.count} loads: one or as many are needed"
+        raise InputError((name, given.control), detail)
+    return control(given)
+
+
+def _result(
+    query: NormalQuery, source: NormalContact | TangentialContact, values: Result
+) -> Result:
+    warnings = notices(query, source)
+    infinite = dict.fromkeys(("mean_pressure", "maximum_pressure"), _is_singular(warnings))
+    return checked(query, values, infinite) | about(source, warnings)
+
+
+def _is_singular(warnings: Iterable[Notice]) -> bool:
+    return any(notice.code == "singular" for notice in warnings)

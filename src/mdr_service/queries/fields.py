@@ -1,0 +1,149 @@
+"""Queries about fields over the radius."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from mdr_core import fields
+from mdr_core import normal as normal_contact
+from mdr_core.errors import InputError
+from mdr_core.history import ContactState, LoadHistory
+from mdr_core.normal import NormalContact
+from mdr_core.tangential import TangentialContact
+from mdr_core.typing import Array
+from mdr_service.queries.contacts import solve_normal, solve_tangential
+from mdr_service.queries.load_paths import require_few_samples, solve_points
+from mdr_service.results import (
+    Contact,
+    Result,
+    checked,
+    notices,
+    singular,
+    without_singular,
+    written,
+)
+from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, StressQuery
+from mdr_service.settings import SETTINGS
+
+_FIELDS: Final[Mapping[str, Callable[..., Array]]] = {
+    "pressure": fields.pressure,
+    "shear_stress": fields.shear_stress,
+    "slip": fields.slip,
+    "normal_displacement": fields.normal_displacement,
+    "foundation_load": fields.foundation_load,
+    "foundation_shear": fields.foundation_shear,
+}
+# Closed form wherever the equivalent profile is: these take no tolerance.
+_FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
+
+End = tuple[NormalContact, TangentialContact | ContactState | None]
+"""Normal contact, and what friction adds to it."""
+
+
+def solve_stress(query: StressQuery) -> Contact:
+    """Return the contact, or the load history, whose fields a query requests."""
+    _require_consistent(query)
+    if query.has("history"):
+        return solve_points(query)
+    return solve_tangential(query) if query.has("tangential") else solve_normal(query)
+
+
+def stress_result(query: StressQuery, source: Contact) -> Result:
+    """Return the requested fields by load and radius."""
+    contact, partial = end = at_end(source)
+    radius = np.array(query.radius or fields.grid(partial or contact, query.points))
+    values: Result = {}
+    for name in query.quantities:
+        rows = np.broadcast_to(field(name, end, radius, query.rtol), (query.loads, radius.size))
+        values[name] = np.ascontiguousarray(rows)
+    edges = np.ravel(contact.contact_radius)
+    at_singular = np.isin(radius, [0.0, *map(float, contact.profile.breaks), *edges])
+    infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
+    method = _method(source, contact, query.quantities)
+    integrated = 0.0 if method == "closed_form" else query.rtol
+    at_edges = max(
+        fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
+        for name in query.quantities
+    )
+    warnings = without_singular(notices(query, source)) + singular(radius, values, infinite)
+    if source.error_estimate <= query.rtol < at_edges:
+        warnings.append(normal_contact.not_reached(query.rtol))
+    return (
+        {"radius": radius}
+        | checked(query, values, infinite)
+        | {
+            "method": method,
+            "error_estimate": max(source.error_estimate, integrated) + at_edges,
+            "warnings": written(warnings),
+        }
+    )
+
+
+def field(name: str, end: End, radius: Array, rtol: float) -> Array:
+    """Return a field [load][radius] of a contact, or of the end of a load history.
+
+    Parameters
+    ----------
+    name : name of the field, a quantity of a stress query.
+    end : result of `at_end`.
+    radius : radii r >= 0 [length], shape (m,).
+    rtol : relative accuracy, where the field is integrated.
+    """
+    contact, partial = end
+    tolerance = {} if name in _FOUNDATION else {"rtol": rtol}
+    source = partial if name in SHEAR_FIELDS else contact
+    return np.atleast_2d(_FIELDS[name](source, radius, **tolerance))
+
+
+def at_end(source: Contact) -> End:
+    """Return the normal contact of the fields, and what friction adds to it."""
+    if isinstance(source, TangentialContact):
+        return source.normal, source
+    if isinstance(source, NormalContact):
+        return source, None
+    depth = max(float(source.indentation_depth[-1]), 0.0)
+    end = normal_contact.solve(
+        source.start.profile, source.start.e_star, indentation_depth=depth, rtol=source.rtol
+    )
+    return end, source.state
+
+
+def require_few_numbers(query: FieldQuery, rows: str = "loads") -> None:
+    """Raise InputError if the response would hold too many numbers."""
+    if query.numbers > SETTINGS.max_numbers:
+        place = "points" if query.points else "radius"
+        detail = f"{rows} times radii times quantities must not exceed {SETTINGS.max_numbers}"
+        raise InputError((place,), detail)
+
+
+def _require_consistent(query: StressQuery) -> None:
+    """Raise InputError where fields that are valid alone contradict each other."""
+    by_path = query.has("history")
+    with_friction = by_path or query.has("tangential")
+    if query.has("load") == by_path:
+        place = "history" if by_path else "load"
+        raise InputError((place,), "exactly one of load, history is needed")
+    if by_path and query.has("tangential"):
+        raise InputError(("tangential",), "is part of history where there is one")
+    if query.has("friction_coefficient") != with_friction:
+        missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
+        raise InputError((missing,), "friction_coefficient goes with tangential or history")
+    for index, name in enumerate(query.quantities):
+        if name in SHEAR_FIELDS and not with_friction:
+            raise InputError(("quantities", index), f"{name} needs tangential or history")
+    if query.has("radius") == query.has("points"):
+        place = "points" if query.has("points") else "radius"
+        raise InputError((place,), "exactly one of radius, points is needed")
+    require_few_numbers(query)
+    if by_path:
+        require_few_samples("history", query.history)
+
+
+def _method(source: Contact, contact: NormalContact, names: list[Any]) -> str:
+    """Return the most expensive method of the fields."""
+    closed = _FOUNDATION.union(contact.profile.closed_forms)
+    if isinstance(source, LoadHistory) and source.state.arcs:
+        # On nonlinear load paths shear fields are integrals.
+        closed -= SHEAR_FIELDS
+    return contact.method if closed.issuperset(names) else "quadrature"

@@ -1,0 +1,99 @@
+"""Queries about load histories."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from mdr_core import history as load_history
+from mdr_core.errors import InputError
+from mdr_core.history import LoadCycles, LoadHistory
+from mdr_service.queries.contacts import body, control, friction
+from mdr_service.results import Result, about, checked, members, notices, without_singular
+from mdr_service.schemas.answers import HistoryAnswer
+from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.load_paths import HistoryQuery, LoadPath
+from mdr_service.settings import SETTINGS
+
+_CYCLES: Final = ("energy_per_cycle", "secant_stiffness")
+_HISTORY: Final = members(HistoryAnswer, _CYCLES)
+
+
+class SolvedPath(NamedTuple):
+    """Load history, and its cycles if it is given as cycles."""
+
+    history: LoadHistory
+    cycles: LoadCycles | None = None
+
+
+def solve_history(query: HistoryQuery) -> SolvedPath:
+    """Return the load history of a query, given by its points or as cycles."""
+    if query.has("history") == query.has("cycles"):
+        place = "cycles" if query.has("cycles") else "history"
+        raise InputError((place,), "exactly one of history, cycles is needed")
+    name = "cycles" if query.has("cycles") else "history"
+    require_few_samples(name, query.path)
+    return solve_path(query)
+
+
+def solve_path(query: HistoryQuery) -> SolvedPath:
+    """Return the load history of a query with any number of samples."""
+    if not query.has("cycles"):
+        return SolvedPath(solve_points(query))
+    given = query.cycles
+    try:
+        cycles = load_history.cycles(
+            **body(query),
+            **friction(query),
+            **control(given.normal),
+            **control(given.tangential),
+            normal_amplitude=given.normal.amplitude,
+            count=given.count,
+            samples_per_step=given.samples_per_step,
+            rtol=query.rtol,
+        )
+    except InputError as error:
+        raise _in_request(error, "cycles", given) from None
+    return SolvedPath(cycles.history, cycles)
+
+
+def solve_points(query: HistoryQuery | StressQuery) -> LoadHistory:
+    """Return the load history of a query, given by its points."""
+    given = query.history
+    try:
+        return load_history.solve(
+            **body(query),
+            **friction(query),
+            **control(given.normal),
+            **control(given.tangential),
+            samples_per_step=given.samples_per_step,
+            rtol=query.rtol,
+        )
+    except InputError as error:
+        raise _in_request(error, "history", given) from None
+
+
+def history_result(query: HistoryQuery, path: SolvedPath) -> Result:
+    """Return forces, displacements and energies at the samples of a load history."""
+    values = {name: np.asarray(getattr(path.history, name)) for name in _HISTORY}
+    if path.cycles:
+        values |= {name: np.asarray(getattr(path.cycles, name)) for name in _CYCLES}
+    warnings = without_singular(notices(query, path.history))
+    return checked(query, values) | about(path.history, warnings)
+
+
+def require_few_samples(name: str, path: LoadPath) -> None:
+    """Raise InputError if a load path has too many samples."""
+    if path.samples > SETTINGS.max_samples:
+        place = ("samples_per_step",) if path.samples_per_step > 1 else ()
+        detail = f"the number of samples must not exceed {SETTINGS.max_samples}"
+        raise InputError((name, *place), detail)
+
+
+def _in_request(error: InputError, name: str, path: LoadPath) -> InputError:
+    """Return the error with the path of the request; the core numbers points, not members."""
+    first, *rest = error.path
+    if first != "history":
+        return error
+    if len(rest) == 3:
+        rest = [*path.place(str(rest[0]), int(rest[2]))]
+    return InputError((name, *rest), error.detail)

@@ -1,0 +1,159 @@
+"""Queries about fretting wear."""
+
+from typing import Any, Final, get_args
+
+import numpy as np
+
+from mdr_core import fields
+from mdr_core import normal as normal_contact
+from mdr_core.errors import InputError
+from mdr_core.typing import Array
+from mdr_core.wear import evolution as wear_evolution
+from mdr_core.wear import limit as wear_limit
+from mdr_core.wear.evolution import WearEvolution
+from mdr_core.wear.integrator import Progress
+from mdr_core.wear.limit import LimitingWear
+from mdr_service.queries.contacts import body, control, friction, paired, solve_normal
+from mdr_service.queries.fields import require_few_numbers
+from mdr_service.results import (
+    Flags,
+    Result,
+    Wear,
+    about,
+    by_load,
+    checked,
+    members,
+    notices,
+    singular,
+    unworn,
+    without_singular,
+)
+from mdr_service.schemas.answers import EvolutionAnswer, WearAnswer
+from mdr_service.schemas.wear import EvolutionField, EvolutionQuery, WearField, WearQuery
+
+_WEAR: Final = members(WearAnswer, ("radius", *get_args(WearField)))
+_EVOLUTION: Final = members(
+    EvolutionAnswer, ("radius", "field_error_estimate", *get_args(EvolutionField))
+)
+_PROFILES: Final = frozenset({"initial_profile", "limiting_profile", "profile"})
+# Infinite under unbounded wear.
+_UNBOUNDED: Final = frozenset(
+    {"wear_radius", "indentation_depth", "worn_volume", "limiting_profile", "worn_depth"}
+)
+# Radii at which a worn surface is computed at once: bounds the memory.
+_RADII_AT_ONCE: Final = 2_000
+# The chosen radii end at this multiple of the contact radius, outside what wears.
+_GRID_END: Final = 1.25
+
+
+def solve_wear(query: WearQuery) -> LimitingWear:
+    """Return the limiting state of fretting wear of a query."""
+    _require_radii(query, "loads")
+    amplitude = paired("oscillation", query.oscillation, query.load)
+    try:
+        return wear_limit.solve(solve_normal(query), **friction(query), **amplitude)
+    except InputError as error:
+        raise _in_request(error) from None
+
+
+def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
+    """Return the limiting state of fretting wear."""
+    radius = limit.grid(query.points) if query.points else np.array(query.radius or ())
+    values = by_load(limit, _WEAR, query.loads)
+    return _result(query, limit, values, radius, np.ravel(limit.stuck.endless))
+
+
+def solve_evolution(query: EvolutionQuery, progress: Progress | None = None) -> WearEvolution:
+    """Return fretting wear over the cycles of a query.
+
+    Parameters
+    ----------
+    query : the request.
+    progress : called with the number of evaluations since its last call.
+    """
+    _require_radii(query, "cycles")
+    try:
+        return wear_evolution.solve(
+            # The tolerance is that of the integration over the cycles.
+            normal_contact.solve(**body(query), **control(query.load)),
+            **friction(query),
+            **control(query.oscillation),
+            wear_coefficient=query.wear_coefficient,
+            cycles=np.array(query.cycles, dtype=float),
+            resolution=query.resolution,
+            rtol=query.rtol,
+            progress=progress,
+        )
+    except InputError as error:
+        raise _in_request(error) from None
+
+
+def evolution_result(query: EvolutionQuery, worn: WearEvolution) -> Result:
+    """Return fretting wear at the listed numbers of cycles."""
+    radius = evolution_grid(worn, query.points) if query.points else np.array(query.radius or ())
+    estimate: Result = {}
+    if radius.size:
+        estimate["field_error_estimate"] = worn.field_error_estimate(radius, query.quantities)
+    values = by_load(worn, _EVOLUTION, query.loads)
+    bounded = np.zeros(query.loads, dtype=bool)
+    return _result(query, worn, values, radius, bounded) | estimate
+
+
+def evolution_grid(worn: WearEvolution, points: int) -> Array:
+    """Return radii from 0 to beyond the largest contact, clustered at its first and last edges.
+
+    Not at a stick radius that moves: the pressure is singular there, its position has an error.
+    """
+    profile = unworn(worn).normal.profile
+    edges = worn.contact_radius[[0, -1]]
+    if not worn.initial.held.stick_moves:
+        edges = np.append(edges, worn.stick_radius[0])
+    last = min(_GRID_END * float(edges.max()) or 1.0, float(profile.domain))
+    stops = np.unique([0.0, *map(float, profile.breaks), *edges])
+    return fields.graded(np.append(stops[stops < last], last), points)
+
+
+def _result(
+    query: WearQuery | EvolutionQuery, worn: Wear, values: Result, radius: Array, unbounded: Flags
+) -> Result:
+    """Return the result of a wear query, with its fields at `radius` if there is any."""
+    warnings = without_singular(notices(query, worn))
+    infinite: dict[str, Any] = {"pressure": True}
+    if unworn(worn).normal.profile.slips_at_once:
+        infinite |= dict.fromkeys(_PROFILES, True)
+    if radius.size:
+        surface: Result = {name: _surface(worn, name, radius, query) for name in query.quantities}
+        bounded = {
+            name: field if name == "initial_profile" else field[~unbounded]
+            for name, field in surface.items()
+        }
+        warnings += singular(radius, bounded, infinite)
+        values |= {"radius": radius} | surface
+    for name in _UNBOUNDED & values.keys():
+        flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
+        infinite[name] = flags | infinite.get(name, False)
+    return checked(query, values, infinite) | about(worn, warnings)
+
+
+def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:
+    """Return one field of a worn contact, in blocks of radii."""
+    field = getattr(worn, name)
+    blocks = np.split(radius, range(_RADII_AT_ONCE, radius.size, _RADII_AT_ONCE))
+    values = np.concatenate([field(block) for block in blocks], axis=-1)
+    shape = (radius.size,) if name == "initial_profile" else (query.loads, radius.size)
+    return np.ascontiguousarray(values.reshape(shape))
+
+
+def _require_radii(query: WearQuery | EvolutionQuery, rows: str) -> None:
+    """Raise InputError unless radii are given once at most, and where fields need them."""
+    if query.radius and query.points:
+        raise InputError(("points",), "at most one of radius, points is needed")
+    if "quantities" in query.model_fields_set and not query.radii:
+        raise InputError(("radius",), "quantities over the radius need radius or points")
+    require_few_numbers(query, rows)
+
+
+def _in_request(error: InputError) -> InputError:
+    """Return the error with the path of the request, which calls the amplitude `oscillation`."""
+    first, *rest = error.path
+    return InputError(("oscillation", *rest), error.detail) if first == "tangential" else error

@@ -1,0 +1,143 @@
+"""Plain results of queries: members of a response, checked for overflow, with their warnings."""
+
+from collections.abc import Iterable, Mapping
+from math import isfinite
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdr_core import validity
+from mdr_core.errors import DefectError, InputError, Notice
+from mdr_core.history import LoadHistory
+from mdr_core.normal import NormalContact
+from mdr_core.tangential import TangentialContact
+from mdr_core.typing import Array
+from mdr_core.wear.evolution import WearEvolution
+from mdr_core.wear.limit import LimitingWear
+from mdr_service.schemas.answers import Known
+from mdr_service.schemas.contacts import Query
+
+Result = dict[str, Any]
+"""The members of a JSON response in their order, with arrays for long lists."""
+Flags = NDArray[np.bool_]
+Wear = LimitingWear | WearEvolution
+Contact = NormalContact | TangentialContact | LoadHistory
+
+# Radii that a warning lists, so that it stays one sentence; nulls mark the others.
+_LISTED: Final = 5
+
+
+def members(model: type[Known], without: Iterable[str] = ()) -> tuple[str, ...]:
+    """Return the names of the numbers that a response holds."""
+    excluded = {*Known.model_fields, *without}
+    return tuple(name for name in model.model_fields if name not in excluded)
+
+
+def by_load(source: object, names: Iterable[str], loads: int) -> Result:
+    """Return attributes of `source` by name, broadcast to one entry per load."""
+    if loads == 1:
+        # The JSON writer takes a list of one number faster than an array.
+        return {name: [getattr(source, name).item()] for name in names}
+    return {
+        name: np.ascontiguousarray(np.broadcast_to(getattr(source, name), (loads,)))
+        for name in names
+    }
+
+
+def checked(
+    query: Query, values: Result, infinite: Mapping[str, bool | Flags] | None = None
+) -> Result:
+    """Return `values` if they are finite, or infinite only where the exact value is infinite.
+
+    Parameters
+    ----------
+    query : the request, whose load an overflow points at.
+    values : arrays over the loads, or over loads and radii, by name.
+    infinite : flags by name, True where the exact value can be infinite.
+
+    Raises
+    ------
+    InputError : a value overflows.
+    DefectError : a value is NaN without an overflow.
+    """
+    suspect = {name: np.asarray(v) for name, v in values.items() if not _finite(v)}
+    for name, array in suspect.items():
+        stray = np.isinf(array) & ~np.asarray((infinite or {}).get(name, False))
+        if stray.any():
+            first = int(np.argwhere(stray)[0][0])
+            place = ("radius", first) if name == "initial_profile" else query.place(first)
+            raise InputError(place, f"{name} leaves the range of double precision here")
+    for name, array in suspect.items():
+        if np.isnan(array).any():
+            raise DefectError(f"{name} is not a number")
+    return values
+
+
+def _finite(values: list[Any] | Array) -> bool:
+    # A single number is by far the most frequent case, and an array function takes longer.
+    if isinstance(values, list):
+        return isinstance(values[0], str) or isfinite(values[0])
+    return values.dtype.kind != "f" or bool(np.isfinite(values).all())
+
+
+def about(source: Contact | Wear, warnings: Iterable[Notice]) -> Result:
+    """Return the method, the error estimate and the warnings of a response."""
+    return {
+        "method": source.method,
+        "error_estimate": source.error_estimate,
+        "warnings": written(warnings),
+    }
+
+
+def written(warnings: Iterable[Notice]) -> list[dict[str, str]]:
+    """Return the warnings as the response holds them."""
+    return [{"code": notice.code, "message": notice.message} for notice in warnings]
+
+
+def notices(query: Query, source: Contact | Wear) -> list[Notice]:
+    """Return the warnings about a contact, its material and, if requested, yield."""
+    material = query.material.effective
+    given: dict[str, Any] = {}
+    if query.material.has("yield_strength"):
+        given["yield_strength"] = query.material.yield_strength
+    if isinstance(source, NormalContact):
+        contact = source
+    else:
+        given["g_star"] = material.g_star
+        if isinstance(source, LoadHistory):
+            contact, given["tangential"] = source.contact, source.tangential_force != 0
+        else:
+            partial = source if isinstance(source, TangentialContact) else unworn(source)
+            contact, given["tangential"] = partial.normal, partial.tangential_force != 0
+    # Limits that depend on the bodies are assessed for the bodies of the query.
+    found = validity.notices(validity.findings(contact, material, **given))
+    if source is contact:
+        return [*found, *contact.bodiless_warnings]
+    return found + [each for each in source.warnings if each.code not in validity.OF_BODIES]
+
+
+def unworn(worn: Wear) -> TangentialContact:
+    """Return the contact before any wear."""
+    return worn.first if isinstance(worn, LimitingWear) else worn.initial.sideways
+
+
+def without_singular(warnings: Iterable[Notice]) -> list[Notice]:
+    """Leave out `singular` where the response has no singular scalar."""
+    return [notice for notice in warnings if notice.code != "singular"]
+
+
+def singular(
+    radius: Array, values: Mapping[str, Array], possible: Mapping[str, Flags | bool]
+) -> list[Notice]:
+    """Return a warning for each field that is infinite at some of the `possible` radii."""
+    found = []
+    for name, flags in possible.items():
+        if name not in values:
+            continue
+        at = radius[flags & np.isinf(np.atleast_2d(values[name])).any(axis=0)]
+        if at.size:
+            listed = ", ".join(map(repr, at[:_LISTED].tolist()))
+            more = f" and {at.size - _LISTED} more" if at.size > _LISTED else ""
+            found.append(Notice("singular", f"{name} is infinite at radius {listed}{more}"))
+    return found

@@ -1,0 +1,240 @@
+"""Requests about contacts under a load, and the parts that all requests share."""
+
+from abc import abstractmethod
+from functools import cached_property, lru_cache
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+from mdr_core import materials
+from mdr_service.schemas.profiles import Profile
+from mdr_service.schemas.quantities import (
+    ScalarOrArray,
+    SignedScalarOrArray,
+    Strict,
+    drop_null_defaults,
+    positive,
+    quantity,
+)
+
+
+def _describe_choice(schema: dict[str, Any]) -> None:
+    """Describe the controls as objects of which one is given, each complete with its fields."""
+    drop_null_defaults(schema)
+    fields = schema.pop("properties")
+    optional = {name: field for name, field in fields.items() if "default" in field}
+    schema["oneOf"] = [
+        {
+            "title": schema["title"] + "By" + name.title().replace("_", ""),
+            "type": "object",
+            "properties": {name: fields[name], **optional},
+            "required": [name],
+            "additionalProperties": schema["additionalProperties"],
+        }
+        for name in fields.keys() - optional.keys()
+    ]
+    schema["oneOf"].sort(key=lambda each: list(fields).index(each["required"][0]))
+    del schema["additionalProperties"]
+
+
+class Choice(Strict, json_schema_extra=_describe_choice):
+    """Fields of which exactly one is given, the control."""
+
+    optional: ClassVar[frozenset[str]] = frozenset()
+    """Fields that can accompany any control."""
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> Self:
+        if len(self.model_fields_set - self.optional) != 1:
+            names = ", ".join(name for name in type(self).model_fields if name not in self.optional)
+            raise PydanticCustomError("one_control", f"exactly one of {names} is needed")
+        return self
+
+    @property
+    def control(self) -> str:
+        """Name of the control."""
+        (name,) = self.model_fields_set - self.optional
+        return name
+
+    @property
+    def value(self) -> float | list[float]:
+        """Value or values of the control."""
+        given: float | list[float] = getattr(self, self.control)
+        return given
+
+    @property
+    def count(self) -> int:
+        """Number of values."""
+        return len(self.value) if isinstance(self.value, list) else 1
+
+    def place(self, index: int) -> tuple[str | int, ...]:
+        """Return the path from here to one of the values."""
+        return (self.control, index) if isinstance(self.value, list) else (self.control,)
+
+
+class Load(Choice):
+    """Normal load: exactly one control, a number or a list."""
+
+    # An absent control is None; a given one is never null.
+    indentation_depth: ScalarOrArray = quantity("length", "Indentation depth d", default=None)
+    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+    contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
+
+
+class Tangential(Choice):
+    """Tangential load: exactly one control, one value for all normal loads or one for each."""
+
+    tangential_force: SignedScalarOrArray = quantity(
+        "force", "Tangential force F_x of either sign, |F_x| ≤ µ F_N", default=None
+    )
+    tangential_displacement: SignedScalarOrArray = quantity(
+        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
+    )
+    stick_radius: ScalarOrArray = quantity(
+        "length", "Stick radius c, at most a, and not inside a flat", default=None
+    )
+
+
+# Young's modulus and Poisson's ratio of a body, None for a rigid one.
+_Constants = tuple[float, float] | None
+
+
+class BodyMaterial(Strict):
+    """Elastic body."""
+
+    youngs_modulus: float = positive("pressure", "Young's modulus E")
+    poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
+
+
+def _word_or_body(value: object) -> str:
+    return "word" if isinstance(value, str) else "body"
+
+
+BodyOrRigid = Annotated[
+    Annotated[Literal["rigid"], Tag("word")] | Annotated[BodyMaterial, Tag("body")],
+    Discriminator(_word_or_body),
+]
+
+
+class Elastic(Strict):
+    """Material of a contact."""
+
+    # Optional, but not null: hence a plain float with the default None.
+    yield_strength: float = positive(
+        "pressure",
+        "Yield strength Y; the response then warns where Tresca's criterion is met",
+        default=None,
+    )
+
+
+class Bodies(Elastic):
+    """Material given by the two bodies, one of which may be rigid."""
+
+    bodies: list[BodyOrRigid] = quantity(
+        "list", "The two bodies; at most one may be `rigid`", min_length=2, max_length=2
+    )
+
+    @cached_property
+    def effective(self) -> materials.Material:
+        """Effective moduli."""
+        first, second = (
+            (each.youngs_modulus, each.poissons_ratio) if isinstance(each, BodyMaterial) else None
+            for each in self.bodies
+        )
+        return _of_bodies(first, second)
+
+
+# A client often sends many queries about the same bodies.
+@lru_cache(maxsize=256)
+def _of_bodies(*constants: _Constants) -> materials.Material:
+    return materials.from_bodies(
+        [materials.Body(*each) if each else materials.RIGID for each in constants]
+    )
+
+
+class Moduli(Elastic):
+    """Material given by the effective moduli of the contact."""
+
+    e_star: float = positive("pressure", "Effective modulus E* = 1/Σ(1 − νᵢ²)/Eᵢ")
+    g_star: float = positive(
+        "pressure", "Effective shear modulus G*, needed with friction only", default=None
+    )
+    poissons_ratio: float = quantity(
+        "1",
+        "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface only",
+        default=None,
+        gt=-1,
+        le=0.5,
+    )
+
+    @cached_property
+    def effective(self) -> materials.Material:
+        """Effective moduli."""
+        known = (self.poissons_ratio,) if self.has("poissons_ratio") else ()
+        return materials.Material(self.e_star, self.g_star, poissons_ratios=known)
+
+
+def _bodies_or_moduli(value: object) -> str:
+    return "bodies" if isinstance(value, dict) and "bodies" in value else "moduli"
+
+
+Material = Annotated[
+    Annotated[Moduli, Tag("moduli")] | Annotated[Bodies, Tag("bodies")],
+    Discriminator(_bodies_or_moduli),
+    Field(description="Elastic constants: effective moduli, or two bodies."),
+]
+
+
+class Query(Strict):
+    """Profile, material and accuracy of every query."""
+
+    profile: Profile
+    material: Material
+    rtol: float = quantity("1", "Required relative accuracy", default=1e-10, ge=1e-13, le=1e-3)
+
+    @property
+    @abstractmethod
+    def loads(self) -> int:
+        """Number of entries over the loads in the response."""
+
+    @abstractmethod
+    def place(self, index: int) -> tuple[str | int, ...]:
+        """Return the path to the load of an entry of the response."""
+
+
+class NormalQuery(Query):
+    """Profile pressed into an elastic half-space without friction."""
+
+    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+
+    @property
+    def loads(self) -> int:
+        return self.load.count
+
+    def place(self, index: int) -> tuple[str | int, ...]:
+        return ("load", *self.load.place(index))
+
+
+def friction(**field: Any) -> Any:
+    """Return the field of a coefficient of friction."""
+    return positive("1", "Coefficient of friction µ", low=1e-15, high=1e6, **field)
+
+
+class TangentialQuery(NormalQuery):
+    """Contact with friction, loaded normally first and then tangentially."""
+
+    friction_coefficient: float = friction()
+    tangential: Tangential = Field(
+        description="Exactly one control: force, displacement or stick radius."
+    )
+
+    @property
+    def loads(self) -> int:
+        return max(self.load.count, self.tangential.count)
+
+
+# Pydantic inserts the branch of a union after these fields, or after the index of their items,
+# into the location of an error.
+UNION_FIELDS = frozenset({"profile", "material", *Load.model_fields, *Tangential.model_fields})
+UNION_ITEMS = frozenset({"bodies"})

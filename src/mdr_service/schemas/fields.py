@@ -1,0 +1,125 @@
+"""Requests about fields over the radius."""
+
+from typing import Annotated, Any, Final, Literal, TypeVar
+
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
+
+from mdr_service.schemas.contacts import Choice, Load, Query, Tangential, friction
+from mdr_service.schemas.load_paths import History, LoadPath
+from mdr_service.schemas.quantities import (
+    Size,
+    drop_null_defaults,
+    left_out,
+    one_of,
+    quantity,
+)
+from mdr_service.settings import SETTINGS
+
+_Name = TypeVar("_Name", bound=str)
+FieldName = Literal[
+    "pressure",
+    "shear_stress",
+    "slip",
+    "normal_displacement",
+    "foundation_load",
+    "foundation_shear",
+]
+SHEAR_FIELDS: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
+
+
+class FieldQuery(Query):
+    """Query of fields at radii that are given, or that the service chooses."""
+
+    radius: list[Size] = quantity(
+        "length",
+        "Radii r of the fields, in any order. Within four units in the last place of a contact "
+        "radius or slip front a stress has a root, and its rounding is not in `error_estimate`",
+        default=None,
+        min_length=1,
+        max_length=SETTINGS.max_radii,
+        fail_fast=True,
+    )
+    points: int = quantity(
+        "1",
+        "In place of `radius`: number of radii to choose, from 0 to beyond the contact or the worn "
+        "annulus, clustered at the singular radii",
+        default=None,
+        ge=2,
+        le=SETTINGS.max_radii,
+    )
+    quantities: list[Any]
+
+    @property
+    def radii(self) -> int:
+        """Number of radii, also where `radius` and `points` are both given or both absent."""
+        return len(self.radius or ()) + (self.points or 0)
+
+    @property
+    def numbers(self) -> int:
+        """Number of values over the radius in the response."""
+        return self.loads * self.radii * len(self.quantities)
+
+
+def _once_each(names: list[_Name]) -> list[_Name]:
+    if len(set(names)) < len(names):
+        raise PydanticCustomError("not_unique", "each quantity can be requested once")
+    return names
+
+
+OnceEach: Final = AfterValidator(_once_each)
+"""Validator of a list of names without repetition."""
+
+
+def quantities(description: str, **field: Any) -> Any:
+    """Return the field of the quantities over the radius."""
+    return Field(
+        description=f"Fields to compute, each once; {description}",
+        min_length=1,
+        json_schema_extra={"uniqueItems": True},
+        **field,
+    )
+
+
+def _describe_stress(schema: dict[str, Any]) -> None:
+    drop_null_defaults(schema)
+    schema["allOf"] = [one_of("radius", "points"), one_of("load", "history")]
+    schema["dependentSchemas"] = {
+        "tangential": {"required": ["load", "friction_coefficient"]},
+        "history": {"required": ["friction_coefficient"]},
+        "friction_coefficient": one_of("tangential", "history"),
+    }
+
+
+class StressQuery(FieldQuery, json_schema_extra=_describe_stress):
+    """Fields of a contact over the radius, with or without friction."""
+
+    load: Load = left_out("Exactly one control: depth, force or contact radius.")
+    friction_coefficient: float = friction(default=None)
+    tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
+    history: History = left_out(
+        "In place of `load` and `tangential`: load path; the fields are those of its end. With "
+        "`friction_coefficient`."
+    )
+    quantities: Annotated[list[FieldName], OnceEach] = quantities(
+        "shear_stress, slip and foundation_shear need `tangential` or `history`"
+    )
+
+    @property
+    def controls(self) -> list[Choice]:
+        """Given loads, unless they are a load path."""
+        return [getattr(self, name) for name in ("load", "tangential") if self.has(name)]
+
+    @property
+    def loads(self) -> int:
+        return max((control.count for control in self.controls), default=1)
+
+    @property
+    def path(self) -> LoadPath | None:
+        """Load path, if there is one."""
+        return self.history
+
+    def place(self, index: int) -> tuple[str | int, ...]:
+        if self.has("history"):
+            return ("history", *self.history.place("normal", self.history.steps - 1))
+        return ("load", *self.load.place(index))

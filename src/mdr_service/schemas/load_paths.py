@@ -1,0 +1,169 @@
+"""Requests about load histories: points of a load path, or identical cycles."""
+
+from abc import abstractmethod
+from typing import Any
+
+from pydantic import Field
+
+from mdr_service.schemas.contacts import Choice, Query, friction
+from mdr_service.schemas.quantities import (
+    ScalarOrArray,
+    SignedScalarOrArray,
+    Size,
+    Strict,
+    drop_null_defaults,
+    left_out,
+    one_of,
+    positive,
+    quantity,
+)
+from mdr_service.settings import SETTINGS
+
+
+class NormalPoints(Choice):
+    """Points of the normal load: exactly one control, a number or a list."""
+
+    indentation_depth: SignedScalarOrArray = quantity(
+        "length", "Indentation depth d; negative values are a separation", default=None
+    )
+    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+
+
+class TangentialPoints(Choice):
+    """Points of the tangential load: exactly one control, a number or a list.
+
+    If one list is longer than the other, the other holds a single value.
+    """
+
+    tangential_displacement: SignedScalarOrArray = quantity(
+        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
+    )
+    tangential_force: SignedScalarOrArray = quantity(
+        "force",
+        "Tangential force F_x of either sign, |F_x| ≤ µ F_N at the points and between them",
+        default=None,
+    )
+
+
+class NormalSwing(Choice):
+    """Oscillating normal load: exactly one control, the mean, and an amplitude."""
+
+    optional = frozenset({"amplitude"})
+
+    indentation_depth: Size = quantity("length", "Mean indentation depth d", default=None)
+    normal_force: Size = quantity("force", "Mean normal force F_N", default=None)
+    amplitude: Size = quantity(
+        "as the mean",
+        "Amplitude of the normal load, at most the mean, in phase with the tangential load",
+        default=0.0,
+    )
+
+
+class TangentialSwing(Choice):
+    """Oscillating tangential load: exactly one control, the amplitude about zero."""
+
+    tangential_displacement: float = positive(
+        "length", "Amplitude of the tangential displacement u_x", default=None
+    )
+    tangential_force: float = positive(
+        "force", "Amplitude of the tangential force F_x", default=None
+    )
+
+
+def _samples_per_step() -> Any:
+    return quantity(
+        "1",
+        "Number of samples per load step, evenly spaced in the controls, the last at its end",
+        default=1,
+        ge=1,
+        le=SETTINGS.max_samples,
+    )
+
+
+class LoadPath(Strict):
+    """Load steps, along which normal and tangential control vary linearly."""
+
+    normal: Choice
+    tangential: Choice
+    samples_per_step: int
+
+    @property
+    @abstractmethod
+    def steps(self) -> int:
+        """Number of load steps."""
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return self.steps * self.samples_per_step
+
+    @property
+    def nonlinear(self) -> bool:
+        """True for a depth with a tangential force, or a normal force with a displacement."""
+        by_force = self.tangential.control == "tangential_force"
+        return by_force == (self.normal.control == "indentation_depth")
+
+    def place(self, axis: str, step: int) -> tuple[str | int, ...]:
+        """Return the path from here to the value at the end of a load step."""
+        choice: Choice = getattr(self, axis)
+        return (axis, *choice.place(min(step, choice.count - 1)))
+
+
+class History(LoadPath):
+    """Points of a load path, which starts at first contact without load."""
+
+    normal: NormalPoints = Field(description="Exactly one control: depth or normal force.")
+    tangential: TangentialPoints = Field(
+        description="Exactly one control: displacement or tangential force."
+    )
+    samples_per_step: int = _samples_per_step()
+
+    @property
+    def steps(self) -> int:
+        return max(self.normal.count, self.tangential.count)
+
+
+class Cycles(LoadPath):
+    """Identical cycles of the tangential load between its amplitudes, from the upper one.
+
+    They start from the mean normal load without a tangential load.
+    """
+
+    normal: NormalSwing = Field(
+        description="Exactly one control: mean depth or mean normal force; and an amplitude."
+    )
+    tangential: TangentialSwing = Field(
+        description="Exactly one control: the amplitude of displacement or tangential force."
+    )
+    count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_cycles)
+    samples_per_step: int = _samples_per_step()
+
+    @property
+    def steps(self) -> int:
+        return 2 + 2 * self.count
+
+
+def _describe_history(schema: dict[str, Any]) -> None:
+    drop_null_defaults(schema)
+    schema |= one_of("history", "cycles")
+
+
+class HistoryQuery(Query, json_schema_extra=_describe_history):
+    """Contact with friction on a load path."""
+
+    friction_coefficient: float = friction()
+    history: History = left_out("Arbitrary load path, given by its points.")
+    cycles: Cycles = left_out("In place of `history`: identical cycles of the tangential load.")
+
+    @property
+    def loads(self) -> int:
+        return self.path.samples if self.has("history") or self.has("cycles") else 0
+
+    @property
+    def path(self) -> LoadPath:
+        """Load path; None if neither is given."""
+        return self.cycles if self.has("cycles") else self.history
+
+    def place(self, index: int) -> tuple[str | int, ...]:
+        name = "cycles" if self.has("cycles") else "history"
+        return (name, *self.path.place("normal", index // self.path.samples_per_step))

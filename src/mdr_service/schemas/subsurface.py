@@ -1,0 +1,104 @@
+"""Requests about stresses beneath the surface."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from mdr_service.schemas.contacts import Load, NormalQuery, Tangential, friction
+from mdr_service.schemas.fields import OnceEach
+from mdr_service.schemas.quantities import (
+    Signed,
+    Size,
+    drop_null_defaults,
+    left_out,
+    quantity,
+)
+from mdr_service.settings import SETTINGS
+
+SubsurfaceName = Literal[
+    "stress_xx",
+    "stress_yy",
+    "stress_zz",
+    "stress_xy",
+    "stress_xz",
+    "stress_yz",
+    "von_mises",
+    "maximum_shear",
+    "principal_1",
+    "principal_2",
+    "principal_3",
+    "mean_stress",
+]
+
+
+def _describe(schema: dict[str, Any]) -> None:
+    drop_null_defaults(schema)
+    schema["oneOf"] = [{"required": ["x", "z"]}, {"required": ["points"]}]
+    schema["dependentRequired"] = {
+        "x": ["z"],
+        "z": ["x"],
+        "tangential": ["friction_coefficient"],
+        "friction_coefficient": ["tangential"],
+    }
+
+
+class SubsurfaceQuery(NormalQuery, json_schema_extra=_describe):
+    """Stresses in one of the bodies, with or without friction."""
+
+    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+    friction_coefficient: float = friction(default=None)
+    tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
+    body: Literal[1, 2] = Field(
+        default=1,
+        description="Body 1, with the profile, on which the tangential force acts, or body 2.",
+    )
+    x: list[Signed] = quantity(
+        "length",
+        "Coordinates from the axis along a positive tangential force",
+        default=None,
+        min_length=1,
+        max_length=SETTINGS.max_radii,
+        fail_fast=True,
+    )
+    y: Signed = quantity("length", "Coordinate across it, of all points", default=0.0)
+    z: list[Size] = quantity(
+        "length",
+        "Depths in the body, 0 on its surface",
+        default=None,
+        min_length=1,
+        max_length=SETTINGS.max_radii,
+        fail_fast=True,
+    )
+    points: int = quantity(
+        "1",
+        "In place of `x` and `z`: number of each to choose, to 1.5 times the largest contact "
+        "radius",
+        default=None,
+        ge=2,
+        le=1000,
+    )
+    quantities: Annotated[list[SubsurfaceName], OnceEach] = Field(
+        default=["von_mises"],
+        description="Stresses to compute, each once; tension is positive, and principal_1 ≥ "
+        "principal_2 ≥ principal_3",
+        min_length=1,
+        json_schema_extra={"uniqueItems": True},
+    )
+    largest: bool = Field(
+        default=False,
+        description="Search the largest von Mises and shear stress of the whole body.",
+    )
+
+    @property
+    def loads(self) -> int:
+        return max(self.load.count, self.tangential.count if self.has("tangential") else 1)
+
+    @property
+    def positions(self) -> int:
+        """Number of points, also where the request contradicts itself."""
+        return len(self.x or ()) * len(self.z or ()) + (self.points or 0) ** 2
+
+    @property
+    def numbers(self) -> int:
+        """Number of stresses in the response."""
+        return self.loads * self.positions * len(self.quantities)

@@ -1,0 +1,1 @@
+"""Response formats: each writes a complete result and computes nothing."""

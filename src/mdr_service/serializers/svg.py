@@ -1,0 +1,177 @@
+"""SVG: a plot drawn by Matplotlib."""
+
+import io
+from itertools import groupby
+from threading import Lock
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mdr_service.plots.plot import Curve, Map, Mark, Panel, Plot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MEDIA_TYPE: Final = "image/svg+xml"
+
+# Width of the picture and height of a panel, a single and one of several, in inches.
+_WIDTH, _SINGLE, _PANEL = 7.2, 4.0, 2.6
+# Marks closer than this share of the axis share one label.
+_CLOSE: Final = 0.025
+# Levels of a map, which end where the highest values of a few points would exceed the others much.
+_LEVELS: Final = 21
+_MOST, _PEAK = 0.99, 1.5
+# More points than this hide their curve.
+_MOST_POINTS: Final = 60
+_STYLE: Final[dict[Any, Any]] = {
+    "axes.formatter.limits": (-3, 4),
+    "axes.grid": True,
+    "axes.linewidth": 0.6,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "font.size": 9.0,
+    "grid.alpha": 0.25,
+    "grid.linewidth": 0.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    # Text stays text: it can be searched, selected and read aloud.
+    "svg.fonttype": "none",
+    # Equal plots give identical bytes.
+    "svg.hashsalt": "mdr",
+}
+# Matplotlib keeps its style in one place for all threads.
+_lock: Final = Lock()
+
+
+def write(plot: Plot | Map) -> bytes:
+    """Return the text of the picture; equal plots give identical bytes."""
+    import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
+    from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
+
+    if isinstance(plot, Map):
+        return _write_map(plot)
+    count = len(plot.panels)
+    height = 0.9 + (_SINGLE if count == 1 else _PANEL * count)
+    text = io.BytesIO()
+    with _lock, mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(_WIDTH, height), layout="constrained")
+        axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        for each, panel in zip(axes, plot.panels, strict=True):
+            _draw(each, panel, plot)
+        if plot.x_limits and plot.x_limits[0] < plot.x_limits[1]:
+            axes[0].set_xlim(*plot.x_limits)
+        axes[-1].set_xlabel(f"{plot.x_label}   (in the units of the request)")
+        _label(axes[0], plot.marks)
+        _legend(axes[0], plot)
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return text.getvalue()
+
+
+def _write_map(plot: Map) -> bytes:
+    """Draw contours, and beside them the values on the axis."""
+    import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
+    from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
+
+    finite = plot.values[np.isfinite(plot.values)]
+    # Singular peaks would leave a single colour for the rest.
+    top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _MOST)))
+    levels = np.linspace(0.0, top or 1.0, _LEVELS)
+    text = io.BytesIO()
+    with _lock, mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(_WIDTH, _SINGLE), layout="constrained")
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
+        shown = np.where(np.isfinite(plot.values), plot.values, top)
+        drawn = left.contourf(plot.x, plot.z, np.minimum(shown, levels[-1]), levels)
+        figure.colorbar(drawn, ax=left, location="bottom", label=plot.label)
+        left.plot([-plot.contact, plot.contact], [0, 0], color="0.1", linewidth=4, label="contact")
+        if plot.stick:
+            left.plot([-plot.stick, plot.stick], [0, 0], color="C1", linewidth=4, label="stick")
+        if plot.peak:
+            left.plot(*plot.peak, "x", color="C3", label="maximum", clip_on=False, zorder=5)
+        left.set(xlabel="x", ylabel="depth z   (in the units of the request)", aspect="equal")
+        left.legend(title=plot.note or None, loc="lower right")
+        on_axis = np.where(np.isfinite(plot.on_axis), plot.on_axis, np.nan)
+        right.plot(on_axis, plot.depth)
+        right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
+        left.invert_yaxis()
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return text.getvalue()
+
+
+def _draw(axes: "Axes", panel: Panel, plot: Plot) -> None:
+    for index, curve in enumerate(panel.curves):
+        color = f"C{index}" if curve.style == "-" else "0.4"
+        finite = np.where(np.isfinite(curve.y), curve.y, np.nan)
+        label = curve.label or "_nolegend_"
+        axes.plot(curve.x, finite, curve.style, color=color, label=label)
+        if curve.point_x.size <= _MOST_POINTS:
+            axes.plot(curve.point_x, curve.point_y, "o", color=color, markersize=3.5)
+        _mark_infinities(axes, curve)
+    for mark in plot.marks:
+        axes.axvline(mark.place, color=_color(mark), linestyle=":", linewidth=0.9, zorder=1)
+    for mark in panel.marks:
+        axes.axhline(mark.place, color=_color(mark), linestyle=":", linewidth=0.9, zorder=1)
+        _annotate(axes, mark.symbol, (0.0, mark.place), ("axes fraction", "data"), (3, 3))
+    axes.set_ylabel(panel.y_label)
+    if panel.y_limits:
+        axes.set_ylim(*panel.y_limits)
+
+
+def _color(mark: Mark) -> str:
+    return "0.4" if mark.curve is None else f"C{mark.curve}"
+
+
+def _annotate(
+    axes: "Axes",
+    text: str,
+    place: tuple[float, float],
+    coordinates: Any,
+    offset: tuple[float, float],
+) -> None:
+    axes.annotate(
+        text,
+        place,
+        xycoords=coordinates,
+        xytext=offset,
+        textcoords="offset points",
+        ha="center" if offset[0] == 0 else "left",
+    )
+
+
+def _mark_infinities(axes: "Axes", curve: Curve) -> None:
+    """Write the symbol of infinity at isolated infinities, and where a run of them begins."""
+    infinite = np.isinf(curve.y)
+    padded = np.concatenate([[True], infinite, [True]])
+    for x, y in zip(
+        *(v[infinite & ~(padded[:-2] & padded[2:])] for v in (curve.x, curve.y)), strict=True
+    ):
+        place, offset = (x, 1.0 if y > 0 else 0.0), (8, -9 if y > 0 else 3)
+        _annotate(axes, "∞", place, ("data", "axes fraction"), offset)
+
+
+def _label(axes: "Axes", marks: Any) -> None:
+    """Write the symbols of vertical marks above the axes, close ones together."""
+    low, high = axes.get_xlim()
+    inside = sorted((mark.place, mark.symbol) for mark in marks if low <= mark.place <= high)
+    width = _CLOSE * (high - low)
+    start = [0.0]
+
+    def group(mark: tuple[float, str]) -> float:
+        if mark[0] - start[0] > width:
+            start[0] = mark[0]
+        return start[0]
+
+    for _, close in groupby(inside, group):
+        places, symbols = zip(*close, strict=True)
+        middle = (places[0] + places[-1]) / 2
+        text = ", ".join(dict.fromkeys(symbols))
+        _annotate(axes, text, (middle, 1.0), ("data", "axes fraction"), (0, 2))
+
+
+def _legend(axes: "Axes", plot: Plot) -> None:
+    """Name the curves of the first panel and the points."""
+    curves = [curve for panel in plot.panels for curve in panel.curves]
+    if any(0 < curve.point_x.size <= _MOST_POINTS for curve in curves):
+        axes.plot([], [], "o", color="0.4", markersize=3.5, label=plot.points_label)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(title=plot.note or None, loc="best")
