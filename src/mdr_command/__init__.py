@@ -1,1 +1,1 @@
-"""The command line ``mdr``: the service's answers without a server, and the server."""
+"""Command line ``mdr``: queries without a server, parameter studies, and the server."""

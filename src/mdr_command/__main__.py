@@ -1,4 +1,4 @@
-"""``mdr``: each command is a module, loaded when it is asked for and not before."""
+"""``mdr``: commands in modules that are imported on demand."""
 
 import argparse
 import os
@@ -9,69 +9,58 @@ from importlib import import_module
 from importlib.metadata import version
 from typing import Any, Final, Protocol, cast
 
-# As a shell shows a program that was ended by the signal SIGINT or SIGPIPE.
-_INTERRUPTED: Final = 130
-_NOBODY_READS: Final = 141
-_WRONG_INPUT: Final = 2
+from mdr_command.exit_status import ExitStatus
 
 
 class Module(Protocol):
-    """What a module of a command holds."""
+    """Module of a command."""
 
     def declare(self, parser: argparse.ArgumentParser) -> None:
-        """Say what the command takes."""
+        """Declare the arguments of the command."""
 
     def run(self, arguments: argparse.Namespace) -> int:
-        """Do what it says and return the exit status."""
+        """Run the command and return the exit status."""
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command: what it does in a few words, and the module that does it."""
+    """Command with its summary and its module."""
 
     summary: str
     module: str
-    extra: str | None = None
-    """The optional part of the installation that it needs."""
 
 
 COMMANDS: Final = {
-    "normal": Command("answer a contact without friction", "mdr_command.ask"),
-    "tangential": Command("answer a contact with friction", "mdr_command.ask"),
-    "history": Command("follow loads that come and go", "mdr_command.ask"),
-    "stress": Command("answer stresses and displacements over the radius", "mdr_command.ask"),
-    "wear": Command("answer the limit of fretting wear", "mdr_command.ask"),
-    "evolution": Command("follow fretting wear over the cycles", "mdr_command.ask"),
-    "sweep": Command("answer every scene of a table or a grid", "mdr_sweep.command", "sweep"),
+    "normal": Command("solve a frictionless normal contact", "mdr_command.query"),
+    "tangential": Command("solve a contact with friction", "mdr_command.query"),
+    "history": Command("solve a load history", "mdr_command.query"),
+    "stress": Command("compute stresses and displacements over the radius", "mdr_command.query"),
+    "subsurface": Command("compute stresses beneath the surface and yield", "mdr_command.query"),
+    "wear": Command("compute the limiting state of fretting wear", "mdr_command.query"),
+    "evolution": Command("integrate fretting wear over the cycles", "mdr_command.query"),
+    "sweep": Command("run a parameter study over a table or a grid", "mdr_sweep.command"),
     "serve": Command("start the HTTP service", "mdr_command.serve"),
-    "openapi": Command("print the description of the HTTP service", "mdr_command.openapi"),
+    "openapi": Command("print the OpenAPI document of the HTTP service", "mdr_command.openapi"),
 }
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    """Do what the command line says and return the exit status."""
+    """Run a command line and return the exit status."""
     try:
         return _run(sys.argv[1:] if given is None else given)
     except KeyboardInterrupt:
-        return _INTERRUPTED
+        return ExitStatus.INTERRUPTED
     except BrokenPipeError:
-        # What is still to be flushed goes nowhere, silently.
+        # Python would try once more to write the rest on exit, and print a traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _NOBODY_READS
+        return ExitStatus.PIPE_CLOSED
 
 
 def _run(given: Sequence[str]) -> int:
     name = given[0] if given else ""
-    try:
-        module = _loaded(COMMANDS[name]) if name in COMMANDS else None
-    except ModuleNotFoundError as error:
-        extra = COMMANDS[name].extra
-        if extra is None:
-            raise
-        sys.stderr.write(f"mdr {name} needs {error.name}: install mdr[{extra}]\n")
-        return _WRONG_INPUT
+    module = _loaded(COMMANDS[name]) if name in COMMANDS else None
     arguments = _parser(name, module).parse_args(given)
-    return module.run(arguments) if module else _WRONG_INPUT
+    return module.run(arguments) if module else ExitStatus.INVALID_INPUT
 
 
 def _loaded(command: Command) -> Module:
@@ -79,7 +68,7 @@ def _loaded(command: Command) -> Module:
 
 
 def _parser(chosen: str, module: Module | None) -> argparse.ArgumentParser:
-    """Return the parser of all commands, of which only the chosen one knows what it takes."""
+    """Return the parser of all commands, with the arguments of the chosen one."""
     parser = argparse.ArgumentParser(prog="mdr", description=_ABOUT)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", title="commands")

@@ -1,4 +1,4 @@
-"""``mdr openapi``: the description of the service, as ``GET /openapi.json`` answers it."""
+"""``mdr openapi``: OpenAPI document of the service."""
 
 import argparse
 import json
@@ -8,11 +8,11 @@ from mdr_service.app import create_app
 
 
 def declare(_parser: argparse.ArgumentParser) -> None:
-    """Take nothing."""
+    """Declare no arguments."""
 
 
 def run(_arguments: argparse.Namespace) -> int:
-    """Print the document, laid out to be compared line by line."""
-    json.dump(create_app().state.openapi, sys.stdout, indent=2, ensure_ascii=False)
+    """Print the document, indented so that versions can be compared by line."""
+    json.dump(create_app().openapi(), sys.stdout, indent=2, ensure_ascii=False)
     sys.stdout.write("\n")
     return 0

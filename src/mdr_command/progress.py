@@ -1,16 +1,20 @@
-"""How far a long answer has come, for people at a terminal."""
+"""Progress bar of a long computation on a terminal."""
 
 from types import TracebackType
 from typing import Final, Self, TextIO
 
+# Fits in a line of 80 characters, together with the percentage.
 _WIDTH: Final = 40
-_CLEARED: Final = "\r\x1b[K"
+_CLEAR_LINE: Final = "\r\x1b[K"
 
 
-class Bar:
-    """A bar that grows with what is done, and leaves nothing behind.
+class ProgressBar:
+    """Progress bar, erased on exit.
 
-    How much there will be is known about: it may end sooner, and does not end later.
+    Parameters
+    ----------
+    stream : the terminal.
+    total : expected amount of work, which the computation can fall short of, but not exceed.
     """
 
     def __init__(self, stream: TextIO, total: int) -> None:
@@ -28,15 +32,16 @@ class Bar:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        self.stream.write(_CLEARED)
+        self.stream.write(_CLEAR_LINE)
         self.stream.flush()
 
     def __call__(self, more: int) -> None:
-        """Take note of what has been done since the last time."""
+        """Add to the amount of work that is done."""
         self.done += more
         percent = min(99, 100 * self.done // self.total)
         if percent > self.shown:
             self.shown = percent
             full = _WIDTH * percent // 100
-            self.stream.write(f"{_CLEARED}[{'#' * full}{'.' * (_WIDTH - full)}] about {percent} %")
+            bar = "#" * full + "." * (_WIDTH - full)
+            self.stream.write(f"{_CLEAR_LINE}[{bar}] about {percent} %")
             self.stream.flush()

@@ -1,78 +1,98 @@
-"""``mdr serve``: the HTTP service at an address of one's own."""
+"""``mdr serve``: the HTTP service."""
 
 import argparse
 import signal
+import socket
 import sys
+from functools import partial
 from types import FrameType
-from typing import Final
 
 import uvicorn
+from uvicorn.supervisors import Multiprocess
 
-from mdr_service import watch
+from mdr_service import observability
+from mdr_service.protocol import BoundedProtocol
 from mdr_service.settings import SETTINGS
-
-_LAST_PORT: Final = 65535
 
 
 def declare(parser: argparse.ArgumentParser) -> None:
-    """Take the address."""
-    parser.add_argument("--host", default="127.0.0.1", help="address to listen at (%(default)s)")
-    parser.add_argument("--port", default=8000, type=_port, help="port (%(default)s)")
+    """Add the arguments of the command."""
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (%(default)s)")
+    parser.add_argument(
+        "--port", default=8000, type=partial(_number, "port", 0, 65_535), help="port (%(default)s)"
+    )
     parser.add_argument(
         "--workers",
         default=1,
-        type=_workers,
-        help="processes that serve, each with compute processes of its own; one that ends is "
-        "replaced (%(default)s)",
+        type=partial(_number, "workers", 1, 1_000),
+        help="server processes, each with its own compute processes; one that ends is replaced "
+        "(%(default)s)",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Serve until a signal ends it."""
+    """Serve until a signal ends the process."""
     host, port = arguments.host, arguments.port
-    # uvicorn ends by raising once more the signal that stopped it. Being told to stop is no
-    # failure, so that one ends in exit status 0.
-    signal.signal(signal.SIGTERM, _leave)
-    signal.signal(signal.SIGINT, _leave)
-    place = f"[{host}]" if ":" in host else host
-    sys.stdout.write(f"MDR: the documentation is at http://{place}:{port}/docs\n")
-    sys.stdout.flush()
-    uvicorn.run(
-        # Several workers each import it by its name.
+    config = uvicorn.Config(
+        # Each server process imports it by its name.
         "mdr_service.app:create_app",
         factory=True,
         workers=arguments.workers,
-        log_config=dict(watch.LOGGING),
+        log_config=dict(observability.LOGGING),
         host=host,
         port=port,
         loop="uvloop",
-        http="httptools",
-        # Without it a client that never finishes its request keeps the service from ending.
+        http=BoundedProtocol,
+        # Without a limit, a client that never reads its response would prevent the shutdown.
         timeout_graceful_shutdown=SETTINGS.shutdown_seconds,
         server_header=False,
         access_log=False,
-        # No answer and no line of the log depends on where the client is.
+        # No response and no log line depends on the client's address.
         proxy_headers=False,
         lifespan="on",
         ws="none",
     )
+    # Before the compute processes start, which takes a second: a used port is reported at once.
+    listener = _bind(host, port)
+    # uvicorn raises the signal that stopped it once more, but a requested stop is not a failure.
+    for each in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(each, lambda *_: sys.exit(0))
+    place = f"[{host}]" if ":" in host else host
+    sys.stdout.write(f"MDR: documentation at http://{place}:{listener.getsockname()[1]}/docs\n")
+    sys.stdout.flush()
+    # `nohup` makes the server ignore the end of its terminal.
+    ignored = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    if arguments.workers > 1:
+        run_server = Multiprocess(config, [listener]).run
+    else:
+        run_server = partial(uvicorn.Server(config).run, [listener])
+    signal.signal(signal.SIGHUP, signal.SIG_IGN if ignored else _terminate)
+    run_server()
     return 0
 
 
-def _port(text: str) -> int:
-    number = int(text)
-    # The system would serve at the remainder by 65536, and nobody know.
-    if not 0 <= number <= _LAST_PORT:
-        raise ValueError
-    return number
+def _terminate(_signal: int, _frame: FrameType | None) -> None:
+    signal.raise_signal(signal.SIGTERM)
 
 
-def _workers(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
+def _bind(host: str, port: int) -> socket.socket:
+    """Return a socket bound to the address; end the process with a message if that fails."""
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        listener = socket.socket(family)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+    except OSError as error:
+        sys.exit(f"mdr serve: cannot listen on {host} port {port}: {error.strerror}")
+    return listener
 
 
-def _leave(_signal: int, _frame: FrameType | None) -> None:
-    sys.exit(0)
+def _number(name: str, least: int, most: int, text: str) -> int:
+    """Return a number of the command line; end the process with a message if it is out of range.
+
+    The socket layer would silently wrap port numbers modulo 65536.
+    """
+    if len(text) > len(str(most)) or not text.isdecimal() or not least <= int(text) <= most:
+        sys.stderr.write(f"mdr serve: --{name} must be between {least} and {most}\n")
+        sys.exit(2)
+    return int(text)

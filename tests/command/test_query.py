@@ -8,14 +8,13 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from mdr_command.__main__ import main
 from mdr_core.errors import AccuracyError
-from mdr_service import questions
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EVOLUTION_EXAMPLES
 from tests.conftest import Client
 from tests.faults.server import PATIENCE
@@ -54,11 +53,13 @@ def within(capfdbinary: pytest.CaptureFixture[bytes], tmp_path: Path) -> Within:
     return Within(capfdbinary, tmp_path / "request.json")
 
 
-@pytest.mark.parametrize("form", ["json", "csv", "npz", "svg"])
+@pytest.mark.parametrize(
+    "form", ["json", "csv", "npz", pytest.param("svg", marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize(
     ("path", "query"), [case[::2] for case in CASES], ids=[f"{case[0]} {case[1]}" for case in CASES]
 )
-def test_the_answer_is_that_of_the_service(
+def test_output_is_the_response_of_the_service(
     client: Client, within: Within, path: str, query: object, form: str
 ) -> None:
     text = json.dumps(query).encode()
@@ -71,7 +72,9 @@ def test_the_answer_is_that_of_the_service(
 
 
 @pytest.mark.parametrize("where", ["standard input", "a file"])
-def test_a_request_is_read(client: Client, where: str, tmp_path: Path) -> None:
+def test_request_is_read_from_file_or_standard_input(
+    client: Client, where: str, tmp_path: Path
+) -> None:
     file = tmp_path / "request.json"
     file.write_bytes(BODY)
     command, text = ([*MDR, "normal"], BODY)
@@ -92,7 +95,7 @@ def test_a_request_is_read(client: Client, where: str, tmp_path: Path) -> None:
     ],
     ids=["no JSON", "a wrong value", "no contact", "another query", "no such form"],
 )
-def test_a_failure_is_the_document_of_the_service(
+def test_problem_is_the_document_of_the_service(
     client: Client, within: Within, asked: str, text: bytes, form: str
 ) -> None:
     answer = client.post_text(f"/v1/{asked}?format={form}", text)
@@ -114,22 +117,21 @@ def failing(error: Exception) -> Callable[[object], object]:
         (ZeroDivisionError(), 1, "internal-error"),
     ],
 )
-def test_each_sort_of_failure_has_its_exit_status(
+def test_each_type_of_problem_has_its_exit_status(
     within: Within, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int, kind: str
 ) -> None:
-    normal = replace(questions.QUESTIONS["normal"], solve=failing(error))
-    monkeypatch.setitem(questions.QUESTIONS, "normal", normal)
+    monkeypatch.setitem(QUERIES, "normal", QUERIES["normal"]._replace(solve=failing(error)))
     found, out, err = within("normal", BODY)
     assert (found, out) == (status, b"")
     assert json.loads(err.splitlines()[-1])["type"] == f"urn:mdr:problem:{kind}"
 
 
-def test_a_file_that_is_not_there_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_file_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["normal", "/nowhere/request.json"]) == 2
     assert capsys.readouterr().err == "mdr: /nowhere/request.json: No such file or directory\n"
 
 
-def test_no_server_is_loaded_for_an_answer(tmp_path: Path) -> None:
+def test_query_imports_no_server(tmp_path: Path) -> None:
     file = tmp_path / "request.json"
     file.write_bytes(BODY)
     code = (
@@ -151,7 +153,7 @@ def terminal() -> Iterator[tuple[int, int]]:
         os.close(theirs)
 
 
-def test_who_looks_is_shown_how_far_it_has_come(client: Client) -> None:
+def test_progress_bar_is_shown_on_a_terminal(client: Client) -> None:
     text = json.dumps(FOLLOWED).encode()
     with terminal() as (ours, theirs):
         told = subprocess.run(
@@ -169,17 +171,22 @@ def test_who_looks_is_shown_how_far_it_has_come(client: Client) -> None:
     assert shown.endswith(b"\r\x1b[K")
 
 
-def test_who_looks_at_an_answer_sees_it_end(client: Client) -> None:
+def test_output_on_a_terminal_ends_with_a_newline(client: Client) -> None:
     with terminal() as (ours, theirs):
         subprocess.run([*MDR, "normal"], input=BODY, stdout=theirs, check=True, timeout=PATIENCE)
         shown = os.read(ours, 100_000)
     assert shown == client.post_text("/v1/normal", BODY).content + b"\r\n"
 
 
-def test_an_interrupt_ends_it_without_a_trace() -> None:
+def test_interrupt_ends_the_command_without_a_traceback() -> None:
     with terminal() as (ours, theirs):
         asked = subprocess.Popen(
-            [*MDR, "evolution"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=theirs
+            [*MDR, "evolution"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=theirs,
+            # A process inherits it if its parent ignores the signal, as in a shell's background.
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509 -- no threads
         )
         assert asked.stdin is not None
         asked.stdin.write(json.dumps(LONG).encode())
@@ -194,7 +201,7 @@ def test_an_interrupt_ends_it_without_a_trace() -> None:
     assert b"Traceback" not in shown
 
 
-def test_nobody_reading_is_no_failure_to_tell() -> None:
+def test_closed_output_pipe_ends_silently() -> None:
     many = BALL | {"load": {"normal_force": [1.0 + i for i in range(10_000)]}}
     asked = subprocess.Popen(
         [*MDR, "normal"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE

@@ -1,0 +1,18 @@
+"""Exit statuses of the commands; README lists them."""
+
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """Exit status of a command."""
+
+    OK = 0
+    INTERNAL_ERROR = 1
+    INVALID_INPUT = 2
+    """As argparse reports invalid arguments."""
+    ACCURACY_NOT_REACHABLE = 3
+    OUTPUT_FAILED = 4
+    INTERRUPTED = 130
+    """As shells report programs terminated by SIGINT."""
+    PIPE_CLOSED = 141
+    """As shells report programs terminated by SIGPIPE."""

@@ -1,0 +1,116 @@
+"""``mdr normal``, ``mdr wear`` and so on: responses of the service, without a server."""
+
+import argparse
+import logging
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+from mdr_command.exit_status import ExitStatus
+from mdr_command.progress import ProgressBar
+from mdr_core.wear import evolution
+from mdr_service import content_negotiation, problems
+from mdr_service.dispatch import parse, respond
+from mdr_service.problems import ServiceError
+from mdr_service.queries import QUERIES
+from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.wear import EvolutionQuery
+from mdr_service.serializers import json
+
+_STATUS: Final = {
+    problems.INTERNAL: ExitStatus.INTERNAL_ERROR,
+    problems.ACCURACY: ExitStatus.ACCURACY_NOT_REACHABLE,
+}
+_STANDARD_INPUT: Final = "-"
+
+_logger: Final = logging.getLogger(__name__)
+
+
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments: the request, and the format of the response."""
+    parser.add_argument(
+        "file",
+        nargs="?",
+        default=_STANDARD_INPUT,
+        help="request in JSON, as the service accepts it; - for standard input (default)",
+    )
+    parser.add_argument(
+        "--format",
+        default="json",
+        metavar="|".join(content_negotiation.FORMATS),
+        help="format of the response (default: json)",
+    )
+    parser.epilog = (
+        "A problem document is written to standard error, with the exit status "
+        f"{ExitStatus.INVALID_INPUT}, or {ExitStatus.ACCURACY_NOT_REACHABLE} if rtol cannot be "
+        "reached."
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the response to standard output and return the exit status."""
+    try:
+        text = _read(arguments.file)
+    except OSError as error:
+        return _fail(f"{arguments.file}: {error.strerror}", ExitStatus.INVALID_INPUT)
+    try:
+        content = _respond(arguments.command, text, arguments.format)
+    except problems.FAILURES as error:
+        return _report(problems.to_problem(error))
+    except Exception:
+        _logger.exception("internal error")
+        return _report(problems.INTERNAL_ERROR)
+    try:
+        _write(content)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        # Python would try once more to write the rest on exit, and print a traceback.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _fail(f"standard output: {error.strerror}", ExitStatus.OUTPUT_FAILED)
+    return ExitStatus.OK
+
+
+def _read(file: str) -> bytes:
+    if file != _STANDARD_INPUT:
+        return Path(file).read_bytes()
+    if sys.stdin.isatty():
+        sys.stderr.write("mdr: reading the request from the terminal; end it with Ctrl-D\n")
+    return sys.stdin.buffer.read()
+
+
+def _respond(name: str, text: bytes, format_: str) -> bytes:
+    media_type = content_negotiation.media_type(format_, "*/*")
+    query = parse(QUERIES[name].model, text)
+    with _progress(query) as progress:
+        return respond(name, query, media_type, **progress)
+
+
+@contextmanager
+def _progress(query: Query) -> Iterator[dict[str, ProgressBar]]:
+    """Show a progress bar for a long computation on a terminal."""
+    if not (isinstance(query, EvolutionQuery) and sys.stderr.isatty()):
+        yield {}
+        return
+    with ProgressBar(sys.stderr, evolution.EVALUATIONS) as bar:
+        yield {"progress": bar}
+
+
+def _write(content: bytes) -> None:
+    sys.stdout.buffer.write(content)
+    if sys.stdout.isatty() and not content.endswith(b"\n"):
+        sys.stdout.buffer.write(b"\n")
+    sys.stdout.flush()
+
+
+def _report(error: ServiceError) -> int:
+    sys.stderr.write(json.write(problems.document(error)).decode() + "\n")
+    return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
+
+
+def _fail(detail: str, status: int) -> int:
+    sys.stderr.write(f"mdr: {detail}\n")
+    return status
