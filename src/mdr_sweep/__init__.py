@@ -1,1 +1,1 @@
-"""Sweeps over millions of scenes: the service's answers, on one machine or many."""
+"""Parameter studies over millions of cases, on one machine or on a cluster."""

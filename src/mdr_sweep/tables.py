@@ -1,166 +1,186 @@
-"""Tables of scenes, read in batches, whatever their length, and written so that bytes repeat."""
+"""Cases of a sweep, from a grid or a file, and files of results."""
 
+import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from hashlib import file_digest
+from itertools import chain
+from math import isfinite, prod
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Any, Final, TypeAlias
 
+import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.csv as pv
 import pyarrow.parquet as pq
 
-from mdr_sweep.columns import copied
-from mdr_sweep.errors import UsageError
+from mdr_sweep.cells import Values
+from mdr_sweep.spec import UsageError
 
-# Rows of a group of the Parquet file that is written: some tens of megabytes.
+# Rows of a row group of a Parquet file, and the most in a chunk: about 10 MB, and one block of
+# `mdr_core.broadcasting`.
 ROW_GROUP: Final = 65_536
-# Bytes of text that are parsed at once.
+# Bytes of CSV that are parsed at once.
 _BLOCK: Final = 4 * 1024**2
+# Values of an axis, which are held in memory: 80 MB.
+_MAX_VALUES: Final = 10_000_000
+# Parts of a sample, so that it represents a sorted input.
+_PARTS: Final = 8
 SUFFIXES: Final = (".parquet", ".csv")
-# Doubles of answers hardly repeat: only words have a dictionary.
-PARQUET: Final[Mapping[str, Any]] = {
-    "compression": "zstd",
-    "compression_level": 1,
-    "store_schema": False,
-}
 
 
-class Source(Protocol):
-    """Where scenes come from."""
+class Grid:
+    """All combinations of the values of some axes; the last axis varies fastest.
 
-    @property
-    def rows(self) -> int:
-        """How many scenes there are."""
+    Parameters
+    ----------
+    axes : by the name of a field ``start:stop:n`` or ``start:stop:n:log``.
+    """
 
-    @property
-    def schema(self) -> pa.Schema:
-        """The columns as they are read."""
+    def __init__(self, axes: Mapping[str, str]) -> None:
+        self.identity = dict(axes)
+        self.values = [axis(name, text) for name, text in axes.items()]
+        self.shape = [values.size for values in self.values]
+        self.rows = prod(self.shape)
+        self.schema = pa.schema([(name, pa.float64()) for name in axes])
 
-    @property
-    def identity(self) -> Any:
-        """What tells this input from others."""
-
-    def kinds(self, name: str) -> list[str] | None:
-        """Return the different words of a column, None where there is no such column."""
-
-    def batches(self, rows: int, skip: set[int]) -> Iterator[tuple[int, pa.RecordBatch]]:
-        """Yield the scenes in batches of that many rows, those with an index in `skip` left out."""
+    def batches(self, rows: int, indices: Collection[int]) -> Iterator[pa.RecordBatch]:
+        """Yield the batches of `rows` cases with the given indices, ascending."""
+        for index in indices:
+            numbers = np.arange(index * rows, min((index + 1) * rows, self.rows))
+            places = np.unravel_index(numbers, self.shape)
+            columns = [values[place] for values, place in zip(self.values, places, strict=True)]
+            yield pa.record_batch(columns, schema=self.schema)
 
 
 class Table:
-    """A table in a file: Parquet, or CSV, of which every cell is read as text."""
+    """Cases in a file: Parquet, or CSV, of which every cell is read as text."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
             if path.suffix == ".parquet":
                 with pq.ParquetFile(path) as file:
-                    self.schema = file.schema_arrow
-                    self.rows = file.metadata.num_rows
+                    self.schema, self.rows = file.schema_arrow, file.metadata.num_rows
             else:
                 with self._csv() as reader:
                     self.schema = reader.schema
                     self.rows = sum(batch.num_rows for batch in reader)
+            with path.open("rb") as binary:
+                self.identity = file_digest(binary, "sha256").hexdigest()
         except (OSError, pa.ArrowException) as error:
-            raise UsageError(f"{path} cannot be read: {error}") from None
-        twice = {name for name in self.schema.names if self.schema.names.count(name) > 1}
-        if twice:
-            raise UsageError(f"{path} has more than one column {min(twice)}")
+            raise UsageError(f"cannot read {path}: {error}") from None
+        names = self.schema.names
+        if len(set(names)) < len(names):
+            raise UsageError(f"{path} has two columns {max(names, key=names.count)}")
 
-    @property
-    def identity(self) -> Any:
-        """A digest of all of the file."""
-        with self.path.open("rb") as file:
-            return file_digest(file, "sha256").hexdigest()
-
-    def kinds(self, name: str) -> list[str] | None:
-        """Return the different words of a column, None where there is no such column."""
-        if name not in self.schema.names:
-            return None
-        found: set[str] = set()
-        for batch in self._read([name]):
-            words = batch.column(0)
-            if pa.types.is_dictionary(words.type):
-                words = pc.cast(words, words.type.value_type)
-            found |= {str(word) for word in words.unique().to_pylist()}
-        return sorted(found)
-
-    def batches(self, rows: int, skip: set[int]) -> Iterator[tuple[int, pa.RecordBatch]]:
-        """Yield the scenes in batches of that many rows, those with an index in `skip` left out."""
+    def batches(self, rows: int, indices: Collection[int]) -> Iterator[pa.RecordBatch]:
+        """Yield the batches of `rows` cases with the given indices, ascending."""
+        wanted = frozenset(indices)
         for index, batch in enumerate(regrouped(self._read(), rows)):
-            if index not in skip:
-                yield index, batch
+            if index in wanted:
+                yield batch
 
-    def _read(self, names: list[str] | None = None) -> Iterator[pa.RecordBatch]:
+    def _read(self) -> Iterator[pa.RecordBatch]:
         if self.path.suffix == ".parquet":
-            # Buffered ahead, all that was read would be held to the end.
+            # With read-ahead, everything read would stay in memory to the end.
             with pq.ParquetFile(self.path, pre_buffer=False) as file:
-                yield from file.iter_batches(batch_size=ROW_GROUP, columns=names, use_threads=False)
+                yield from file.iter_batches(batch_size=ROW_GROUP, use_threads=False)
         else:
-            with self._csv(names) as reader:
+            with self._csv() as reader:
                 yield from reader
 
-    def _csv(self, names: list[str] | None = None) -> pv.CSVStreamingReader:
+    def _csv(self) -> pv.CSVStreamingReader:
         read = pv.ReadOptions(block_size=_BLOCK, use_threads=False)
         with pv.open_csv(self.path, read_options=read) as head:
             kinds = dict.fromkeys(head.schema.names, pa.string())
-        convert = pv.ConvertOptions(
-            column_types=kinds, strings_can_be_null=True, null_values=[""], include_columns=names
-        )
+        convert = pv.ConvertOptions(column_types=kinds, strings_can_be_null=True, null_values=[""])
         return pv.open_csv(self.path, read_options=read, convert_options=convert)
 
 
+Source: TypeAlias = Grid | Table
+
+
+def axis(name: str, text: str) -> Values:
+    """Return the values of an axis, both ends included.
+
+    Raises
+    ------
+    UsageError : the text is not ``start:stop:n``, ``start:stop:n:lin`` or ``start:stop:n:log``.
+    """
+    try:
+        first, last, number, *spacing = text.split(":")
+        start, stop, count = float(first), float(last), int(number)
+    except ValueError:
+        spacing = [""]
+    if spacing not in ([], ["lin"], ["log"]):
+        raise UsageError(f"{name}: {text!r} is not an axis; use START:STOP:N or START:STOP:N:log")
+    if not (isfinite(start) and isfinite(stop) and 1 <= count <= _MAX_VALUES):
+        raise UsageError(f"{name}: an axis needs finite ends and 1 to {_MAX_VALUES} values")
+    if count == 1 and start != stop:
+        raise UsageError(f"{name}: an axis of one value needs equal ends")
+    if spacing != ["log"]:
+        return np.linspace(start, stop, count)
+    if min(start, stop) <= 0:
+        raise UsageError(f"{name}: a logarithmic axis needs positive ends")
+    return np.geomspace(start, stop, count)
+
+
+def sample(source: Source) -> pa.RecordBatch:
+    """Return up to `ROW_GROUP` cases, from several places of the input."""
+    rows = ROW_GROUP // _PARTS
+    count = -(-source.rows // rows)
+    places = sorted({count * part // _PARTS for part in range(_PARTS)})
+    return _merged(list(source.batches(rows, places)))
+
+
 def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
-    """Yield the same rows in batches of another size, the last one shorter."""
+    """Yield the rows of batches in batches of `rows`; the last one can be shorter."""
     held: list[pa.RecordBatch] = []
     size = 0
     for batch in batches:
         rest = batch
         while size + rest.num_rows >= rows:
-            held.append(rest.slice(0, rows - size))
+            yield _merged([*held, rest.slice(0, rows - size)])
             rest = rest.slice(rows - size)
-            yield _one(held)
             held, size = [], 0
         if rest.num_rows:
             held.append(rest)
             size += rest.num_rows
     if held:
-        yield _one(held)
+        yield _merged(held)
 
 
-def _one(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
+def write(
+    sink: Any, suffix: str, batches: Iterable[pa.RecordBatch], provenance: Mapping[str, Any]
+) -> None:
+    """Write rows to a file. Equal rows give equal bytes: nothing depends on chunks or on the time.
+
+    Parameters
+    ----------
+    sink : path or binary file.
+    suffix : ``.parquet`` or ``.csv``.
+    batches : the rows, in one batch or more.
+    provenance : stored in JSON as the metadata `mdr` of a Parquet file.
+    """
+    rows = regrouped(batches, ROW_GROUP)
+    first = next(rows)
+    # Doubles seldom repeat: only text is stored with a dictionary.
+    texts: Any = [field.name for field in first.schema if pa.types.is_string(field.type)]
+    options: dict[str, Any] = {"compression": "zstd", "compression_level": 1, "store_schema": False}
+    writer: Any = (
+        pv.CSVWriter(sink, first.schema)
+        if suffix == ".csv"
+        else pq.ParquetWriter(sink, first.schema, use_dictionary=texts, **options)
+    )
+    with writer:
+        for batch in chain([first], rows):
+            writer.write_batch(batch)
+        if suffix != ".csv":
+            writer.add_key_value_metadata({"mdr": json.dumps(dict(provenance), sort_keys=True)})
+
+
+def _merged(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
     if len(batches) == 1:
         return batches[0]
     (whole,) = pa.Table.from_batches(batches).combine_chunks().to_batches()
     return whole
-
-
-def joined(
-    batch: pa.RecordBatch, answers: pa.RecordBatch, kept: Collection[str] = ()
-) -> pa.RecordBatch:
-    """Return the rows of the result: the inputs, some kept as they are, and the answers."""
-    arrays = {
-        name: array if name in kept else copied(name, array)
-        for name, array in zip(batch.schema.names, batch.columns, strict=True)
-    }
-    return pa.record_batch(arrays | dict(zip(answers.schema.names, answers.columns, strict=True)))
-
-
-def write(path: Path, target: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatch]) -> None:
-    """Write the rows to `path` in the form that the name of `target` says.
-
-    The same rows give the same bytes: row groups, encodings and compression are fixed, and
-    nothing tells the time.
-    """
-    rows = regrouped(batches, ROW_GROUP)
-    if target.suffix == ".csv":
-        with pv.CSVWriter(path, schema) as writer:
-            for batch in rows:
-                writer.write_batch(batch)
-        return
-    words = [field.name for field in schema if pa.types.is_string(field.type)]
-    options: dict[str, Any] = {**PARQUET, "use_dictionary": words}
-    with pq.ParquetWriter(path, schema, **options) as writer:
-        for batch in rows:
-            writer.write_batch(batch, row_group_size=ROW_GROUP)

@@ -1,4 +1,4 @@
-"""Sweeps as processes of their own, as a user starts them."""
+"""Sweeps in processes, as a user starts them."""
 
 import os
 import signal
@@ -7,35 +7,47 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tests.sweep.scenes import scenes, table
+from tests.sweep.cases import random_cases, table
 
 WAIT = 120.0
 
 
-def sweep(folder: Path, *options: str, **more: Any) -> "subprocess.Popen[str]":
-    """Start a sweep in a folder."""
+def sweep(
+    folder: Path, *options: str, prepare: Callable[[], object] = int
+) -> "subprocess.Popen[str]":
+    """Start a sweep in a folder, with SIGINT as on a terminal, whatever started the tests."""
     command = [sys.executable, "-m", "mdr_command", "sweep", *options]
-    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True, **more)
+
+    def before() -> None:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        prepare()
+
+    return subprocess.Popen(
+        command,
+        cwd=folder,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=before,  # noqa: PLW1509 -- no other thread holds a lock
+    )
 
 
 def finished(process: "subprocess.Popen[str]") -> tuple[int, str]:
-    """The exit status of a sweep and what it said."""
+    """Return the exit status of a sweep and its standard error."""
     _, said = process.communicate(timeout=WAIT)
     return process.returncode, said
 
 
-def swept(folder: Path, *options: str, **more: Any) -> tuple[int, str]:
-    """What becomes of a sweep that runs to its end."""
-    return finished(sweep(folder, *options, **more))
+def swept(folder: Path, *options: str, prepare: Callable[[], object] = int) -> tuple[int, str]:
+    """Run a sweep and return its exit status and its standard error."""
+    return finished(sweep(folder, *options, prepare=prepare))
 
 
 def until(reached: Callable[[], object]) -> None:
-    """Wait for something to be so."""
+    """Wait until a condition holds."""
     end = time.monotonic() + WAIT
     while not reached():
         assert time.monotonic() < end, "nothing happened"
@@ -43,7 +55,7 @@ def until(reached: Callable[[], object]) -> None:
 
 
 def workers(client: int) -> list[int]:
-    """The processes in which a client has its scenes answered."""
+    """Return the worker processes of a sweep."""
     threads = Path(f"/proc/{client}/task").iterdir()
     children = [child for one in threads for child in (one / "children").read_text().split()]
     return [
@@ -58,11 +70,11 @@ def kill(process: int) -> None:
 
 
 def chunks(folder: Path, result: str) -> int:
-    """How many chunks are done."""
+    """Return the number of completed chunks."""
     return len(list(folder.joinpath(f"{result}.work").glob("*.arrow")))
 
 
-def write_scenes(path: Path, count: int, kind: str = "rounded_punch") -> None:
-    """Write a table of scenes that each take a fraction of a millisecond."""
-    rows = scenes(kind, "tangential", count)
+def write_cases(path: Path, count: int, kind: str = "rounded_punch") -> None:
+    """Write a table of cases."""
+    rows = random_cases(kind, "tangential", count)
     pq.write_table(pa.Table.from_batches([table(rows)]), path)

@@ -1,14 +1,15 @@
-"""What a sweep is told on the command line, and what it reads and writes."""
+"""Arguments, input and output of the command `mdr sweep`."""
 
 import csv
 import datetime as dt
-import io
 import json
 import subprocess
 import sys
 from argparse import ArgumentParser
 from decimal import Decimal
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -16,40 +17,103 @@ import pyarrow.csv as pv
 import pyarrow.parquet as pq
 import pytest
 
-from mdr_sweep import chunk, command
-from mdr_sweep.errors import UsageError
-from mdr_sweep.grid import Axis, axis
-from mdr_sweep.plan import plan
-from mdr_sweep.progress import Lines
-from mdr_sweep.requests import flat, nested
-from mdr_sweep.study import ANSWERS, Study
-from mdr_sweep.tables import Table, regrouped
-from mdr_sweep.work import Work
-from tests.sweep import running
-from tests.sweep.scenes import scenes, swept, table
+from mdr_core.errors import InputError
+from mdr_sweep import command, resources, vectorized
+from mdr_sweep.checkpoint import Checkpoint
+from mdr_sweep.request_fields import fields, flat, gaps, generic, nested
+from mdr_sweep.spec import QUANTITIES, Spec, UsageError
+from mdr_sweep.sweep import Failures
+from mdr_sweep.tables import Grid, Table, axis, regrouped
+from tests.sweep.cases import random_cases, swept, table
 
-BALL = {
+BALL: dict[str, Any] = {
     "profile": {"kind": "paraboloid", "radius": 0.01},
     "material": {
         "bodies": [{"youngs_modulus": 210e9, "poissons_ratio": 0.3}, "rigid"],
     },
     "load": {"normal_force": "1:10:4"},
 }
+HERTZ = {
+    "profile.kind": "paraboloid",
+    "profile.radius": 0.01,
+    "material.e_star": 1e11,
+    "load.normal_force": 1.0,
+}
 
 
-def told(*options: str) -> int:
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("ball.json").write_text(json.dumps(BALL))
+    return tmp_path
+
+
+def run(*options: str) -> int:
     parser = ArgumentParser()
     command.declare(parser)
     return command.run(parser.parse_args(options))
 
 
-def test_a_request_is_written_flat_and_back() -> None:
+def write(path: str, columns: dict[str, Any]) -> None:
+    pq.write_table(pa.table(columns), path)
+
+
+def test_nested_inverts_flat() -> None:
     fields = flat(BALL)
     assert fields["material.bodies.0.poissons_ratio"] == 0.3
     assert fields["material.bodies.1"] == "rigid"
     assert nested(fields) == BALL
     listed = {"profile": {"kind": "tabulated", "r": [0.0, 1.0], "f": [0.0, 1.0]}}
     assert nested(flat(listed)) == listed
+
+
+@pytest.mark.parametrize(
+    ("names", "path"),
+    [
+        (["profile.terms.100000000.exponent"], ("profile", "terms")),
+        (["profile.terms.0.exponent", "profile.terms.2.exponent"], ("profile", "terms")),
+        (["profile.terms.00.exponent"], ("profile", "terms")),
+        (["load", "load.normal_force"], ("load", "normal_force")),
+        (["load.normal_force", "load"], ("load",)),
+    ],
+)
+def test_names_that_make_no_request_are_rejected(names: list[str], path: tuple[str, ...]) -> None:
+    with pytest.raises(InputError) as error:
+        nested(dict.fromkeys(names, 1.0))
+    assert error.value.path == path
+
+
+def test_fields_have_the_types_of_the_request_models() -> None:
+    names = {
+        "profile.kind": "string",
+        "profile.r": "array",
+        "profile.terms.12.exponent": "number",
+        "material.bodies.1": "string",
+        "material.bodies.0.youngs_modulus": "number",
+        "load.normal_force": "number",
+        "rtol": "number",
+    }
+    found = fields("tangential")
+    assert {name: found[generic(name)].type for name in names} == names
+    unknown = ("profile.colour", "profile.terms.x.exponent", "profile.terms.01.exponent", "load")
+    assert not {*map(generic, (*unknown, "load.friction_coefficient"))} & found.keys()
+    assert not {"radius", "points", "quantities"} & fields("wear").keys()
+
+
+@pytest.mark.parametrize(
+    ("names", "missing"),
+    [
+        (["profile.terms.0.exponent", "profile.terms.1.exponent"], set()),
+        (["profile.terms.0.exponent", "profile.terms.2.exponent"], {"profile.terms.2"}),
+        (["profile.terms.100000000.exponent"], {"profile.terms.100000000"}),
+        (["profile.terms.10.exponent", "profile.terms.9.exponent"], {"profile.terms.9"}),
+        (["material.bodies.1", "material.bodies.0.youngs_modulus"], set()),
+        (["material.bodies.1"], {"material.bodies.1"}),
+        (["load.normal_force"], set()),
+    ],
+)
+def test_gaps_are_the_indices_without_a_predecessor(names: list[str], missing: set[str]) -> None:
+    assert gaps(names) == missing
 
 
 @pytest.mark.parametrize(
@@ -62,29 +126,31 @@ def test_a_request_is_written_flat_and_back() -> None:
         ("5:5:1", [5.0]),
     ],
 )
-def test_an_axis_has_both_its_ends(text: str, values: list[float]) -> None:
-    found = axis("load.normal_force", text).values
-    assert found == pytest.approx(values, rel=1e-15)
+def test_an_axis_includes_both_ends(text: str, values: list[float]) -> None:
+    found = axis("load.normal_force", text)
+    assert found == pytest.approx(values, rel=1e-15, abs=0)
     assert [found[0], found[-1]] == [values[0], values[-1]]
 
 
 @pytest.mark.parametrize(
-    "text", ["1:10", "1:10:0", "1:10:x", "0:10:5:log", "1:inf:5", "1:2:1", "1:2:3:cubic", "a:2:3"]
+    "text",
+    [
+        *("1:10", "1:10:0", "1:10:x", "0:10:5:log", "1:inf:5", "1:2:1", "1:2:3:cubic", "a:2:3"),
+        *("1:2:3:log:log", "1:2:3:"),
+    ],
 )
-def test_what_is_no_axis_is_refused(text: str) -> None:
-    with pytest.raises(UsageError):
+def test_an_invalid_axis_is_rejected(text: str) -> None:
+    with pytest.raises(UsageError, match="load"):
         axis("load.normal_force", text)
 
 
-def test_a_grid_is_the_table_of_its_scenes(tmp_path: Path) -> None:
-    (tmp_path / "ball.json").write_text(json.dumps(BALL))
+def test_a_grid_equals_the_table_of_its_cases(folder: Path) -> None:
     grid = ("--grid", "profile.radius=1e-3:1e-1:3:log")
-    options = ("normal", "--template", "ball.json", *grid, "--workers", "1", "--chunk", "5")
-    status, said = running.swept(tmp_path, *options, "--out", "answers.parquet")
-    assert status == 0, said
-    found = pq.read_table(tmp_path / "answers.parquet")
-    force = Axis(1.0, 10.0, 4).values.repeat(3)
-    radius = np.tile(Axis(1e-3, 1e-1, 3, logarithmic=True).values, 4)
+    options = ("normal", "--template", "ball.json", *grid, "--chunk", "5")
+    assert run(*options, "--out", "result.parquet") == 0
+    found = pq.read_table(folder / "result.parquet")
+    force = axis("", "1:10:4").repeat(3)
+    radius = np.tile(axis("", "1e-3:1e-1:3:log"), 4)
     assert found["load.normal_force"].to_pylist() == force.tolist()
     assert found["profile.radius"].to_pylist() == radius.tolist()
     constants = {k: v for k, v in flat(BALL).items() if not k.startswith("load.")}
@@ -93,29 +159,29 @@ def test_a_grid_is_the_table_of_its_scenes(tmp_path: Path) -> None:
         for R, F in zip(radius.tolist(), force.tolist(), strict=True)
     ]
     expected = swept("normal", rows)
-    assert found.select([*ANSWERS["normal"], "warning", "error"]).to_pylist() == expected
+    assert found.select([*QUANTITIES["normal"], "warning", "error"]).to_pylist() == expected
 
 
-def test_text_in_and_text_out_is_the_same(tmp_path: Path) -> None:
-    rows = scenes("cone", "tangential", 30) + scenes("sphere", "tangential", 30)
+def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
+    rows = random_cases("cone", "tangential", 30) + random_cases("sphere", "tangential", 30)
     rows[7]["profile.slope"] = None
     given = pa.Table.from_batches([table(rows)])
     label = pa.array([f"no. {i}" for i in range(60)])
-    pv.write_csv(given.append_column("label", label), tmp_path / "scenes.csv")
-    text = (tmp_path / "scenes.csv").read_text().splitlines()
+    pv.write_csv(given.append_column("label", label), "cases.csv")
+    text = Path("cases.csv").read_text().splitlines()
     column = text[0].split(",").index('"material.e_star"')
-    cells = text[3].split(",")
-    cells[column] = "stiff"
-    text[3] = ",".join(cells)
-    (tmp_path / "scenes.csv").write_text("\n".join(text) + "\n")
+    for row, cell in ((2, "stiff"), (4, "[1e9]"), (5, "1_000"), (6, " 1e9 ")):
+        cells = text[row + 1].split(",")
+        cells[column] = cell
+        text[row + 1] = ",".join(cells)
+        rows[row]["material.e_star"] = cell
+    Path("cases.csv").write_text("\n".join(text) + "\n")
     for row in rows:
-        row["material.e_star"] = repr(row["material.e_star"])
-    rows[2]["material.e_star"] = "stiff"
+        row["material.e_star"] = str(row["material.e_star"])
 
-    options = ("tangential", "--table", "scenes.csv", "--keep", "label", "--workers", "1")
-    status, said = running.swept(tmp_path, *options, "--out", "answers.csv")
-    assert status == 0, said
-    with (tmp_path / "answers.csv").open(newline="") as file:
+    options = ("tangential", "--table", "cases.csv", "--keep", "label")
+    assert run(*options, "--out", "result.csv") == 0
+    with Path("result.csv").open(newline="") as file:
         found = list(csv.DictReader(file))
     for i, (row, expected) in enumerate(zip(found, swept("tangential", rows), strict=True)):
         assert row["label"] == f"no. {i}"
@@ -124,35 +190,57 @@ def test_text_in_and_text_out_is_the_same(tmp_path: Path) -> None:
                 assert float(row[name]) == value, name
             else:
                 assert row[name] == (value or ""), name
-    assert found[2]["material.e_star"] == ""
-    assert found[2]["error"].startswith("/material/e_star ")
+    for row in (2, 4, 5):
+        assert found[row]["material.e_star"] == ""
+        assert found[row]["error"].startswith("/material/e_star ")
+    assert float(found[6]["material.e_star"]) == 1e9
 
 
-def test_a_plan_computes_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.usefixtures("folder")
+def test_the_result_does_not_depend_on_chunks_or_processes() -> None:
+    write(
+        "cases.parquet",
+        pa.Table.from_batches(
+            [table(random_cases("rounded_punch", "tangential", 120))]
+        ).to_pydict(),
+    )
+    for number, options in enumerate((["--chunk", "7"], ["--chunk", "50", "--workers", "2"], [])):
+        out = f"result{number}.parquet"
+        assert run("tangential", "--table", "cases.parquet", "--out", out, *options) == 0
+    first, *others = (Path(f"result{number}.parquet").read_bytes() for number in range(3))
+    assert others == [first, first]
+
+
+def test_a_plan_computes_nothing_and_estimates_the_start_of_workers(
+    folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("ball.json").write_text(json.dumps(BALL))
     grid = ("--grid", "profile.radius=1e-3:1:1000000:log")
-    assert told("normal", "--template", "ball.json", *grid, "--out", "a.csv", "--plan") == 0
-    said = capsys.readouterr().out
-    assert "4,000,000" in said
-    assert "MiB" in said
-    assert [path.name for path in tmp_path.iterdir()] == ["ball.json"]
+    assert run("normal", "--template", "ball.json", *grid, "--out", "a.csv", "--plan") == 0
+    text = capsys.readouterr().out
+    assert "4,000,000" in text
+    assert "MiB" in text
+    assert [path.name for path in folder.iterdir()] == ["ball.json"]
+    spec = Spec("wear", {}, QUANTITIES["wear"])
+    write(
+        "cases.parquet",
+        table(random_cases("cone", "wear", 20)).to_pydict(),
+    )
+    alone, two = (resources.estimate(spec, Table(Path("cases.parquet")), n) for n in (1, 2))
+    assert (alone.processes, two.processes) == (0, 2)
+    # Twenty cases take a fraction of a second: the start of the workers is all of the estimate.
+    assert alone.seconds < resources.START_SECONDS < two.seconds
+    assert resources.estimate(spec, Table(Path("cases.parquet")), None).processes == 0
 
 
-def test_dearer_scenes_come_in_smaller_chunks() -> None:
-    sizes = [
-        plan(Study(query, {}, ANSWERS[query]), [kind], 10**6, 20, 2).chunk
-        for query, kind in (
-            ("tangential", "paraboloid"),
-            ("tangential", "rounded_punch"),
-            ("wear", "paraboloid"),
-            ("wear", "capped_paraboloid"),
-        )
-    ]
-    assert sizes == sorted(sizes, reverse=True)
-    assert len(set(sizes)) == len(sizes)
+def test_expensive_cases_come_in_small_chunks() -> None:
+    constants = {name: value for name, value in HERTZ.items() if name != "load.normal_force"}
+    wear = {"material.g_star": 8e10, "friction_coefficient": 0.3}
+    wear |= {"oscillation.tangential_displacement": 1e-8}
+    grid = Grid({"load.normal_force": "1:10:100000"})
+    cheap = resources.estimate(Spec("normal", constants, QUANTITIES["normal"]), grid, None)
+    expensive = resources.estimate(Spec("wear", constants | wear, QUANTITIES["wear"]), grid, None)
+    assert cheap.chunk > 10 * expensive.chunk
+    assert expensive.seconds > 10 * cheap.seconds
 
 
 @pytest.mark.parametrize(
@@ -160,94 +248,232 @@ def test_dearer_scenes_come_in_smaller_chunks() -> None:
     [
         (("--out", "a.parquet"), "either --table"),
         (("--grid", "load.normal_force=1:2:3", "--out", "a.xlsx"), "a.xlsx"),
+        (("--grid", "load.normal_force=1:2:3", "--out", "folder.csv"), "folder.csv"),
         (("--grid", "load.normal_force", "--out", "a.csv"), "START:STOP:N"),
-        (("--grid", "load=1:2:3", "--template", "t.json", "--out", "a.csv"), "at once"),
+        (("--grid", "load=1:2:3", "--out", "a.csv"), "unknown fields of normal"),
+        (
+            ("--grid", "load.normal_force=1:2:3", "--template", "unknown.json", "--out", "a.csv"),
+            "friction_coefficient, load.pressure",
+        ),
         (("--grid", "load.normal_force=1:2:3", "--answers", "colour", "--out", "a.csv"), "colour"),
-        (("--grid", "load.normal_force=1:2:3", "--keep", "id", "--out", "a.csv"), "no column id"),
-        (("--table", "none.parquet", "--out", "a.csv"), "cannot be read"),
+        (("--grid", "load.normal_force=1:2:3", "--keep", "id", "--out", "a.csv"), "columns id"),
+        (("--table", "none.parquet", "--out", "a.csv"), "cannot read none.parquet"),
+        (("--table", "unknown.parquet", "--out", "a.csv"), "columns): load.farce, name"),
+        (("--table", "result.parquet", "--out", "a.csv"), "contact_radius"),
+        (("--table", "gap.parquet", "--out", "a.csv"), "have no gaps: profile.terms.100000000"),
+        (("--table", "list.parquet", "--out", "a.csv"), "load.normal_force holds values of type"),
+        (("--table", "day.parquet", "--out", "a.csv"), "load.normal_force holds values of type"),
+        (("--table", "flag.parquet", "--out", "a.csv"), "load.normal_force holds values of type"),
+        (
+            ("--grid", "profile.radius=1:2:3", "--template", "list.json", "--out", "a.csv"),
+            "load.normal_force holds values of type list",
+        ),
         (("--grid", "load.normal_force=1:2:3", "--out", "there.csv"), "--overwrite"),
         (("--grid", "load.normal_force=1:2:3", "--chunk", "0", "--out", "a.csv"), "--chunk"),
+        (("--grid", "load.normal_force=1:2:3", "--workers", "0", "--out", "a.csv"), "--workers"),
     ],
 )
-def test_what_makes_no_sense_is_said_at_once(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    options: tuple[str, ...],
-    complaint: str,
+@pytest.mark.usefixtures("folder")
+def test_an_invalid_sweep_is_rejected_at_once(
+    capsys: pytest.CaptureFixture[str], options: tuple[str, ...], complaint: str
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("t.json").write_text('{"load": {"indentation_depth": 1e-6}}')
+    Path("unknown.json").write_text('{"load": {"pressure": 1}, "friction_coefficient": 0.3}')
+    Path("list.json").write_text('{"load": {"normal_force": [1, 2]}}')
     Path("there.csv").touch()
-    assert told("normal", *options) == 2
+    Path("folder.csv").mkdir()
+    write("unknown.parquet", {"name": ["a"], "load.farce": [1.0], "load.normal_force": [1.0]})
+    write("result.parquet", {"contact_radius": [1.0]})
+    write("gap.parquet", {"profile.terms.100000000.exponent": [2.0]})
+    write("list.parquet", {"load.normal_force": [[1.0]]})
+    write("day.parquet", {"load.normal_force": [dt.date(1882, 1, 1)]})
+    write("flag.parquet", {"load.normal_force": [True]})
+    assert run("normal", *options) == 2
     assert complaint in capsys.readouterr().err
+    assert not Path("a.csv").exists()
+    assert not list(Path().glob("*.work"))
 
 
-def test_the_work_of_another_sweep_is_not_taken_for_ones_own(tmp_path: Path) -> None:
-    work = Work(tmp_path / "answers.parquet")
+def test_empty_cells_of_a_term_below_another_are_an_error_of_their_case() -> None:
+    constants = {"profile.kind": "series", "material.e_star": 1e11, "load.normal_force": 1.0}
+    columns: dict[str, list[float | None]] = {
+        "profile.terms.0.coefficient": [None, 1.0],
+        "profile.terms.0.exponent": [None, 2.0],
+        "profile.terms.1.coefficient": [1.0, None],
+        "profile.terms.1.exponent": [2.0, None],
+    }
+    spec = Spec("normal", constants, ("contact_radius",))
+    gap, whole = vectorized.solve(spec, pa.record_batch(columns)).to_pylist()
+    assert gap["contact_radius"] is None
+    assert gap["error"].startswith("/profile/terms the indices of a list start at 0")
+    assert whole["error"] is None
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        pa.array([Decimal("1e11"), Decimal("2e11")]),
+        pa.array([10**11, 2 * 10**11], pa.int64()),
+        pa.array(["1e11", "2e11"]).dictionary_encode(),
+        pa.array(["1e11", "2e11"], pa.large_string()),
+    ],
+)
+def test_numbers_of_every_column_type_are_read(column: "pa.Array[Any]") -> None:
+    constants = {name: value for name, value in HERTZ.items() if name != "material.e_star"}
+    spec = Spec("normal", constants, ("contact_radius",))
+    found = vectorized.solve(spec, pa.record_batch({"material.e_star": column})).to_pylist()
+    rows = [HERTZ | {"material.e_star": e_star} for e_star in (1e11, 2e11)]
+    expected = [row["contact_radius"] for row in swept("normal", rows)]
+    assert [row["contact_radius"] for row in found] == expected
+    assert None not in expected
+
+
+@pytest.mark.usefixtures("folder")
+def test_the_summary_counts_failed_cases_by_reason(capsys: pytest.CaptureFixture[str]) -> None:
+    force = [1.0] * 6 + [-1.0, -2.0, None, 5.0]
+    radius = [0.01] * 9 + [-3.0]
+    columns = {"load.normal_force": force, "profile.radius": radius, "profile.kind": ["paraboloid"]}
+    write("cases.parquet", columns | {"profile.kind": ["paraboloid"] * 10})
+    Path("t.json").write_text('{"material": {"e_star": 1e11}}')
+    options = ("normal", "--table", "cases.parquet", "--template", "t.json", "--chunk", "4")
+    assert run(*options, "--out", "a.csv") == 0
+    summary = capsys.readouterr().err.splitlines()[-4:]
+    assert summary[0] == "10 cases: 6 solved, 4 failed"
+    assert summary[1].split()[:2] == ["2", "/load/normal_force"]
+    assert summary[1].endswith("(first in row 7)")
+    assert {line.split()[1] for line in summary[2:]} == {"/load", "/profile/radius"}
+
+    columns = {"profile.radius": [-1.0, -2.0], "profile.kind": ["paraboloid"] * 2}
+    write("wrong.parquet", columns | {"load.normal_force": [1.0, 2.0]})
+    options = ("normal", "--table", "wrong.parquet", "--template", "t.json")
+    assert run(*options, "--out", "b.csv") == 3
+    assert "2 cases: 0 solved, 2 failed" in capsys.readouterr().err
+    assert Path("b.csv").read_text().count("/profile/radius") == 2
+
+
+def test_the_summary_lists_ten_reasons_without_their_numbers() -> None:
+    errors = [f"/load/{letter} above {i}.5e{i}" for letter in "abcdefghijkl" for i in range(3)]
+    failures = Failures()
+    assert len(list(failures.counted([pa.record_batch({"error": [*errors, None]})]))) == 1
+    lines = list(failures.lines(37))
+    assert lines[0] == "37 cases: 1 solved, 36 failed"
+    assert lines[1].split()[0] == "3"
+    assert len(lines) == 12
+    assert lines[-1] == "and 2 more reasons; see the column error"
+
+
+def test_a_symbolic_link_stays_and_its_target_is_written(folder: Path) -> None:
+    (folder / "elsewhere").mkdir()
+    target = folder / "elsewhere" / "data"
+    (folder / "result.parquet").symlink_to(target)
+    options = ("normal", "--template", "ball.json", "--out", "result.parquet")
+    assert run(*options) == 0
+    assert (folder / "result.parquet").is_symlink()
+    first = target.read_bytes()
+    assert first[:4] == b"PAR1"
+    target.write_text("old")
+    assert run(*options) == 2
+    assert target.read_text() == "old"
+    assert run(*options, "--overwrite") == 0
+    assert (folder / "result.parquet").is_symlink()
+    assert target.read_bytes() == first
+    assert [path.name for path in (folder / "elsewhere").iterdir()] == ["data"]
+
+
+@pytest.mark.usefixtures("folder")
+def test_parquet_holds_its_provenance() -> None:
+    assert run("normal", "--template", "ball.json", "--out", "a.parquet") == 0
+    metadata = pq.read_metadata("a.parquet").metadata
+    found = json.loads(metadata[b"mdr"])
+    assert found["query"] == "normal"
+    assert found["constants"] == {k: v for k, v in flat(BALL).items() if not k.startswith("load")}
+    assert found["input"] == {"load.normal_force": "1:10:4"}
+    assert found["versions"].keys() == {"mdr", "numpy", "scipy", "pyarrow"}
+    assert "consistent system" in found["units"]
+
+
+def test_a_checkpoint_of_another_sweep_is_rejected(tmp_path: Path) -> None:
+    checkpoint = Checkpoint(tmp_path / "result.parquet")
     batch = pa.record_batch({"x": [1.0]})
-    with work.opened({"chunk": 1}, restart=False) as done:
+    with checkpoint.opened({"chunk": 1}, restart=False) as done:
         assert done == set()
-        work.put(3, batch)
-        with pytest.raises(UsageError, match="another process"), work.opened({}, restart=False):
+        checkpoint.put(3, batch)
+        with (
+            pytest.raises(UsageError, match="another process"),
+            checkpoint.opened({}, restart=False),
+        ):
             pass
-    (work.folder / "000000004.arrow.unfinished").touch()
-    with work.opened({"chunk": 1}, restart=False) as done:
+    (checkpoint.folder / "000000000004.arrow.unfinished").touch()
+    assert checkpoint.manifest == {"chunk": 1}
+    with checkpoint.opened({"chunk": 1}, restart=False) as done:
         assert done == {3}
-    assert not list(work.folder.glob("*.unfinished"))
+    assert not list(checkpoint.folder.glob("*.unfinished"))
     with (
         pytest.raises(UsageError, match="--restart"),
-        work.opened({"chunk": 2}, restart=False),
+        checkpoint.opened({"chunk": 2}, restart=False),
     ):
         pass
-    with work.opened({"chunk": 2}, restart=True) as done:
+    with checkpoint.opened({"chunk": 2}, restart=True) as done:
         assert done == set()
-        work.put(5, batch)
-    (work.folder / "manifest.json").unlink()
-    with work.opened({"chunk": 2}, restart=False) as done:
+        checkpoint.put(5, batch)
+    (checkpoint.folder / "manifest.json").unlink()
+    with checkpoint.opened({"chunk": 2}, restart=False) as done:
         assert done == set()
-
-
-def test_what_is_no_number_in_a_table_is_told_by_its_row() -> None:
-    day = dt.date(1882, 1, 1)
-    rows = [{"profile.kind": "cone", "profile.slope": slope} for slope in (0.1, 0.2)]
-    for column, valid in (
-        (pa.array([day, day]), False),
-        (pa.array([True, False]), False),
-        (pa.array([[1.0], []]), False),
-        (pa.array([Decimal("1e9"), Decimal("2e9")]), True),
-        (pa.array([1, 2], pa.int64()), True),
-    ):
-        batch = table(rows).append_column("material.e_star", column)
-        batch = batch.append_column("load.normal_force", pa.array([1.0, 2.0]))
-        study = Study("normal", {}, ("contact_radius",))
-        for row in chunk.answer(study, batch).to_pylist():
-            assert (row["error"] is None) == valid
-            assert valid or row["error"].startswith("/material/e_star")
 
 
 def test_batches_of_any_size_hold_the_same_rows(tmp_path: Path) -> None:
     values = np.arange(1000.0)
     pq.write_table(pa.table({"x": values}), tmp_path / "t.parquet", row_group_size=77)
+    source = Table(tmp_path / "t.parquet")
     for size in (1, 64, 1000, 4096):
-        found = list(Table(tmp_path / "t.parquet").batches(size, {1}))
-        assert [index for index, _ in found] == [i for i in range(-(-1000 // size)) if i != 1]
-        assert all(batch.num_rows <= size for _, batch in found)
+        count = -(-1000 // size)
+        parts = [batch["x"].to_pylist() for batch in source.batches(size, range(count))]
+        assert max(map(len, parts)) <= size
+        assert [*chain.from_iterable(parts)] == values.tolist()
+        assert [batch["x"].to_pylist() for batch in source.batches(size, {count - 1})] == parts[-1:]
     whole = pa.Table.from_batches(regrouped(pa.table({"x": values}).to_batches(7), 300))
     assert whole["x"].to_pylist() == values.tolist()
 
 
-def test_progress_is_told_in_lines_where_there_is_no_terminal() -> None:
-    stream = io.StringIO()
-    with Lines(stream, 2000, 500) as progress:
-        progress.done(1000)
-    assert stream.getvalue().startswith("1,500 of 2,000 scenes, ")
-    assert " s left" in stream.getvalue()
-
-
-def test_neither_core_nor_service_loads_what_sweeps_need() -> None:
+def test_core_service_and_command_line_load_no_package_of_sweeps() -> None:
     code = (
         "import sys, mdr_service.app, mdr_command.__main__;"
         "sys.exit(bool({'dask', 'distributed', 'pyarrow', 'tqdm'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+WITHOUT = """
+import sys
+for name in ("dask", "distributed", "pyarrow", "tqdm"):
+    sys.modules[name] = None
+from mdr_command.__main__ import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def without_packages(*options: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-c", WITHOUT, "sweep", *options]
+    return subprocess.run(command, check=False, capture_output=True, text=True)
+
+
+def test_help_prints_without_the_packages_of_sweeps() -> None:
+    done = without_packages("--help")
+    assert done.returncode == 0
+    assert "--template" in done.stdout
+    assert "mdr[" not in done.stdout
+
+
+def test_a_missing_package_is_installed_from_the_checkout() -> None:
+    done = without_packages("normal", "--grid", "load.normal_force=1:2:3", "--out", "a.csv")
+    assert done.returncode == 1
+    assert "requirements-sweep.lock` in the checkout" in done.stderr
+    assert "mdr[" not in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_sweep_on_this_machine_does_not_load_dask() -> None:
+    code = (
+        "import sys, mdr_sweep.sweep, mdr_sweep.scheduler;"
+        "sys.exit(bool({'dask', 'distributed'} & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""Whatever ends a sweep, the next run goes on from there and gives the same bytes."""
+"""An interrupted sweep resumes, and gives the same bytes as an undisturbed one."""
 
 import json
 import resource
@@ -14,14 +14,16 @@ import pytest
 
 from tests.sweep import running
 
-SCENES, CHUNK = 2000, 100
-OPTIONS = ("tangential", "--table", "scenes.parquet", "--chunk", str(CHUNK), "--workers", "2")
+pytestmark = [pytest.mark.long, pytest.mark.alone]
+
+CASES, CHUNK = 2000, 100
+OPTIONS = ("tangential", "--table", "cases.parquet", "--chunk", str(CHUNK), "--workers", "2")
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("sweep")
-    running.write_scenes(folder / "scenes.parquet", SCENES)
+    running.write_cases(folder / "cases.parquet", CASES)
     return folder
 
 
@@ -29,7 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def undisturbed(folder: Path) -> bytes:
     status, said = running.swept(folder, *OPTIONS, "--out", "undisturbed.parquet")
     assert status == 0, said
-    assert "2,000 of 2,000 scenes" in said
+    assert "2,000 cases: " in said
     return (folder / "undisturbed.parquet").read_bytes()
 
 
@@ -41,10 +43,12 @@ def test_a_killed_worker_and_a_killed_client_lose_nothing(folder: Path, undistur
     before = running.chunks(folder, "killed.parquet")
     running.until(lambda: running.chunks(folder, "killed.parquet") >= before + 3)
     assert first.poll() is None
+    orphans = running.workers(first.pid)
     running.kill(first.pid)
     running.finished(first)
+    running.until(lambda: not any(Path(f"/proc/{one}/cmdline").exists() for one in orphans))
     left = running.chunks(folder, "killed.parquet")
-    assert 0 < left < SCENES // CHUNK
+    assert 0 < left < CASES // CHUNK
     assert not (folder / "killed.parquet").exists()
 
     status, said = running.swept(folder, *options)
@@ -53,30 +57,42 @@ def test_a_killed_worker_and_a_killed_client_lose_nothing(folder: Path, undistur
     assert not (folder / "killed.parquet.work").exists()
 
 
-def test_an_interrupted_sweep_goes_on(folder: Path, undisturbed: bytes) -> None:
+def test_an_interrupted_sweep_resumes(folder: Path, undisturbed: bytes) -> None:
     options = (*OPTIONS, "--out", "interrupted.parquet")
     first = running.sweep(folder, *options)
     running.until(lambda: running.chunks(folder, "interrupted.parquet") >= 1)
     first.send_signal(signal.SIGINT)
-    status, _said = running.finished(first)
-    assert status != 0
+    status, said = running.finished(first)
+    assert status == 130
+    assert "interrupted; completed chunks are kept; rerun the command to resume" in said
+    assert "Traceback" not in said
     assert running.swept(folder, *options)[0] == 0
     assert (folder / "interrupted.parquet").read_bytes() == undisturbed
+
+
+def test_one_process_resumes_a_sweep_of_two(folder: Path, undisturbed: bytes) -> None:
+    options = (*OPTIONS, "--out", "alone.parquet")
+    first = running.sweep(folder, *options)
+    running.until(lambda: running.chunks(folder, "alone.parquet") >= 2)
+    first.send_signal(signal.SIGINT)
+    assert running.finished(first)[0] == 130
+    assert running.swept(folder, *OPTIONS[:-1], "1", "--out", "alone.parquet")[0] == 0
+    assert (folder / "alone.parquet").read_bytes() == undisturbed
 
 
 @pytest.mark.parametrize("room", [10_000, 100_000])
 def test_a_full_disk_leaves_nothing_half_written(
     folder: Path, undisturbed: bytes, room: int
 ) -> None:
-    # A chunk takes some twenty thousand bytes, the result some hundred thousands.
+    # A chunk takes about 20 kB, the result several hundred.
     name = f"full{room}.parquet"
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (room, room))
-    status, said = running.swept(folder, *OPTIONS, "--out", name, preexec_fn=limit)
+    status, said = running.swept(folder, *OPTIONS, "--out", name, prepare=limit)
     assert status == 1
-    assert "run the same again to go on" in said
+    assert "rerun the command to resume" in said
     assert not (folder / name).exists()
     assert not list((folder / f"{name}.work").glob("*.unfinished"))
-    assert running.chunks(folder, name) == (0 if room == 10_000 else SCENES // CHUNK)
+    assert running.chunks(folder, name) == (0 if room == 10_000 else CASES // CHUNK)
 
     assert running.swept(folder, *OPTIONS, "--out", name)[0] == 0
     assert (folder / name).read_bytes() == undisturbed
@@ -92,7 +108,7 @@ def test_a_cluster_gives_the_same_bytes(folder: Path, undisturbed: bytes) -> Non
 
 @contextmanager
 def cluster(folder: Path) -> Iterator[str]:
-    """A scheduler and a worker, started as on a cluster."""
+    """Start a scheduler and a worker as on a cluster, and yield the address."""
     file = folder / "scheduler.json"
     at_home = ("--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file))
     processes = [

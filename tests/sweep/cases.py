@@ -1,4 +1,4 @@
-"""Random scenes of every kind of profile, as rows of a table, and as the service is asked."""
+"""Random cases of every kind of profile, as rows of a table and as requests to the service."""
 
 import json
 import math
@@ -8,9 +8,9 @@ from typing import Any
 
 import pyarrow as pa
 
-from mdr_sweep import chunk
-from mdr_sweep.requests import nested
-from mdr_sweep.study import ANSWERS, Study
+from mdr_sweep import vectorized
+from mdr_sweep.request_fields import nested
+from mdr_sweep.spec import QUANTITIES, Spec
 from tests.conftest import Client
 
 Row = dict[str, Any]
@@ -32,13 +32,13 @@ PARAMETERS = {
 KINDS = (*PARAMETERS, "series", "tabulated")
 
 
-def scenes(kind: str, query: str, count: int, seed: int = 0) -> list[Row]:
-    """Scenes whose loads come by every control, with some at the ends of what there is."""
+def random_cases(kind: str, query: str, count: int, seed: int = 0) -> list[Row]:
+    """Return cases with loads of every control, some of them zero or at full slip."""
     random = Random(f"{kind} {query} {seed}")
-    return [_scene(random, kind, query) for _ in range(count)]
+    return [_case(random, kind, query) for _ in range(count)]
 
 
-def _scene(random: Random, kind: str, query: str) -> Row:
+def _case(random: Random, kind: str, query: str) -> Row:
     row = {"profile.kind": kind} | _profile(random, kind)
     e_star = _power(random, 6, 12)
     row |= {"material.e_star": e_star}
@@ -94,23 +94,23 @@ def _power(random: Random, low: float, high: float) -> float:
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> pa.RecordBatch:
-    """The rows as a table; what a row does not give is empty."""
+    """Return the rows as a table; cells of absent fields are empty."""
     names = dict.fromkeys(name for row in rows for name in row)
     return pa.RecordBatch.from_pydict({name: [row.get(name) for row in rows] for name in names})
 
 
 def swept(query: str, rows: Sequence[Mapping[str, Any]]) -> list[Row]:
-    """What a sweep says of the rows."""
-    study = Study(query, {}, ANSWERS[query])
-    return chunk.answer(study, table(rows)).to_pylist()
+    """Return the results of a sweep over the rows, without the columns of the input."""
+    solved = vectorized.solve(Spec(query, {}, QUANTITIES[query]), table(rows))
+    return solved.select([*QUANTITIES[query], "warning", "error"]).to_pylist()
 
 
 def served(client: Client, query: str, row: Mapping[str, Any]) -> Row:
-    """What the service says of one row, in the words of a sweep."""
+    """Return the response of the service to one row, as a row of a result."""
     body = json.dumps(nested({name: value for name, value in row.items() if value is not None}))
     response = client.post_text(f"/v1/{query}", body.encode())
     document = response.json()
-    nothing: Row = dict.fromkeys(ANSWERS[query])
+    nothing: Row = dict.fromkeys(QUANTITIES[query])
     if response.status_code != 200:
         told = [f"{each['pointer']} {each['detail']}" for each in document.get("errors", [])]
         return nothing | {"warning": None, "error": "; ".join(told) or document["detail"]}

@@ -1,0 +1,87 @@
+"""Time, memory and disk space of a sweep, extrapolated from a sample of its cases."""
+
+import os
+import resource
+from collections.abc import Iterator
+from math import log2
+from time import process_time
+from typing import Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from mdr_sweep import tables, vectorized
+from mdr_sweep.spec import Spec
+
+# Time of the last sample, long against the overhead of a call [s].
+_SAMPLE_SECONDS: Final = 0.1
+# Cases of the first sample, few enough for the slowest query.
+_FIRST_SAMPLE: Final = 16
+# Time of a chunk [s]: a lost worker loses little, and transfer takes a small part.
+_CHUNK_SECONDS: Final = 1.0
+# Processor time that a worker process takes to start and import this package, as measured [s].
+START_SECONDS: Final = 1.0
+
+
+class Estimate(NamedTuple):
+    """Estimated resources of a sweep."""
+
+    rows: int
+    chunk: int
+    """Cases in a chunk."""
+    processes: int
+    """Worker processes; 0 where their start takes longer than they save."""
+    seconds: float
+    """Time on an idle machine, including the start of the workers and the writing."""
+    memory: float
+    """Peak memory of all processes [bytes], each as large as this one after the sample."""
+    disk: float
+    """Size of the chunks and of the result, which exist side by side at the end [bytes]."""
+
+    @property
+    def lines(self) -> Iterator[str]:
+        """Printed lines of the estimate."""
+        where = f"{self.processes} worker processes" if self.processes else "this process"
+        yield f"cases    {self.rows:,}"
+        yield f"chunks   {-(-self.rows // self.chunk):,} of {self.chunk:,} cases"
+        time = f"{self.seconds:,.1f} s ({self.seconds / 3600:,.1f} h)"
+        yield f"time     about {time} on an idle machine, in {where}"
+        yield f"memory   about {self.memory / 1024**2:,.0f} MiB"
+        yield f"disk     at most {self.disk / 1024**2:,.0f} MiB during the sweep"
+
+
+def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate:
+    """Return the estimated resources of a sweep by solving samples of increasing size.
+
+    Without a number of workers, all cores are used if that is worth the start of the processes.
+    """
+    cases = tables.sample(source)
+    # The first case includes the time of everything built on first use.
+    vectorized.solve(spec, cases.slice(0, 1))
+    size, solving = _FIRST_SAMPLE, 0.0
+    while solving < _SAMPLE_SECONDS:
+        part = cases.take(np.arange(0, cases.num_rows, max(cases.num_rows // size, 1)))
+        start = process_time()
+        rows = vectorized.solve(spec, part)
+        solving = process_time() - start
+        if part.num_rows == cases.num_rows:
+            break
+        size *= 4
+    start = process_time()
+    tables.write(pa.BufferOutputStream(), ".parquet", [rows], {})
+    writing = (process_time() - start) / part.num_rows
+    solving /= part.num_rows
+    cores = len(os.sched_getaffinity(0))
+    saved = source.rows * solving * (1 - 1 / cores)
+    processes = workers or (cores if saved > START_SECONDS else 1)
+    processes = 0 if processes == 1 else processes
+    start_up = START_SECONDS if processes else 0.0
+    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    return Estimate(
+        rows=source.rows,
+        chunk=min(2 ** int(log2(max(_CHUNK_SECONDS / solving, 1.0))), tables.ROW_GROUP),
+        processes=processes,
+        seconds=start_up + source.rows * (solving / max(processes, 1) + writing),
+        memory=own * (1 + processes),
+        disk=2 * source.rows * rows.nbytes / part.num_rows,
+    )

@@ -1,0 +1,60 @@
+"""Specification of a sweep: query, constants of all cases, and quantities to compute."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any, Final
+
+from mdr_service.results import members
+from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnswer
+
+# Members of the responses without one number for each case, or computed on request only.
+_WEAR_FIELDS: Final = ("radius", "initial_profile", "limiting_profile", "worn_depth", "pressure")
+QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
+    "normal": members(NormalAnswer, ["maximum_pressure"]),
+    "tangential": members(TangentialAnswer, ["maximum_pressure"]),
+    "wear": members(WearAnswer, _WEAR_FIELDS),
+}
+"""Quantities that a sweep computes unless some are named, by query."""
+MAXIMA: Final[Mapping[str, tuple[str, ...]]] = {
+    "normal": ("maximum_pressure",),
+    "tangential": ("maximum_pressure", "maximum_shear_stress"),
+    "wear": (),
+}
+"""Maxima of fields, which take a search and can be infinite: computed if they are named."""
+WARNING, ERROR = "warning", "error"
+TEXTS: Final = frozenset({"regime", WARNING, ERROR})
+"""Columns of the result that are not numbers."""
+# Packages on which the last digits of the result, and the bytes of its file, depend.
+_PACKAGES: Final = ("mdr", "numpy", "scipy", "pyarrow")
+
+
+class SweepError(Exception):
+    """The sweep cannot continue; completed chunks are kept."""
+
+
+class UsageError(SweepError):
+    """The sweep is not valid; nothing was computed."""
+
+
+@dataclass(frozen=True)
+class Spec:
+    """Specification that all chunks of a sweep share.
+
+    Parameters
+    ----------
+    query : ``normal``, ``tangential`` or ``wear``.
+    constants : fields of all cases, by their dotted names.
+    quantities : quantities to compute, in the order of the result.
+    kept : columns of the input that are copied and not read.
+    """
+
+    query: str
+    constants: Mapping[str, Any]
+    quantities: tuple[str, ...]
+    kept: tuple[str, ...] = ()
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of the packages on which the result depends."""
+    return {name: version(name) for name in _PACKAGES}

@@ -1,0 +1,185 @@
+"""Run of a sweep: its specification, chunks and result."""
+
+import json
+import re
+import sys
+from argparse import Namespace
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+from tqdm import tqdm
+
+from mdr_sweep import resources, scheduler
+from mdr_sweep.cells import fits
+from mdr_sweep.checkpoint import Checkpoint
+from mdr_sweep.request_fields import fields, flat, gaps, generic
+from mdr_sweep.spec import ERROR, MAXIMA, QUANTITIES, WARNING, Spec, UsageError, versions
+from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
+
+# Exit status of a sweep of which every case failed.
+_ALL_FAILED: Final = 3
+# Interval of progress reports into a log [s].
+_LOG_SECONDS: Final = 30.0
+_UNITS: Final = "any consistent system, that of the input: with m and N, pressures are in Pa"
+# Numbers in an error, which vary from case to case; the steps of a JSON pointer follow a slash.
+_NUMBER: Final = re.compile(r"(?<![\w/.])[-+]?[0-9][\w.+-]*")
+# Reasons that the summary lists.
+_MAX_REASONS: Final = 10
+
+
+def run(arguments: Namespace) -> int:
+    """Run or resume the sweep of a command line and return the exit status.
+
+    Raises
+    ------
+    SweepError : the sweep is not valid, or cannot continue.
+    """
+    spec, source = specified(arguments)
+    checkpoint = Checkpoint(arguments.out)
+    _check_target(arguments, checkpoint)
+    estimate = resources.estimate(spec, source, arguments.workers)
+    if arguments.plan:
+        sys.stdout.write("".join(f"{line}\n" for line in estimate.lines))
+        return 0
+    known = {} if arguments.restart else checkpoint.manifest
+    chunk = arguments.chunk or known.get("chunk") or estimate.chunk
+    # All on which the numbers of the result depend.
+    identity = asdict(spec) | {"input": source.identity, "versions": versions()}
+    manifest = identity | {"chunk": chunk, "format": arguments.out.suffix}
+    with checkpoint.opened(manifest, restart=arguments.restart) as done:
+        missing = [index for index in range(-(-source.rows // chunk)) if index not in done]
+        chunks = zip(missing, source.batches(chunk, missing), strict=True)
+        if arguments.scheduler:
+            solved = scheduler.on_cluster(spec, chunks, arguments.scheduler)
+        elif estimate.processes:
+            solved = scheduler.in_processes(spec, chunks, estimate.processes)
+        else:
+            solved = scheduler.in_this_process(spec, chunks)
+        rows = min(len(done) * chunk, source.rows)
+        interval = 0.1 if sys.stderr.isatty() else _LOG_SECONDS
+        bar = tqdm(total=source.rows, initial=rows, unit=" cases", mininterval=interval)
+        with closing(solved), bar:
+            for index, batch in solved:
+                checkpoint.put(index, batch)
+                bar.update(batch.num_rows)
+        failures = Failures()
+        batches = failures.counted(checkpoint.chunks())
+        with checkpoint.result() as path:
+            write(path, arguments.out.suffix, batches, identity | {"units": _UNITS})
+    sys.stderr.write("".join(f"{line}\n" for line in failures.lines(source.rows)))
+    return _ALL_FAILED if failures.count == source.rows else 0
+
+
+def specified(arguments: Namespace) -> tuple[Spec, Source]:
+    """Return the specification and the cases that the arguments describe.
+
+    Raises
+    ------
+    UsageError : they are not valid.
+    """
+    query = arguments.query
+    template = _template(arguments.template)
+    axes = {name: text for name, text in template.items() if str(text).count(":") >= 2}
+    axes |= dict(map(_axis, arguments.grid))
+    if bool(axes) == bool(arguments.table):
+        raise UsageError("either --table or axes (--grid, or in the template) are needed")
+    if any(number is not None and number < 1 for number in (arguments.workers, arguments.chunk)):
+        raise UsageError("--workers and --chunk must be at least 1")
+    source = Grid(axes) if axes else Table(arguments.table)
+    if source.rows == 0:
+        raise UsageError("the input has no cases")
+    names = source.schema.names
+    constants = {name: value for name, value in template.items() if name not in names}
+    kept, wanted = _names(arguments.keep), _names(arguments.answers)
+    allowed = (*QUANTITIES[query], *MAXIMA[query])
+    _reject("--keep: unknown columns", set(kept) - set(names))
+    _reject(f"--answers: not in {', '.join(allowed)}:", set(wanted) - set(allowed))
+    quantities = tuple(name for name in allowed if name in (wanted or QUANTITIES[query]))
+    spec = Spec(query, constants, quantities, kept)
+    _reject("rename columns whose names the result uses:", set(names) & {*allowed, WARNING, ERROR})
+    columns = [name for name in names if name not in kept]
+    known = fields(query)
+    unknown = {name for name in (*constants, *columns) if generic(name) not in known}
+    _reject(f"unknown fields of {query} (--keep copies columns):", unknown)
+    _reject("indices of a list start at 0 and have no gaps:", gaps((*constants, *columns)))
+    kinds = {name: source.schema.field(name).type for name in columns}
+    listed = [name for name, value in constants.items() if isinstance(value, list)]
+    for name, kind in (kinds | dict.fromkeys(listed, pa.list_(pa.float64()))).items():
+        field = known[generic(name)]
+        if not fits(field, kind):
+            raise UsageError(f"{name} holds values of type {kind}; a case has one {field.type}")
+    return spec, source
+
+
+class Failures:
+    """Failed cases by reason: number, first row, and error of that row."""
+
+    def __init__(self) -> None:
+        self.reasons: dict[str, tuple[int, int, str]] = {}
+
+    def counted(self, batches: Iterable[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+        """Yield the batches of a result and count their errors."""
+        start = 1
+        for batch in batches:
+            errors = batch.column(ERROR)
+            for place in np.flatnonzero(errors.is_valid()).tolist():
+                error = errors[place].as_py()
+                reason = _NUMBER.sub("…", error)
+                count, first, text = self.reasons.get(reason, (0, start + place, error))
+                self.reasons[reason] = count + 1, first, text
+            start += len(errors)
+            yield batch
+
+    @property
+    def count(self) -> int:
+        """Number of failed cases."""
+        return sum(count for count, _, _ in self.reasons.values())
+
+    def lines(self, rows: int) -> Iterator[str]:
+        """Yield the summary of a sweep of `rows` cases, frequent reasons first."""
+        yield f"{rows:,} cases: {rows - self.count:,} solved, {self.count:,} failed"
+        ordered = sorted(self.reasons.values(), reverse=True)
+        for count, row, error in ordered[:_MAX_REASONS]:
+            yield f"{count:>10,}  {error} (first in row {row:,})"
+        if len(ordered) > _MAX_REASONS:
+            yield f"and {len(ordered) - _MAX_REASONS} more reasons; see the column {ERROR}"
+
+
+def _check_target(arguments: Namespace, checkpoint: Checkpoint) -> None:
+    target: Path = arguments.out
+    if target.suffix not in SUFFIXES or target.is_dir():
+        raise UsageError(f"--out: {target} is not a file name that ends in {' or '.join(SUFFIXES)}")
+    replaces = arguments.overwrite or arguments.plan or checkpoint.folder.exists()
+    if target.exists() and not replaces:
+        raise UsageError(f"{target} exists; use --overwrite to replace it")
+
+
+def _template(path: Path | None) -> dict[str, Any]:
+    try:
+        request = json.loads(path.read_text("utf-8")) if path else {}
+    except (OSError, ValueError) as error:
+        raise UsageError(f"cannot read {path}: {error}") from None
+    if not isinstance(request, Mapping):
+        raise UsageError(f"{path} does not hold a JSON object")
+    return flat(request)
+
+
+def _axis(text: str) -> tuple[str, str]:
+    name, sign, values = text.partition("=")
+    if not sign:
+        raise UsageError(f"--grid: {text!r} is not FIELD=START:STOP:N")
+    return name, values
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def _reject(complaint: str, names: set[str]) -> None:
+    if names:
+        raise UsageError(f"{complaint} {', '.join(sorted(names))}")

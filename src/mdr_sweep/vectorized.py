@@ -1,0 +1,174 @@
+"""Solution of a batch of cases: one call of the core for all that differ in numbers only.
+
+Cases that the call does not solve are solved one by one.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from mdr_core import normal, tangential, validity
+from mdr_core.errors import InputError
+from mdr_core.normal import NormalContact
+from mdr_core.profiles import KINDS
+from mdr_core.tangential import TangentialContact
+from mdr_service.queries.contacts import body, control, friction
+from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
+from mdr_sweep import cells, scalar
+from mdr_sweep.cells import Column, Values
+from mdr_sweep.spec import ERROR, MAXIMA, TEXTS, WARNING, Spec
+
+Rows = NDArray[np.intp]
+Results = dict[str, NDArray[Any]]
+Columns = Mapping[str, Column]
+# Queries that the core solves for arrays of profiles, moduli and loads.
+_VECTORIZED: Final = frozenset({"normal", "tangential"})
+# Fewer cases are solved faster one by one.
+_FEW: Final = 4
+# Fields, or groups of fields, whose numbers can be arrays over the cases.
+_ARRAYS: Final = (
+    *("profile.", "load.", "tangential.", "friction_coefficient"),
+    *("material.e_star", "material.g_star"),
+)
+
+
+def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
+    """Return the rows of the result: the cases, their quantities, warnings and errors."""
+    columns, size = cells.columns(spec, batch), batch.num_rows
+    names = (*spec.quantities, WARNING, ERROR)
+    results: Results = {name: np.full(size, None if name in TEXTS else np.nan) for name in names}
+    solved = np.zeros(size, dtype=bool)
+    if spec.query in _VECTORIZED:
+        for group in _groups(columns, size):
+            rows, group_results = _solve_group(spec, columns, group)
+            solved[rows] = True
+            for name, values in group_results.items():
+                results[name][rows] = values
+    for row in np.flatnonzero(~solved).tolist():
+        case = scalar.solve(spec, _request(spec, columns, row))
+        solved[row] = WARNING in case
+        for name, value in case.items():
+            results[name][row] = value
+    found = dict(zip(batch.schema.names, batch.columns, strict=True))
+    found |= {name: column.output for name, column in columns.items()}
+    for name, values in results.items():
+        is_text = name in TEXTS
+        found[name] = pa.array(values, pa.string()) if is_text else pa.array(values, mask=~solved)
+    return pa.record_batch(found)
+
+
+def _is_array(name: str, column: Column) -> bool:
+    """Return True if a field can be an array over the cases of one call."""
+    is_term = name.startswith("profile.terms.")
+    return column.field.type == "number" and name.startswith(_ARRAYS) and not is_term
+
+
+def _groups(columns: Columns, size: int) -> Iterator[Rows]:
+    """Yield the rows that give the same fields, with equal values where these are not arrays."""
+    keys: dict[str, Any] = {}
+    for name, column in columns.items():
+        if not _is_array(name, column):
+            is_list = column.field.type == "array"
+            keys[name] = list(map(repr, column.cells.to_pylist())) if is_list else column.cells
+        elif not column.given.all():
+            keys[name] = column.given
+    rows = np.arange(size)
+    if not keys:
+        yield rows
+        return
+    grouped = pa.table({**keys, "row": rows}).group_by([*keys], use_threads=False)
+    for group in grouped.aggregate([("row", "list")])["row_list"]:
+        yield np.array(group.as_py())
+
+
+def _request(spec: Spec, columns: Columns, row: int) -> dict[str, Any]:
+    own = {name: column.value(row) for name, column in columns.items() if column.given[row]}
+    return {**spec.constants, **own}
+
+
+def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Results]:
+    """Return the cases of a group that a call of the core solves, and their results."""
+    swept = {
+        name: column
+        for name, column in columns.items()
+        if _is_array(name, column) and column.given[rows[0]]
+    }
+    for column in swept.values():
+        rows = rows[column.field.accepts(column.values[rows])]
+    while rows.size >= _FEW:
+        try:
+            query: Any = scalar.read(spec.query, _request(spec, columns, int(rows[0])))
+            arrays = {name: column.values[rows] for name, column in swept.items()}
+            with np.errstate(all="ignore"):
+                solved, results = _call(spec, query, arrays, rows.size)
+            return rows[solved], {name: values[solved] for name, values in results.items()}
+        except InputError as error:
+            rejected = np.ravel(np.asarray(True if error.cases is None else error.cases))
+            if rejected.shape != rows.shape or not rejected.any():
+                break
+            rows = rows[~rejected]
+        except Exception:  # noqa: BLE001 -- each case reports its own error
+            break
+    return rows[:0], {}
+
+
+def _call(
+    spec: Spec, query: NormalQuery, swept: Mapping[str, Values], size: int
+) -> tuple[NDArray[np.bool_], Results]:
+    """Solve the cases that differ from a valid request in the `swept` fields only."""
+    given: dict[str, Any] = {name.rpartition(".")[2]: values for name, values in swept.items()}
+    if any(name.startswith("profile.") for name in swept):
+        names = vars(query.profile).keys() - {"kind"}
+        parameters = {name: given.get(name, getattr(query.profile, name)) for name in names}
+        given["profile"] = KINDS[query.profile.kind](**parameters)
+
+    def with_arrays(constants: dict[str, Any]) -> dict[str, Any]:
+        return {name: given.get(name, value) for name, value in constants.items()}
+
+    contact = normal.solve(**with_arrays(body(query) | control(query.load)), rtol=query.rtol)
+    source: NormalContact | TangentialContact = contact
+    if isinstance(query, TangentialQuery):
+        source = tangential.solve(
+            contact, **with_arrays(friction(query) | control(query.tangential))
+        )
+    results: Results = {WARNING: _warnings(query, contact, source, size)}
+    # Overflow, and the infinite mean pressure of a sharp tip without a load, are solved one by one.
+    solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
+    for name in spec.quantities:
+        values = getattr(source if hasattr(type(source), name) else contact, name)
+        results[name] = np.broadcast_to(values, (size,))
+        if name not in TEXTS:
+            is_maximum = name in MAXIMA[spec.query]
+            solved &= ~np.isnan(values) if is_maximum else np.isfinite(values)
+    return solved, results
+
+
+def _warnings(
+    query: NormalQuery, contact: NormalContact, source: NormalContact | TangentialContact, size: int
+) -> NDArray[Any]:
+    """Return the codes of the warnings of each case, in the order of the service."""
+    given: dict[str, Any] = {}
+    if "yield_strength" in query.material.model_fields_set:
+        given["yield_strength"] = query.material.yield_strength
+    if isinstance(source, TangentialContact):
+        given["g_star"] = source.g_star
+        # Computed only where yield is assessed.
+        given["tangential"] = source.tangential_force != 0 if "yield_strength" in given else None
+    findings = validity.findings(contact, query.material.effective, **given)
+    flags: dict[str, Any] = {code: where for code, where, _ in findings}
+    flags |= {notice.code: True for notice in contact.profile.notices}
+    flags["table_end"] = validity.table_end(contact).where
+    flags["singular"] = validity.infinite_pressure(contact)
+    flags["accuracy"] = source.error_estimates > query.rtol
+    flags = {code: where for code, where in flags.items() if np.any(where)}
+    bits = np.zeros(size, dtype=np.intp)
+    for place, where in enumerate(flags.values()):
+        bits |= np.asarray(where, dtype=np.intp) << place
+    found = np.full(size, None)
+    for mask in np.unique(bits).tolist():
+        named = (code for place, code in enumerate(flags) if mask >> place & 1)
+        found[bits == mask] = scalar.joined(named)
+    return found
