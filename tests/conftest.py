@@ -1,23 +1,48 @@
-"""The service in process, for every test that needs no socket."""
+"""Fixtures: the service in process, for every test that needs no socket; and the two tiers."""
 
+import signal
+from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import httpx
 import pytest
 from anyio.from_thread import BlockingPortal, start_blocking_portal
+from fastapi import FastAPI
 
 from mdr_service.app import create_app
+from mdr_service.settings import SETTINGS
+from mdr_service.workers import WorkerPool
 
 JSON = {"content-type": "application/json"}
+# A machine that is busy with other work must not fail a test that does not measure time.
+PATIENT = SETTINGS.model_copy(update={"budget_seconds": 300.0, "queue_seconds": 300.0})
+
+# A shell ignores interrupts in what it starts in the background, and so would every process that a
+# test starts and interrupts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave all but every n-th case of a test marked `every(n)` to the long tier."""
+    number: Counter[str] = Counter()
+    for item in items:
+        marker = item.get_closest_marker("every")
+        if marker:
+            test = item.nodeid.partition("[")[0]
+            if number[test] % marker.args[0]:
+                item.add_marker(pytest.mark.long)
+            number[test] += 1
 
 
 class Client:
-    """Asks the application itself, as plain calls."""
+    """Client of the application, called in process."""
 
-    def __init__(self, portal: BlockingPortal) -> None:
+    def __init__(self, portal: BlockingPortal, app: FastAPI) -> None:
         self._portal = portal
         self._client = httpx.AsyncClient(
-            transport=httpx.ASGITransport(create_app()), base_url="http://service"
+            transport=httpx.ASGITransport(app), base_url="http://service"
         )
 
     def request(self, method: str, path: str, **options: object) -> httpx.Response:
@@ -39,10 +64,19 @@ class Client:
         self._portal.call(self._client.aclose)
 
 
-@pytest.fixture(scope="session")
-def client() -> Iterator[Client]:
-    # One loop from the first request to the last: the compute processes end with it.
-    with start_blocking_portal() as portal:
-        client = Client(portal)
+@contextmanager
+def running_client() -> Iterator[Client]:
+    """Run the application in process."""
+    app = create_app()
+    app.state.workers = WorkerPool(PATIENT, app.state.transfers)
+    lifespan = app.router.lifespan_context(app)
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(lifespan):
+        client = Client(portal, app)
         yield client
         client.close()
+
+
+@pytest.fixture(scope="session")
+def client() -> Iterator[Client]:
+    with running_client() as client:
+        yield client

@@ -1,7 +1,8 @@
 """Histories of mixed control: a depth with a tangential force, a normal force with a displacement.
 
 Two legs are known in closed form but for integrals, which mpmath takes; any others obey the balance
-of work, and take as many evaluations of the profile to many digits as to few.
+of work. Chords stand for the arcs: the estimate bounds their error, and is at most 1e-5, as `solve`
+states.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
 #: Turns anchors into displacements, and an integral of line loads into an energy.
 COMPLIANCE = MU * E_STAR / G_STAR
 DIGITS = 30
+#: The largest error estimate of a load path with curved steps at the default tolerance.
+_LARGEST_ERROR = 1e-5
 
 #: g(x), g' as a function of x - b, and the radius b of the flat.
 SHAPES: dict[str, tuple[Callable[[mpf], mpf], Callable[[mpf], mpf], str]] = {
@@ -84,10 +87,12 @@ def _precise() -> Any:
         yield
 
 
-def near(value: mpf, rel: float = 1e-11) -> Any:
-    return pytest.approx(float(value), rel=rel, abs=0)
+def near(value: mpf, found: history.LoadHistory) -> Any:
+    assert found.error_estimate < _LARGEST_ERROR
+    return pytest.approx(float(value), rel=found.error_estimate, abs=0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
@@ -114,7 +119,7 @@ def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
         tangential_displacement=[0.0, sign * float(shift) * COMPLIANCE],
     )
     carried = rate * shape.over(lambda x: 4 * x * x, a1, c) + i2 - shape.force(c)
-    assert sign * found.tangential_force[1] == near(MU * E_STAR * carried)
+    assert sign * found.tangential_force[1] == near(MU * E_STAR * carried, found)
 
     def stored(x: mpf) -> mpf:
         # int v^2 dx = -int x d(v^2), and nothing at the edge.
@@ -122,7 +127,7 @@ def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
         return 2 * x * v * (2 * x * rate if x < c else 1)
 
     square = shape.over(stored, a1, c) + shape.over(stored, c, a2)
-    assert found.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square)
+    assert found.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, found)
 
     def lost(x: mpf) -> mpf:
         # Both leave the turn like roots: the front is as far below it as the load is above.
@@ -131,13 +136,14 @@ def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
 
     with mp.workdps(20):
         loss = shape.over(lost, turn * (1 + mpf(10) ** -9), a2)
-    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, rel=1e-8)
+    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, found)
     assert found.dissipation[0] == 0
     assert found.regime.tolist() == ["stick", "partial_slip"]
     radius = float(c)
-    assert found.slip_fronts[-1] == pytest.approx(radius, rel=1e-9)
+    assert found.slip_fronts[-1] == pytest.approx(radius, rel=1e-9, abs=0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
@@ -161,7 +167,7 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
         tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
     )
     anchor = shape.g(turn) - shape.g(c) + rate * shape.over(lambda x: 1 / (2 * x), turn, a2)
-    assert sign * found.tangential_displacement[1] == near(COMPLIANCE * anchor)
+    assert sign * found.tangential_displacement[1] == near(COMPLIANCE * anchor, found)
 
     def lost(x: mpf) -> mpf:
         front = shape.root(lambda y: shape.force(y) - eta(x), shape.flat, a1)
@@ -169,7 +175,7 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
 
     with mp.workdps(20):
         loss = shape.over(lost, a1, turn)
-    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, rel=1e-10)
+    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, found)
     assert found.regime.tolist() == ["stick", "stick"]
 
 
@@ -202,6 +208,7 @@ KINDS = [name for name in PROFILES if name != "flat-punch"]
 controls = pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
 
 
+@pytest.mark.every(9)
 @controls
 @pytest.mark.parametrize("name", KINDS)
 def test_work_is_stored_or_lost(name: str, control: str) -> None:
@@ -232,14 +239,19 @@ def test_work_is_stored_or_lost(name: str, control: str) -> None:
     assert balance == pytest.approx(np.cumsum(done), rel=0, abs=2e-6 * size)
     plain = solve(name, **way)
     bound = found.error_estimate + plain.error_estimate
-    assert plain.dissipated_energy == pytest.approx(found.dissipated_energy[ends], rel=1e-8)
-    for column in ("tangential_force", "tangential_displacement", "tangential_energy"):
+    assert plain.error_estimate < _LARGEST_ERROR
+    for column in (
+        "tangential_force",
+        "tangential_displacement",
+        "tangential_energy",
+        "dissipated_energy",
+    ):
         values = getattr(found, column)[ends]
         largest = np.max(np.abs(values))
         assert getattr(plain, column) == pytest.approx(values, rel=0, abs=bound * largest), column
 
 
-def solve(name: str, **options: Any) -> history.History:
+def solve(name: str, **options: Any) -> history.LoadHistory:
     return history.solve(profile_from(PROFILES[name]), E_STAR, G_STAR, MU, **options)
 
 

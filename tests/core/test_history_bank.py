@@ -9,8 +9,17 @@ import numpy as np
 import pytest
 
 from mdr_core import history
-from tests.core.comparison import EPS, INPUT, profile_from, relative_error
-from tests.oracles import history_bank
+from tests.core.comparison import (
+    EPS,
+    INPUT,
+    allowance,
+    assert_each,
+    batched,
+    overstated,
+    profile_from,
+    relative_error,
+)
+from tests.oracles import bank
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,10 +31,12 @@ TABLE = 1e-11
 #: Of mu F_N on the way that slides all of the contact: a depth is rounded, and so is where on a
 #: slanted way a spring touches and leaves.
 TOUCH = 8 * EPS
+#: How far the estimate may exceed the largest error that is allowed.
+OVERSTATED, OVERSTATED_TABLE = 45.0, 2000.0
 
 
-def name_of(case: dict[str, Any]) -> str:
-    return str(case["id"])
+def each(cases: Iterable[dict[str, Any]]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("case", cases, ids=lambda case: str(case["id"]))
 
 
 def material(case: dict[str, Any]) -> tuple[Any, ...]:
@@ -41,9 +52,23 @@ def bound_of(case: dict[str, Any]) -> float:
     return TABLE if case["profile"]["kind"] == "tabulated" else BOUND
 
 
-def allowance(case: dict[str, Any], name: str, index: int) -> float:
-    rates = (case[kind][name][index] for kind in ("condition", "condition_load"))
-    return INPUT * sum(rates)
+def by_inputs(case: dict[str, Any], name: str, index: int) -> float:
+    return allowance(*(case[kind][name][index] for kind in ("condition", "condition_load")))
+
+
+def by_sliding(case: dict[str, Any], index: int, found: history.LoadHistory) -> float:
+    """Error of the loss by an amplitude that rounding may put past the onset of full slip.
+
+    Beyond the onset the loss grows by 4 mu F_N du, which is steep next to a flat: the annulus that
+    slips before is narrow, and its loss is small. The stored condition is that of partial slip.
+    """
+    limit = case["friction_coefficient"] * float(np.max(found.normal_force))
+    if case["tangential_control"] == "tangential_force" or not (
+        float(np.max(np.abs(found.tangential_force))) >= limit * (1 - TOUCH)
+    ):
+        return 0.0
+    loss = float(case["expected"]["energy_per_cycle"][index])
+    return INPUT * 4 * limit * case["given"][index] / loss
 
 
 def cycle_failures(case: dict[str, Any], index: int, found: Iterable[float]) -> list[str]:
@@ -52,15 +77,15 @@ def cycle_failures(case: dict[str, Any], index: int, found: Iterable[float]) -> 
     names = ("energy_per_cycle", "secant_stiffness")
     for name, bound, value in zip(names, (ENERGY, bound_of(case)), found, strict=True):
         error = relative_error(value, case["expected"][name][index])
-        allowed = bound + allowance(case, name, index)
+        allowed = bound + by_inputs(case, name, index)
         if not error <= allowed:
             failures.append(f"{name} at {case['given'][index]!r}: {error:.2e} > {allowed:.2e}")
     return failures
 
 
-@pytest.mark.parametrize("case", history_bank.load("cycles"), ids=name_of)
-def test_loss_and_stiffness_of_a_cycle(case: dict[str, Any]) -> None:
-    failures = []
+def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
+    failures, table = [], case["profile"]["kind"] == "tabulated"
+    factor = OVERSTATED_TABLE if table else OVERSTATED
     for index, amplitude in enumerate(case["given"]):
         control = {case["control"]: case["load"], case["tangential_control"]: amplitude}
         found = history.cycles(*material(case), **control, count=2)
@@ -68,12 +93,20 @@ def test_loss_and_stiffness_of_a_cycle(case: dict[str, Any]) -> None:
         for cycle in range(2):
             pair = (found.energy_per_cycle[cycle], found.secant_stiffness[cycle])
             failures += cycle_failures(case, index, map(float, pair))
-    assert not failures, failures
+        names = ("energy_per_cycle", "secant_stiffness")
+        allowed = [bound_of(case) + by_inputs(case, name, index) for name in names]
+        allowed.append(by_sliding(case, index, found.history))
+        failures += overstated(found.history.error_estimate, allowed, factor)
+    return failures
 
 
-@pytest.mark.parametrize("case", history_bank.load("cycles")[::3], ids=name_of)
-def test_loss_along_a_path_is_that_of_the_cycle(case: dict[str, Any]) -> None:
-    """Samples within the legs, and the losses of their stretches added up."""
+@batched(bank.load("history_cycles"))
+def test_loss_and_stiffness_of_a_cycle(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, failures_of_a_cycle)
+
+
+def failures_along_a_path(case: dict[str, Any]) -> list[str]:
+    """Return the failures of a cycle whose loss is summed over samples within the load steps."""
     failures = []
     for index, amplitude in enumerate(case["given"]):
         path = {
@@ -86,11 +119,15 @@ def test_loss_along_a_path_is_that_of_the_cycle(case: dict[str, Any]) -> None:
         u, force = found.tangential_displacement, found.tangential_force
         secant = float((force[11] - force[8]) / (u[11] - u[8]))
         failures += cycle_failures(case, index, (lost, secant))
-    assert not failures, failures
+    return failures
 
 
-@pytest.mark.parametrize("case", history_bank.load("inphase"), ids=name_of)
-def test_normal_load_in_phase(case: dict[str, Any]) -> None:
+@batched(bank.load("history_cycles")[::3])
+def test_loss_along_a_path_is_that_of_the_cycle(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, failures_along_a_path)
+
+
+def failures_in_phase(case: dict[str, Any]) -> list[str]:
     found = history.cycles(
         *material(case),
         indentation_depth=case["mean"],
@@ -98,7 +135,8 @@ def test_normal_load_in_phase(case: dict[str, Any]) -> None:
         tangential_displacement=case["amplitude"],
         count=3,
     )
-    expected, failures = case["expected"], []
+    expected = case["expected"]
+    failures = overstated(found.history.error_estimate, [bound_of(case)], 50.0)
     top = case["mean"] + case["swing"]
     limit = case["friction_coefficient"] * float(np.max(found.history.normal_force))
     whole = limit * case["friction_coefficient"] * case["e_star"] / case["g_star"] * top
@@ -112,10 +150,15 @@ def test_normal_load_in_phase(case: dict[str, Any]) -> None:
         miss = abs(Decimal(lost) - Decimal(exact))
         if not miss <= bound:
             failures.append(f"loss of cycle {cycle}: {miss:.2e} > {bound:.2e}")
-    assert not failures, failures
+    return failures
 
 
-def misses(case: dict[str, Any], found: history.History) -> dict[str, float]:
+@batched(bank.load("history_inphase"))
+def test_normal_load_in_phase(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, failures_in_phase)
+
+
+def misses(case: dict[str, Any], found: history.LoadHistory) -> dict[str, float]:
     """The largest errors, each in units of what it is a part of."""
     expected = {
         name: np.array([float(value) for value in row]) for name, row in case["expected"].items()
@@ -139,7 +182,7 @@ def misses(case: dict[str, Any], found: history.History) -> dict[str, float]:
     return errors
 
 
-@pytest.mark.parametrize("case", history_bank.load("paths"), ids=name_of)
+@each(bank.load("history_paths"))
 def test_random_path(case: dict[str, Any]) -> None:
     controls = {
         name: np.array(case[name]) for name in ("indentation_depth", "tangential_displacement")
@@ -148,6 +191,7 @@ def test_random_path(case: dict[str, Any]) -> None:
     errors = misses(case, found)
     assert max(errors.values()) <= bound_of(case), errors
     assert found.error_estimate >= errors["tangential_force"]
+    assert not overstated(found.error_estimate, [bound_of(case)], 50.0)
     touching = controls["indentation_depth"] > 0
     assert np.array_equal(found.regime == "no_contact", ~touching)
     expected = [float(value) for value in case["expected"]["tangential_force"]]
@@ -156,7 +200,7 @@ def test_random_path(case: dict[str, Any]) -> None:
     assert np.array_equal(found.regime == "full_slip", sliding)
 
 
-@pytest.mark.parametrize("case", history_bank.load("paths")[::2], ids=name_of)
+@each(bank.load("history_paths")[::2])
 def test_the_mirrored_path_has_the_mirrored_answers(case: dict[str, Any]) -> None:
     d, u = np.array(case["indentation_depth"]), np.array(case["tangential_displacement"])
     right, left = (
@@ -169,7 +213,7 @@ def test_the_mirrored_path_has_the_mirrored_answers(case: dict[str, Any]) -> Non
     assert np.array_equal(left.regime, right.regime)
 
 
-@pytest.mark.parametrize("case", history_bank.load("paths")[1::2], ids=name_of)
+@each(bank.load("history_paths")[1::2])
 def test_one_step_after_another_is_the_whole_path(case: dict[str, Any]) -> None:
     d, u = case["indentation_depth"], case["tangential_displacement"]
     state = history.unloaded(*material(case))

@@ -10,6 +10,7 @@ from mpmath import mp, mpf
 
 from mdr_core import history, normal
 from mdr_core.errors import InputError
+from mdr_core.profiles import Tabulated
 from tests.core.comparison import INPUT, profile_from
 from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES, solve
 from tests.oracles import slip_reference as slip
@@ -441,3 +442,50 @@ def test_forces_beyond_friction_are_refused_by_their_point() -> None:
 def test_what_is_no_path_is_refused(controls: dict[str, Any]) -> None:
     with pytest.raises(InputError):
         solve("paraboloid", **controls)
+
+
+@pytest.mark.parametrize(
+    ("radii", "heights"),
+    [
+        (
+            [0.000284653109639236, 0.000298208019622057, 0.000304985474613467],
+            [6.66360178423122e-08, 7.67698485780209e-08, 7.90612819359751e-08],
+        ),
+        (
+            [
+                *(0.000304985474613467, 0.000311762929604877, 0.000338872749570519),
+                *(0.000345650204561929, 0.00035242765955334),
+            ],
+            [
+                *(7.90612819359751e-08, 8.30742573900286e-08, 9.21776636349578e-08),
+                *(9.35735335733202e-08, 1.04744227768906e-07),
+            ],
+        ),
+    ],
+    ids=["three", "five"],
+)
+def test_loss_of_a_cycle_on_a_rough_table(radii: list[float], heights: list[float]) -> None:
+    """g is constant on parts of both tables; where they end, rounding reverses intervals.
+
+    The loss is continuous over the loads: it is the mean of those beside.
+    """
+    last = 0.00251443580181325, 3.85203450924955e-05
+    profile = Tabulated([0.0, *radii, last[0]], [0.0, *heights, last[1]])
+
+    def cycles(factor: float) -> history.LoadCycles:
+        return history.cycles(
+            profile,
+            112824.9882380765,
+            92914.69619606301,
+            0.1,
+            normal_force=7.248241580288089e-06 * factor,
+            normal_amplitude=2.4017243799068697e-06 * factor,
+            tangential_displacement=3.0354333418054147e-10,
+            count=2,
+        )
+
+    below, found, above = (cycles(factor) for factor in (1 - 1e-4, 1.0, 1 + 1e-4))
+    loss = float(found.energy_per_cycle[0])
+    beside = float(below.energy_per_cycle[0] + above.energy_per_cycle[0]) / 2
+    assert loss == pytest.approx(beside, rel=1e-3, abs=0)
+    assert 0 <= found.energy_per_cycle[1] < 1e-12 * loss

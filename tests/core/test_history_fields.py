@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mdr_core import fields, history, normal, tangential
-from mdr_core.history import State
+from mdr_core.history import ContactState
 from mdr_core.profiles import (
     Cone,
     FlatPunch,
@@ -38,7 +38,7 @@ def by_kind(profile: Profile) -> str:
     return profile.kind
 
 
-def shaken(profile: Profile) -> State:
+def shaken(profile: Profile) -> ContactState:
     return history.solve(profile, E, G, MU, **SWING).state
 
 
@@ -75,7 +75,7 @@ def test_shear_stress_carries_the_tangential_force(profile: Profile) -> None:
         r = (low + high) / 2 - (high - low) / 2 * np.cos(angle)
         ring = 2 * np.pi * r * np.pi / 2 * (high - low) / 2 * np.sin(angle)
         total += float((weights * ring * fields.shear_stress(state, r)).sum())
-    assert total == pytest.approx(SWING["tangential_force"][-1], rel=1e-12)
+    assert total == pytest.approx(SWING["tangential_force"][-1], rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
@@ -94,7 +94,7 @@ def test_slip_is_the_transform_of_the_foundation(profile: Profile) -> None:
 
         expected = 2 / np.pi * float(mpmath.quad(density, angles, maxdegree=6))
         found = float(fields.slip(state, [r])[0])
-        assert found == pytest.approx(expected, rel=1e-9)
+        assert found == pytest.approx(expected, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
@@ -135,4 +135,7 @@ def test_grid_has_every_front() -> None:
     state = shaken(RoundedPunch(0.4, 1.0))
     grid = fields.grid(state, 60)
     assert grid.size == 60
-    assert {0.0, 0.4, state.contact_radius, *state.slip_fronts} <= set(grid)
+    assert {0.0, 0.4} <= set(grid)
+    for edge in (state.contact_radius, *state.slip_fronts):
+        # Just inside, where the rounding of the edge is not felt.
+        assert 0 < np.min(np.abs(grid - edge)) < 1e-3 * edge

@@ -54,7 +54,7 @@ def controls(scene: Scene, path: list[tuple[float, float]]) -> tuple[Array, Arra
     return d * depth, u * SHIFT * depth, depth
 
 
-def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.History:
+def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.LoadHistory:
     return history.solve(
         profile_from(scene[0]),
         E_STAR,
@@ -127,7 +127,7 @@ def test_a_loop_closes_the_second_time_and_costs_work(
     assert np.sum(lost[count : 2 * count]) >= 0
 
 
-def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.History]:
+def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
     """int F_x du to each point, by Lobatto's rule on panels that close in on kinks of F_x.
 
     More points on a straight leg change nothing, so that the rule's nodes are points of the path.

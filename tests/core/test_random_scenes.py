@@ -6,6 +6,8 @@ import pytest
 
 from tests.core.random_scenes import Draw, misses, scene
 
+pytestmark = pytest.mark.long
+
 SCENES = 8
 
 

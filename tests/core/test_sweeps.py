@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mdr_core import normal, profiles, tangential
+from mdr_core.broadcasting import BLOCK, in_blocks
+from mdr_core.equivalent_1d import coordinate_from_force
 from mdr_core.errors import InputError
-from mdr_core.foundation import coordinate_from_force
 from mdr_core.profiles import (
     CappedParaboloid,
     Cone,
@@ -27,7 +28,6 @@ from mdr_core.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from mdr_core.sweeps import BLOCK, in_blocks
 from mdr_core.typing import Array
 
 MANY = 2 * BLOCK + 7
@@ -164,6 +164,7 @@ def many(values: Array) -> Array:
     return np.resize(values, BLOCK + FEW + 7)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("control", LOADS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, control: str) -> None:
@@ -212,7 +213,7 @@ def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, co
             assert np.array_equal(getattr(sideways, name), many(alone)), name
 
 
-@pytest.mark.parametrize("kind", KINDS.keys() - CLOSED_LOSSES)
+@pytest.mark.parametrize("kind", sorted(KINDS.keys() - CLOSED_LOSSES))
 def test_a_sweep_loses_what_each_of_its_scenes_loses_to_the_last_bit(kind: str) -> None:
     profile, named = KINDS[kind]
     force = LOADS["normal_force"]
@@ -264,6 +265,27 @@ def test_a_sweep_with_loads_of_all_regimes_is_answered_like_its_scenes() -> None
             assert getattr(found, name)[i] == getattr(alone, name), name
 
 
+@pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
+@pytest.mark.parametrize("profile", [Paraboloid(0.01), Cone(0.1), FlatPunch(0.01)])
+def test_each_case_has_its_own_error_estimate(profile: Any, control: str) -> None:
+    contact = normal.solve(profile, 1e11, indentation_depth=1e-5)
+    limits = tangential.solve(contact, 8e10, 0.3, tangential_displacement=1.0)
+    limit = limits.limiting_force if control == "tangential_force" else 0.3 * 1e-5 * 1e11 / 8e10
+    loads = float(limit) * np.array([0.0, 0.5, 0.95, 1 - 1e-6, 1 - 1e-10])
+    together = tangential.solve(contact, 8e10, 0.3, **{control: loads})
+    alone = [tangential.solve(contact, 8e10, 0.3, **{control: load}) for load in loads]
+    estimates = np.broadcast_to(together.error_estimates, loads.shape)
+    assert estimates.tolist() == [each.error_estimate for each in alone]
+    assert together.error_estimate == max(each.error_estimate for each in alone)
+
+
+def test_each_power_has_its_own_error_estimate() -> None:
+    exponents = np.array([1.0, 2.0, 100.0])
+    together = normal.solve(Power(np.ones(3), exponents), 1e11, indentation_depth=1e-5)
+    alone = [normal.solve(Power(1.0, n), 1e11, indentation_depth=1e-5) for n in exponents]
+    assert together.error_estimates.tolist() == [each.error_estimate for each in alone]
+
+
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e3])
 def test_a_wrong_tangential_force_is_named_by_its_place_in_the_sweep(wrong: float) -> None:
     contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
@@ -299,4 +321,18 @@ def test_the_loss_of_a_sweep_is_that_of_its_scenes(
     columns = np.broadcast_arrays(*parameters, e_star, force)
     for i, numbers in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
         own = kind(*numbers[: len(parameters)])
-        assert found[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14)
+        assert found[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14, abs=0)
+
+
+def test_prescribed_stick_radius_below_a_computed_edge_is_the_same_in_blocks() -> None:
+    """The width follows from the contact coordinate there, which the radius does not resolve."""
+    force = np.full(MANY, 2.2 * E_STAR)
+    contact = normal.solve(Sphere(1.0), E_STAR, normal_force=force)
+    few = normal.solve(Sphere(1.0), E_STAR, normal_force=force[:5])
+    stick = np.nextafter(few.contact_radius, 0.0)
+    whole = tangential.solve(contact, 0.8 * E_STAR, 0.3, stick_radius=np.resize(stick, MANY))
+    part = tangential.solve(few, 0.8 * E_STAR, 0.3, stick_radius=stick)
+    expected = few.coordinate - few.profile.coordinate_from_radius(stick)
+    assert np.array_equal(part.width, expected)
+    assert np.array_equal(whole.width[:5], expected)
+    assert np.array_equal(whole.tangential_force[:5], part.tangential_force)

@@ -13,10 +13,10 @@ from mdr_core import fields, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import Tabulated
-from mdr_core.profiles.table_points import interpolate
+from mdr_core.profiles.table_interpolation import interpolate
 from tests.oracles.tables import TABLE_DIGITS, Table
 
-INTERPOLANT = 1e-11
+INTERPOLANT = 1e-12
 INTERPOLATIONS = ("cubic", "pchip", "linear")
 END, EDGE = 0.6, 0.5
 #: A step of h = 1e-4 leaves h^3, h^2 and h of the slope, and half an order less of its transforms.
@@ -63,24 +63,13 @@ def test_pressure_on_either_side_of_a_node_next_to_the_edge(kind: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
-@pytest.mark.parametrize("gap", [1e-5, 1e-4, 1e-2])
+@pytest.mark.parametrize("gap", [1e-12, 1e-9, 1e-5, 1e-2])
 def test_pressure_where_two_radii_nearly_agree(kind: Any, gap: float) -> None:
     r = np.linspace(0, END, 22)
     twin = r[10] * (1 + gap)
     r = np.sort(np.append(r, twin))
     radii = [0.1, 0.2, r[10] * (1 - gap / 3), r[10] * (1 + gap / 3), twin * (1 + gap / 3), 0.47]
     assert worst_pressure(r, kind, EDGE, [float(x) for x in radii]) <= INTERPOLANT
-
-
-@pytest.mark.parametrize("kind", INTERPOLATIONS)
-@pytest.mark.parametrize("gap", [1e-12, 1e-10, 1e-8])
-def test_the_stress_next_to_radii_too_close_to_each_other_is_refused(kind: Any, gap: float) -> None:
-    r = np.linspace(0, END, 22)
-    r = np.sort(np.append(r, np.nextafter(r[10] * (1 + gap), 1)))
-    contact = solve(Tabulated(r, sphere(r), kind), 1.0, contact_radius=EDGE)
-    with pytest.raises(InputError, match="closer than") as refused:
-        fields.pressure(contact, [0.1])
-    assert refused.value.path == ("profile", "r", 11)
 
 
 def long_contact(points: int, kind: Any) -> NormalContact:
@@ -92,7 +81,9 @@ def long_contact(points: int, kind: Any) -> NormalContact:
 def test_a_long_table_is_the_body_that_it_samples(kind: Any) -> None:
     contact = long_contact(6001, kind)
     # The exact sphere: g = x artanh(x).
-    assert contact.indentation_depth == pytest.approx(EDGE * np.arctanh(EDGE), rel=SAMPLED[kind])
+    assert contact.indentation_depth == pytest.approx(
+        EDGE * np.arctanh(EDGE), rel=SAMPLED[kind], abs=0
+    )
     radii = np.linspace(0.001, 0.45, 7) + 1e-5
     pressure = fields.pressure(contact, radii)
     with mp.workdps(30):
@@ -114,59 +105,26 @@ def test_far_panels_are_not_looked_at_one_by_one() -> None:
     counts = []
     for points in (201, 3201):
         profile = Tabulated(np.linspace(0, END, points), np.linspace(0, END, points) ** 2)
-        blocks = profile._stress._clusters
+        blocks = profile.resolved.stress._multipoles
         place = np.linspace(0, EDGE, 1000, endpoint=False)
-        low, high = blocks.far_from(place, blocks.usable(0, points))
+        low, high = blocks.far_from(place, blocks.usable(0, blocks.edge.size))
         counts.append(int((high - low).sum()))
     assert counts[1] <= 2 * counts[0]
 
 
-@pytest.mark.parametrize("a", [0.0031, 0.0213, 0.0498, EDGE])
-def test_panels_taken_as_one_keep_the_tolerance(a: float) -> None:
-    """At a loose tolerance the kinks between the panels of a smooth table are not resolved."""
-    r = np.linspace(0, END, 200)
-    profile = Tabulated(r, sphere(r))
-    assert profile.panels(1e-6).base.size < profile._stress.base.size / 4
-    contact = solve(profile, 1.0, contact_radius=a, rtol=1e-6)
-    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=a * (1 - 1e-4))
-    radii = [a * part for part in (0.31, 0.93, 1 - 1e-5, 1 - 1e-9)]
-    found = [
-        fields.pressure(contact, radii, rtol=1e-6),
-        fields.shear_stress(pushed, radii[3:], rtol=1e-6),
-    ]
-    with mp.workdps(TABLE_DIGITS):
-        exact = Table({"r": r.tolist(), "f": sphere(r).tolist(), "interpolation": "cubic"})
-        truth = [exact.pressure(mpf(x), mpf(a)) for x in radii]
-        # Next to the edge all that is carried slips.
-        truth.append(truth[3])
-        for value, true in zip(np.concatenate(found), truth, strict=True):
-            assert abs(mpf(float(value)) / true - 1) <= 1e-6
-
-
-def test_displacements_of_panels_taken_as_one() -> None:
+def test_displacements_of_a_table() -> None:
     """What slips wholly lags by the shape itself; beside the contact: johnson, Eq. (3.42)."""
     r = np.linspace(0, END, 200)
     profile = Tabulated(r, sphere(r))
     inside = np.linspace(0.01, EDGE, 50)
     found = profile.slip_kernel(np.zeros_like(inside), inside, 1e-6)
-    assert found == pytest.approx(sphere(inside), rel=1e-6)
+    assert found == pytest.approx(sphere(inside), rel=1e-6, abs=0)
     contact = solve(Tabulated(r, r * r / 2), 1.0, contact_radius=EDGE)
     outside = EDGE * (1 + np.geomspace(1e-6, 10, 50))
     leg = np.sqrt((outside - EDGE) * (outside + EDGE))
     expected = (2 * EDGE**2 - outside**2) * np.arcsin(EDGE / outside) + EDGE * leg
     found = fields.normal_displacement(contact, outside, rtol=1e-6)
-    assert found == pytest.approx(expected / np.pi, rel=1e-6)
-
-
-def test_no_kink_is_passed_over() -> None:
-    """What a tolerance of 1e-6 feels keeps the panels apart: a weak kink, and a noisy point."""
-    r = np.linspace(0, END, 401)
-    bent = sphere(r) + 0.3 * np.maximum(r - r[203], 0) ** 2
-    noisy = sphere(r)
-    noisy[203] *= 1 + 1e-5
-    for f in (bent, noisy):
-        profile = Tabulated(r, f)
-        assert profile.panels(1e-6) is profile._stress
+    assert found == pytest.approx(expected / np.pi, rel=1e-6, abs=0)
 
 
 @pytest.mark.parametrize("points", [3, 4, 5, 40])
@@ -177,11 +135,11 @@ def test_the_cubic_is_that_of_scipy(points: int, tip: float) -> None:
     f = sphere(r)
     f += (tip - CubicSpline(r, f).c[2, 0]) * r
     expected = CubicSpline(r, f).c
-    assert expected[2, 0] == pytest.approx(tip, rel=1e-2)
+    assert expected[2, 0] == pytest.approx(tip, rel=1e-2, abs=0)
     if tip < 0:
         expected = CubicSpline(r, f, bc_type=((1, np.zeros(())), "not-a-knot")).c
         expected[2, 0] = 0.0
-    np.testing.assert_array_equal(interpolate(r, f, "cubic"), expected[::-1])
+    np.testing.assert_array_equal(interpolate(r, f, "cubic")[0], expected[::-1])
 
 
 @pytest.mark.parametrize(
@@ -212,7 +170,7 @@ def test_the_axis_sticks_under_a_tip(c: float) -> None:
     contact = solve(Tabulated([0, 0.5, 1.5], [0, 0.5, 1.5], "linear"), 1.0, contact_radius=1.0)
     pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
     found = fields.shear_stress(pushed, [0.0])
-    assert found[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT)
+    assert found[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT, abs=0)
 
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
@@ -249,5 +207,7 @@ def test_the_first_slip_next_to_a_kink(flat: float, gap: float) -> None:
             exact = Table({"r": r.tolist(), "f": f.tolist(), "interpolation": "linear"})
             depth = exact.g(mpf(a)) - exact.g(mpf(c))
             force = exact.force(mpf(a)) - exact.force(mpf(c))
-        assert float(pushed.tangential_displacement) == pytest.approx(float(depth), rel=1e-11)
-        assert float(pushed.tangential_force) == pytest.approx(float(force), rel=1e-11)
+        # With a flat the distance from the kink loses digits, and the estimate covers the loss.
+        rel = 1e-11 if flat == 0.0 else pushed.error_estimate
+        assert float(pushed.tangential_displacement) == pytest.approx(float(depth), rel=rel, abs=0)
+        assert float(pushed.tangential_force) == pytest.approx(float(force), rel=rel, abs=0)

@@ -7,21 +7,19 @@ from typing import Any
 import pytest
 
 from mdr_core import normal, tangential
-from tests.core.comparison import INPUT, profile_from, wrong
-from tests.oracles import slip_bank
+from tests.core.comparison import allowance, assert_each, batched, overstated, profile_from, wrong
+from tests.oracles import bank
 
 BOUND = 1e-12
 #: A table is a sum over its knots, and has the normal query's own bound.
 TABLE = 1e-11
-
-
-def name_of(case: dict[str, Any]) -> str:
-    return str(case["id"])
+#: How far the estimate may exceed the largest error that is allowed: powers up to 60, and tables.
+OVERSTATED, OVERSTATED_TABLE = 150.0, 3000.0
 
 
 def solved(case: dict[str, Any]) -> tangential.TangentialContact:
     contact = normal.solve(
-        profile_from(case["profile"]), case["e_star"], rtol=1e-13, **slip_bank.normal_load(case)
+        profile_from(case["profile"]), case["e_star"], rtol=1e-13, **{case["control"]: case["load"]}
     )
     return tangential.solve(
         contact,
@@ -31,35 +29,45 @@ def solved(case: dict[str, Any]) -> tangential.TangentialContact:
     )
 
 
-@pytest.mark.parametrize("case", slip_bank.load("tangential"), ids=name_of)
-def test_answers_and_their_error_estimate(case: dict[str, Any]) -> None:
+def failures_of(case: dict[str, Any]) -> list[str]:
     found = solved(case)
-    bound = TABLE if case["profile"]["kind"] == "tabulated" else BOUND
-    failures = []
+    table = case["profile"]["kind"] == "tabulated"
+    bound = TABLE if table else BOUND
+    failures, allowed = [], [bound]
     for name, row in case["expected"].items():
         values = getattr(found, name)
         assert values.shape == (len(row),)
         for index, expected in enumerate(row):
             conditions = (case["condition"][name][index], case["condition_load"][name][index])
+            by_inputs = allowance(*conditions)
+            allowed.append(bound + by_inputs)
             failures += wrong(
                 f"{name} at {case['given'][index]!r}",
                 float(values[index]),
                 expected,
                 bound,
-                INPUT * sum(conditions),
+                by_inputs,
                 found.error_estimate,
             )
-    assert list(found.regime) == case["regime"]
-    assert not failures, failures
+    failures += overstated(found.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED)
+    if list(found.regime) != case["regime"]:
+        failures.append(f"regime is {found.regime}")
+    return failures
 
 
-@pytest.mark.parametrize("case", slip_bank.load("tangential")[::7], ids=name_of)
-def test_a_single_load_is_answered_like_one_of_many(case: dict[str, Any]) -> None:
-    found = solved(case)
-    alone = solved({**case, "given": case["given"][0]})
-    for name in case["expected"]:
-        value = getattr(alone, name)
-        assert value.shape == ()
-        # The same steps, perhaps summed in another order.
-        expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-14, abs=0)
-        assert float(value) == expected, name
+@batched(bank.load("tangential"))
+def test_answers_and_their_error_estimate(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, failures_of)
+
+
+@batched(bank.load("tangential")[::7])
+def test_a_single_load_is_answered_like_one_of_many(cases: list[dict[str, Any]]) -> None:
+    for case in cases:
+        found = solved(case)
+        alone = solved({**case, "given": case["given"][0]})
+        for name in case["expected"]:
+            value = getattr(alone, name)
+            assert value.shape == ()
+            # The same steps, perhaps summed in another order.
+            expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-14, abs=0)
+            assert float(value) == expected, (case["id"], name)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from mdr_core import fields, normal, tangential
@@ -119,6 +119,8 @@ def test_the_smallest_whisper_has_its_answers(rho: float, scene: Scene) -> None:
     found = at_ratio(*scene, rho)
     assert str(found.regime) == "partial_slip"
     slope = float(found.normal.profile.dg(np.array([scene[1]]))[0])
+    # At a kink g' has two limits, of which `dg` returns the upper one.
+    assume(np.isfinite(slope))
     width = float(found.tangential_force) / (2 * MU * E_STAR * scene[1] * slope)
     assert float(found.slip_width) == near(width, rel=1e-11)
     shift = float(found.tangential_force) / (2 * G_STAR * scene[1])
@@ -130,7 +132,7 @@ def test_the_smallest_whisper_has_its_answers(rho: float, scene: Scene) -> None:
 
 
 @repeatable
-@given(scenes(), st.floats(0.2, 0.95), st.floats(0.0, 0.999))
+@given(scenes(), st.floats(0.2, 0.95), st.just(0.0) | st.floats(1e-50, 0.999))
 def test_traction_is_a_superposition_of_pressures(scene: Scene, stick: float, place: float) -> None:
     """Jaeger: tau = mu [p(a) - p(c)], where the difference costs few digits."""
     fields_, a = scene
@@ -417,5 +419,5 @@ def test_the_grid_is_graded_and_shared() -> None:
     assert points[0] == 0
     assert points[-1] == near(1.35)
     assert np.all(np.diff(points) > 0)
-    for mark in (0.6, 0.65, 0.7, 0.9):
-        assert np.min(np.abs(points - mark)) < 1e-3
+    # All of them are given, and so exact.
+    assert {0.6, 0.65, 0.7, 0.9} <= set(points.tolist())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,7 @@ from mdr_core.profiles import (
     TruncatedCone,
 )
 from mdr_core.wear import evolution, limit
-from mdr_core.wear.rates import System
+from mdr_core.wear.rates import WearModel
 from tests.oracles.wear_explicit import Held, Scene
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ MORE: dict[str, Profile] = {
     ),
 }
 MIXED = "force and displacement"
+BY_FORCE = "depth and force"
 CONTROLS = ("depth and displacement", "forces", MIXED)
 ALL_CYCLES = (0.0, 1.0, 1e2, 1e3, 1e4, 1e6, 1e9, 1e12)
 # The other kinds take the same way under each control: one is enough.
@@ -66,13 +67,13 @@ def worn(
     """The profile at a = 1, its amplitude a part of full slip."""
     shape = (PROFILES | MORE)[kind]
     contact = normal.solve(shape, E_STAR, contact_radius=1.0)
-    if control == "depth and displacement":
+    if control.startswith("depth"):
         held = normal.solve(shape, E_STAR, indentation_depth=float(contact.indentation_depth))
     else:
         held = normal.solve(shape, E_STAR, normal_force=float(contact.normal_force))
     moved = part * MU * E_STAR / G_STAR * float(contact.indentation_depth)
     load: dict[str, float] = {"tangential_displacement": moved}
-    if control == "forces":
+    if control in {"forces", BY_FORCE}:
         load = {"tangential_force": part * MU * float(contact.normal_force)}
     return evolution.solve(held, G_STAR, MU, wear_coefficient=WEAR, cycles=cycles, **load, **given)
 
@@ -103,40 +104,43 @@ def test_first_cycles_wear_what_the_friction_work_takes(
 ) -> None:
     """Against the work of a cycle from the closed forms of partial slip."""
     found = worn(kind, control, cycles=(0.0,))
-    step = 1e-6 * found.scene.cycle_unit
+    step = 1e-6 * found.initial.cycle_unit
     early = worn(kind, control, cycles=(step,), resolution=resolution)
-    work = 4 * float(found.scene.sideways.dissipated_energy)
-    expected = pytest.approx(WEAR * work * step, rel=1e-4 if resolution == 24 else 1e-6)
+    work = 4 * float(found.initial.sideways.dissipated_energy)
+    expected = pytest.approx(WEAR * work * step, rel=1e-4 if resolution == 24 else 1e-6, abs=0)
     assert early.worn_volume[0] == expected
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_volume_follows_the_work_to_the_end(kind: str, control: str) -> None:
     found = worn(kind, control)
     lost = WEAR * found.dissipated_energy
-    # The stick edge that comes to rest within the nodes' spacing leaves a step behind.
-    bound = 2e-4 if control == CONTROLS[2] else 2e-5
-    assert found.worn_volume == pytest.approx(lost, rel=bound, abs=1e-12)
+    assert found.worn_volume == pytest.approx(lost, rel=1e-4, abs=0)
+    assert found.worn_volume == pytest.approx(lost, rel=2 * found.error_estimate, abs=0)
     for cycle in (2, 4, 7):
-        assert ring_integral(found, cycle) == pytest.approx(found.worn_volume[cycle], rel=1e-3)
+        assert ring_integral(found, cycle) == pytest.approx(
+            found.worn_volume[cycle], rel=1e-3, abs=0
+        )
 
 
 def limiting(found: evolution.WearEvolution) -> limit.LimitingWear:
-    sideways = found.scene.sideways
-    held = found.scene.control.displacement
+    sideways = found.initial.sideways
+    held = found.initial.held.displacement
     name = "tangential_displacement" if held else "tangential_force"
-    return limit.solve(found.scene.contact, G_STAR, MU, **{name: float(getattr(sideways, name))})
+    return limit.solve(found.initial.contact, G_STAR, MU, **{name: float(getattr(sideways, name))})
 
 
 def distance(found: evolution.WearEvolution) -> float:
     """Largest distance of the last profile from the limiting one, in units of the depth."""
     r = np.linspace(0.0, 1.5 * float(found.contact_radius[-1]), 400)
-    r = r[r < 0.99 * float(np.asarray(found.scene.contact.profile.domain))]
+    r = r[r < 0.99 * float(np.asarray(found.initial.contact.profile.domain))]
     exact = np.asarray(limiting(found).worn_depth(r))
     gap = np.abs(found.worn_depth(r)[-1] - exact).max()
     return float(gap / found.indentation_depth[-1])
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("part", [0.02, 0.45, 0.85])
 @pytest.mark.parametrize("control", CONTROLS[:2])
 @pytest.mark.parametrize("kind", PROFILES)
@@ -144,10 +148,12 @@ def test_the_end_is_the_limiting_profile(kind: str, control: str, part: float) -
     found = worn(kind, control, part)
     assert distance(found) <= 1e-4
     exact = limiting(found)
-    assert found.contact_radius[-1] == pytest.approx(float(exact.wear_radius), rel=1e-4)
-    assert found.indentation_depth[-1] == pytest.approx(float(exact.indentation_depth), rel=1e-4)
-    assert found.normal_force[-1] == pytest.approx(float(exact.normal_force), rel=1e-4)
-    assert found.worn_volume[-1] == pytest.approx(float(exact.worn_volume), rel=1e-3)
+    assert found.contact_radius[-1] == pytest.approx(float(exact.wear_radius), rel=1e-4, abs=0)
+    assert found.indentation_depth[-1] == pytest.approx(
+        float(exact.indentation_depth), rel=1e-4, abs=0
+    )
+    assert found.normal_force[-1] == pytest.approx(float(exact.normal_force), rel=1e-4, abs=0)
+    assert found.worn_volume[-1] == pytest.approx(float(exact.worn_volume), rel=1e-3, abs=0)
     assert "limit_reached" in {notice.code for notice in found.warnings}
 
 
@@ -168,6 +174,7 @@ def test_the_limit_wears_no_more(control: str) -> None:
     assert found.worn_volume[-1] == found.worn_volume[-2]
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_wear_only_takes_away(kind: str, control: str) -> None:
     cycles = (0.0, *np.geomspace(1.0, 1e7, 22).tolist())
@@ -219,7 +226,9 @@ def test_pressure_carries_the_force(control: str) -> None:
             r = low + (high - low) * np.sin(angle) ** 2
             step = (high - low) * np.sin(2 * angle) * pi / 4
             carried += float((weights * step * 2 * pi * r * found.pressure(r)[cycle]).sum())
-        assert carried == pytest.approx(found.normal_force[cycle], rel=2e-3 if cycle else 1e-6)
+        assert carried == pytest.approx(
+            found.normal_force[cycle], rel=2e-3 if cycle else 1e-6, abs=0
+        )
 
 
 @pytest.mark.parametrize("part", [1e-6, 1e-2])
@@ -227,9 +236,9 @@ def test_pressure_carries_the_force(control: str) -> None:
 def test_a_narrow_annulus_wears_half_as_wide_again(control: str, part: float) -> None:
     """a - c grows by a half, and neither depth nor stick edge move by more than its square."""
     found = worn("paraboloid", control, part)
-    width = float(found.scene.sideways.slip_width)
+    width = float(found.initial.sideways.slip_width)
     grown = (found.contact_radius - found.stick_radius)[-1] / width
-    assert grown == pytest.approx(1.5, rel=max(1e-4, part))
+    assert grown == pytest.approx(1.5, rel=max(1e-4, part), abs=0)
     assert found.stick_radius[-1] - found.stick_radius[0] <= 2 * width**2 + 1e-9 * width
     assert found.error_estimate <= 0.02
 
@@ -237,11 +246,9 @@ def test_a_narrow_annulus_wears_half_as_wide_again(control: str, part: float) ->
 def test_before_the_first_cycle_all_is_as_it_was() -> None:
     found = worn("paraboloid", CONTROLS[0])
     r = np.array([0.0, 0.3, 0.74, 0.8, 0.95, 1.3])
-    assert found.pressure(r)[0] == pytest.approx(
-        fields.pressure(found.scene.contact, r), rel=1e-9, abs=1e-12
-    )
-    assert np.array_equal(found.profile(r)[0], found.scene.contact.profile.f(r))
-    assert found.contact_radius[0] == pytest.approx(1.0, rel=1e-14)
+    assert np.array_equal(found.pressure(r)[0], fields.pressure(found.initial.contact, r))
+    assert np.array_equal(found.profile(r)[0], found.initial.contact.profile.f(r))
+    assert found.contact_radius[0] == pytest.approx(1.0, rel=1e-14, abs=0)
 
 
 EXPLICIT_GRID = 360
@@ -253,7 +260,7 @@ def test_explicit_cycles_find_the_same(control: str) -> None:
     found = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
     r = np.arange(EXPLICIT_GRID) * (1.8 / EXPLICIT_GRID)
     scene = Scene(r, r * r / 2, E_STAR, G_STAR, MU, WEAR)
-    sideways, contact = found.scene.sideways, found.scene.contact
+    sideways, contact = found.initial.sideways, found.initial.contact
     force, moved = float(contact.normal_force), float(sideways.tangential_displacement)
     held = {
         CONTROLS[0]: Held(depth=float(contact.indentation_depth), displacement=moved),
@@ -265,12 +272,13 @@ def test_explicit_cycles_find_the_same(control: str) -> None:
     for cycle, state in enumerate(states):
         gap = np.abs(state.profile - r * r / 2 - depth[cycle]).max()
         assert gap <= 8e-3 * found.indentation_depth[cycle]
-        assert state.worn_volume == pytest.approx(found.worn_volume[cycle], rel=1.5e-2)
-        assert state.depth == pytest.approx(found.indentation_depth[cycle], rel=4e-3)
-        assert state.contact_radius == pytest.approx(found.contact_radius[cycle], rel=6e-3)
-        assert state.stick_radius == pytest.approx(found.stick_radius[cycle], rel=6e-3)
+        assert state.worn_volume == pytest.approx(found.worn_volume[cycle], rel=1.5e-2, abs=0)
+        assert state.depth == pytest.approx(found.indentation_depth[cycle], rel=4e-3, abs=0)
+        assert state.contact_radius == pytest.approx(found.contact_radius[cycle], rel=6e-3, abs=0)
+        assert state.stick_radius == pytest.approx(found.stick_radius[cycle], rel=6e-3, abs=0)
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", ["paraboloid", "cone"])
 def test_the_estimate_does_not_understate(kind: str, control: str) -> None:
@@ -290,13 +298,13 @@ def test_the_estimate_does_not_understate(kind: str, control: str) -> None:
 def test_a_thousand_million_cycles_take_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     # Counted in what the integrator evaluates, which is what takes the time.
     called: list[int] = []
-    rates = System.rates
+    rates = WearModel.rates
 
-    def counted(system: System, vector: Array, *, moving: bool) -> Array:
+    def counted(model: WearModel, vector: Array) -> Array:
         called[-1] += 1
-        return rates(system, vector, moving=moving)
+        return rates(model, vector)
 
-    monkeypatch.setattr(System, "rates", counted)
+    monkeypatch.setattr(WearModel, "rates", counted)
     for last in (1e4, 1e9):
         called.append(0)
         assert worn.__wrapped__("paraboloid", CONTROLS[1], cycles=(last,)).worn_volume[0] > 0
@@ -308,13 +316,13 @@ def test_a_change_of_units_rescales_the_answers(control: str) -> None:
     old = worn("paraboloid", control)
     length, modulus = 1e-6, 1e11
     force = modulus * length**2
-    contact = old.scene.contact
+    contact = old.initial.contact
     load = (
         {"indentation_depth": float(contact.indentation_depth) * length}
         if control == CONTROLS[0]
         else {"normal_force": float(contact.normal_force) * force}
     )
-    sideways = old.scene.sideways
+    sideways = old.initial.sideways
     moved: dict[str, float] = {
         "tangential_displacement": float(sideways.tangential_displacement) * length
     }
@@ -353,7 +361,7 @@ def test_twice_the_wear_takes_half_the_cycles() -> None:
         )
         for factor in (1.0, 2.0)
     )
-    assert fast.worn_volume == pytest.approx(slow.worn_volume, rel=1e-9)
+    assert fast.worn_volume == pytest.approx(slow.worn_volume, rel=1e-9, abs=0)
 
 
 def test_what_does_not_slip_does_not_wear() -> None:
@@ -406,14 +414,6 @@ def test_what_has_no_answer_is_refused(
     assert caught.value.path == path
 
 
-def test_a_force_amplitude_needs_a_held_force() -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
-    with pytest.raises(InputError, match="with the depth held"):
-        evolution.solve(
-            contact, G_STAR, MU, wear_coefficient=1.0, cycles=[1.0], tangential_force=0.1
-        )
-
-
 def test_a_contact_that_outgrows_the_profile_is_refused_at_its_cycle() -> None:
     table = Tabulated((0.0, 0.4, 0.8, 1.05), (0.0, 0.08, 0.32, 0.55125))
     contact = normal.solve(table, E_STAR, contact_radius=1.0)
@@ -429,6 +429,9 @@ def test_a_contact_that_outgrows_the_profile_is_refused_at_its_cycle() -> None:
     assert caught.value.path == ("cycles", 2)
 
 
-def test_the_cost_is_known_beforehand() -> None:
-    small, large = evolution.evaluations(8, 3), evolution.evaluations(96, 3)
-    assert 1000 < small < large < 1_000_000
+def test_a_radius_beyond_the_profile_is_refused() -> None:
+    found = worn("sphere", CONTROLS[0])
+    for field in (*map(partial(getattr, found), evolution.FIELDS), found.field_error_estimate):
+        with pytest.raises(InputError) as caught:
+            field([0.0, 2.4, 2.6])
+        assert caught.value.path == ("radius", 2)

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from mdr_core import normal
 from mdr_core.wear import limit
-from tests.core.comparison import INPUT, profile_from, relative_error, wrong
-from tests.oracles import wear_bank
+from tests.core.comparison import (
+    INPUT,
+    allowance,
+    assert_each,
+    batched,
+    overstated,
+    profile_from,
+    relative_error,
+    wrong,
+)
+from tests.oracles import bank
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 BOUND = 1e-12
 #: A table is a sum over its knots, and has the normal query's own bound.
@@ -19,11 +31,9 @@ FIELD = 1e-11
 #: Kinds whose radii carry the rounding of a real exponent, times a logarithm: their edges are
 #: known to the profile's own rounding alone.
 EXPONENTS = frozenset({"power", "series"})
-CASES = wear_bank.load()
-
-
-def name_of(case: dict[str, Any]) -> str:
-    return str(case["id"])
+#: How far the estimate may exceed the largest error that is allowed.
+OVERSTATED, OVERSTATED_TABLE = 45.0, 500.0
+CASES = bank.load("wear_limit")
 
 
 def solved(case: dict[str, Any], given: Any = None) -> limit.LimitingWear:
@@ -38,32 +48,38 @@ def solved(case: dict[str, Any], given: Any = None) -> limit.LimitingWear:
     )
 
 
-@pytest.mark.parametrize("case", CASES, ids=name_of)
-def test_answers_and_their_error_estimate(case: dict[str, Any]) -> None:
+def failures_of(case: dict[str, Any]) -> list[str]:
     found = solved(case)
-    bound = TABLE if case["profile"]["kind"] == "tabulated" else BOUND
-    failures = []
+    table = case["profile"]["kind"] == "tabulated"
+    bound = TABLE if table else BOUND
+    failures, allowed = [], [bound]
     for name, row in case["expected"].items():
         values = getattr(found, name)
         assert values.shape == (len(row),)
         for index, expected in enumerate(row):
+            by_inputs = allowance(case["condition"][name][index])
+            allowed.append(bound + by_inputs)
             failures += wrong(
                 f"{name} at {case['given'][index]!r}",
                 float(values[index]),
                 expected,
                 bound,
-                INPUT * case["condition"][name][index],
+                by_inputs,
                 found.error_estimate,
             )
+    failures += overstated(found.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED)
     assert set(found.regime) == {"partial_slip"}
     depends = "path_dependent" in {notice.code for notice in found.warnings}
     assert depends == (case["equation"] == "(5.90)")
-    assert not failures, failures
+    return failures
 
 
-@pytest.mark.parametrize("case", CASES, ids=name_of)
-def test_fields(case: dict[str, Any]) -> None:
-    failures = []
+@batched(CASES)
+def test_answers_and_their_error_estimate(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, failures_of)
+
+
+def field_failures(case: dict[str, Any]) -> Iterator[str]:
     real = case["profile"]["kind"] in EXPONENTS
     doubt = INPUT + (profile_from(case["profile"]).rounding if real else 0.0)
     for fields in case["fields"]:
@@ -73,19 +89,24 @@ def test_fields(case: dict[str, Any]) -> None:
             assert values.shape == (len(row),)
             for index, expected in enumerate(row):
                 error = relative_error(float(values[index]), expected)
-                bound = FIELD + doubt * (fields["condition"][name][index] or 0.0)
+                bound = FIELD + allowance(fields["condition"][name][index], rounding=doubt)
                 if not error <= bound:
                     at = f"{name} at {fields['radius'][index]!r}"
-                    failures.append(f"{at}: {values[index]!r}, {error:.2e} > {bound:.2e}")
-    assert not failures, failures
+                    yield f"{at}: {values[index]!r}, {error:.2e} > {bound:.2e}"
 
 
-@pytest.mark.parametrize("case", CASES[::5], ids=name_of)
-def test_a_single_amplitude_is_answered_like_one_of_many(case: dict[str, Any]) -> None:
-    found, alone = solved(case), solved(case, case["given"][0])
-    for name in case["expected"]:
-        value = getattr(alone, name)
-        assert value.shape == ()
-        # The same steps, perhaps summed in another order.
-        expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-13, abs=0)
-        assert float(value) == expected, name
+@batched(CASES)
+def test_fields(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, field_failures)
+
+
+@batched(CASES[::5])
+def test_a_single_amplitude_is_answered_like_one_of_many(cases: list[dict[str, Any]]) -> None:
+    for case in cases:
+        found, alone = solved(case), solved(case, case["given"][0])
+        for name in case["expected"]:
+            value = getattr(alone, name)
+            assert value.shape == ()
+            # The same steps, perhaps summed in another order.
+            expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-13, abs=0)
+            assert float(value) == expected, (case["id"], name)

@@ -67,12 +67,14 @@ def test_without_slip_nothing_wears(profile: Profile, load: dict[str, Any], name
     for edge in ("stick_radius", "wear_radius"):
         assert list(found[edge]) == [float(first.contact_radius)] * 2
     assert list(found["worn_volume"]) == [0.0, 0.0]
-    assert list(found["normal_force"]) == pytest.approx([float(first.normal_force)] * 2, rel=1e-14)
+    assert list(found["normal_force"]) == pytest.approx(
+        [float(first.normal_force)] * 2, rel=1e-14, abs=0
+    )
     assert list(found[name]) == sizes
     r = [0.0, 0.3, 0.69]
     assert (wear.worn_depth(r) == 0).all()
     assert (wear.limiting_profile(r) == wear.initial_profile(r)).all()
-    assert wear.pressure([0.1])[0] == pytest.approx(pressure(first, [0.1]), rel=1e-12)
+    assert wear.pressure([0.1])[0] == pytest.approx(pressure(first, [0.1]), rel=1e-12, abs=0)
 
 
 def codes_of(contact: normal.NormalContact) -> set[str]:
@@ -87,12 +89,12 @@ def test_a_held_depth_in_full_slip_wears_until_nothing_touches() -> None:
     assert list(wear.regime) == ["partial_slip", "full_slip"]
     assert {"contact_lost", "singular"} <= codes(wear)
     assert found["stick_radius"][1] == 0
-    assert found["wear_radius"][1] == pytest.approx((2 * R * d) ** 0.5, rel=1e-15)
-    assert found["worn_volume"][1] == pytest.approx(np.pi * R * d * d, rel=1e-14)
+    assert found["wear_radius"][1] == pytest.approx((2 * R * d) ** 0.5, rel=1e-15, abs=0)
+    assert found["worn_volume"][1] == pytest.approx(np.pi * R * d * d, rel=1e-14, abs=0)
     assert (found["normal_force"][1], found["tangential_force"][1]) == (0.0, 0.0)
     assert (found["indentation_depth"][1], found["tangential_displacement"][1]) == (d, 0.5)
     r = np.array([0.0, 1e-9, 0.5, 0.8])
-    assert wear.limiting_profile(r)[1] == pytest.approx([d] * 4, rel=1e-15)
+    assert wear.limiting_profile(r)[1] == pytest.approx([d] * 4, rel=1e-15, abs=0)
     assert (wear.pressure(r)[1] == 0).all()
 
 
@@ -106,15 +108,15 @@ def test_a_held_depth_in_full_slip_wears_until_nothing_touches() -> None:
 )
 def test_other_shapes_in_full_slip(profile: Profile, radius: float, volume: float) -> None:
     wear = worn(profile, {"indentation_depth": 0.3}, {"tangential_displacement": 9.0})
-    assert float(wear.wear_radius) == pytest.approx(radius, rel=1e-14)
-    assert float(wear.worn_volume) == pytest.approx(volume, rel=1e-13)
+    assert float(wear.wear_radius) == pytest.approx(radius, rel=1e-14, abs=0)
+    assert float(wear.worn_volume) == pytest.approx(volume, rel=1e-13, abs=0)
     r = np.array([0.0, 0.2, 0.69])
-    assert wear.limiting_profile(r) == pytest.approx([0.3] * 3, rel=1e-14)
+    assert wear.limiting_profile(r) == pytest.approx([0.3] * 3, rel=1e-14, abs=0)
     values(wear)
 
 
 @pytest.mark.parametrize("profile", [Paraboloid(R), RoundedPunch(0.5, 1.7), FlatPunch(0.7)])
-def test_a_held_force_in_full_slip_wears_without_end(profile: Profile) -> None:
+def test_wear_under_a_constant_force_in_full_slip_is_unbounded(profile: Profile) -> None:
     for amplitude in ({"tangential_force": [0.1, 0.15]}, {"tangential_displacement": [0.01, 9.0]}):
         wear = worn(profile, {"normal_force": 0.3}, amplitude)
         found = values(wear)
@@ -124,7 +126,7 @@ def test_a_held_force_in_full_slip_wears_without_end(profile: Profile) -> None:
             assert np.isposinf(found[name][1])
             assert np.isfinite(found[name][0])
         assert (found["stick_radius"][1], found["normal_force"][1]) == (0.0, 0.3)
-        assert found["tangential_force"][1] == pytest.approx(0.15, rel=1e-15)
+        assert found["tangential_force"][1] == pytest.approx(0.15, rel=1e-15, abs=0)
         r = [0.0, 0.3]
         assert np.isposinf(wear.limiting_profile(r)[1]).all()
         assert (wear.pressure(r)[1] == 0).all()
@@ -153,10 +155,10 @@ def test_the_limit_of_a_held_depth_and_force_is_the_largest_stick_zone() -> None
     assert np.count_nonzero(np.diff(np.sign(carried - size))) == 3
     wear = worn(profile, {"indentation_depth": d}, {"tangential_force": size})
     outermost = c[np.flatnonzero(carried >= size)[-1]]
-    assert float(wear.stick_radius) == pytest.approx(outermost, rel=1e-3)
+    assert float(wear.stick_radius) == pytest.approx(outermost, rel=1e-3, abs=0)
     edge = np.atleast_1d(wear.stick_radius)
     share = edge * (d - profile.g(edge))
-    assert share == pytest.approx(size, rel=1e-13)
+    assert share == pytest.approx(size, rel=1e-13, abs=0)
 
 
 def test_a_force_that_the_worn_contact_cannot_carry() -> None:
@@ -164,10 +166,10 @@ def test_a_force_that_the_worn_contact_cannot_carry() -> None:
     d, a = 0.3, (R * 0.3) ** 0.5
     most = 2 * 0.5 * 2 / 3 * d * a / 3**0.5
     good = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_force": most * (1 - 1e-9)})
-    assert float(good.stick_radius) == pytest.approx(a / 3**0.5, rel=1e-4)
+    assert float(good.stick_radius) == pytest.approx(a / 3**0.5, rel=1e-4, abs=0)
     with pytest.raises(InputError) as failure:
         worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_force": [0.01, most * 1.001]})
-    assert failure.value.path == ("oscillation", "tangential_force", 1)
+    assert failure.value.path == ("tangential", "tangential_force", 1)
     assert f"{most:.6g}"[:6] in failure.value.detail
 
 
@@ -177,7 +179,7 @@ TABLE = Tabulated([0.0, 0.5, 0.9, 1.3], [0.0, 0.1, 0.35, 0.8])
 @pytest.mark.parametrize(
     ("profile", "depth"), [(Sphere(1.0), 1.2), (Ellipsoid(1.0, 0.2), 0.3), (TABLE, 1.1)]
 )
-def test_a_rim_past_the_profile_s_end_is_refused(profile: Profile, depth: float) -> None:
+def test_an_annulus_beyond_the_profile_s_end_is_refused(profile: Profile, depth: float) -> None:
     largest = 0.5 / 0.8 * depth
     amplitudes = {"tangential_displacement": [largest * 1e-3, largest * 0.99]}
     with pytest.raises(InputError) as failure:
@@ -190,31 +192,31 @@ def test_a_rim_past_the_profile_s_end_is_refused(profile: Profile, depth: float)
     ("load", "amplitude", "path"),
     [
         ({"contact_radius": 0.3}, {"tangential_force": 0.1}, ("load", "contact_radius")),
-        ({"normal_force": 0.3}, {}, ("oscillation",)),
+        ({"normal_force": 0.3}, {}, ("tangential",)),
         (
             {"normal_force": 0.3},
             {"tangential_force": 0.1, "tangential_displacement": 0.1},
-            ("oscillation",),
+            ("tangential",),
         ),
         (
             {"normal_force": 0.3},
             {"tangential_force": [0.1, -0.1]},
-            ("oscillation", "tangential_force", 1),
+            ("tangential", "tangential_force", 1),
         ),
         (
             {"normal_force": 0.3},
             {"tangential_displacement": [np.nan]},
-            ("oscillation", "tangential_displacement", 0),
+            ("tangential", "tangential_displacement", 0),
         ),
         (
             {"normal_force": 0.3},
             {"tangential_displacement": []},
-            ("oscillation", "tangential_displacement"),
+            ("tangential", "tangential_displacement"),
         ),
         (
             {"normal_force": 0.3},
             {"tangential_force": [0.1, 0.16]},
-            ("oscillation", "tangential_force", 1),
+            ("tangential", "tangential_force", 1),
         ),
     ],
 )
@@ -272,7 +274,7 @@ def test_steep_and_needle_like_powers() -> None:
 
 
 @pytest.mark.parametrize("slope", [1e-3, 1.0, 3.0])
-def test_a_rim_may_pass_the_sphere_that_a_tip_is_cut_from(slope: float) -> None:
+def test_an_annulus_may_pass_the_sphere_that_a_tip_is_cut_from(slope: float) -> None:
     """g' of the tip has a pole at the sphere's equator, which the cone begins before."""
     profile = SphericalTipCone(slope, 1.0)
     depth = float(profile.g(np.array([2.5]))[0])
@@ -285,7 +287,7 @@ def test_a_rim_may_pass_the_sphere_that_a_tip_is_cut_from(slope: float) -> None:
     for c in (b, np.nextafter(b, 0.0), np.nextafter(b, 9.0)):
         size = 0.5 / 0.8 * (depth - float(profile.g(np.array([c]))[0]))
         wear = worn(profile, {"indentation_depth": depth}, {"tangential_displacement": size})
-        assert float(wear.stick_radius) == pytest.approx(c, rel=1e-12)
+        assert float(wear.stick_radius) == pytest.approx(c, rel=1e-12, abs=0)
         assert float(wear.worn_volume) > 0
 
 
@@ -294,8 +296,8 @@ def test_loads_broadcast_with_moduli() -> None:
     wear = limit.solve(
         contact, np.array([0.8, 1.6]), np.array([0.5, 0.5]), tangential_force=[0.05, 0.1]
     )
-    assert wear.stick_radius[0] == pytest.approx(wear.stick_radius[1], rel=1e-14)
-    assert wear.pressure([0.1])[0] == pytest.approx(wear.pressure([0.1])[1] / 2, rel=1e-14)
+    assert wear.stick_radius[0] == pytest.approx(wear.stick_radius[1], rel=1e-14, abs=0)
+    assert wear.pressure([0.1])[0] == pytest.approx(wear.pressure([0.1])[1] / 2, rel=1e-14, abs=0)
     square = normal.solve(Paraboloid(R), 1.0, normal_force=[[0.3], [0.6]])
     both = limit.solve(square, 0.8, 0.5, tangential_force=[[0.05, 0.1]])
     assert both.wear_radius.shape == (2, 2)

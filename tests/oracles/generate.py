@@ -1,4 +1,4 @@
-"""Write the bank: ``python -m tests.oracles.generate``. The same input gives the same bytes."""
+"""Write the bank: ``python -m tests.oracles.generate``. The output is reproducible to the byte."""
 
 from __future__ import annotations
 
@@ -43,17 +43,17 @@ Record = dict[str, Any]
 
 
 def digits(value: mpf) -> str:
-    """`DIGITS` significant digits, or "inf"."""
+    """Format a number with `DIGITS` significant digits, or as "inf"."""
     return "inf" if mp.isinf(value) else str(mp.nstr(value, DIGITS, strip_zeros=False))
 
 
 def condition(value: mpf) -> float | None:
-    """Three digits are enough; None where it has no meaning (infinite values)."""
+    """Round a condition number to three digits; None if it has no meaning (infinite values)."""
     return None if mp.isinf(value) or mp.isnan(value) else float(mp.nstr(abs(value), 4))
 
 
 def representable(*values: float) -> bool:
-    """Whether no value left the range of normal doubles with a margin for products."""
+    """Report whether all values are normal doubles, with a margin for products."""
     return all(1e-250 < abs(value) < 1e250 for value in values)
 
 
@@ -69,7 +69,7 @@ def _numbers(value: Any) -> Iterable[float]:
 
 
 def profile_at(family: Family, scale: str) -> Profile | None:
-    """The family's profile at a scale, if its coefficients are doubles there."""
+    """Return the family's profile at a scale, if its coefficients are doubles there."""
     try:
         profile = family.make(SCALES[scale][0])
     except OverflowError:
@@ -78,7 +78,7 @@ def profile_at(family: Family, scale: str) -> Profile | None:
 
 
 def loads(family: Family, profile: Profile, ratio: float, scale: str) -> dict[str, float]:
-    """The given double of each control, all meant for nearly the same contact."""
+    """Return the given double of each control, for nearly the same contact."""
     length, e_star = SCALES[scale]
     size = family.unit(profile)
     if profile["kind"] == "cone" or (profile["kind"] == "power" and profile["exponent"] == 1):
@@ -162,7 +162,7 @@ def _normal_record(
 
 
 def radii(family: Family, profile: Profile, a: float) -> list[float]:
-    """Doubles in the contact: near the axis, near the edge and on both sides of the break."""
+    """Return doubles in the contact: near the axis, the edge and both sides of the break."""
     inside = [a * fraction for fraction in FRACTIONS]
     b = family.break_radius(profile)
     if b > 0:
@@ -231,7 +231,7 @@ def _pressure_record(
 
 @dataclass(frozen=True)
 class PressureState:
-    """What the pressure of one load depends on; `rate` is d log(load)/d log(a)."""
+    """State that determines the pressure of one load; `rate` is d log(load)/d log(a)."""
 
     shape: Shape
     a: mpf
@@ -254,7 +254,7 @@ def pressure_state(profile: Profile, control: str, load: float, e_star: float) -
 
 
 def pressure_at(given: PressureState, radius: mpf | float) -> mpf:
-    """p/E* at a radius."""
+    """Return p/E* at a radius."""
     with mp.workdps(QUAD_DIGITS):
         return pressure(given.shape, mpf(radius), given.a, given.s, given.depth)
 
@@ -338,7 +338,7 @@ def table_cases() -> Iterable[Record]:
 def _table_records(
     scene: TableScene, table: Table, radius: float, *, fields: bool
 ) -> Iterable[Record]:
-    """One record per control; the fields are asked of the given radius alone."""
+    """Return one record per control; fields are stored for the contact radius alone."""
     loads_ = {
         "contact_radius": radius,
         "indentation_depth": float(table.g(mpf(radius))),
@@ -375,7 +375,7 @@ def _table_records(
 
 
 def table_radii(scene: TableScene, a: float) -> list[float]:
-    """Between the knots, just beside one, beside the breaks, near the axis and near the edge.
+    """Return radii between knots, beside one, beside breaks, near the axis and near the edge.
 
     Not the axis itself: the interpolant of a smooth body has a slope of rounding's or the
     spline's own size there, and so formally an infinite pressure.
@@ -404,7 +404,7 @@ def _table_fields(scene: TableScene, table: Table, radius: float) -> Record:
 
 
 def finite_range(record: Record) -> bool:
-    """Drops nothing silently: a value outside the doubles is an error of the scenes."""
+    """Return all records; a value that is not representable is an error of the cases."""
     return all(math.isfinite(value) for value in _numbers(record))
 
 

@@ -1,4 +1,4 @@
-"""Reference answers from f alone, by mpmath quadrature, and the same faster through closed forms.
+"""Reference results from f alone by mpmath quadrature, and the same by closed forms, faster.
 
 ``quad_*`` are the definitions: g from f' (Eq. 5.74), d = g(a), N = F_N/E* = 2 int x g' dx written
 with f', all in the angle r = x sin t and split at the break. ``state`` and ``pressure`` are what
@@ -41,7 +41,7 @@ OUTPUTS = (
 
 
 def integral(fn: Callable[[mpf], mpf], points: list[mpf]) -> mpf:
-    """Tanh-sinh integral that fails rather than return fewer digits than promised.
+    """Integrate by the tanh-sinh rule; fail rather than return fewer digits than requested.
 
     mpmath's stopping rule is absolute, so each piece is scaled to unit width and height first.
     """
@@ -133,7 +133,7 @@ def _monomial_energy(shape: Monomials, a: mpf) -> mpf:
 
 
 def solve_increasing(fn: Callable[[mpf], mpf], target: mpf, start: mpf) -> mpf:
-    """The w with fn(w) = target for an increasing positive fn; a sign change proves the answer."""
+    """Return w with fn(w) = target for an increasing positive fn; a sign change proves the root."""
     goal = mp.log(target)
 
     def excess(w: mpf) -> mpf:
@@ -165,7 +165,7 @@ def solve_increasing(fn: Callable[[mpf], mpf], target: mpf, start: mpf) -> mpf:
 
 
 def contact_radius(shape: Shape, control: str, reduced: mpf) -> tuple[mpf, mpf | None]:
-    """Radius (and s = sqrt(a^2 - b^2) where blunt) for a depth, F_N/E* or radius."""
+    """Return the radius (and s = sqrt(a^2 - b^2) if blunt) for a depth, F_N/E* or radius."""
     if control == "contact_radius":
         return reduced, (shape.beyond(reduced) if shape.blunt else None)
     fn = shape.g if control == "indentation_depth" else shape.force
@@ -178,7 +178,7 @@ def contact_radius(shape: Shape, control: str, reduced: mpf) -> tuple[mpf, mpf |
 
 @dataclass(frozen=True)
 class State:
-    """The answers of a case and how strongly each depends on the given load (relative)."""
+    """Results of a case, and their relative condition numbers with respect to the load."""
 
     values: dict[str, mpf]
     condition: dict[str, mpf]
@@ -212,7 +212,7 @@ def elasticities(shape: Shape, a: mpf, s: mpf | None, u: mpf) -> dict[str, mpf]:
 
 
 def state(profile: Mapping[str, Any], control: str, load: float, e_star: float) -> State:
-    """Every answer of the normal problem for one load."""
+    """Return all results of the normal problem for one load."""
     with mp.workdps(CLOSED_DIGITS):
         shape, given, modulus = shape_of(profile), mpf(load), mpf(e_star)
         if isinstance(shape, FlatPunch):
@@ -251,14 +251,14 @@ def _pressure_beyond(shape: Shape, r: mpf, top: mpf) -> mpf:
 
 
 def _pressure_below(shape: Shape, r: mpf, end: mpf) -> mpf:
-    """The same over r < x < end <= b."""
+    """Return the integral of g'/sqrt(x^2 - r^2) over r < x < end <= b."""
     if r == 0:
         return integral(lambda x: shape.inner_dg(x) / x, [mpf(0), end])
     return integral(lambda y: shape.inner_dg(r * mp.cosh(y)), [mpf(0), mp.acosh(end / r)])
 
 
 def pressure(shape: Shape, r: mpf, a: mpf, s: mpf | None = None, depth: mpf | None = None) -> mpf:
-    """p(r)/E* = (1/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx (Eq. 5.79); infinite where p is."""
+    """Return p(r)/E* = (1/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx (Eq. 5.79)."""
     if r >= a:
         return mpf(0) if not isinstance(shape, FlatPunch) or r > a else mp.inf
     if isinstance(shape, FlatPunch):

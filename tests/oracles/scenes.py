@@ -1,4 +1,4 @@
-"""Which cases the bank holds: families of shapes, the regimes of each, and the scales of units."""
+"""Cases of the bank: families of shapes, their regimes, and scales of units."""
 
 from __future__ import annotations
 
@@ -253,7 +253,7 @@ FAMILIES: tuple[Family, ...] = (
 
 
 def scenes() -> Iterator[tuple[Family, str, float, str]]:
-    """Every family's first regime at every scale, its other regimes at one scale each in turn."""
+    """Return every family's first regime at every scale, its others at one scale each in turn."""
     names = list(SCALES)
     turn = 0
     for family in FAMILIES:

@@ -1,4 +1,4 @@
-"""The indenter shapes of the catalogue in mpmath: f, its image g and the force, all at ``mp.dps``.
+"""Profiles of the catalogue in mpmath: f, the equivalent profile g and the force, at ``mp.dps``.
 
 Two kinds of statement live here. ``f`` and ``df`` are the definition of each kind. ``inner_*`` and
 ``outer_*`` are closed forms for g, g' and N = F_N/E*; they are only there for speed, and
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Shape:
-    """One indenter; the defaults are those of a shape that is smooth from the tip on."""
+    """One profile; the defaults are those of a profile that is smooth from the tip on."""
 
     #: Radius where f' or f'' jumps.
     b: mpf
@@ -338,7 +338,7 @@ class Hyperboloid(Shape):
 
 
 class FlatPunch(Shape):
-    """The one shape whose contact radius is given; g = 0 on the whole contact."""
+    """Flat punch: the contact radius is given, and g = 0 on the whole contact."""
 
     def __init__(self, radius: mpf) -> None:
         super().__init__()

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as reference
+from tests.oracles.bank import DATA
 from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
 from tests.oracles.scenes import FAMILIES, SCALES, Family, Profile
-from tests.oracles.slip_bank import DATA
 from tests.oracles.slip_reference import CONTROLS, OUTPUTS, WORK_DIGITS, Material, Setting
 from tests.oracles.table_scenes import table_scenes
 
@@ -65,7 +65,7 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True)
 class Task:
-    """One record to be: a contact, a tangential control, and what to ask of it."""
+    """Task of one record: a contact, a tangential control and the values to prescribe."""
 
     name: str
     equation: str
@@ -220,7 +220,7 @@ def _table_tasks() -> Iterator[Task]:
 
 
 def meant(at: Setting, task: Task, wanted: Any) -> float | None:
-    """The double to ask with: nearest to the wanted rho or stick radius."""
+    """Return the prescribed double, nearest to the wanted rho or stick radius."""
     with mp.workdps(WORK_DIGITS):
         full = at.mu * at.e_star * at.n
         if isinstance(wanted, tuple) and wanted[0] == "past":
@@ -242,7 +242,7 @@ def meant(at: Setting, task: Task, wanted: Any) -> float | None:
 
 
 def _inside(at: Setting, task: Task, c: float) -> float | None:
-    """A stick radius that rounding cannot push out of [b, a]."""
+    """Return a stick radius that rounding keeps in [b, a]."""
     margin = 0.0 if task.control == "contact_radius" else 64 * 2.0**-52
     if mpf(c) > at.a * (1 - margin) or (at.body.blunt and mpf(c) <= at.body.b):
         return None
@@ -250,7 +250,7 @@ def _inside(at: Setting, task: Task, c: float) -> float | None:
 
 
 def _head(task: Task) -> Record:
-    """What every record of a task begins with: its name and its scene."""
+    """Return the first members of every record of a task: its name and its case."""
     return {
         "id": task.name,
         "equation": task.equation,
@@ -428,7 +428,7 @@ def _table_fields() -> Iterator[FieldTask]:
 def _field_task(
     family: Family, regime: str, size: float, ratio: float, turn: int
 ) -> FieldTask | None:
-    """Mostly with both radii given exactly, which leaves no excuse; every fourth by forces."""
+    """Return the controls: both radii, given exactly, for most records; forces for every fourth."""
     profile, scale = _profile(family, list(SCALES)[turn % len(SCALES)])
     given = loads(family, profile, size, scale)
     a = given["contact_radius"]

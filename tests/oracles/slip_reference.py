@@ -1,4 +1,4 @@
-"""Reference answers for partial slip: the tangential problem and the fields over the radius.
+"""Reference results for partial slip: the tangential problem and the fields over the radius.
 
 A body is a row of panels. On each the image g is smooth in s = sqrt(x^2 - k^2), where k is the
 panel's left end: the break of a shape, a knot of a table, or zero. Every integral is taken in s,
@@ -42,7 +42,7 @@ OUTPUTS = (
 
 @dataclass(frozen=True)
 class Panel:
-    """A stretch k <= x where g and dg are smooth in s = sqrt(x^2 - k^2)."""
+    """An interval k <= x on which g and dg are smooth in s = sqrt(x^2 - k^2)."""
 
     k: mpf
     low: mpf
@@ -95,7 +95,7 @@ class ShapeBody:
             yield Panel(b, start, high, shape.outer_g, shape.outer_dg)
 
     def integrate(self, fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
-        """By tanh-sinh; the values at full digits, whatever the rule's."""
+        """Integrate by the tanh-sinh rule, with integrands at full precision."""
         if low == high:
             return mpf(0)
         width = high - low
@@ -262,7 +262,7 @@ class Material:
 
 
 def setting(profile: Mapping[str, Any], control: str, load: float, material: Material) -> Setting:
-    """The normal contact under one load (at most one control), at full digits."""
+    """Return the normal contact under one load (at most one control), at full precision."""
     with mp.workdps(WORK_DIGITS):
         body = body_of(profile)
         e_star, g_star, mu = mpf(material.e_star), mpf(material.g_star), mpf(material.mu)
@@ -322,7 +322,7 @@ def _monomial_overlap(shape: Monomials, a: mpf, c: mpf) -> mpf:
 
 @dataclass(frozen=True)
 class Answer:
-    """Every answer, and how strongly it depends on the tangential and on the normal quantity."""
+    """Results, and their condition numbers with respect to the tangential and the normal load."""
 
     c: mpf
     values: dict[str, mpf]
@@ -333,7 +333,7 @@ class Answer:
 
 
 def values(at: Setting, c: mpf, *, energy: bool = True) -> dict[str, mpf]:
-    """The answers of a partial slip with stick radius c, 0 <= c <= a."""
+    """Return the results of partial slip with stick radius c, 0 <= c <= a."""
     body = at.body
     found = {
         "tangential_force": at.mu * at.e_star * (at.n - body.force(c)),
@@ -369,7 +369,7 @@ def gradients(at: Setting, c: mpf) -> dict[str, tuple[mpf, mpf]]:
 
 
 def solve(at: Setting, control: str, given: float, *, energy: bool = True) -> Answer:
-    """All answers for one given tangential quantity below full slip."""
+    """Return all results for one tangential quantity below full slip."""
     with mp.workdps(WORK_DIGITS):
         c = stick_radius(at, control, mpf(given))
         if c == at.a:
@@ -396,7 +396,7 @@ def solve(at: Setting, control: str, given: float, *, energy: bool = True) -> An
 
 
 def flat_answer(at: Setting, control: str, given: float) -> dict[str, mpf]:
-    """The flat punch sticks wholly and slides at once (Eq. 5.33 and the text at 5.31)."""
+    """Return the results of a flat punch: full stick or full slip (Eq. 5.33, text at 5.31)."""
     with mp.workdps(WORK_DIGITS):
         stiffness, bound = 2 * at.g_star * at.a, at.mu * at.e_star * at.n
         force = mpf(given) if control == "tangential_force" else mpf(given) * stiffness
@@ -411,7 +411,7 @@ def flat_answer(at: Setting, control: str, given: float) -> dict[str, mpf]:
 
 
 def full_slip(at: Setting, displacement: float) -> dict[str, mpf]:
-    """Displacement past u_max: all of the contact slides, and the rest is lost to friction."""
+    """Return the results beyond u_max: full slip, and the excess work is dissipated."""
     with mp.workdps(WORK_DIGITS):
         edge = at.body.b if at.body.blunt else mpf(0)
         found = values(at, edge)
@@ -438,7 +438,7 @@ def _abel(body: Body, panel: Panel, r: mpf) -> mpf:
 
 
 def _singular(at: Setting, c: mpf, r: mpf) -> bool:
-    """Whether the traction is infinite: on a convex kink that slips, or on a sharp tip."""
+    """Report whether the traction is infinite: on a convex kink that slips, or on a sharp tip."""
     body = at.body
     if not isinstance(body, ShapeBody) or not c <= r < at.a:
         return False

@@ -23,6 +23,8 @@ from tests.oracles.shapes import KINDS, Monomials, Shape, shape_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.long
+
 PROOF = mpf(10) ** -35
 #: Points in units of the break, or of the shape's size where it has none.
 AROUND = (0.01, 0.4, 1 - 1e-6, 1 + 1e-6, 1.07, 2.5, 1e3)
@@ -55,7 +57,7 @@ def same(left: mpf, right: mpf) -> bool:
     return bool(abs(left - right) <= PROOF * abs(right))
 
 
-def test_every_kind_is_proved() -> None:
+def test_every_kind_has_proofs() -> None:
     # The flat punch has no transform: F_N = 2 E* a d by definition.
     assert {p["kind"] for p in PROFILES.values()} == set(KINDS) - {"flat_punch"}
 
@@ -69,7 +71,7 @@ def test_slope_is_the_derivative_of_the_shape(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_image_is_the_transform_of_the_shape(name: str) -> None:
+def test_equivalent_profile_is_the_transform_of_the_shape(name: str) -> None:
     with mp.workdps(QUAD_DIGITS + 10):
         shape = shape_of(PROFILES[name])
         for x in points(shape):
@@ -153,7 +155,7 @@ def test_pressures_known_in_closed_form(ratio: float) -> None:
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_pressure_is_the_singular_integral_of_the_image(name: str) -> None:
+def test_pressure_is_the_singular_integral_of_the_equivalent_profile(name: str) -> None:
     """The same integral without the substitution in s, split at the break, at twice the digits."""
     with mp.workdps(100):
         shape = shape_of(PROFILES[name])

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from tests.oracles.scenes import Profile
 
+pytestmark = pytest.mark.long
+
 PROOF = mpf(10) ** -33
 #: The plain integrals are singular at their ends, where tanh-sinh keeps half of its digits.
 PLAIN_DIGITS = 100
@@ -29,7 +31,7 @@ CONE: Profile = {"kind": "cone", "slope": 0.3}
 
 @pytest.fixture(autouse=True)
 def _digits() -> Iterator[None]:
-    """What a test writes down itself must not be rounded to fifteen digits."""
+    """Work at full precision: numbers of a test must not be rounded to fifteen digits."""
     with mp.workdps(reference.WORK_DIGITS):
         yield
 
@@ -43,20 +45,20 @@ def setting_of(profile: Profile, radius: float) -> Setting:
 
 
 def chosen(name: str) -> Setting:
-    """A contact that reaches beyond the break, if there is one."""
+    """Return a contact that reaches beyond the break, if there is one."""
     profile = PROFILES[name]
     b = float(reference.body_of(profile).b)
     return setting_of(profile, 1.7 * b if b else 0.5)
 
 
 def sticks(at: Setting) -> list[mpf]:
-    """Stick radii on both sides of the break, or beyond a flat."""
+    """Return stick radii on both sides of the break, or beyond a flat."""
     b = at.body.b
     ratios = (mpf("1.001"), mpf("1.3")) if at.body.blunt else (mpf("0.4"), mpf("1.3"))
     return [b * ratio for ratio in ratios] if b else [at.a / 10, at.a * mpf("0.9")]
 
 
-def test_every_kind_is_proved() -> None:
+def test_every_kind_has_proofs() -> None:
     assert {PROFILES[name]["kind"] for name in CHOSEN} == set(KINDS) - {"flat_punch"}
 
 
@@ -114,7 +116,7 @@ def test_energy_is_the_plain_integral(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["power0.2", "power60", "series-4"])
-def test_energy_of_monomials_loses_nothing(name: str) -> None:
+def test_energy_of_monomials_is_free_of_cancellation(name: str) -> None:
     at = setting_of(PROFILES[name], 0.5)
     for c in (at.a * (1 - mpf(10) ** -16), at.a / 1000):
         found = reference.overlap(at, c)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from tests.oracles.wear_reference import Limit
 
+pytestmark = pytest.mark.long
+
 PROOF = mpf(10) ** -33
 #: The plain integrals are singular at their ends, where tanh-sinh keeps half of its digits.
 PLAIN = mpf(10) ** -30
@@ -48,13 +50,13 @@ def chosen(name: str) -> Limit:
     return reference.solve(profile, DEPTH, mpf(depth), MATERIAL, DISPLACEMENT, amplitude)
 
 
-def test_every_kind_is_proved() -> None:
+def test_every_kind_has_proofs() -> None:
     assert {PROFILES[name]["kind"] for name in SOME} == set(KINDS) - {"flat_punch"}
 
 
 @pytest.mark.parametrize("name", SOME)
 def test_equation_5_83(name: str) -> None:
-    """f = (2/pi) int_0^c g/sqrt(r^2 - x^2) dx + (2/pi) d arccos(c/r) in the worn rim."""
+    """f = (2/pi) int_0^c g/sqrt(r^2 - x^2) dx + (2/pi) d arccos(c/r) in the worn annulus."""
     limit = chosen(name)
     body, c = limit.at.body, limit.c
     for part in (mpf("0.1"), mpf("0.7")):
@@ -73,7 +75,7 @@ def test_equation_5_83(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SOME)
-def test_equation_5_88_the_worn_shape_meets_the_first_one(name: str) -> None:
+def test_worn_shape_meets_the_initial_one_by_equation_5_88(name: str) -> None:
     limit = chosen(name)
     edge = limit.c + limit.width
     near = limit.width * mpf(10) ** -30

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 from mpmath import mp, mpf
 
 from tests.oracles import wear_reference as reference
+from tests.oracles.bank import DATA
 from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
 from tests.oracles.scenes import FAMILIES, SCALES, Profile
 from tests.oracles.slip_generate import BLUNT, material_at
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting, setting
 from tests.oracles.table_scenes import table_scenes
-from tests.oracles.wear_bank import DATA
 from tests.oracles.wear_reference import FIELDS, OUTPUTS, Limit
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def tasks() -> Iterator[Task]:
 
 
 def _table_tasks(turn: int) -> Iterator[Task]:
-    """Small tables by every pair; of long ones, whose rims have many panels, a thin one."""
+    """Small tables by every pair; long ones, with many panels, by a narrow worn annulus."""
     for scene in table_scenes():
         points = len(scene.profile["r"])
         if points > MOST_POINTS:
@@ -228,7 +228,7 @@ def record_of(task: Task) -> Record | None:
 
 
 def field_rows(limits: tuple[Limit, ...]) -> Record:
-    """All fields at doubles from the axis to beyond the rim, near both of its edges."""
+    """All fields at doubles from the axis to beyond the worn annulus, near both of its edges."""
     first = limits[0]
     c, width, end = first.c, first.width, reference._end(first.at)
     inside = [c * q for q in (mpf("1e-9"), mpf("1e-3"), WIDE, 1 - mpf("1e-3"), 1 - mpf("1e-8"))]

@@ -42,14 +42,14 @@ OUTPUTS = (
     "worn_volume",
 )
 FIELDS = ("worn_depth", "limiting_profile", "pressure")
-#: Inputs that differ in this digit have rims that differ by less than `CLOSE`.
+#: Inputs that differ in this digit have worn annuli that differ by less than `CLOSE`.
 NUDGE_DIGITS = 30
 CLOSE = mpf(10) ** -18
 
 
 @dataclass(frozen=True)
 class Limit:
-    """The stick edge c, d - g(c), and the width of the worn rim."""
+    """The stick edge c, d - g(c), and the width of the worn annulus."""
 
     at: Setting
     c: mpf
@@ -149,7 +149,7 @@ def _whole(body: Body, low: mpf, high: mpf) -> Iterator[Panel]:
 
 
 def worn_depth(limit: Limit, r: mpf) -> mpf:
-    """(2/pi) int_c^r (d - g)/sqrt(r^2 - x^2) dx (Eqs. 5.75, 5.82), 0 outside the rim."""
+    """(2/pi) int_c^r (d - g)/sqrt(r^2 - x^2) dx (Eqs. 5.75, 5.82), 0 outside the worn annulus."""
     with mp.workdps(WORK_DIGITS):
         if not limit.c < r < limit.c + limit.width:
             return mpf(0)
@@ -195,7 +195,7 @@ def rim_width(at: Setting, c: mpf, step: mpf, near: mpf | None = None) -> mpf:
         if worn(high) < 0:
             break
         if high == end:
-            raise ArithmeticError("the worn rim passes the profile's end")
+            raise ArithmeticError("the worn annulus reaches beyond the profile's end")
         stride *= 2
     return mp.exp(_illinois(worn, low, high))
 
@@ -222,7 +222,7 @@ def _illinois(fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
             side = -1
         if abs(value) < mpf(10) ** -40:
             return middle
-    raise ArithmeticError("the rim's edge did not settle")
+    raise ArithmeticError("the outer edge of the worn annulus did not converge")
 
 
 def solve(profile: Mapping[str, Any], control: str, load: mpf, material: Material,

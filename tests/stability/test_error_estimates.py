@@ -18,7 +18,7 @@ from tests.core.comparison import EPS, profile_from, relative_error
 from tests.core.test_history_bank import material, misses
 from tests.core.test_tangential_bank import solved as pushed
 from tests.core.test_wear_limit_bank import solved as worn
-from tests.oracles import bank, history_bank, slip_bank, wear_bank
+from tests.oracles import bank
 
 #: How far above the true error an estimate may lie, and for which part of the cases.
 FACTOR, PART = 1e4, 0.95
@@ -59,18 +59,18 @@ def of_normal() -> list[Measured]:
 
 
 def of_tangential() -> list[Measured]:
-    cases = slip_bank.load("tangential")
+    cases = bank.load("tangential")
     return [measured(case, pushed(case), case["expected"]) for case in cases]
 
 
 def of_wear_limits() -> list[Measured]:
-    return [measured(case, worn(case), case["expected"]) for case in wear_bank.load()]
+    return [measured(case, worn(case), case["expected"]) for case in bank.load("wear_limit")]
 
 
 def of_paths() -> list[Measured]:
     """Relative to the largest value on the way, as a history's estimate is meant."""
     found = []
-    for case in history_bank.load("paths"):
+    for case in bank.load("history_paths"):
         names = ("indentation_depth", "tangential_displacement")
         followed = history.solve(*material(case), **{name: case[name] for name in names})
         errors = misses(case, followed)
@@ -81,7 +81,7 @@ def of_paths() -> list[Measured]:
 def of_cycles() -> list[Measured]:
     """Of a cycle's loss and stiffness, the second of two equal cycles."""
     found = []
-    for case in history_bank.load("cycles"):
+    for case in bank.load("history_cycles"):
         estimate = error = 0.0
         for index, amplitude in enumerate(case["given"]):
             loads = {case["control"]: case["load"], case["tangential_control"]: amplitude}

@@ -207,6 +207,7 @@ def test_towards_the_equator_and_the_tip(name: str) -> None:
     CURVES[name]().holds()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["force, a -> 0", "inverse", "pressure inside", "beside"])
 def test_where_the_naive_formula_dies(name: str) -> None:
     CURVES[name]().naive_dies(1e-6)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 #: What is promised of a table.
-TABLE = 1e-11
+TABLE = 1e-12
 A, B, SLOPE, BIG = 1.02, 0.45, 0.3, 1.3
 POINTS = np.array([0.15 * i for i in range(9)])
 

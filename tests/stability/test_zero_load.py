@@ -1,4 +1,4 @@
-"""A load that vanishes: every answer keeps its digits, down to where doubles end."""
+"""A load that vanishes: every answer keeps its digits."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mdr_core import normal
-from mdr_core.profiles import Hyperboloid, RoundedPunch, Series, SphericalTipCone
+from mdr_core import fields, normal, tangential
+from mdr_core.profiles import FlatPunch, Hyperboloid, RoundedPunch, Series, SphericalTipCone
 from mdr_core.profiles import PowerTerm as Term
 from tests.core.comparison import profile_from
 from tests.core.evaluations import PROFILES
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from mdr_core.profiles import Profile
 
 SLOPE, BIG, B = 0.4, 1.3, 0.6
-DEPTHS = steps(0.5, 1e-90, 40)
+#: Down to the smallest load that is accepted.
+DEPTHS = steps(0.5, 1e-50, 40)
 
 
 def by_depth(
@@ -217,3 +218,12 @@ def test_no_load_is_answered_by_nothing(kind: str, control: str) -> None:
     flat = "radius" if kind == "flat_punch" else "flat_radius"
     assert contact.contact_radius == PROFILES[kind].get(flat, 0.0)
     assert np.isfinite(contact.normal_stiffness)
+
+
+def test_no_shear_at_the_edge_of_a_flat_punch_without_a_tangential_load() -> None:
+    """The edge, where the stress is infinite under any load, is no exception."""
+    pressed = normal.solve(FlatPunch(1.0), 1.0, normal_force=[1.0, 2.0])
+    pushed = tangential.solve(pressed, 0.8, 0.4, tangential_force=[0.0, 0.1])
+    unpushed, loaded = fields.shear_stress(pushed, [0.0, 0.5, 1.0])
+    assert not unpushed.any()
+    assert loaded[2] == np.inf

@@ -1,0 +1,162 @@
+"""Inputs that the core rejects: the path, the index and the reason of each error."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import fields, normal, tangential
+from mdr_core.errors import InputError
+from mdr_core.materials import RIGID, Body, Material, from_bodies
+from mdr_core.profiles import (
+    Cone,
+    Ellipsoid,
+    FlatPunch,
+    Paraboloid,
+    PowerTerm,
+    RoundedPunch,
+    Series,
+    Sphere,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+
+STEEL = Body(2.1e11, 0.3)
+HERTZ = normal.solve(Paraboloid(1.0), 1.0, contact_radius=[0.1, 0.2])
+
+
+def loaded(profile: Any, **load: Any) -> Callable[[], Any]:
+    return lambda: normal.solve(profile, 1.0, **load)
+
+
+def pushed(contact: normal.NormalContact = HERTZ, **load: Any) -> Callable[[], Any]:
+    return lambda: tangential.solve(contact, 1.0, 0.5, **load)
+
+
+REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
+    (loaded(Cone(1.0)), ("load",), "exactly one of"),
+    (loaded(Cone(1.0), indentation_depth=1.0, normal_force=1.0), ("load",), "exactly one of"),
+    (
+        loaded(Cone(1.0), indentation_depth=1.0, normal_force=1.0, contact_radius=1.0),
+        ("load",),
+        "exactly one of",
+    ),
+    (loaded(Cone(1.0), normal_force=[]), ("load", "normal_force"), "at least one load"),
+    (loaded(Cone(1.0), normal_force=[1.0, -1.0]), ("load", "normal_force", 1), "not negative"),
+    (loaded(Cone(1.0), normal_force=[1.0, np.inf]), ("load", "normal_force", 1), "finite"),
+    (
+        loaded(Cone(np.ones(3)), normal_force=[1.0, 2.0]),
+        ("load", "normal_force"),
+        "does not agree",
+    ),
+    (lambda: normal.solve(Cone(1.0), 0.0, normal_force=1.0), ("material", "e_star"), "positive"),
+    (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
+    (pushed(), ("tangential",), "exactly one of"),
+    (pushed(tangential_force=0.0, stick_radius=0.1), ("tangential",), "exactly one of"),
+    (pushed(tangential_force=np.nan), ("tangential", "tangential_force"), "finite"),
+    (pushed(tangential_force=[0.0, 1.0]), ("tangential", "tangential_force", 1), "no equilibrium"),
+    (pushed(tangential_force=[0.0, -1.0]), ("tangential", "tangential_force", 1), "no equilibrium"),
+    (pushed(stick_radius=[0.05, 0.21]), ("tangential", "stick_radius", 1), "must lie between"),
+    (pushed(stick_radius=[-0.05, 0.1]), ("tangential", "stick_radius", 0), "must lie between"),
+    (
+        lambda: tangential.solve(HERTZ, 1.0, 0.0, stick_radius=0.1),
+        ("friction_coefficient",),
+        "positive",
+    ),
+    (
+        lambda: tangential.solve(HERTZ, -1.0, 0.5, stick_radius=0.1),
+        ("material", "g_star"),
+        "positive",
+    ),
+    (lambda: from_bodies([]), ("material", "bodies"), "exactly two bodies"),
+    (lambda: from_bodies([STEEL]), ("material", "bodies"), "exactly two bodies"),
+    (lambda: from_bodies([STEEL, RIGID, STEEL]), ("material", "bodies"), "exactly two bodies"),
+    (lambda: from_bodies([RIGID, RIGID]), ("material", "bodies"), "at least one body"),
+    (
+        lambda: from_bodies([STEEL, Body(0.0, 0.3)]),
+        ("material", "bodies", 1, "youngs_modulus"),
+        "positive",
+    ),
+    (
+        lambda: from_bodies([Body(1.0, 0.51), RIGID]),
+        ("material", "bodies", 0, "poissons_ratio"),
+        "1/2",
+    ),
+    (
+        lambda: from_bodies([Body(1.0, -1.0), RIGID]),
+        ("material", "bodies", 0, "poissons_ratio"),
+        "1/2",
+    ),
+    (lambda: fields.pressure(HERTZ, []), ("radius",), "at least one radius"),
+    (lambda: fields.pressure(HERTZ, [0.1, 0.2, -0.1]), ("radius", 2), "not negative"),
+    (lambda: fields.pressure(HERTZ, [0.1, np.nan]), ("radius", 1), "finite"),
+    (lambda: fields.grid(HERTZ, 3), ("points",), "at least 4"),
+    (
+        loaded(FlatPunch(1.0), contact_radius=1.0),
+        ("load", "contact_radius"),
+        "prescribe indentation_depth",
+    ),
+    (
+        pushed(normal.solve(FlatPunch(1.0), 1.0, normal_force=1.0), stick_radius=0.5),
+        ("tangential", "stick_radius"),
+        "no slip annulus",
+    ),
+    (lambda: Series(()), ("profile", "terms"), "at least one term"),
+    (
+        lambda: Series((PowerTerm(1.0, 2.0), PowerTerm(1.0, 0.0))),
+        ("profile", "terms", 1, "exponent"),
+        "positive",
+    ),
+    (
+        lambda: Series((PowerTerm(0.0, 2.0),)),
+        ("profile", "terms", 0, "coefficient"),
+        "not zero",
+    ),
+    (lambda: Series((PowerTerm(-1.0, 1.0), PowerTerm(1.0, 2.0))), ("profile", "terms"), "f falls"),
+]
+
+
+@pytest.mark.parametrize(("call", "path", "reason"), REJECTED)
+def test_error_names_path_index_and_reason(
+    call: Callable[[], Any], path: tuple[str | int, ...], reason: str
+) -> None:
+    with pytest.raises(InputError) as raised:
+        call()
+    assert raised.value.path == path
+    assert reason in raised.value.detail
+
+
+FLAT_ENDED = [RoundedPunch(0.5, 1.0), TruncatedCone(0.5, 0.3), TruncatedParaboloid(0.5, 1.0)]
+
+
+@pytest.mark.parametrize("profile", FLAT_ENDED, ids=lambda profile: profile.kind)
+def test_contact_smaller_than_its_flat_is_rejected(profile: Any) -> None:
+    with pytest.raises(InputError, match="cannot be smaller than the flat") as raised:
+        normal.solve(profile, 1.0, contact_radius=[0.6, 0.5, np.nextafter(0.5, 0.0), 0.4])
+    assert raised.value.path == ("load", "contact_radius", 2)
+    assert raised.value.cases.tolist() == [False, False, True, True]
+    # The flat itself touches without a load.
+    assert normal.solve(profile, 1.0, contact_radius=0.5).normal_force == 0
+
+
+@pytest.mark.parametrize("profile", [Sphere(0.5), Ellipsoid(0.5, 2.0)], ids=lambda p: p.kind)
+def test_contact_as_wide_as_its_body_is_rejected(profile: Any) -> None:
+    normal.solve(profile, 1.0, contact_radius=np.nextafter(0.5, 0.0))
+    with pytest.raises(InputError) as raised:
+        normal.solve(profile, 1.0, contact_radius=[0.4, 0.5])
+    assert raised.value.path == ("load", "contact_radius", 1)
+
+
+def test_contact_beyond_the_end_of_a_series_is_rejected_under_each_control() -> None:
+    # f' = 2 r - 4 r^3 and g' ~ x - (8/3) x^3: the second falls first, at sqrt(3/8).
+    profile = Series((PowerTerm(1.0, 2.0), PowerTerm(-1.0, 4.0)))
+    end = np.sqrt(3 / 8)
+    assert profile.domain == pytest.approx(end, rel=1e-14, abs=0)
+    last = normal.solve(profile, 1.0, contact_radius=profile.domain)
+    for name in ("indentation_depth", "normal_force", "contact_radius"):
+        most = float(getattr(last, name))
+        assert normal.solve(profile, 1.0, **{name: most * (1 - 1e-6)}).contact_radius < end
+        with pytest.raises(InputError, match="ceases to be admissible") as raised:
+            normal.solve(profile, 1.0, **{name: [most / 2, most * (1 + 1e-6)]})
+        assert raised.value.path == ("load", name, 1)

@@ -1,0 +1,48 @@
+"""The compiled loop of load histories is in use, and gives the bits of the Python text."""
+
+from __future__ import annotations
+
+import importlib.machinery
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mdr_core.history import slip_memory, slip_memory_kernel
+from mdr_core.history.slip_memory import LoadPoints
+
+TEXT = Path(slip_memory.__file__).with_name("slip_memory_kernel.py")
+
+
+def test_the_loop_is_compiled() -> None:
+    suffix = Path(slip_memory_kernel.__file__).suffix
+    assert suffix in importlib.machinery.EXTENSION_SUFFIXES[-1]
+
+
+@pytest.mark.parametrize("control", ["random", "constant", "separated"])
+def test_compiled_and_plain_python_give_the_same_bits(
+    monkeypatch: pytest.MonkeyPatch, control: str
+) -> None:
+    rng, count = np.random.default_rng(20), 3000
+    spread = {"random": (0.3, 0.1), "constant": (0.3, 0.0), "separated": (0.3, 0.4)}[control]
+    points = LoadPoints(
+        rng.normal(*spread, count),
+        np.cumsum(rng.normal(0.0, 0.2, count)),
+        np.arange(count) % 3 > 0,
+        np.arange(count),
+    )
+    start = slip_memory.separated(0.0, 0.0)
+    compiled = slip_memory.apply_steps(start, points)
+    specification = importlib.util.spec_from_file_location("plain", TEXT)
+    assert specification is not None
+    assert specification.loader is not None
+    plain = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(plain)
+    monkeypatch.setattr(slip_memory, "kernel", plain)
+    tree, path, line = slip_memory.apply_steps(start, points)
+    for name in ("parent", "normal", "growth", "top"):
+        np.testing.assert_array_equal(getattr(compiled[0], name), getattr(tree, name), name)
+    for ours, theirs in ((compiled[1], path), (compiled[2], line)):
+        for name, one, other in zip(ours._fields, ours, theirs, strict=True):
+            np.testing.assert_array_equal(one, other, name)

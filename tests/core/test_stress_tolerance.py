@@ -1,0 +1,96 @@
+"""Stresses at every tolerance against the reference: relative errors, next to every singularity."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from mdr_core import fields, normal, tangential
+from tests.core.comparison import profile_from
+from tests.oracles import reference
+from tests.oracles.shapes import shape_of
+
+Profile = dict[str, Any]
+
+
+def rounded(b: float) -> Profile:
+    return {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": 2.0}
+
+
+def power(n: float) -> Profile:
+    return {"kind": "power", "coefficient": 0.3, "exponent": n}
+
+
+#: Of a contact of radius 1.
+PROFILES: dict[str, Profile] = {
+    "rounded 0.33": rounded(0.33),
+    "rounded 0.95": rounded(0.95),
+    "rounded 0.99999": rounded(0.99999),
+    "truncated cone": {"kind": "truncated_cone", "flat_radius": 0.5, "slope": 0.3},
+    "truncated paraboloid": {"kind": "truncated_paraboloid", "flat_radius": 0.6, "radius": 3.0},
+    "sphere 1.27": {"kind": "sphere", "radius": 1.27},
+    "sphere 1e6": {"kind": "sphere", "radius": 1e6},
+    "ellipsoid": {"kind": "ellipsoid", "radius": 3.0, "height": 0.7},
+    "hyperboloid 0.6": {"kind": "hyperboloid", "slope": 0.4, "tip_radius": 1.5},
+}
+#: Over an annulus only: the whole contact is in the pressure bank.
+POWERS = {f"power {n}": power(n) for n in (0.4, 1.5, 6.0)}
+TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-8, 1e-10, 1e-12)
+
+
+def checked(name: str, c: float) -> np.ndarray:
+    """Places next to the axis, the break, the stick edge and the edge, and in between."""
+    b = (PROFILES | POWERS)[name].get("flat_radius", 0.0)
+    near = [x * (1 + side) for x in (b, c) if x for side in (-1e-3, -1e-9, 1e-9, 1e-3)]
+    # The reference is a difference, of two that are infinite on the axis of a power.
+    axis = [] if name in POWERS else [0.0]
+    r = np.array([*axis, 1e-6, 0.2, 0.45, 0.8, 0.97, 1 - 1e-6, 1 - 1e-12, *near])
+    return np.unique(r[(r >= 0) & (r < 1)])
+
+
+@cache
+def truth(name: str, stick: float | None) -> tuple[mpf, ...]:
+    """(1/pi) int g'/sqrt(x^2 - r^2) dx over max(r, c) < x < 1 at the checked radii."""
+    shape, c = shape_of((PROFILES | POWERS)[name]), mpf(stick or 0.0)
+    with mp.workdps(reference.QUAD_DIGITS):
+        found = []
+        for r in checked(name, stick or 0.0).tolist():
+            whole = reference.pressure(shape, mpf(r), mpf(1))
+            found.append(whole - reference.pressure(shape, mpf(r), c) if r < c else whole)
+        return tuple(found)
+
+
+def worst(name: str, stick: float | None, rtol: float) -> float:
+    """Largest relative error at the checked radii."""
+    given = (PROFILES | POWERS)[name]
+    contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0, rtol=rtol)
+    r = checked(name, stick or 0.0)
+    if stick is None:
+        values = fields.pressure(contact, r, rtol=rtol)
+    else:
+        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=stick)
+        values = fields.shear_stress(pushed, r, rtol=rtol)
+    pairs = zip(values.tolist(), truth(name, stick), strict=True)
+    return max(float(abs(mpf(value) / exact - 1)) for value, exact in pairs)
+
+
+@pytest.mark.every(3)
+@pytest.mark.parametrize("rtol", TOLERANCES)
+@pytest.mark.parametrize("name", PROFILES)
+def test_pressure_meets_the_tolerance(name: str, rtol: float) -> None:
+    assert worst(name, None, rtol) <= rtol
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("part", [0.02, 0.5, 1 - 1e-9])
+@pytest.mark.parametrize("name", [*PROFILES, *POWERS])
+def test_shear_stress_meets_the_tolerance(name: str, part: float) -> None:
+    """Over annuli from wide to so narrow that a difference of pressures has no digits."""
+    low = max((PROFILES | POWERS)[name].get("flat_radius", 0.0), 0.19 if name in POWERS else 0.0)
+    stick = low + part * (1 - low)
+    for rtol in TOLERANCES:
+        assert worst(name, stick, rtol) <= rtol, rtol

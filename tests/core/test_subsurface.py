@@ -1,0 +1,270 @@
+"""Stresses beneath the surface, against closed forms of the literature and laws of mechanics."""
+
+from __future__ import annotations
+
+import itertools
+from math import pi
+
+import numpy as np
+import pytest
+
+from mdr_core import fields, normal, tangential
+from mdr_core.errors import InputError
+from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Profile, RoundedPunch
+from mdr_core.subsurface import StressTensor, error_estimate, stress
+
+E_STAR, FRICTION = 3.0, 0.3
+EXACT = 1e-13
+
+
+def pressed(profile: Profile) -> normal.NormalContact:
+    if isinstance(profile, FlatPunch):
+        return normal.solve(profile, E_STAR, indentation_depth=0.2)
+    return normal.solve(profile, E_STAR, contact_radius=1.0)
+
+
+def sheared(profile: Profile, stick: float) -> tangential.TangentialContact:
+    contact = pressed(profile)
+    if stick > 0:
+        return tangential.solve(contact, 2.6, FRICTION, stick_radius=stick)
+    return tangential.solve(contact, 2.6, FRICTION, tangential_displacement=100.0)
+
+
+@pytest.mark.parametrize("nu", [-0.4, 0.0, 0.3, 0.5])
+def test_hertz_on_the_axis(nu: float) -> None:
+    """Johnson, Eq. (3.45)."""
+    contact = pressed(Paraboloid(2.0))
+    peak = float(contact.maximum_pressure)
+    z = np.concatenate([[0.0], np.logspace(-13, 2, 50)])
+    found = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
+    radial = -(1 + nu) * (1 - z * np.arctan2(1, z)) + 0.5 / (1 + z * z)
+    assert np.abs(found.zz / peak + 1 / (1 + z * z)).max() < 1e-13
+    assert np.abs(found.xx / peak - radial).max() < 1e-13
+    assert np.abs(found.yy / peak - radial).max() < 1e-13
+    assert np.abs(found.maximum_shear - np.abs(found.zz - found.xx) / 2).max() < 1e-13 * peak
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_sliding_sphere_on_the_surface(nu: float) -> None:
+    """Hamilton 1983: sigma_xx = -mu p_0 pi (4 + nu) x/8 within the contact, by the traction."""
+    contact, x = sheared(Paraboloid(2.0), 0.0), np.linspace(-1, 1, 41)
+    peak = float(contact.normal.maximum_pressure)
+    found = stress(contact, x, 0.0, 0.0, poissons_ratio=nu, body=2, rtol=EXACT)
+    alone = stress(contact.normal, x, 0.0, 0.0, poissons_ratio=nu, rtol=EXACT)
+    by_traction = (found.xx - alone.xx) / (FRICTION * peak)
+    assert np.abs(by_traction + pi * (4 + nu) / 8 * x).max() < 2e-13
+    across = (found.yy - alone.yy) / (FRICTION * peak)
+    assert np.abs(across + 3 * pi * nu / 8 * x).max() < 2e-13
+
+
+def test_cone_on_the_axis() -> None:
+    """Sneddon 1948: sigma_zz = -p_m arccosh-like; on the axis -p_m [arcsinh(1/z) + ...]."""
+    contact, z, nu = pressed(Cone(0.2)), np.logspace(-8, 2, 40), 0.3
+    found = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
+    slope = E_STAR / pi * (pi / 2 * 0.2)
+    # int_0^1 x/(x^2 + z^2) dx and int_0^1 2 x z^2/(x^2 + z^2)^2 dx.
+    first = np.log1p(1 / (z * z)) / 2
+    trace = -2 * (1 + nu) * slope * first
+    vertical = -slope * (first + 1 / (1 + z * z))
+    largest = np.abs(vertical).max()
+    assert np.abs(found.zz - vertical).max() < 1e-13 * largest
+    assert np.abs(3 * found.mean_stress - trace).max() < 1e-13 * largest
+
+
+def test_flat_punch() -> None:
+    """Sneddon 1946: sigma_zz = -p_m (1 + 3 z^2)/(2 (1 + z^2)^2) on the axis."""
+    contact, z = pressed(FlatPunch(1.0)), np.linspace(0, 5, 30)
+    found = stress(contact, 0.0, 0.0, z, poissons_ratio=0.3)
+    mean = float(contact.mean_pressure)
+    expected = -mean * (1 + 3 * z * z) / (2 * np.square(1 + z * z))
+    assert np.abs(found.zz - expected).max() < 1e-14 * mean
+    edge = stress(contact, 1.0, 0.0, 0.0, poissons_ratio=0.3)
+    assert np.isinf(edge.von_mises)
+    assert np.isinf(edge.maximum_shear)
+    assert not any(np.isnan(part) for part in edge)
+
+
+def point_force(
+    x: np.ndarray, y: np.ndarray, z: np.ndarray, nu: float, normal_force: float, shear: float
+) -> np.ndarray:
+    """Boussinesq's and Cerruti's solutions: Johnson, Eqs. (3.21), (3.67)."""
+    rho = np.sqrt(x * x + y * y + z * z)
+    r2, m = x * x + y * y, 1 - 2 * nu
+    p = normal_force / (2 * pi)
+
+    def in_plane(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        bracket = (1 - z / rho) * (u * u - v * v) / r2 + z * v * v / rho**3
+        return p * (m / r2 * bracket - 3 * z * u * u / rho**5)
+
+    xy = m / r2 * ((1 - z / rho) * 2 * x * y / r2 - x * y * z / rho**3)
+    xy = p * (xy - 3 * x * y * z / rho**5)
+    pressed = [
+        in_plane(x, y),
+        in_plane(y, x),
+        -3 * p * z**3 / rho**5,
+        xy,
+        -3 * p * x * z * z / rho**5,
+        -3 * p * y * z * z / rho**5,
+    ]
+    q, s = shear / (2 * pi), rho + z
+    c1, c2 = 1 / (rho * s**2), (3 * rho + z) / (rho**3 * s**3)
+    cerruti = [
+        -3 * x**3 / rho**5 + m * (x / rho**3 - 3 * x * c1 + x**3 * c2),
+        -3 * x * y * y / rho**5 + m * (x / rho**3 - x * c1 + x * y * y * c2),
+        -3 * x * z * z / rho**5,
+        -3 * x * x * y / rho**5 + m * (-y * c1 + x * x * y * c2),
+        -3 * x * x * z / rho**5,
+        -3 * x * y * z / rho**5,
+    ]
+    return np.array(pressed) + q * np.array(cerruti)
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(2.0), Cone(0.2), RoundedPunch(0.5, 2.0)])
+def test_point_force_in_the_far_field(profile: Profile) -> None:
+    contact = sheared(profile, 0.6)
+    rng = np.random.default_rng(1)
+    for far in (1e6, 1e9):
+        x, y, z = far * rng.normal(size=(3, 30))
+        z = np.abs(z)
+        found = np.array(stress(contact, x, y, z, poissons_ratio=0.3, body=2, rtol=EXACT))
+        forces = float(contact.normal.normal_force), float(contact.tangential_force)
+        expected = point_force(x, y, z, 0.3, *forces)
+        # The next term is smaller by (a/r)^2.
+        assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
+def test_superposed_point_forces(profile: Profile) -> None:
+    """The definition: the surface tractions as point forces, for normal and sheared contact."""
+    if isinstance(profile, FlatPunch):
+        contact = tangential.solve(pressed(profile), 2.6, FRICTION, tangential_force=0.1)
+    else:
+        contact = sheared(profile, 0.7)
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    stops = (0.0, 1.0) if isinstance(profile, FlatPunch) else (0.0, 0.5, 0.7, 1.0)
+    # r = stop - width s^2 from either side removes roots at the stops.
+    middle = [(low + high) / 2 for low, high in itertools.pairwise(stops)]
+    r, mass = [], []
+    for low, at, high in zip(stops, middle, stops[1:], strict=False):
+        s = (1 + nodes) / 2
+        for end in (low, high):
+            r.append(end + (at - end) * s * s)
+            mass.append(np.abs(at - end) * s * weights)
+    radius, mass = np.concatenate(r), np.concatenate(mass)
+    p = fields.pressure(contact.normal, radius, rtol=1e-13)
+    tau = fields.shear_stress(contact, radius, rtol=1e-13)
+    angle = 2 * pi * np.arange(96) / 96
+    around = 2 * pi / 96 * (radius * mass)[:, None]
+    total = []
+    points = np.array([[0.3, 0.2, 0.6], [-0.9, 0.4, 0.5], [1.4, -0.3, 0.7], [0.05, 0.0, 1.2]])
+    for x, y, z in points:
+        dx = x - radius[:, None] * np.cos(angle)
+        dy = y - radius[:, None] * np.sin(angle)
+        depth = np.full_like(dx, z)
+        unit = point_force(dx, dy, depth, 0.3, 1.0, 0.0)
+        shear = point_force(dx, dy, depth, 0.3, 0.0, 1.0)
+        total.append(((unit * p[:, None] + shear * tau[:, None]) * around).sum(axis=(1, 2)))
+    found = np.array(stress(contact, *points.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
+    assert np.abs(found - np.array(total)).max() < 2e-10 * np.abs(found).max()
+
+
+@pytest.mark.parametrize("stick", [0.0, 0.6])
+@pytest.mark.parametrize("profile", [Paraboloid(2.0), Cone(0.2), RoundedPunch(0.5, 2.0)])
+def test_tractions_on_the_surface(profile: Profile, stick: float) -> None:
+    if isinstance(profile, RoundedPunch) and stick == 0:
+        stick = 0.7
+    contact = sheared(profile, stick)
+    r = np.concatenate([np.linspace(0.01, 2, 60), 1 + np.array([-1e-9, 1e-9]), [stick or 0.5, 1.0]])
+    p, tau = fields.pressure(contact.normal, r), fields.shear_stress(contact, r)
+    for angle in (0.0, 2.1):
+        x, y = r * np.cos(angle), r * np.sin(angle)
+        for body, sign in ((1, -1), (2, 1)):
+            found = stress(contact, x, y, 0.0, poissons_ratio=0.3, body=body, rtol=EXACT)
+            largest = p.max()
+            assert np.abs(found.zz + p).max() < 1e-12 * largest
+            assert np.abs(found.xz + sign * tau).max() < 1e-12 * largest
+            assert np.abs(found.yz).max() < 1e-12 * largest
+
+
+def test_equilibrium() -> None:
+    """The divergence vanishes, by sixth-order differences."""
+    contact, h = sheared(RoundedPunch(0.5, 2.0), 0.7), 1e-3
+    steps = np.array([-3, -2, -1, 1, 2, 3]) * h
+    rule = np.array([-1, 9, -45, 45, -9, 1]) / (60 * h)
+    rng = np.random.default_rng(2)
+    place = np.array([rng.normal(size=20), rng.normal(size=20), 0.2 + rng.random(20)])
+
+    def along(axis: int) -> StressTensor:
+        moved = place[:, None, :] + np.zeros((3, 6, 20))
+        moved[axis] += steps[:, None]
+        found = stress(contact, *moved, poissons_ratio=0.2, body=2, rtol=EXACT)
+        return StressTensor(*(rule @ part for part in found))
+
+    dx, dy, dz = (along(axis) for axis in range(3))
+    size = np.abs(np.array([dx, dy, dz])).max()
+    for balance in (dx.xx + dy.xy + dz.xz, dx.xy + dy.yy + dz.yz, dx.xz + dy.yz + dz.zz):
+        assert np.abs(balance).max() < 1e-9 * size
+
+
+def test_balance_of_forces_through_a_plane() -> None:
+    contact = sheared(Paraboloid(2.0), 0.5)
+    nodes, weights = np.polynomial.legendre.leggauss(80)
+    angle = 2 * pi * np.arange(16) / 16
+    for depth in (0.05, 1.0):
+        # r = depth tan(t) covers the plane.
+        stops = np.arctan(np.array([0.0, 0.45, 0.55, 0.95, 1.05]) / depth)
+        ends = np.append(stops, pi / 2)
+        low, high = ends[:-1, None], ends[1:, None]
+        t = ((low + high) / 2 + (high - low) / 2 * nodes).ravel()
+        run = ((high - low) / 2 * weights).ravel() * depth / np.cos(t) ** 2
+        r = depth * np.tan(t)
+        x, y = r[:, None] * np.cos(angle), r[:, None] * np.sin(angle)
+        found = stress(contact, x, y, depth, poissons_ratio=0.3, body=2, rtol=EXACT)
+        area = (r * run)[:, None] * 2 * pi / angle.size
+        assert (found.zz * area).sum() == pytest.approx(
+            -float(contact.normal.normal_force), rel=1e-9, abs=0
+        )
+        assert (found.xz * area).sum() == pytest.approx(
+            -float(contact.tangential_force), rel=1e-9, abs=0
+        )
+
+
+def test_shapes_of_loads_and_points() -> None:
+    contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=[0.1, 0.2, 0.4])
+    x, z = np.linspace(-1, 1, 5), np.linspace(0, 1, 4)
+    found = stress(contact, x, 0.0, z[:, None], poissons_ratio=0.3)
+    assert found.zz.shape == found.von_mises.shape == found.maximum_shear.shape == (3, 4, 5)
+    assert found.principal.shape == (3, 4, 5, 3)
+    one = normal.solve(Paraboloid(2.0), E_STAR, normal_force=0.2)
+    alone = stress(one, x, 0.0, z[:, None], poissons_ratio=0.3)
+    assert np.array_equal(alone.xx, found.xx[1])
+
+
+def test_no_load_gives_no_stress() -> None:
+    contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=0.0)
+    found = stress(contact, [0.0, 1.0], 0.0, [0.0, 1.0], poissons_ratio=0.3)
+    assert not np.any(np.array(found))
+
+
+@pytest.mark.parametrize("exponent", [-50, 50])
+def test_any_unit_of_length(exponent: int) -> None:
+    unit = 10.0**exponent
+    small = normal.solve(Paraboloid(2.0 * unit), E_STAR, contact_radius=unit)
+    x, z = np.array([0.0, 0.3, 1.0, 1.7]), np.array([0.0, 1e-6, 0.4, 3.0])
+    found = stress(small, x * unit, 0.0, z * unit, poissons_ratio=0.3, rtol=EXACT)
+    expected = stress(pressed(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3, rtol=EXACT)
+    assert np.abs(np.array(found) - np.array(expected)).max() < 1e-13 * np.abs(expected.zz).max()
+
+
+@pytest.mark.parametrize(("x", "z"), [(np.nan, 0.0), (0.0, -1e-30), (np.inf, 0.0)])
+def test_invalid_points_are_rejected(x: float, z: float) -> None:
+    with pytest.raises(InputError):
+        stress(pressed(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3)
+
+
+def test_error_estimate_contains_the_rounding_of_the_edge() -> None:
+    exact = pressed(Paraboloid(2.0))
+    computed = normal.solve(Paraboloid(2.0), E_STAR, normal_force=float(exact.normal_force))
+    points = 1 - 1e-12, 0.0, 0.0
+    assert error_estimate(exact, *points, rtol=EXACT) < 1e-12
+    assert error_estimate(computed, *points, rtol=EXACT) > 1e-11

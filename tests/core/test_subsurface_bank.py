@@ -1,0 +1,35 @@
+"""Stresses beneath the surface against the stored references, half of them next to an edge."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import normal, tangential
+from mdr_core.subsurface import error_estimate, stress
+from tests.core.comparison import profile_from
+from tests.oracles import bank
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-10, 1e-13])
+@pytest.mark.parametrize(
+    "case", bank.load("subsurface"), ids=lambda case: str(case["profile"]["kind"])
+)
+def test_stress_tensor(case: dict[str, Any], rtol: float) -> None:
+    pressed = normal.solve(
+        profile_from(case["profile"]), 1.0, contact_radius=case["contact_radius"]
+    )
+    contact = tangential.solve(
+        pressed, 0.9, case["friction_coefficient"], stick_radius=case["stick_radius"]
+    )
+    points = np.array(case["points"]).T
+    expected = np.array([[float(value) for value in row] for row in case["expected"]]).T
+    found = np.array(
+        stress(contact, *points, poissons_ratio=case["poissons_ratio"], body=2, rtol=rtol)
+    )
+    error = np.abs(found - expected).max() / np.abs(expected).max()
+    assert error < min(error_estimate(contact, *points, rtol=rtol), rtol + 1e-12)
+    if rtol == 1e-10:
+        assert error < 1e-11
