@@ -11,7 +11,7 @@ def test_every_address_on_the_page_is_served_here(client: Client) -> None:
     page = client.get("/docs")
     assert page.status_code == 200
     found = re.findall(r'(?:src|href)="([^"]*)"', page.text)
-    assert len(found) == 4
+    assert len(found) == 5
     for address in found:
         assert "//" not in address
         assert client.get(f"/{address}").status_code == 200

@@ -419,15 +419,19 @@ TOLD = {
     "endless": {"endless_wear"},
     "held_force": {"path_dependent"},
 }
-# A tip or an edge that no real material bears, and a sphere pressed to half its radius.
+# Tips and edges that no real material bears, and slopes at which 0.63 |beta| t + t^2 exceeds 1 %.
 WARNINGS = {
-    "cone": {"plastic"},
+    "boussinesq": {"plastic"},
+    "cone_with_a_gap": set(),
+    "exact_sphere": {"half_space"},
     "flat_punch": {"plastic"},
-    "truncated_paraboloid": {"plastic"},
-    "sphere": {"half_space"},
+    "sneddon": {"half_space", "plastic"},
+    "table": {"half_space"},
+    "truman": set(),
+    "worn_ball": {"half_space", "plastic"},
 }
 CASES = [
-    pytest.param(path, examples[name]["value"], textbook, id=f"{path} {name}")
+    pytest.param(path, name, examples[name]["value"], textbook, id=f"{path} {name}")
     for path, examples, textbooks in (
         ("/v1/normal", NORMAL_EXAMPLES, TEXTBOOK),
         ("/v1/tangential", TANGENTIAL_EXAMPLES, TANGENTIAL_TEXTBOOK),
@@ -464,9 +468,13 @@ def same(found: object, expected: object) -> None:
         assert found == expected
 
 
-@pytest.mark.parametrize(("path", "query", "textbook"), CASES)
+@pytest.mark.parametrize(("path", "name", "query", "textbook"), CASES)
 def test_example_gives_the_textbook_number(
-    client: Client, path: str, query: dict[str, Any], textbook: Callable[[], dict[str, object]]
+    client: Client,
+    path: str,
+    name: str,
+    query: dict[str, Any],
+    textbook: Callable[[], dict[str, object]],
 ) -> None:
     answer = client.post(path, query)
     assert answer.status_code == 200
@@ -474,11 +482,10 @@ def test_example_gives_the_textbook_number(
     for quantity, expected in textbook().items():
         same(document[quantity], expected)
     codes = {warning["code"] for warning in document["warnings"]}
-    kind = query["profile"]["kind"]
     if path == "/v1/wear":
-        assert codes == next((TOLD[n] for n in TOLD if query == WEAR_EXAMPLES[n]["value"]), set())
+        assert codes == TOLD.get(name, set())
         return
-    assert codes == WARNINGS.get(kind, set()) | ({"singular"} if "null" in answer.text else set())
+    assert codes == WARNINGS.get(name, set()) | ({"singular"} if "null" in answer.text else set())
 
 
 @pytest.mark.parametrize("name", EVOLUTION_EXAMPLES)
@@ -487,7 +494,7 @@ def test_wear_over_the_cycles_gives_what_is_known_of_it(client: Client, name: st
     for quantity, values in EVOLUTION_TEXTBOOK[name]().items():
         for found, expected in zip(document[quantity], values, strict=True):
             if expected is not None:
-                assert found == pytest.approx(expected, rel=2e-3), quantity
+                assert found == pytest.approx(expected, rel=2e-3, abs=0), quantity
 
 
 def test_the_stresses_of_the_rounded_punch_carry_its_forces(client: Client) -> None:
@@ -507,4 +514,4 @@ def test_the_stresses_of_the_rounded_punch_carry_its_forces(client: Client) -> N
         (values,), r = answer[name], answer["radius"]
         rings = zip(zip(r, values, strict=True), zip(r[1:], values[1:], strict=True), strict=False)
         total = sum(pi * (q + p) * (v - u) * (u + v) / 2 for (u, p), (v, q) in rings)
-        assert total == pytest.approx(expected, rel=1e-3)
+        assert total == pytest.approx(expected, rel=1e-3, abs=0)

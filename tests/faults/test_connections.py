@@ -1,6 +1,7 @@
-"""What a client's connection survives."""
+"""Connections that are kept or closed after failed requests."""
 
 import http.client
+import json
 import logging
 import re
 import socket as sockets
@@ -11,12 +12,16 @@ from collections.abc import Iterator
 import pytest
 import uvicorn
 
-from mdr_service import body, solve, watch
+from mdr_service import observability
 from mdr_service.app import create_app
 from mdr_service.problems import MEDIA_TYPE
+from mdr_service.protocol import BoundedProtocol
+from mdr_service.queries import contacts
 from mdr_service.settings import SETTINGS
 from tests.conftest import JSON
 from tests.faults.server import PATIENCE, free_port, wait_until_ready
+
+pytestmark = [pytest.mark.long, pytest.mark.alone]
 
 BODY = (
     b'{"profile": {"kind": "cone", "slope": 0.1}, "material": {"e_star": 1}, '
@@ -29,7 +34,7 @@ def port() -> Iterator[int]:
     """Serve from a thread of this process, where a test can plant a bug."""
     number = free_port()
     config = uvicorn.Config(
-        create_app(), port=number, loop="uvloop", http="httptools", lifespan="off", ws="none"
+        create_app(), port=number, loop="uvloop", http=BoundedProtocol, lifespan="on", ws="none"
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
@@ -54,16 +59,16 @@ def ask(connection: http.client.HTTPConnection, body: bytes) -> tuple[int, str |
     return answer.status, answer.getheader("content-type"), answer.read()
 
 
-def test_a_bug_is_answered_and_the_connection_stays(
+def test_internal_error_is_answered_and_keeps_the_connection(
     connection: http.client.HTTPConnection,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     lines: list[str] = []
-    formatter = watch.JsonLines()
+    formatter = observability.JsonLines()
     # Where the request is answered, as a handler of the service formats it.
     monkeypatch.setattr(
-        logging.getLogger("mdr_service.handlers"),
+        logging.getLogger("mdr_service.middleware"),
         "handle",
         lambda record: (lines.append(formatter.format(record)), caplog.handler.handle(record)),
     )
@@ -73,7 +78,7 @@ def test_a_bug_is_answered_and_the_connection_stays(
 
     socket = connection.sock
     with monkeypatch.context() as patch:
-        patch.setattr(solve.normal_contact, "solve", broken)
+        patch.setattr(contacts.normal_contact, "solve", broken)
         status, media_type, body = ask(connection, BODY)
     assert (status, media_type) == (500, MEDIA_TYPE)
     assert b"secret" not in body
@@ -81,14 +86,14 @@ def test_a_bug_is_answered_and_the_connection_stays(
     # The id in the body is that of the line in the log, where the trace is.
     (instance,) = re.findall(rb'"urn:mdr:request:([0-9a-f]+)"', body)
     (record,) = [each for each in caplog.records if each.exc_info]
-    assert record.name == "mdr_service.handlers"
+    assert record.name == "mdr_service.middleware"
     assert f'"id":"{instance.decode()}"' in lines[-1]
     assert "a secret of the implementation" in lines[-1]
     assert ask(connection, BODY)[0] == 200
     assert connection.sock is socket
 
 
-def test_wrong_input_leaves_the_connection_alone(connection: http.client.HTTPConnection) -> None:
+def test_invalid_request_keeps_the_connection(connection: http.client.HTTPConnection) -> None:
     socket = connection.sock
     for wrong in (b"{", b"{}", BODY.replace(b"cone", b"pyramid"), b"[" * 10_000):
         assert ask(connection, wrong)[0] in {400, 422}
@@ -96,7 +101,9 @@ def test_wrong_input_leaves_the_connection_alone(connection: http.client.HTTPCon
     assert connection.sock is socket
 
 
-def test_a_long_body_is_refused_before_it_is_sent(connection: http.client.HTTPConnection) -> None:
+def test_long_body_is_refused_by_its_announced_length(
+    connection: http.client.HTTPConnection,
+) -> None:
     connection.putrequest("POST", "/v1/normal")
     connection.putheader("Content-Type", "application/json")
     connection.putheader("Content-Length", str(SETTINGS.max_body_bytes + 1))
@@ -106,8 +113,7 @@ def test_a_long_body_is_refused_before_it_is_sent(connection: http.client.HTTPCo
     assert answer.getheader("connection") == "close"
 
 
-def test_a_long_body_that_is_sent_whatever_comes_is_answered(port: int) -> None:
-    """A client that writes all before it reads anything gets the answer, not a reset."""
+def test_client_that_sends_all_of_a_long_body_receives_the_response(port: int) -> None:
     length = 8 * SETTINGS.max_body_bytes
     head = (
         "POST /v1/normal HTTP/1.1\r\nHost: service\r\nContent-Type: application/json\r\n"
@@ -123,28 +129,18 @@ def test_a_long_body_that_is_sent_whatever_comes_is_answered(port: int) -> None:
     assert b"urn:mdr:problem:body-too-large" in answer
 
 
-def test_a_body_shorter_than_it_says_is_waited_for_and_answered(
-    port: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("fields", "listed"), [(15, 15), (5_000, 20), (50_000, 1)])
+def test_number_of_listed_errors_is_bounded(
+    connection: http.client.HTTPConnection, fields: int, listed: int
 ) -> None:
-    monkeypatch.setattr(body, "SETTINGS", SETTINGS.model_copy(update={"body_seconds": 0.3}))
-    with sockets.create_connection(("127.0.0.1", port), timeout=PATIENCE) as client:
-        client.sendall(
-            b"POST /v1/normal HTTP/1.1\r\nHost: service\r\nContent-Type: application/json\r\n"
-            b"Content-Length: 100\r\n\r\n{"
-        )
-        answer = b""
-        while piece := client.recv(65_536):
-            answer += piece
-    assert answer.startswith(b"HTTP/1.1 408 ")
-    assert b"connection: close" in answer
-    assert b"urn:mdr:problem:body-too-slow" in answer
-
-
-def test_many_bad_elements_get_a_short_answer(connection: http.client.HTTPConnection) -> None:
-    elements = b",".join([b'"a"'] * 10_000)
-    status, _, answer = ask(connection, BODY.replace(b"1}}", b"[" + elements + b"]}}"))
+    unknown = b",".join(b'"f%d":0' % n for n in range(fields))
+    status, _, answer = ask(connection, BODY[:-1] + b"," + unknown + b"}")
     assert status == 422
     assert len(answer) <= 4096
+    errors = json.loads(answer)["errors"]
+    pointers = [each["pointer"] for each in errors]
+    assert pointers == ([f"/f{n}" for n in range(listed)] if listed > 1 else [""])
+    assert listed > 1 or "50000" in errors[0]["detail"]
 
 
 @pytest.mark.parametrize(
@@ -159,7 +155,7 @@ def test_many_bad_elements_get_a_short_answer(connection: http.client.HTTPConnec
         ("", False),
     ],
 )
-def test_an_id_is_taken_over_if_it_is_one(
+def test_valid_request_id_is_returned(
     connection: http.client.HTTPConnection, given: str, *, kept: bool
 ) -> None:
     for path in ("/health", "/nowhere"):
@@ -174,7 +170,7 @@ def test_an_id_is_taken_over_if_it_is_one(
         assert answer.getheader("access-control-allow-origin") is None
 
 
-def test_head_is_answered_wherever_get_is(connection: http.client.HTTPConnection) -> None:
+def test_head_is_allowed_where_get_is(connection: http.client.HTTPConnection) -> None:
     for path in ("/health", "/health/live", "/metrics", "/v1/limits", "/v1/profiles", "/docs"):
         connection.request("HEAD", path)
         answer = connection.getresponse()
@@ -182,7 +178,7 @@ def test_head_is_answered_wherever_get_is(connection: http.client.HTTPConnection
         assert int(answer.getheader("content-length", "0")) > 0
 
 
-def test_a_long_body_in_chunks_is_refused(connection: http.client.HTTPConnection) -> None:
+def test_long_chunked_body_is_refused(connection: http.client.HTTPConnection) -> None:
     megabyte = b" " * 2**20
     count = SETTINGS.max_body_bytes // len(megabyte) + 1
     chunks = iter([megabyte] * count)
@@ -191,7 +187,9 @@ def test_a_long_body_in_chunks_is_refused(connection: http.client.HTTPConnection
     assert (answer.status, answer.getheader("content-type")) == (413, MEDIA_TYPE)
 
 
-def test_a_client_that_leaves_is_no_defect(port: int, caplog: pytest.LogCaptureFixture) -> None:
+def test_client_that_disconnects_causes_no_error(
+    port: int, caplog: pytest.LogCaptureFixture
+) -> None:
     leaving = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
     leaving.putrequest("POST", "/v1/normal")
     leaving.putheader("Content-Type", "application/json")

@@ -1,5 +1,7 @@
-"""The service starts with a sentence, and ends when it is told to."""
+"""Start and end of the service: signals, settings, ports."""
 
+import http.client
+import json
 import os
 import shutil
 import signal
@@ -11,15 +13,20 @@ from pathlib import Path
 
 import pytest
 
+from mdr_service.schemas.examples import EVOLUTION_EXAMPLES
+from tests.conftest import JSON
 from tests.faults.server import PATIENCE, free_port, is_served, running, service
+
+pytestmark = [pytest.mark.long, pytest.mark.alone]
 
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_ends_it_cleanly(stop: signal.Signals) -> None:
+@pytest.mark.parametrize("workers", ["1", "2"])
+@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_signal_ends_the_service_cleanly(stop: signal.Signals, workers: str) -> None:
     port = free_port()
-    with running(service(port), port) as process:
+    with running([*service(port), "--workers", workers], port) as process:
         process.send_signal(stop)
         output, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
@@ -35,7 +42,7 @@ BRIEF = {
 }
 
 
-def test_a_half_sent_request_does_not_keep_it_from_ending() -> None:
+def test_half_sent_request_does_not_delay_the_end() -> None:
     port = free_port()
     with (
         running(service(port), port, **BRIEF) as process,
@@ -53,27 +60,86 @@ def test_a_half_sent_request_does_not_keep_it_from_ending() -> None:
     assert process.returncode == 0
 
 
-def test_a_port_that_is_none_is_refused() -> None:
-    told = subprocess.run(service(99_999), capture_output=True, text=True, check=False)
-    assert told.returncode == 2
-    assert "--port" in told.stderr
-    assert not told.stdout
+def test_end_of_the_terminal_is_ignored_under_nohup() -> None:
+    port = free_port()
+    with running(["nohup", *service(port)], port, subprocess.DEVNULL) as process:
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.5)
+        assert is_served(port)
+
+
+def test_second_interrupt_answers_the_request_in_flight_at_once() -> None:
+    port = free_port()
+    with running(service(port), port) as process:
+        client = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
+        # Some seconds of computation.
+        ball = EVOLUTION_EXAMPLES["shakedown"]["value"]
+        query = ball | {"resolution": 96, "cycles": [10.0 * n for n in range(2000)]}
+        client.request("POST", "/v1/wear/evolution", json.dumps(query), JSON)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        told = time.monotonic()
+        answer = client.getresponse()
+        assert answer.status == 503
+        assert json.loads(answer.read())["type"] == "urn:mdr:problem:stopping"
+        process.communicate(timeout=PATIENCE)
+        assert time.monotonic() - told < 5
+    assert process.returncode == 0
+
+
+def fail(command: list[str], **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command, env=os.environ | environment, capture_output=True, text=True, check=False
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("MDR_MAX_LOADS", "many"), ("MDR_SHUTDOWN_SECONDS", "14")]
+    ("name", "value", "message"),
+    [
+        ("port", "70000", "--port must be between 0 and 65535"),
+        ("port", "-1", "--port must be between 0 and 65535"),
+        ("port", "http", "--port must be between 0 and 65535"),
+        ("workers", "0", "--workers must be between 1 and 1000"),
+    ],
 )
-def test_a_senseless_limit_is_told_in_a_sentence(name: str, value: str) -> None:
-    told = subprocess.run(
-        service(free_port()),
-        env=os.environ | {name: value},
-        capture_output=True,
-        text=True,
-        check=False,
+def test_invalid_argument_is_refused_with_one_line(name: str, value: str, message: str) -> None:
+    ended = fail([sys.executable, "-m", "mdr_command", "serve", f"--{name}={value}"])
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr == f"mdr serve: {message}\n"
+
+
+def test_unknown_host_is_reported_with_one_line() -> None:
+    ended = fail([*service(free_port()), "--host", "nowhere.invalid"])
+    assert (ended.returncode, ended.stdout) == (1, "")
+    assert ended.stderr.startswith("mdr serve: cannot listen on nowhere.invalid port ")
+    assert len(ended.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_port_in_use_is_reported_before_the_compute_processes_start(workers: str) -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        ended = fail([*service(port), "--workers", workers])
+    assert ended.returncode == 1
+    assert ended.stderr == (
+        f"mdr serve: cannot listen on 127.0.0.1 port {port}: Address already in use\n"
     )
-    assert told.returncode == 1
-    assert told.stderr.startswith(f"{name}: ")
-    assert len(told.stderr.splitlines()) == 1
+    assert not ended.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("MDR_MAX_LOADS", "many"), ("MDR_SHUTDOWN_SECONDS", "14"), ("MDR_QUEUE_SECONDS", "nan")],
+)
+def test_invalid_setting_ends_the_process_with_one_line(name: str, value: str) -> None:
+    ended = fail(service(free_port()), **{name: value})
+    assert ended.returncode == 1
+    assert ended.stderr.startswith(f"{name}: ")
+    assert len(ended.stderr.splitlines()) == 1
 
 
 def _environment_is_made() -> bool:
@@ -101,7 +167,7 @@ def test_make_run_ends_with_its_service(stop: str) -> None:
     assert not is_served(port)
 
 
-def test_the_document_is_printed_without_serving() -> None:
+def test_openapi_document_is_printed_without_serving() -> None:
     command = [sys.executable, "-m", "mdr_command", "openapi"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert printed == (ROOT / "openapi.json").read_text("utf-8")

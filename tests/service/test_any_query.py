@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -16,21 +17,18 @@ from mdr_service.schemas.answers import (
     TangentialAnswer,
     WearAnswer,
 )
-from mdr_service.schemas.quantities import LARGEST, SMALLEST, SMALLEST_LOAD
+from mdr_service.schemas.quantities import LARGEST, SMALLEST
 from tests.conftest import Client
 from tests.contract import strict_json
+
+pytestmark = pytest.mark.long
 
 ORDINARY = st.floats(1e-9, 1e9)
 EXTREME = st.floats(SMALLEST, LARGEST)
 LENGTHS = ORDINARY | EXTREME | st.sampled_from([SMALLEST, 1.0, LARGEST])
 SLOPES = st.floats(1e-3, 2) | st.floats(1e-15, 1e6)
-EXPONENTS = st.floats(0.2, 60) | st.floats(0.05, 200)
-LOADS = (
-    st.just(0.0)
-    | ORDINARY
-    | st.floats(SMALLEST_LOAD, LARGEST)
-    | st.sampled_from([SMALLEST_LOAD, LARGEST])
-)
+EXPONENTS = st.floats(0.2, 60) | st.floats(0.05, 100)
+LOADS = st.just(0.0) | LENGTHS
 
 PARAMETERS = {
     "flat_punch": ["radius"],
@@ -64,13 +62,13 @@ def tables(draw: st.DrawFn) -> dict[str, object]:
     for dr, df in draw(steps):
         r.append(r[-1] + dr)
         f.append(f[-1] + df)
-    interpolation = draw(st.sampled_from(["cubic", "pchip", "linear"]))
+    interpolation = draw(st.sampled_from(["auto", "cubic", "pchip", "linear"]))
     breaks = draw(st.lists(st.sampled_from(r), max_size=2))
     return {"kind": "tabulated", "r": r, "f": f, "interpolation": interpolation, "breaks": breaks}
 
 
 TERMS = st.fixed_dictionaries(
-    {"coefficient": st.floats(-1e3, 1e3) | st.floats(1e-300, 1e300), "exponent": EXPONENTS}
+    {"coefficient": st.floats(-1e3, 1e3) | EXTREME, "exponent": EXPONENTS}
 )
 PROFILES = (
     simple()
@@ -268,7 +266,9 @@ def check(client: Client, path: str, query: object, model: type[Known]) -> None:
         singular = any(warning.code in infinite for warning in told.warnings)
         assert singular == (b"null" in answer.content)
     else:
-        assert answer.status_code == 422, answer.text
+        # The deadline is the guarantee: the slowest evolutions exceed it.
+        slow = {504} if path.endswith("evolution") else set()
+        assert answer.status_code in {422} | slow, answer.text
         assert answer.headers["content-type"] == MEDIA_TYPE
         assert all(error["pointer"] for error in document["errors"])
 
@@ -326,7 +326,7 @@ def test_a_limit_of_wear_within_the_schema(client: Client, query: dict[str, obje
     check(client, "/v1/wear", query, WearAnswer)
 
 
-@partial(many, examples=100)
+@partial(many, examples=25)
 @given(query=ways_to_wear())
 def test_wear_over_the_cycles_within_the_schema(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear/evolution", query, EvolutionAnswer)

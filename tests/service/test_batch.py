@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import httpx
 import pytest
 
-from mdr_service import questions
 from mdr_service.problems import MEDIA_TYPE
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchAnswer
 from mdr_service.schemas.examples import BATCH_EXAMPLES
 from mdr_service.settings import SETTINGS
@@ -25,9 +25,12 @@ ASKS = {
 }
 LOADS = [1.0 + load for load in range(100)]
 FOLLOWED = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
-WRONG = [("/v1/normal", body) for body, _ in POINTED.values() if body.startswith(b"{")] + [
-    (f"/v1/{path}", body) for path, body, _ in POINTED_ELSEWHERE.values()
-]
+# An integer of hundreds of digits is rejected in other words: in a batch it is one of Python.
+WRONG = [
+    ("/v1/normal", body)
+    for body, _ in POINTED.values()
+    if body.startswith(b"{") and b"7" * 99 not in body
+] + [(f"/v1/{path}", body) for path, body, _ in POINTED_ELSEWHERE.values()]
 
 
 def batch(client: Client, queries: Sequence[tuple[str, bytes]]) -> httpx.Response:
@@ -44,7 +47,7 @@ def alone(client: Client, path: str, body: bytes) -> bytes:
     return b'{"status":%d,"%s":%s}' % (answer.status_code, name, answer.content)
 
 
-def test_every_example_is_answered_as_alone_and_in_order(client: Client) -> None:
+def test_batch_entries_equal_single_responses_in_order(client: Client) -> None:
     queries = [(path, json.dumps(query).encode()) for path, _, query in CASES]
     answer = batch(client, queries)
     assert answer.status_code == 200
@@ -55,7 +58,9 @@ def test_every_example_is_answered_as_alone_and_in_order(client: Client) -> None
 
 
 @pytest.mark.parametrize(("path", "body"), WRONG)
-def test_what_is_wrong_with_one_is_its_own_problem(client: Client, path: str, body: bytes) -> None:
+def test_invalid_query_of_a_batch_has_its_own_problem(
+    client: Client, path: str, body: bytes
+) -> None:
     right = json.dumps(BALL).encode()
     answer = batch(client, [("/v1/normal", right), (path, body), ("/v1/normal", right)])
     assert answer.status_code == 200
@@ -82,16 +87,14 @@ def test_what_is_wrong_with_one_is_its_own_problem(client: Client, path: str, bo
     ],
     ids=lambda value: str(value)[:60],
 )
-def test_a_list_that_is_not_understood_is_refused_as_a_whole(
-    client: Client, body: object, pointer: str
-) -> None:
+def test_invalid_batch_is_rejected_as_a_whole(client: Client, body: object, pointer: str) -> None:
     answer = client.post("/v1/batch", body)
     assert answer.status_code == 422
     assert answer.headers["content-type"] == MEDIA_TYPE
     assert answer.json()["errors"][0]["pointer"] == pointer
 
 
-def test_the_numbers_of_all_count_together(client: Client) -> None:
+def test_numbers_of_a_batch_are_limited_in_total(client: Client) -> None:
     half = SETTINGS.max_numbers // 2 // len(LOADS) + 1
     fields = BALL | {"load": {"normal_force": LOADS}, "quantities": ["foundation_load"]}
     few, many, too_many = (
@@ -102,7 +105,7 @@ def test_the_numbers_of_all_count_together(client: Client) -> None:
         "request": FOLLOWED
         | {"cycles": FOLLOWED["cycles"] | {"count": SETTINGS.max_samples // 4 - 1}},
     }
-    for queries, index in (([few, many, few, many], 3), ([many_samples] * 99, 10)):
+    for queries, index in (([few, many, few, many], 3), ([many_samples] * 11, 10)):
         answer = client.post("/v1/batch", {"queries": queries})
         assert answer.status_code == 422
         assert [error["pointer"] for error in answer.json()["errors"]] == [f"/queries/{index}"]
@@ -110,12 +113,12 @@ def test_the_numbers_of_all_count_together(client: Client) -> None:
     assert [each["status"] for each in answers] == [200, 422]
 
 
-def test_a_batch_is_malformed_like_any_body(client: Client) -> None:
+def test_malformed_batch_is_malformed_json(client: Client) -> None:
     assert client.post_text("/v1/batch", b'{"queries": [').status_code == 400
 
 
 @pytest.mark.parametrize("accept", ["text/csv", "image/svg+xml", "application/x-npz"])
-def test_a_batch_is_answered_in_json_alone(client: Client, accept: str) -> None:
+def test_batch_is_available_as_json_only(client: Client, accept: str) -> None:
     example = BATCH_EXAMPLES["two"]["value"]
     headers = {"accept": accept}
     assert client.request("POST", "/v1/batch", json=example, headers=headers).status_code == 406
@@ -123,16 +126,13 @@ def test_a_batch_is_answered_in_json_alone(client: Client, accept: str) -> None:
     assert client.request("POST", "/v1/batch?format=json", json=example).status_code == 200
 
 
-def test_a_defect_in_one_leaves_the_others(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_internal_error_of_one_query_leaves_the_others(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def broken(_query: object) -> object:
         raise ZeroDivisionError
 
-    cone = questions.QUESTIONS["tangential"]
-    monkeypatch.setitem(
-        questions.QUESTIONS,
-        "tangential",
-        questions.Question(cone.model, broken, cone.document),
-    )
+    monkeypatch.setitem(QUERIES, "tangential", QUERIES["tangential"]._replace(solve=broken))
     path, _, query = next(case for case in CASES if case[0] == "/v1/tangential")
     queries = [("/v1/normal", json.dumps(BALL).encode()), (path, json.dumps(query).encode())]
     first, second = batch(client, queries).json()["answers"]
@@ -141,6 +141,6 @@ def test_a_defect_in_one_leaves_the_others(client: Client, monkeypatch: pytest.M
     assert set(second["problem"]) == {"type", "title", "status", "detail"}
 
 
-def test_the_example_shows_an_answer_and_a_problem(client: Client) -> None:
+def test_batch_example_has_a_result_and_a_problem(client: Client) -> None:
     answers = client.post("/v1/batch", BATCH_EXAMPLES["two"]["value"]).json()["answers"]
     assert [each["status"] for each in answers] == [200, 422]

@@ -13,7 +13,6 @@ import numpy as np
 import orjson
 import pytest
 
-from mdr_service import table as table_of
 from mdr_service.schemas.examples import (
     EVOLUTION_EXAMPLES,
     HISTORY_EXAMPLES,
@@ -22,6 +21,7 @@ from mdr_service.schemas.examples import (
     TANGENTIAL_EXAMPLES,
     WEAR_EXAMPLES,
 )
+from mdr_service.serializers import csv as table_of
 from tests.conftest import Client
 
 CASES = [
@@ -43,7 +43,7 @@ EVERY_EXAMPLE = pytest.mark.parametrize(
 )
 BALL = NORMAL_EXAMPLES["hertz"]["value"]
 WITHOUT_ROWS = {
-    *("method", "error_estimate", "warnings"),
+    *("method", "error_estimate", "field_error_estimate", "warnings"),
     *("slip_fronts", "energy_per_cycle", "secant_stiffness"),
 }
 SVG = "{http://www.w3.org/2000/svg}"
@@ -176,10 +176,6 @@ def test_an_unknown_form_is_refused(client: Client, path: str, accept: str) -> N
     assert "text/csv" in answer.json()["detail"]
 
 
-def test_a_normal_contact_has_no_picture(client: Client) -> None:
-    assert ask(client, "/v1/normal", BALL, "image/svg+xml").status_code == 406
-
-
 def picture(answer: httpx.Response) -> ET.Element:
     assert answer.status_code == 200
     assert answer.headers["content-type"] == "image/svg+xml"
@@ -190,21 +186,24 @@ def picture(answer: httpx.Response) -> ET.Element:
 
 @pytest.mark.parametrize(
     ("path", "query"),
-    [case[::2] for case in CASES if case[0] != "/v1/normal"],
-    ids=[f"{path} {name}" for path, name, _ in CASES if path != "/v1/normal"],
+    [case[::2] for case in CASES],
+    ids=[f"{path} {name}" for path, name, _ in CASES],
 )
 def test_every_example_has_a_picture(client: Client, path: str, query: dict[str, object]) -> None:
     answer = ask(client, path, query, "image/svg+xml")
     axes = [part.get("id", "") for part in picture(answer).iter(f"{SVG}g")]
     panels = [name for name in axes if name.startswith("axes_")]
     if path.startswith("/v1/wear"):
-        assert len(panels) == (2 if path.endswith("evolution") else 1)
+        requested = set(query.get("quantities", ()))
+        always = {"profile", "pressure"} if path.endswith("evolution") else {"limiting_profile"}
+        assert len(panels) == len(always | requested - {"initial_profile"})
     else:
         assert len(panels) == len(query.get("quantities", ["force over displacement"]))
     # The same question, the same picture.
     assert ask(client, path, query, "image/svg+xml").content == answer.content
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "change",
     [
@@ -228,6 +227,7 @@ def test_what_is_hard_to_draw_has_a_picture(
     picture(ask(client, path, query, "image/svg+xml"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "change",
     [
@@ -256,6 +256,7 @@ def test_a_history_that_is_hard_to_draw_has_a_picture(
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "change",
     [
@@ -277,6 +278,7 @@ def test_wear_that_is_hard_to_draw_has_a_picture(client: Client, change: dict[st
     picture(ask(client, "/v1/wear", query | change, "image/svg+xml"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "change",
     [

@@ -1,6 +1,7 @@
 """Queries in an address are answered with the bytes of the request they stand for."""
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from urllib.parse import urlencode
@@ -10,12 +11,20 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mdr_service import address, parameters, problems
+from mdr_service import problems
+from mdr_service.api import parameters
+from mdr_service.api.parameters import Parameters
 from mdr_service.schemas import examples
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.contract import strict_json
 
+MODELS: dict[str, type[Parameters]] = {
+    "normal": parameters.NormalParameters,
+    "tangential": parameters.TangentialParameters,
+    "stress": parameters.StressParameters,
+    "wear": parameters.WearParameters,
+}
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
 BALL = {"kind": "paraboloid", "radius": 0.01}
 MODULI = {"e_star": 1.15e11, "g_star": 9.5e10}
@@ -174,15 +183,15 @@ def at(question: str, asked: Mapping[str, object]) -> str:
     return f"/v1/{question}?{urlencode(asked)}"
 
 
-@pytest.mark.parametrize("form", ["json", "csv", "npz", "svg"])
+@pytest.mark.parametrize(
+    "form", ["json", "csv", "npz", pytest.param("svg", marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize("name", SAME)
-def test_an_address_is_answered_as_the_request_it_stands_for(
-    client: Client, name: str, form: str
-) -> None:
+def test_get_returns_the_bytes_of_post(client: Client, name: str, form: str) -> None:
     question, asked, request = SAME[name]
     found = client.get(at(question, {**asked, "format": form}))
     expected = client.post(f"/v1/{question}?format={form}", request)
-    assert (expected.status_code == 200) == (question != "normal" or form != "svg")
+    assert expected.status_code == 200
     assert found.status_code == expected.status_code
     assert found.headers["content-type"] == expected.headers["content-type"]
     assert found.content == expected.content
@@ -320,7 +329,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_is_wrong_is_told_of_the_parameter(client: Client, name: str) -> None:
+def test_invalid_value_points_at_its_parameter(client: Client, name: str) -> None:
     question, asked, pointer = REFUSED[name]
     answer = client.get(at(question, asked))
     assert answer.status_code == 422
@@ -329,7 +338,7 @@ def test_what_is_wrong_is_told_of_the_parameter(client: Client, name: str) -> No
     assert f"/{pointer}" in [error["pointer"] for error in answer.json()["errors"]]
 
 
-def test_what_is_given_twice_is_refused(client: Client) -> None:
+def test_repeated_parameter_is_rejected(client: Client) -> None:
     answer = client.get(at("normal", NORMAL) + "&radius=0.01")
     assert answer.json()["errors"] == [{"pointer": "/radius", "detail": "is given twice"}]
 
@@ -337,34 +346,41 @@ def test_what_is_given_twice_is_refused(client: Client) -> None:
 @pytest.mark.parametrize(
     "written", ["1.15E+11", "1.15e%2B11", "%2B1.15e11", "115000000000", "115e9"]
 )
-def test_a_number_may_be_written_as_spreadsheets_do(client: Client, written: str) -> None:
+def test_number_of_a_spreadsheet_is_accepted(client: Client, written: str) -> None:
     plain = {name: value for name, value in NORMAL.items() if name != "e_star"}
     answer = client.get(f"{at('normal', plain)}&e_star={written}")
     assert answer.content == client.get(at("normal", NORMAL)).content
 
 
-@pytest.mark.parametrize("question", parameters.KNOWN)
-def test_the_example_in_the_documentation_is_answered(client: Client, question: str) -> None:
+@pytest.mark.parametrize("question", MODELS)
+def test_documented_parameters_have_a_result(client: Client, question: str) -> None:
     get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
     shown = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
-    assert shown == getattr(examples, f"{question.upper()}_IN_ADDRESS")
+    assert shown == examples.PARAMETER_EXAMPLES[question]
     assert client.get(at(question, shown)).status_code == 200
 
 
-@pytest.mark.parametrize("question", parameters.KNOWN)
+@pytest.mark.parametrize("question", MODELS)
 def test_every_parameter_is_documented(question: str) -> None:
     get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
-    known = parameters.KNOWN[question].by_name
-    ends = [end for each in known.values() if each.ranges for end in each.ends]
     names = [each["name"] for each in get["parameters"]]
-    assert sorted(names) == sorted([*known, *ends, address.COUNT, address.SCALE, address.FORMAT])
+    assert sorted(names) == sorted([*MODELS[question].model_fields, "format"])
     assert all(each["in"] == "query" and each["description"] for each in get["parameters"])
     for each in get["parameters"]:
-        if each["schema"]["type"] == "number":
-            assert {"minimum", "exclusiveMinimum", "maximum"} & set(each["schema"])
+        if {"type": "number"} in each["schema"].get("anyOf", ()):
+            assert re.search(r"\[[a-z0-9/*^()-]+\]$", each["description"])
 
 
-def test_an_answer_that_is_known_is_not_sent_again(client: Client) -> None:
+@pytest.mark.parametrize("question", MODELS)
+def test_the_documentation_page_accepts_exponents(question: str) -> None:
+    # Swagger UI compares the text of a parameter of the one type number with a pattern of its own.
+    get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
+    assert all(
+        each["schema"].get("type") not in {"number", "integer"} for each in get["parameters"]
+    )
+
+
+def test_matching_etag_returns_304(client: Client) -> None:
     answer = client.get(at("normal", NORMAL))
     tag = answer.headers["etag"]
     assert tag.startswith('W/"')
@@ -383,21 +399,22 @@ def test_an_answer_that_is_known_is_not_sent_again(client: Client) -> None:
     assert client.get(at("normal", {**NORMAL, "format": "csv"})).headers["etag"] != tag
 
 
-def test_what_is_refused_is_not_kept(client: Client) -> None:
+def test_problem_is_not_cached(client: Client) -> None:
     assert client.get("/v1/normal").headers["cache-control"] == "no-store"
 
 
-def test_an_answer_may_be_asked_about(client: Client) -> None:
+def test_head_has_the_headers_of_get(client: Client) -> None:
     answer, asked = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
     assert asked.status_code == 200
     assert asked.headers["etag"] == answer.headers["etag"]
 
 
-def test_a_failure_that_points_nowhere_stays_what_it_is() -> None:
-    assert address.pointed(problems.DEFECT, "normal", NORMAL) is problems.DEFECT
+def test_problem_without_pointers_has_none_for_parameters() -> None:
+    given = parameters.NormalParameters.model_validate({"kind": "cone"})
+    assert given.pointed(problems.INTERNAL_ERROR).errors == ()
 
 
-NAMES = sorted({name for known in parameters.KNOWN.values() for name in known.by_name})
+NAMES = sorted({name for model in MODELS.values() for name in model.paths})
 ENDS = [f"{name}{end}" for name in NAMES for end in ("_from", "_to")]
 TEXTS = (
     st.text(max_size=8)
@@ -418,8 +435,8 @@ ADDRESSES = st.builds(
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
-@given(question=st.sampled_from(list(parameters.KNOWN)), asked=ADDRESSES)
-def test_whatever_is_asked_is_answered_or_refused_with_a_pointer(
+@given(question=st.sampled_from(list(MODELS)), asked=ADDRESSES)
+def test_random_parameters_have_a_result_or_a_pointer(
     client: Client, question: str, asked: dict[str, object]
 ) -> None:
     answer = client.get(at(question, asked))
@@ -427,7 +444,7 @@ def test_whatever_is_asked_is_answered_or_refused_with_a_pointer(
     if answer.status_code == 422:
         document = strict_json.loads(answer.content)
         assert isinstance(document, dict)
-        known = parameters.KNOWN[question].by_name
+        known = MODELS[question].paths
         pointers = [error["pointer"].removeprefix("/") for error in document["errors"]]
         assert pointers
         assert {*pointers} <= {*asked, *known, *ENDS, "n"}
@@ -436,5 +453,5 @@ def test_whatever_is_asked_is_answered_or_refused_with_a_pointer(
 @pytest.mark.parametrize(
     "query_string", ["%", "%ff=%ff", "=", "&&", "a", "%00=1", "kind=%F0%9F%98%80", "kind", "?", "#"]
 )
-def test_no_query_string_is_a_defect(client: Client, query_string: str) -> None:
+def test_random_query_string_is_no_internal_error(client: Client, query_string: str) -> None:
     assert client.get(f"/v1/normal?{query_string}").status_code == 422

@@ -49,7 +49,7 @@ def told(normal_load: object, tangential: object, **more: object) -> dict[str, o
     return {"history": {"normal": normal_load, "tangential": tangential, **more}}
 
 
-def solved(kind: str, *controls: dict[str, object], **more: object) -> history.History:
+def solved(kind: str, *controls: dict[str, object], **more: object) -> history.LoadHistory:
     given = controls[0] | controls[1]
     return history.solve(PROFILES[kind][1], E_STAR, G_STAR, FRICTION, **given, **more)
 
@@ -66,14 +66,17 @@ def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str, way: str
     assert not {"energy_per_cycle", "secant_stiffness"} & set(document)
 
 
-def test_a_curved_way_is_followed_to_the_accuracy_asked_for(client: Client) -> None:
-    way = {"normal_force": [1e5, 2e5]}, {"tangential_displacement": [1e-5, -1e-5]}
-    for rtol in (1e-3, 1e-9):
-        document = client.post(PATH, query(**told(*way), rtol=rtol)).json()
-        expected = solved("paraboloid", *way, rtol=rtol)
-        assert document["tangential_force"] == expected.tangential_force.tolist()
-        assert document["error_estimate"] == expected.error_estimate <= rtol
-        assert "accuracy" not in {each["code"] for each in document["warnings"]}
+@pytest.mark.parametrize(("rtol", "reached"), [(1e-3, True), (1e-6, True), (1e-13, False)])
+def test_curved_steps_reach_the_tolerance_or_warn(
+    client: Client, rtol: float, *, reached: bool
+) -> None:
+    path = {"normal_force": [1e5, 2e5]}, {"tangential_displacement": [1e-5, -1e-5]}
+    document = client.post(PATH, query(**told(*path), rtol=rtol)).json()
+    expected = solved("paraboloid", *path, rtol=rtol)
+    assert document["tangential_force"] == expected.tangential_force.tolist()
+    assert document["error_estimate"] == expected.error_estimate
+    assert (document["error_estimate"] <= rtol) == reached
+    assert ("accuracy" not in {each["code"] for each in document["warnings"]}) == reached
 
 
 def test_numbers_and_lists_of_one_are_the_same(client: Client) -> None:
@@ -199,9 +202,12 @@ def test_a_push_told_as_a_history_has_the_same_fields(client: Client) -> None:
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_the_grid_of_an_end_holds_its_slip_fronts(client: Client, way: str) -> None:
+def test_the_grid_of_an_end_clusters_at_its_slip_fronts(client: Client, way: str) -> None:
     asked = query(**told(*WAYS[way]), points=100, quantities=["shear_stress"])
     document = client.post("/v1/stress", asked).json()
     assert len(document["radius"]) == len(document["shear_stress"][0]) == 100
     fronts = client.post(PATH, query(**told(*WAYS[way]))).json()["slip_fronts"]
-    assert set(fronts) <= set(document["radius"])
+    # At a front itself the rounding error of a stress is largest: the grid passes just inside.
+    for front in fronts:
+        nearest = min(abs(radius / front - 1) for radius in document["radius"])
+        assert nearest < 1e-3

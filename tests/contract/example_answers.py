@@ -1,0 +1,60 @@
+"""Example responses of the OpenAPI document; written anew if run as a module."""
+
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlencode
+
+from mdr_service import openapi
+from mdr_service.schemas.examples import (
+    BATCH_EXAMPLES,
+    EVOLUTION_EXAMPLES,
+    HISTORY_EXAMPLES,
+    NORMAL_EXAMPLES,
+    PARAMETER_EXAMPLES,
+    STRESS_EXAMPLES,
+    SUBSURFACE_EXAMPLES,
+    TANGENTIAL_EXAMPLES,
+    WEAR_EXAMPLES,
+)
+from tests.conftest import Client, running_client
+
+EXAMPLES = {
+    "normal": ("normal", NORMAL_EXAMPLES),
+    "tangential": ("tangential", TANGENTIAL_EXAMPLES),
+    "history": ("tangential/history", HISTORY_EXAMPLES),
+    "stress": ("stress", STRESS_EXAMPLES),
+    "subsurface": ("subsurface", SUBSURFACE_EXAMPLES),
+    "wear": ("wear", WEAR_EXAMPLES),
+    "evolution": ("wear/evolution", EVOLUTION_EXAMPLES),
+    "batch": ("batch", BATCH_EXAMPLES),
+}
+DIGITS = 6
+
+
+def rounded(value: Any) -> Any:
+    """Return JSON with six significant digits of every number."""
+    if isinstance(value, dict):
+        return {key: rounded(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [rounded(each) for each in value]
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
+
+
+def answers(client: Client) -> dict[str, Any]:
+    """Return the response to the first example of each operation, by its name."""
+    found = {}
+    for name, (path, examples) in EXAMPLES.items():
+        body = next(iter(examples.values()))["value"]
+        found[name] = rounded(client.post(f"/v1/{path}", body).json())
+    for name, parameters in PARAMETER_EXAMPLES.items():
+        path = EXAMPLES[name][0]
+        found[f"get_{name}"] = rounded(client.get(f"/v1/{path}?{urlencode(parameters)}").json())
+    return found
+
+
+if __name__ == "__main__":
+    with running_client() as served:
+        text = json.dumps(answers(served), ensure_ascii=False, indent=1)
+    Path(str(files(openapi.__package__).joinpath("schemas/answers.json"))).write_text(text + "\n")

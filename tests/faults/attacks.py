@@ -1,0 +1,233 @@
+"""Hostile and heavy clients: `python -m tests.faults.attacks NAME PORT SECONDS`.
+
+Each runs in a process of its own, so that what is measured beside it waits for the service alone.
+Prints how often the clients received which status; 0 stands for a closed connection.
+"""
+
+import asyncio
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+
+from mdr_service.schemas import examples
+from tests.faults.load import HOST, Client, ResetError, post, request
+
+MEGABYTE = 2**20
+MATERIAL = {"e_star": 1.0, "g_star": 0.8}
+CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": MATERIAL}
+SMALL = post("/v1/normal", CONE | {"load": {"normal_force": 1.0}})
+
+
+def tangential(count: int) -> bytes:
+    return post(
+        "/v1/tangential",
+        {
+            "profile": {"kind": "sphere", "radius": 10.0},
+            "material": MATERIAL,
+            "load": {"indentation_depth": 0.05},
+            "friction_coefficient": 0.3,
+            "tangential": {"tangential_force": [1e-4 + 1e-9 * n for n in range(count)]},
+        },
+    )
+
+
+# Seconds of a core. The first is long to send, the other only long to compute.
+EXPENSIVE = (
+    post(
+        "/v1/normal",
+        {
+            "profile": {
+                "kind": "tabulated",
+                "r": [n / 199 for n in range(200)],
+                "f": [(n / 199) ** 2 / 20 for n in range(200)],
+            },
+            "material": MATERIAL,
+            "load": {"normal_force": [1e-6 + 1e-11 * n for n in range(10_000)]},
+        },
+    ),
+    post(
+        "/v1/wear/evolution",
+        examples.EVOLUTION_EXAMPLES["shakedown"]["value"]
+        | {"resolution": 96, "cycles": [float(10 * n) for n in range(2000)]},
+    ),
+)
+UNKNOWN_FIELDS = request(
+    "/v1/normal", b"{" + b",".join(b'"f%d":0' % n for n in range(100_000)) + b"}"
+)
+BATCH = post(
+    "/v1/batch",
+    {"queries": [{"ask": "normal", "request": CONE | {"load": {"normal_force": 1.0}}}] * 1000},
+)
+# The largest response: as many numbers as one query may ask for.
+LARGEST = post(
+    "/v1/stress",
+    CONE
+    | {"load": {"normal_force": [1.0 + 1e-3 * n for n in range(100)]}}
+    | {"radius": [2.5e-4 * n for n in range(1, 10_001)], "quantities": ["pressure"]},
+)
+
+Attack = Callable[[int, float], Awaitable[Counter[int]]]
+
+
+def statuses(answer: bytes) -> Counter[int]:
+    return Counter([int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else 0])
+
+
+def sending(
+    head: bytes, piece: bytes, length: int, clients: int = 1, patience: float = 5.0
+) -> Attack:
+    """Return an attack that sends a head and so many bytes, waits, and begins again."""
+
+    async def once(port: int) -> Counter[int]:
+        reader, writer = await asyncio.open_connection(HOST, port)
+        with suppress(ConnectionError):
+            writer.write(head)
+            for _ in range(length // len(piece)):
+                writer.write(piece)
+                await writer.drain()
+        answer = b""
+        with suppress(ConnectionError, TimeoutError):
+            async with asyncio.timeout(patience):
+                answer = await reader.read(MEGABYTE)
+        writer.close()
+        return statuses(answer)
+
+    return repeated(once, clients)
+
+
+def asking(text: bytes | tuple[bytes, ...], clients: int) -> Attack:
+    """Return an attack by clients that send valid requests and read the responses."""
+    texts = (text,) if isinstance(text, bytes) else text
+    numbers = iter(range(clients))
+
+    async def once(client: Client, index: int) -> Counter[int]:
+        try:
+            answer = await client.ask(texts[index % len(texts)])
+        except (ConnectionError, ResetError):
+            await asyncio.sleep(0.1)
+            return Counter([0])
+        if answer.status == 503:
+            await asyncio.sleep(0.5)
+        return Counter([answer.status])
+
+    async def attack(port: int, seconds: float) -> Counter[int]:
+        end = time.monotonic() + seconds
+        found: Counter[int] = Counter()
+
+        async def keep_asking(index: int) -> None:
+            client = Client(port)
+            while time.monotonic() < end:
+                found.update(await once(client, index))
+                index += 1
+            await client.close()
+
+        await asyncio.gather(*(keep_asking(number) for number in numbers))
+        return found
+
+    return attack
+
+
+def repeated(once: Callable[[int], Awaitable[Counter[int]]], clients: int) -> Attack:
+    async def attack(port: int, seconds: float) -> Counter[int]:
+        end = time.monotonic() + seconds
+        found: Counter[int] = Counter()
+
+        async def keep_on() -> None:
+            while time.monotonic() < end:
+                try:
+                    found.update(await once(port))
+                except ConnectionError:
+                    found[0] += 1
+                    await asyncio.sleep(0.1)
+
+        await asyncio.gather(*(keep_on() for _ in range(clients)))
+        return found
+
+    return attack
+
+
+async def slow_readers(port: int, seconds: float) -> Counter[int]:
+    """Ask for the largest response, and read its first bytes only."""
+    end = time.monotonic() + seconds
+
+    async def one() -> Counter[int]:
+        found: Counter[int] = Counter()
+        while time.monotonic() < end:
+            with suppress(ConnectionError):
+                reader, writer = await asyncio.open_connection(HOST, port, limit=1024)
+                writer.write(LARGEST)
+                status = statuses(await reader.read(100))
+                found += status
+                # A refused client asks again; the others keep their connections.
+                await asyncio.sleep(end - time.monotonic() if status[200] else 0.5)
+                writer.close()
+        return found
+
+    return sum(await asyncio.gather(*(one() for _ in range(20))), Counter())
+
+
+async def slow_headers(port: int, seconds: float) -> Counter[int]:
+    """Send a header a second, on many connections, and never the last one."""
+    end = time.monotonic() + seconds
+
+    async def one(number: int) -> Counter[int]:
+        found: Counter[int] = Counter()
+        await asyncio.sleep(number / 500)
+        while time.monotonic() < end:
+            try:
+                found += await keep_open(*await asyncio.open_connection(HOST, port))
+            except ConnectionError:
+                found[0] += 1
+                await asyncio.sleep(1.0)
+        return found
+
+    async def keep_open(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> Counter[int]:
+        writer.write(b"GET / HTTP/1.1\r\n")
+        answer = b""
+        while time.monotonic() < end and not answer and not reader.at_eof():
+            writer.write(b"X: y\r\n")
+            with suppress(TimeoutError):
+                async with asyncio.timeout(1.0):
+                    answer = await reader.read(100)
+        writer.close()
+        return statuses(answer)
+
+    return sum(await asyncio.gather(*(one(number) for number in range(500))), Counter())
+
+
+HEAD = b"POST /v1/normal HTTP/1.1\r\nHost: x\r\n"
+CHUNKED = HEAD + b"Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n"
+ATTACKS: dict[str, Attack] = {
+    "50 MB header value": sending(HEAD + b"X: ", b"a" * MEGABYTE, 50 * MEGABYTE),
+    "50 MB of header lines": sending(HEAD, b"X: y\r\n" * 100_000, 50 * MEGABYTE),
+    "50 MB of trailers": sending(CHUNKED, b"X: y\r\n" * 100_000, 50 * MEGABYTE),
+    "floods of pipelined requests": sending(
+        b"", b"GET /health HTTP/1.1\r\nHost: x\r\n\r\n" * 10_000, 4 * MEGABYTE, clients=4
+    ),
+    "10⁵ unknown fields, 4 clients": asking(UNKNOWN_FIELDS, clients=4),
+    "batches of 1000, 20 clients": asking(BATCH, clients=20),
+    "20 slow readers": slow_readers,
+    "100 long bodies without an end": sending(
+        request("/v1/normal", b" " * 4 * MEGABYTE)[: -4 * MEGABYTE],
+        b" " * (4 * MEGABYTE - 1),
+        4 * MEGABYTE - 1,
+        clients=100,
+        patience=15.0,
+    ),
+    "500 slow headers": slow_headers,
+    "expensive queries, 1 client": asking(EXPENSIVE, clients=1),
+    "expensive queries, 20 clients": asking(EXPENSIVE, clients=20),
+    "expensive queries, 2 clients": asking(EXPENSIVE[1:], clients=2),
+}
+
+
+def main(name: str, port: int, seconds: float) -> None:
+    found = asyncio.run(ATTACKS[name](port, seconds))
+    sys.stdout.write(json.dumps(dict(sorted(found.items()))))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]), float(sys.argv[3]))

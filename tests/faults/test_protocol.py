@@ -1,0 +1,429 @@
+"""Bounds of the HTTP protocol: headers, time, pipelines, upgrades and clients that do not read."""
+
+import http.client
+import json
+import random
+import shutil
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from itertools import pairwise
+
+import pytest
+import uvicorn
+from fastapi import FastAPI
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+from mdr_service import observability, protocol
+from mdr_service.app import create_app
+from mdr_service.protocol import MAX_HEADER_BYTES, MAX_HEADER_FIELDS, BoundedProtocol
+from mdr_service.schemas import examples
+from mdr_service.settings import SETTINGS
+from tests.faults.server import PATIENCE, free_port, wait_until_ready
+
+pytestmark = [pytest.mark.long, pytest.mark.alone]
+
+CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": {"e_star": 1}}
+BODY = json.dumps(CONE | {"load": {"normal_force": 1}}).encode()
+UPGRADE = (
+    b"Connection: Upgrade, HTTP2-Settings\r\nUpgrade: h2c\r\nHTTP2-Settings: AAEAAEAAAAIAAAAA\r\n"
+)
+GET = b"GET /health HTTP/1.1\r\nHost: x\r\n\r\n"
+
+
+def post(body: bytes = BODY, headers: bytes = b"") -> bytes:
+    return (
+        b"POST /v1/normal HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+        b"%sContent-Length: %d\r\n\r\n%s" % (headers, len(body), body)
+    )
+
+
+def chunked(body: bytes = BODY, headers: bytes = b"", trailers: bytes = b"") -> bytes:
+    middle = len(body) // 2
+    chunks = b"".join(
+        b"%x\r\n%s\r\n" % (len(each), each) for each in (body[:middle], body[middle:])
+    )
+    return (
+        b"POST /v1/normal HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n%s"
+        b"Transfer-Encoding: chunked\r\n\r\n%s0\r\n%s\r\n" % (headers, chunks, trailers)
+    )
+
+
+@dataclass
+class Served:
+    app: FastAPI
+    port: int
+
+    def connect(self) -> socket.socket:
+        return socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE)
+
+    def responses(self, *pieces: bytes, number: int = 1) -> list[tuple[int, bytes]]:
+        """Send the pieces; return so many responses, fewer if the connection is closed."""
+        with self.connect() as client:
+            sender = threading.Thread(target=send_all, args=(client, pieces))
+            sender.start()
+            found = read(client, number)
+            sender.join()
+        return found
+
+
+def send_all(client: socket.socket, pieces: tuple[bytes, ...]) -> bool:
+    """Send the pieces; return True if the connection is closed."""
+    try:
+        for piece in pieces:
+            client.sendall(piece)
+    except ConnectionError:
+        return True
+    return False
+
+
+def wait_for(happened: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not happened():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+class Received:
+    """As much of a socket as `http.client` needs."""
+
+    def __init__(self, stream: BytesIO) -> None:
+        self._stream = stream
+
+    def makefile(self, _mode: str) -> BytesIO:
+        return self._stream
+
+
+def read(client: socket.socket, number: int) -> list[tuple[int, bytes]]:
+    found = []
+    stream = client.makefile("rb")
+    stream.close = lambda: None  # type: ignore[method-assign]  # for the next response
+    for _ in range(number):
+        try:
+            response = http.client.HTTPResponse(Received(stream), method="POST")  # type: ignore[arg-type]
+            response.begin()
+            found.append((response.status, response.read()))
+        except (ConnectionError, http.client.HTTPException):
+            break
+    return found
+
+
+def is_closed(client: socket.socket) -> bool:
+    try:
+        return client.recv(2**16) == b""
+    except ConnectionError:
+        return True
+
+
+@pytest.fixture(scope="module")
+def served() -> Iterator[Served]:
+    number = free_port()
+    app = create_app()
+    config = uvicorn.Config(app, port=number, loop="uvloop", http=BoundedProtocol, ws="none")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    wait_until_ready(number)
+    yield Served(app, number)
+    server.should_exit = True
+    thread.join(PATIENCE)
+
+
+@pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let requests arrive within half a second, and be noticed a tenth later."""
+    settings = SETTINGS.model_copy(update={"request_seconds": 0.5})
+    monkeypatch.setattr(protocol, "SETTINGS", settings)
+    monkeypatch.setattr(protocol, "_CHECK_SECONDS", 0.1)
+
+
+def test_every_overridden_method_exists_in_uvicorn() -> None:
+    own = {name for name, each in vars(BoundedProtocol).items() if callable(each)}
+    overriding = {name for name in own if not name.startswith("_")}
+    assert overriding >= {"data_received", "on_headers_complete", "on_body", "resume_writing"}
+    for name in overriding:
+        assert callable(getattr(HttpToolsProtocol, name)), name
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        (b"X: %s\r\n" % (b"a" * (MAX_HEADER_BYTES - 1000)), 200),
+        (b"X: %s\r\n" % (b"a" * MAX_HEADER_BYTES), 431),
+        (b"X: a\r\n" * (MAX_HEADER_FIELDS - 3), 200),
+        (b"X: a\r\n" * (MAX_HEADER_FIELDS - 2), 431),
+    ],
+    ids=["long value", "too long value", "many fields", "too many fields"],
+)
+def test_headers_are_bounded_in_bytes_and_number(
+    served: Served, headers: bytes, status: int
+) -> None:
+    before = served.responses(post())
+    text = post(headers=headers)
+    # At once, and in pieces that end inside of names and values.
+    for pieces in ([text], [text[n : n + 1021] for n in range(0, len(text), 1021)]):
+        ((found, body),) = served.responses(*pieces)
+        assert found == status
+        if status == 431:
+            document = json.loads(body)
+            assert document["type"] == "urn:mdr:problem:headers-too-large"
+            assert str(MAX_HEADER_BYTES) in document["detail"]
+        else:
+            assert body == before[0][1]
+
+
+def test_refused_connection_is_closed_after_the_response(served: Served) -> None:
+    with served.connect() as client:
+        client.sendall(post(headers=b"X: a\r\n" * 200))
+        assert [status for status, _ in read(client, 2)] == [431]
+        assert is_closed(client)
+
+
+def test_long_url_is_refused(served: Served) -> None:
+    text = b"GET /%s HTTP/1.1\r\nHost: x\r\n\r\n" % (b"a" * 2 * MAX_HEADER_BYTES)
+    assert served.responses(text)[0][0] == 431
+
+
+@pytest.mark.parametrize(
+    "head",
+    [b"GET / HTTP/1.1\r\nX: ", b"GET /", b"GET / HTTP/1.1\r\nX", b"\r\n", chunked()[:-2] + b"X: "],
+    ids=["value", "URL", "name", "empty lines", "trailer"],
+)
+def test_header_without_end_is_refused_once_it_is_too_long(served: Served, head: bytes) -> None:
+    endless = b"\r\n" if head == b"\r\n" else b"a"
+    found = served.responses(head, *[endless * 2**19] * 100, number=2)
+    assert [status for status, _ in found] == [431]
+
+
+def test_trailers_are_accepted_within_the_bounds_and_ignored(served: Served) -> None:
+    trailers = b"X-Request-Id: trailer\r\nContent-Type: text/plain\r\n"
+    found = served.responses(chunked(trailers=trailers) + GET, number=2)
+    assert [status for status, _ in found] == [200, 200]
+    assert found[0] == served.responses(post())[0]
+    found = served.responses(chunked(trailers=b"X: a\r\n" * 20_000) + GET, number=2)
+    assert 200 not in [status for status, _ in found[1:]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"NONSENSE\r\n\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+        b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+        b"CONNECT example.org:443 HTTP/1.1\r\nHost: example.org\r\n\r\n",
+        b"GET /\xff HTTP/1.1\r\nHost: x\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n",
+        b"POST /v1/normal HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nnot a length\r\n",
+    ],
+    ids=["words", "TLS", "HTTP/2", "CONNECT", "not ASCII", "two lengths", "chunk"],
+)
+def test_malformed_request_is_refused_with_a_problem_document(served: Served, text: bytes) -> None:
+    found = served.responses(text, number=2)
+    assert [status for status, _ in found] == [400]
+    assert json.loads(found[0][1])["type"] == "urn:mdr:problem:malformed-http"
+
+
+def test_pipelined_requests_are_answered_in_order(served: Served) -> None:
+    found = served.responses((post() + GET) * 8, number=16)
+    single = served.responses(post())[0]
+    assert found[::2] == [single] * 8
+    assert [status for status, _ in found[1::2]] == [200] * 8
+
+
+def test_flood_of_pipelined_requests_is_cut_off(served: Served) -> None:
+    assert len(served.responses(GET * 10_000, number=10_000)) < 10_000
+
+
+def test_malformed_request_behind_another_is_no_response_to_that(served: Served) -> None:
+    found = served.responses(GET + b"NONSENSE\r\n\r\n", number=2)
+    assert [status for status, _ in found] in ([], [200])
+
+
+@pytest.mark.parametrize("offer", [UPGRADE, b"Connection: upgrade\r\nUpgrade: websocket\r\n"])
+@pytest.mark.parametrize("make", [post, chunked])
+def test_upgrade_is_declined_and_the_request_answered(
+    served: Served, make: object, offer: bytes
+) -> None:
+    assert callable(make)
+    text = make(headers=offer)
+    assert served.responses(text) == served.responses(post())
+    assert served.responses(text * 3, number=3) == served.responses(post()) * 3
+
+
+def test_body_behind_an_upgrade_is_not_read_as_a_request(served: Served) -> None:
+    """Behind a proxy, that would let a client answer the next client's request."""
+    with served.connect() as client:
+        client.sendall(post(GET, UPGRADE))
+        assert [status for status, _ in read(client, 1)] == [400]
+        client.settimeout(0.3)
+        with pytest.raises(TimeoutError):
+            client.recv(1)
+
+
+def test_responses_do_not_depend_on_how_requests_are_split(served: Served) -> None:
+    rng = random.Random(1)
+    kinds = {
+        post(): 200,
+        post(headers=UPGRADE): 200,
+        chunked(): 200,
+        chunked(headers=UPGRADE, trailers=b"X: y\r\n"): 200,
+        GET: 200,
+        post(b"{"): 400,
+        b"GET /nowhere HTTP/1.1\r\nHost: x\r\n\r\n": 404,
+    }
+    for _ in range(60):
+        texts = rng.choices(list(kinds), k=6)
+        whole = b"".join(texts)
+        cuts = sorted(rng.sample(range(1, len(whole)), rng.choice([0, 1, 5, 40])))
+        pieces = [whole[begin:end] for begin, end in pairwise([0, *cuts, len(whole)])]
+        found = served.responses(*pieces, number=6)
+        assert [status for status, _ in found] == [kinds[text] for text in texts]
+
+
+EXAMPLES = {
+    "/v1/normal": examples.NORMAL_EXAMPLES,
+    "/v1/tangential": examples.TANGENTIAL_EXAMPLES,
+    "/v1/tangential/history": examples.HISTORY_EXAMPLES,
+    "/v1/stress": examples.STRESS_EXAMPLES,
+    "/v1/wear": examples.WEAR_EXAMPLES,
+    "/v1/wear/evolution": examples.EVOLUTION_EXAMPLES,
+}
+
+
+@pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl")
+@pytest.mark.parametrize("path", [*EXAMPLES, "/v1/batch", "/v1/limits", "/health"])
+def test_curl_with_http2_gets_every_endpoint(served: Served, path: str) -> None:
+    command = [
+        "curl",
+        "--http2",
+        "--silent",
+        "--output",
+        "/dev/null",
+        "--write-out",
+        "%{http_code}",
+    ]
+    query: object = None
+    if path in EXAMPLES:
+        query = next(iter(EXAMPLES[path].values()))["value"]
+    elif path == "/v1/batch":
+        query = {"queries": [{"ask": "normal", "request": json.loads(BODY)}]}
+    if query is not None:
+        command += ["--header", "Content-Type: application/json", "--data", json.dumps(query)]
+    told = subprocess.run(
+        [*command, f"http://127.0.0.1:{served.port}{path}"], capture_output=True, check=True
+    )
+    assert told.stdout == b"200"
+
+
+def test_expected_continue_is_sent(served: Served) -> None:
+    with served.connect() as client:
+        head, _, body = post(headers=b"Expect: 100-continue\r\n").partition(b"\r\n\r\n")
+        client.sendall(head + b"\r\n\r\n")
+        assert client.recv(1000).startswith(b"HTTP/1.1 100 ")
+        client.sendall(body)
+        assert read(client, 1)[0][0] == 200
+
+
+@pytest.mark.usefixtures("hasty")
+@pytest.mark.parametrize(
+    ("pieces", "name"),
+    [
+        ([b""], "headers-too-slow"),
+        ([b"G", b"E", b"T", b" ", b"/"], "headers-too-slow"),
+        ([post()[:-1]], "body-too-slow"),
+        ([post()[:-2], b"}"], "body-too-slow"),
+        ([b"\r\n"] * 5, "headers-too-slow"),
+        ([post(), post()[:40]], "headers-too-slow"),
+    ],
+    ids=["nothing", "a byte at a time", "no end of body", "dribbled body", "empty lines", "second"],
+)
+def test_request_that_does_not_arrive_in_time_is_refused(
+    served: Served, pieces: list[bytes], name: str
+) -> None:
+    with served.connect() as client:
+        began = time.monotonic()
+        for piece in pieces:
+            client.sendall(piece)
+            time.sleep(0.05)
+        found = read(client, 3)
+        assert time.monotonic() - began < PATIENCE / 2
+        assert is_closed(client)
+    status, body = found[-1]
+    assert status == 408
+    assert json.loads(body)["type"] == f"urn:mdr:problem:{name}"
+
+
+@pytest.mark.usefixtures("hasty")
+def test_connection_with_an_early_response_and_an_endless_body_is_closed(served: Served) -> None:
+    with served.connect() as client:
+        client.sendall(b"POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
+        assert read(client, 1)[0][0] == 404
+        wait_for(lambda: send_all(client, (b"a",)))
+
+
+@pytest.mark.usefixtures("hasty")
+def test_response_that_takes_long_is_not_taken_for_a_slow_client(served: Served) -> None:
+    query = next(iter(examples.EVOLUTION_EXAMPLES.values()))["value"] | {"resolution": 96}
+    body = json.dumps(query).encode()
+    text = post(body).replace(b"/v1/normal", b"/v1/wear/evolution")
+    # The second request is incomplete, but the first one's response is awaited.
+    with served.connect() as client:
+        client.sendall(text + GET[:20])
+        assert read(client, 1)[0][0] == 200
+
+
+def large_request() -> bytes:
+    query = CONE | {"load": {"normal_force": [1.0 + 1e-3 * n for n in range(100)]}}
+    query |= {"points": 2_000, "quantities": ["pressure"]}
+    return post(json.dumps(query).encode()).replace(b"/v1/normal", b"/v1/stress")
+
+
+def reader(served: Served, buffer: int) -> socket.socket:
+    """Return a connection with a buffer of its own of that length."""
+    client = socket.socket()
+    client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
+    client.settimeout(PATIENCE)
+    client.connect(("127.0.0.1", served.port))
+    return client
+
+
+def test_client_that_does_not_read_is_disconnected(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(protocol, "_WRITE_SECONDS", 1.0)
+    monkeypatch.setattr(protocol, "_CHECK_SECONDS", 0.2)
+    with reader(served, 4_096) as client:
+        client.sendall(large_request())
+        assert client.recv(12).startswith(b"HTTP/1.1 200")
+        assert served.app.state.transfers._total > 2**20
+        wait_for(lambda: served.app.state.transfers._total == 0)
+        # What the kernel holds comes first.
+        wait_for(lambda: is_closed(client))
+
+
+def test_client_that_reads_slowly_receives_all(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(protocol, "_WRITE_SECONDS", 1.0)
+    monkeypatch.setattr(protocol, "_CHECK_SECONDS", 0.2)
+    expected = served.responses(large_request())[0][1]
+    with reader(served, 65_536) as client:
+        client.sendall(large_request())
+        began = time.monotonic()
+        text = b""
+        while not text.endswith(expected[-100:]):
+            text += client.recv(2**17)
+            time.sleep(0.1)
+    assert text.endswith(b"\r\n\r\n" + expected)
+    assert time.monotonic() - began > 2.0
+
+
+def test_refusals_are_counted(served: Served) -> None:
+    counter = observability.PROBLEMS.labels("headers-too-large")
+    before = counter._value.get()
+    served.responses(post(headers=b"X: a\r\n" * 200))
+    assert counter._value.get() == before + 1

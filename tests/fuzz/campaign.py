@@ -1,0 +1,304 @@
+"""Ordinary queries by the thousand, answered in process, each answer held to the laws.
+
+    python -m tests.fuzz.campaign [--queries N] [--seed S] [--report FILE]     # make fuzz
+
+Every query is posted; shares of them are asked again by GET, in a batch, as CSV, NumPy arrays and
+SVG, at the tightest tolerance, in other units, and by the inverse or an equivalent query. Query i
+of seed S is the same whatever came before it. The report holds one entry per class of failures,
+with the shortest query of the class.
+"""
+
+import argparse
+import json
+import re
+import sys
+import traceback
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+from time import thread_time
+from typing import Any, Final
+
+import numpy as np
+
+from tests.contract import strict_json
+from tests.fuzz import forms, laws, ordinary_scenes
+from tests.fuzz.service import PATHS, Reply, Service
+from tests.fuzz.units import Units, exactly_scalable, is_representable, scaled, scaled_answer
+
+ANSWERED: Final = 0.7
+"""Least share of queries with an answer: others would test little."""
+
+
+REJECTED: Final = frozenset({"urn:mdr:problem:invalid-request", "urn:mdr:problem:outside-model"})
+"""Problem types of queries outside the model; ordinary queries cost little and are accurate."""
+
+
+@dataclass
+class Failures:
+    """Classes of failures: how many, of which kinds of profile, and the shortest query."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    kinds: dict[str, Counter[str]] = field(default_factory=dict)
+    shortest: dict[str, tuple[str, str]] = field(default_factory=dict)
+    details: dict[str, str] = field(default_factory=dict)
+
+    def add(self, label: str, name: str, body: Any, detail: str = "") -> None:
+        text = json.dumps({"ask": name, "request": body})
+        self.counts[label] += 1
+        kind = body.get("profile", {}).get("kind", "")
+        self.kinds.setdefault(label, Counter())[kind] += 1
+        known = self.shortest.get(label)
+        if known is None or len(text) < len(known[0]):
+            self.shortest[label] = text, name
+            self.details[label] = detail
+
+    def entries(self) -> list[dict[str, Any]]:
+        return [
+            {
+                "label": label,
+                "count": count,
+                "kinds": dict(self.kinds[label]),
+                "query": json.loads(self.shortest[label][0]),
+                "detail": self.details[label],
+            }
+            for label, count in self.counts.most_common()
+        ]
+
+
+def _is_never_rejected(profile: Mapping[str, Any], detail: str) -> bool:
+    """Report whether a table is rejected for its interpolation, which the service may choose."""
+    return "between the points" in detail and profile.get("interpolation", "auto") == "auto"
+
+
+def _where(error: BaseException) -> str:
+    """Return the kind of a defect and the last frames of this project that it passed."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if "/src/mdr_" in f.filename]
+    last = " < ".join(f"{Path(f.filename).stem}.{f.name}" for f in reversed(frames[-3:]))
+    return f"{type(error).__name__} in {last}"
+
+
+class Campaign:
+    """A run of queries against one service."""
+
+    def __init__(self, seed: int) -> None:
+        self.seed = seed
+        self.service = Service()
+        self.failures = Failures()
+        self.statuses: Counter[str] = Counter()
+        self.slowest = (0.0, "")
+        self._recent: list[tuple[str, Any, Reply]] = []
+
+    def ask(self, index: int) -> None:
+        """Ask query number `index` of the seed in all its forms."""
+        random = Random(f"{self.seed} {index}")
+        name, body = ordinary_scenes.query(random)
+        start = thread_time()
+        reply = self.service.post(name, body)
+        self.slowest = max(self.slowest, (thread_time() - start, f"query {index}: {name}"))
+        self.statuses[f"{name} {reply.status}"] += 1
+        answer = self._judged(name, body, reply)
+        for label in self._again(random, name, body, reply, answer):
+            self.failures.add(f"{name}: {label}", name, body)
+        self._recent.append((name, body, reply))
+        if len(self._recent) == 6:
+            self._batch()
+
+    def _judged(self, name: str, body: Any, reply: Reply) -> dict[str, Any] | None:
+        """Return the answer, if there is one; keep what is wrong with the reply."""
+        if reply.status not in {200, 422}:
+            label = f"{name}: {reply.status} {_where(reply.defect) if reply.defect else ''}"
+            shown = "".join(traceback.format_exception(reply.defect)[-6:]) if reply.defect else ""
+            self.failures.add(label, name, body, shown)
+            return None
+        try:
+            document: Any = strict_json.loads(reply.content)
+        except ValueError as error:
+            self.failures.add(f"{name}: not JSON: {error}", name, body)
+            return None
+        if reply.status == 200:
+            for law in laws.broken(name, body, document):
+                self.failures.add(f"{name}: {law}", name, body)
+            return dict(document)
+        self.statuses[f"{name} 422 {document['type']}"] += 1
+        expected = document.get("errors") and (
+            document["type"] in REJECTED or "finer resolution" in document["detail"]
+        )
+        if not expected or _is_never_rejected(body["profile"], document["detail"]):
+            detail = re.sub(r"[-+.\d]+(e[-+]?\d+)?", "#", document["detail"])
+            self.failures.add(f"{name}: {document['type']}: {detail}", name, body)
+        return None
+
+    def _again(
+        self, random: Random, name: str, body: Any, reply: Reply, answer: dict[str, Any] | None
+    ) -> Iterator[str]:
+        if reply.status in {200, 422}:
+            if random.random() < 0.3 and (address := forms.by_address(name, body)):
+                got = self.service.send("GET", PATHS[name], query_string=address)
+                if got.status != reply.status or (answer and got.content != reply.content):
+                    yield f"GET answers {got.status}, or otherwise than POST"
+            yield from self._forms(random, name, body, reply.status, answer)
+        if not answer:
+            return
+        if random.random() < 0.15:
+            other = self._other(name, body | {"rtol": 1e-10 if name == "evolution" else 1e-13})
+            if other:
+                for each in laws.disagreements(name, answer, other):
+                    yield f"at the tightest rtol {each}"
+        if random.random() < 0.15 and exactly_scalable(body):
+            units = Units(2.0 ** random.randint(-20, 20), 2.0 ** random.randint(-20, 20))
+            yield from self._scaled(name, body, answer, units)
+        yield from self._equivalent(random, name, body, answer)
+
+    def _other(self, name: str, body: Any) -> dict[str, Any] | None:
+        reply = self.service.post(name, body)
+        return self._judged(name, body, reply)
+
+    def _forms(
+        self, random: Random, name: str, body: Any, status: int, answer: dict[str, Any] | None
+    ) -> Iterator[str]:
+        for form, share in (("csv", 0.1), ("npz", 0.1), ("svg", 0.01)):
+            if random.random() >= share or (name == "evolution" and form != "csv"):
+                continue
+            reply = self.service.post(name, body, form)
+            if reply.status == 406:
+                continue
+            if reply.status != status:
+                why = _where(reply.defect) if reply.defect else reply.content[:200].decode()
+                yield f"{form} answers {reply.status} instead of {status} {why}"
+            elif answer:
+                yield from forms.READERS[form](answer, reply.content)
+
+    def _scaled(self, name: str, body: Any, answer: Any, units: Units) -> Iterator[str]:
+        changed = scaled(body, units)
+        if not is_representable(changed):
+            return
+        other = self._other(name, changed)
+        if not other:
+            yield "no answer in other units"
+            return
+        back = scaled_answer(other, Units(1 / units.length, 1 / units.force))
+        for each in laws.disagreements(name, answer, back):
+            yield f"in other units {each}"
+
+    def _equivalent(self, random: Random, name: str, body: Any, answer: Any) -> Iterator[str]:
+        """Yield disagreements with the inverse query, or with the history of the same loading."""
+        if name == "normal" and "indentation_depth" in body["load"] and random.random() < 0.3:
+            other = self._other(name, body | {"load": {"normal_force": answer["normal_force"]}})
+            if other:
+                yield from _differ("inverse", "indentation_depth", answer, other)
+        if name == "tangential":
+            if "tangential_force" in body["tangential"] and random.random() < 0.3:
+                shift = {"tangential_displacement": answer["tangential_displacement"]}
+                other = self._other(name, body | {"tangential": shift})
+                if other:
+                    yield from _differ("inverse", "tangential_force", answer, other)
+            if random.random() < 0.5:
+                yield from self._monotonic(random, body, answer)
+
+    def _monotonic(self, random: Random, body: Any, answer: Any) -> Iterator[str]:
+        if len(answer["normal_force"]) != 1:
+            return
+        (control,), (push,) = body["load"], body["tangential"]
+        if "radius" in control + push:
+            return
+        load, pushed = (
+            float(np.ravel(body[key][each])[0])
+            for key, each in (("load", control), ("tangential", push))
+        )
+        if not load or not pushed:
+            return
+        query = {key: value for key, value in body.items() if key not in {"load", "tangential"}}
+        way = {"normal": {control: [load, load]}, "tangential": {push: [0.0, pushed]}}
+        other = self._other("history", query | {"history": way})
+        if not other:
+            yield "no history of the same loading"
+            return
+        last = {key: values[-1:] for key, values in other.items() if isinstance(values, list)}
+        last |= {"error_estimate": other["error_estimate"]}
+        limit = body["friction_coefficient"] * answer["normal_force"][0]
+        near_limit = abs(answer["tangential_force"][0]) > limit * (1 - 1e-14)
+        where = " at the onset of full slip" if near_limit else ""
+        for each in (
+            "contact_radius",
+            "tangential_displacement",
+            "tangential_force",
+            "dissipated_energy",
+            "regime",
+        ):
+            yield from _differ(f"monotonic history{where}", each, answer, last)
+        if push == "tangential_force":
+            way = {"normal": {control: load}, "tangential": {push: abs(pushed)}, "count": 2}
+            other = self._other("history", query | {"cycles": way})
+            if other:
+                quarter = {"energy_per_cycle": 4 * np.array(answer["dissipated_energy"] * 2)}
+                yield from _differ(
+                    f"four quarters{where}",
+                    "energy_per_cycle",
+                    quarter | {"error_estimate": answer["error_estimate"]},
+                    other,
+                )
+
+    def _batch(self) -> None:
+        """Ask the last queries in one batch: each entry is the answer of its own."""
+        recent, self._recent = self._recent, []
+        recent = [each for each in recent if each[2].status in {200, 422}]
+        queries = [{"ask": name, "request": body} for name, body, _ in recent]
+        reply = self.service.post("batch", {"queries": queries})
+        if reply.status != 200:
+            self.failures.add(f"batch: {reply.status} {reply.content[:200]!r}", "batch", queries[0])
+            return
+        entries: Any = strict_json.loads(reply.content)
+        for (name, body, alone), entry in zip(recent, entries["answers"], strict=True):
+            same = entry["status"] == alone.status and (
+                alone.status != 200 or alone.content in reply.content
+            )
+            if not same:
+                self.failures.add(f"{name}: batch differs from POST", name, body)
+
+
+def _differ(label: str, quantity: str, one: Any, other: Any) -> Iterator[str]:
+    a, b = np.array(one[quantity]), np.array(other[quantity])
+    if a.dtype.kind == "U":
+        if not np.array_equal(a, b):
+            yield f"{label}: {quantity} differs"
+        return
+    near = one["error_estimate"] + other["error_estimate"] + 1e-14
+    if a.shape != b.shape or np.any(np.abs(a - b) > near * np.maximum(np.abs(a), np.abs(b))):
+        yield f"{label}: {quantity} differs"
+    elif near < 1e-9 and np.any(np.abs(a - b) > 1e-9 * np.maximum(np.abs(a), np.abs(b))):
+        yield f"{label}: {quantity} differs by more than 1e-9"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.fuzz.campaign", description=__doc__)
+    parser.add_argument("--queries", type=int, default=2000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first query")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--report", type=Path, help="file for the classes of failures, as JSON")
+    given = parser.parse_args()
+    campaign = Campaign(given.seed)
+    for index in range(given.first, given.first + given.queries):
+        campaign.ask(index)
+    entries = campaign.failures.entries()
+    statuses = campaign.statuses
+    total = sum(count for label, count in statuses.items() if len(label.split()) == 2)
+    answered = sum(count for label, count in statuses.items() if label.endswith(" 200"))
+    if answered < ANSWERED * total:
+        entries.append({"label": f"only {answered} of {total} queries are answered", "count": 1})
+    if given.report:
+        told = {"statuses": statuses, "failures": entries, "slowest": campaign.slowest}
+        given.report.write_text(json.dumps(told, indent=1), "utf-8")
+    for entry in entries:
+        sys.stdout.write(f"{entry['count']:6} {entry['label']}\n")
+    sys.stdout.write(
+        f"{answered} of {total} queries answered, {len(entries)} classes of failures\n"
+    )
+    sys.stdout.write(f"{dict(sorted(statuses.items()))}\nslowest: {campaign.slowest}\n")
+    return 1 if entries else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

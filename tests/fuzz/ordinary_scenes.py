@@ -1,0 +1,312 @@
+"""Random queries of physically ordinary cases, in the units that engineers use.
+
+Every length, modulus and load is drawn in SI first, so that the parts of a query suit one another,
+and then converted. Most queries have an answer; a few exceed a bound (more tangential force than
+friction carries, a contact wider than the table) and must be rejected with a reason.
+"""
+
+from collections.abc import Callable, Mapping
+from random import Random
+from typing import Any, Final, NamedTuple
+
+from tests.fuzz.profiles import Case, profile, spread
+from tests.fuzz.units import UNITS, converted
+
+
+class Moduli(NamedTuple):
+    """A material as a query gives it, and the effective moduli in SI."""
+
+    material: dict[str, Any]
+    e_star: float
+    g_star: float
+
+
+def material(random: Random) -> Moduli:
+    """Return two bodies between soft rubber and diamond, or their effective moduli."""
+    bodies: list[Any] = []
+    for _ in range(2):
+        nu = random.choice((0.0, 0.3, 0.3, 0.5, random.uniform(0.0, 0.5)))
+        bodies.append({"youngs_modulus": spread(random, 1e5, 1e12), "poissons_ratio": nu})
+    if random.random() < 0.4:
+        bodies[random.randrange(2)] = "rigid"
+    elastic = [
+        (body["youngs_modulus"], body["poissons_ratio"]) for body in bodies if body != "rigid"
+    ]
+    e_star = 1 / sum((1 - nu * nu) / E for E, nu in elastic)
+    g_star = 1 / sum((1 + nu) * (2 - nu) / (2 * E) for E, nu in elastic)
+    given: dict[str, Any] = {"bodies": bodies}
+    if random.random() < 0.6:
+        given = {"e_star": e_star, "g_star": g_star}
+    if random.random() < 0.1:
+        given["yield_strength"] = e_star * spread(random, 1e-4, 1e-1)
+    return Moduli(given, e_star, g_star)
+
+
+class Contact(NamedTuple):
+    """A query without loads, in SI, with the depth and the force of its typical contact."""
+
+    query: dict[str, Any]
+    case: Case
+    moduli: Moduli
+    friction: float
+    depth: float
+    force: float
+
+
+def contact(random: Random, kind: str | None = None) -> Contact:
+    """Return a profile, a material and a tolerance, with loads that suit them."""
+    case, moduli = profile(random, kind), material(random)
+    query: dict[str, Any] = {"profile": case.profile, "material": moduli.material}
+    if random.random() < 0.5:
+        query["rtol"] = 10.0 ** -random.choice((3, 4, 6, 8, 10, 12, 13, random.uniform(3, 13)))
+    lift = case.height(case.radius)
+    depth = random.uniform(1.05, 1.6) * lift if lift else case.radius * spread(random, 1e-6, 1e-2)
+    # A foundation compressed by d - g carries at most 2 E* a d, a cone half of that.
+    force = 2 * moduli.e_star * case.radius * depth * random.uniform(0.4, 0.7)
+    friction = random.choice((0.1, 0.3, 0.5, random.uniform(0.02, 1.2)))
+    return Contact(query, case, moduli, friction, depth, force)
+
+
+def _several(random: Random, one: Callable[[], float]) -> float | list[float]:
+    """Return one value most often, and now and then a list."""
+    if random.random() < 0.6:
+        return one()
+    many = random.random() < 0.1
+    return [one() for _ in range(random.randint(30, 200) if many else random.randint(1, 8))]
+
+
+def _load(random: Random, scene: Contact, controls: tuple[str, ...]) -> dict[str, Any]:
+    control = random.choice(controls)
+    typical = {
+        "indentation_depth": scene.depth,
+        "normal_force": scene.force,
+        "contact_radius": scene.case.radius,
+    }[control]
+
+    shape = scene.case.profile
+    least = shape.get("flat_radius", 0.0) if control == "contact_radius" else 0.0
+
+    def one() -> float:
+        return least + (typical - least) * (random.random() > 0.02) * spread(random, 0.3, 1.0)
+
+    if control == "contact_radius" and shape["kind"] == "flat_punch":
+        # Its contact radius is no load, and rejected.
+        control, one = random.choice(((control, one), ("normal_force", lambda: scene.force)))
+    return {control: _several(random, one)}
+
+
+def _share(random: Random) -> float:
+    """Return a share of what friction carries: any, and the two ends of partial slip."""
+    small = spread(random, 1e-12, 1e-3)
+    share = random.choice((random.random(), random.random(), small, 1 - small, 0.0, 1.0))
+    return share * random.choice((1, 1, 1, -1))
+
+
+def _values(load: Mapping[str, Any]) -> list[float]:
+    (value,) = load.values()
+    return list(value) if isinstance(value, list) else [value]
+
+
+def _like(load: Mapping[str, Any], values: list[float]) -> float | list[float]:
+    (value,) = load.values()
+    return values if isinstance(value, list) else values[0]
+
+
+def _tangential(random: Random, scene: Contact, load: Mapping[str, Any]) -> dict[str, Any]:
+    (control,) = load
+    mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
+    pressed = _values(load)
+    if control == "normal_force" and random.random() < 0.7:
+        return {"tangential_force": _like(load, [mu * F * _share(random) for F in pressed])}
+    if control == "contact_radius" and random.random() < 0.5:
+        b = scene.case.profile.get("flat_radius", 0.0)
+        return {"stick_radius": _like(load, [b + (a - b) * random.random() for a in pressed])}
+    longest = 1.2 * mu * ratio * scene.depth
+    return {"tangential_displacement": _like(load, [longest * _share(random) for _ in pressed])}
+
+
+def normal(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of a normal contact."""
+    scene = contact(random, kind)
+    controls = ("indentation_depth", "normal_force", "contact_radius")
+    return scene.query | {"load": _load(random, scene, controls)}
+
+
+def tangential(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of a contact with friction."""
+    scene = contact(random, kind)
+    load = _load(random, scene, ("indentation_depth", "normal_force", "contact_radius"))
+    return scene.query | {
+        "friction_coefficient": scene.friction,
+        "load": load,
+        "tangential": _tangential(random, scene, load),
+    }
+
+
+def _history(random: Random, scene: Contact) -> dict[str, Any]:
+    """Return a history of any two controls, with its friction coefficient."""
+    by_force, pushed_by_force = random.random() < 0.5, random.random() < 0.5
+    mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
+    straight = by_force == pushed_by_force
+    count = random.randint(1, 8) if random.random() < 0.9 else random.randint(9, 40)
+    # Mixed control: the force between two depths is not known beforehand.
+    low, largest = (0.05, 1.0) if straight else (0.6, 0.4)
+    pressed: list[float] = []
+    pushed: list[float] = []
+    for i in range(count):
+        level = pressed[-1] if pressed and random.random() < 0.4 else random.uniform(low, 1.0)
+        if straight and random.random() < 0.05:
+            level = 0.0
+        share = 0.0 if i == 0 and not straight else largest * _share(random)
+        pressed.append(level)
+        pushed.append(share * (level if pushed_by_force and straight else low))
+    force_scale, depth_scale = scene.force, scene.depth
+    normal_name, normal_scale = (
+        ("normal_force", force_scale) if by_force else ("indentation_depth", depth_scale)
+    )
+    tangential_name, tangential_scale = (
+        ("tangential_force", mu * (force_scale if by_force else 0.3 * force_scale))
+        if pushed_by_force
+        else ("tangential_displacement", 1.2 * mu * ratio * depth_scale)
+    )
+    way: dict[str, Any] = {
+        "normal": {normal_name: [normal_scale * level for level in pressed]},
+        "tangential": {tangential_name: [tangential_scale * share for share in pushed]},
+    }
+    if random.random() < 0.5:
+        way["samples_per_step"] = random.randint(1, 10)
+    return {"friction_coefficient": mu, "history": way}
+
+
+def history(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of a load history, straight or of mixed control."""
+    scene = contact(random, kind)
+    return scene.query | _history(random, scene)
+
+
+def cycles(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of equal cycles, with the normal load held or in phase."""
+    scene = contact(random, kind)
+    mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
+    by_force, pushed_by_force = random.random() < 0.5, random.random() < 0.5
+    normal_name, mean = (
+        ("normal_force", scene.force) if by_force else ("indentation_depth", scene.depth)
+    )
+    swing: dict[str, Any] = {normal_name: mean}
+    lowest = 1.0
+    if random.random() < 0.4:
+        part = random.uniform(0.05, 0.5)
+        swing["amplitude"], lowest = mean * part, (1 - part) ** (1 if by_force else 3)
+    share = lowest * (spread(random, 1e-3, 1.0) if by_force else random.uniform(0.05, 0.5))
+    name, amplitude = (
+        ("tangential_force", mu * scene.force * share)
+        if pushed_by_force
+        else ("tangential_displacement", 1.2 * mu * ratio * scene.depth * share)
+    )
+    way = {"normal": swing, "tangential": {name: amplitude}, "count": random.randint(1, 5)}
+    if random.random() < 0.5:
+        way["samples_per_step"] = random.randint(1, 10)
+    return scene.query | {"friction_coefficient": mu, "cycles": way}
+
+
+_NORMAL_FIELDS: Final = ("pressure", "normal_displacement", "foundation_load")
+_SHEAR_FIELDS: Final = ("shear_stress", "slip", "foundation_shear")
+
+
+def _radii(random: Random, scene: Contact) -> dict[str, Any]:
+    if random.random() < 0.5:
+        return {"points": random.randint(12, 200)}
+    end = scene.case.radius * spread(random, 0.3, 3.0)
+    if scene.case.profile["kind"] == "tabulated":
+        end = min(end, scene.case.profile["r"][-1])
+    count = random.randint(1, 30)
+    return {"radius": [end * random.random() for _ in range(count)]}
+
+
+def stress(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of fields: without friction, with it, or of a history's end."""
+    scene = contact(random, kind)
+    query = scene.query | _radii(random, scene)
+    names = [*_NORMAL_FIELDS]
+    controls = ("indentation_depth", "normal_force", "contact_radius")
+    sort = random.choice(("normal", "tangential", "history"))
+    if sort == "history":
+        query |= _history(random, scene)
+    else:
+        query["load"] = _load(random, scene, controls)
+    if sort == "tangential":
+        query["friction_coefficient"] = scene.friction
+        query["tangential"] = _tangential(random, scene, query["load"])
+    if sort != "normal":
+        names += _SHEAR_FIELDS
+    query["quantities"] = random.sample(names, random.randint(1, len(names)))
+    return query
+
+
+def _oscillation(random: Random, scene: Contact, load: Mapping[str, Any]) -> dict[str, Any]:
+    share = random.uniform(0.1, 0.95)
+    mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
+    pressed = _values(load)
+    if "normal_force" in load and random.random() < 0.8:
+        return {"tangential_force": _like(load, [mu * F * share for F in pressed])}
+    amplitude = 0.7 * mu * ratio * scene.depth * share
+    return {"tangential_displacement": _like(load, [amplitude for _ in pressed])}
+
+
+def wear(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of the limiting state of fretting wear."""
+    scene = contact(random, kind)
+    load = _load(random, scene, ("indentation_depth", "normal_force"))
+    query = scene.query | {
+        "friction_coefficient": scene.friction,
+        "load": load,
+        "oscillation": _oscillation(random, scene, load),
+    }
+    if random.random() < 0.7:
+        query |= _radii(random, scene)
+        names = ("initial_profile", "limiting_profile", "worn_depth", "pressure")
+        query["quantities"] = random.sample(names, random.randint(1, 4))
+    return query
+
+
+def evolution(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of fretting wear over the cycles."""
+    scene = contact(random, kind)
+    scene.query.pop("rtol", None)
+    load = {
+        control: _values({control: value})[0]
+        for control, value in _load(random, scene, ("indentation_depth", "normal_force")).items()
+    }
+    query = scene.query | {
+        "friction_coefficient": scene.friction,
+        "load": load,
+        "oscillation": _oscillation(random, scene, load),
+        # Volume per dissipated energy, from steel to a soft coating: 1e-15 to 1e-11 m³/J.
+        "wear_coefficient": spread(random, 1e-15, 1e-11),
+        "cycles": sorted(spread(random, 1.0, 1e8) for _ in range(random.randint(1, 5))),
+        "resolution": random.choice((8, 16, 24)),
+    }
+    if random.random() < 0.5:
+        query |= _radii(random, scene)
+    return query
+
+
+QUERIES: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
+    "normal": normal,
+    "tangential": tangential,
+    "history": history,
+    "cycles": cycles,
+    "stress": stress,
+    "wear": wear,
+    "evolution": evolution,
+}
+"""The generators by name; `cycles` is asked as a history."""
+
+_SHARES: Final = (24, 26, 18, 8, 16, 7, 1)
+
+
+def query(random: Random) -> tuple[str, dict[str, Any]]:
+    """Return an ordinary query in one of the unit systems, with the name of its endpoint."""
+    (name,) = random.choices(tuple(QUERIES), _SHARES)
+    body = converted(QUERIES[name](random), random.choice(UNITS))
+    return "history" if name == "cycles" else name, body

@@ -1,0 +1,97 @@
+"""The application, asked in process and without sockets."""
+
+import asyncio
+import json
+import logging
+import signal
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+from mdr_service.app import create_app
+
+PATHS: Final = {
+    "normal": "/v1/normal",
+    "tangential": "/v1/tangential",
+    "history": "/v1/tangential/history",
+    "stress": "/v1/stress",
+    "wear": "/v1/wear",
+    "evolution": "/v1/wear/evolution",
+}
+SECONDS: Final = 10.0
+"""Processor time that the service grants one request."""
+
+
+class TooSlow(BaseException):
+    """A request took longer than the service grants."""
+
+
+@dataclass(frozen=True)
+class Reply:
+    """Status, content and, of a defect, the traceback."""
+
+    status: int
+    content: bytes
+    defect: BaseException | None = None
+
+
+class Service:
+    """The application, asked without sockets; it computes everything in this process."""
+
+    def __init__(self) -> None:
+        async def run(work: Callable[..., Any], *arguments: Any) -> Any:
+            return work(*arguments)
+
+        self._app = create_app()
+        # No other processes in a campaign.
+        self._app.state.workers.run_in_process = run
+        self._loop = asyncio.new_event_loop()
+        self._defects: list[BaseException] = []
+        handler = logging.Handler()
+        handler.emit = self._keep  # type: ignore[method-assign]  # the only method of a handler
+        logging.getLogger().handlers = [handler]
+        signal.signal(signal.SIGPROF, self._stop)
+
+    def post(self, name: str, body: Any, form: str = "json") -> Reply:
+        return self.send("POST", PATHS.get(name, f"/v1/{name}"), json.dumps(body), f"format={form}")
+
+    def send(self, method: str, path: str, body: str = "", query_string: str = "") -> Reply:
+        scope = {
+            "type": "http",
+            "http_version": "1.1",
+            "scheme": "http",
+            "root_path": "",
+            "method": method,
+            "path": path,
+            "raw_path": path.encode(),
+            "query_string": query_string.encode(),
+            "client": None,
+            "server": None,
+            "headers": [(b"content-type", b"application/json")],
+        }
+        sent: list[Any] = []
+
+        async def receive() -> dict[str, Any]:
+            return {"type": "http.request", "body": body.encode(), "more_body": False}
+
+        async def send(message: dict[str, Any]) -> None:
+            sent.append(message)
+
+        self._defects.clear()
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        try:
+            self._loop.run_until_complete(self._app(scope, receive, send))
+        except TooSlow as error:
+            return Reply(504, b"", error)
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0)
+        content = b"".join(message.get("body", b"") for message in sent)
+        defect = self._defects[0] if self._defects else None
+        return Reply(sent[0]["status"], content, defect)
+
+    def _keep(self, record: logging.LogRecord) -> None:
+        if record.exc_info and record.exc_info[1]:
+            self._defects.append(record.exc_info[1])
+
+    def _stop(self, *_: object) -> None:
+        raise TooSlow

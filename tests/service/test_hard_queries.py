@@ -1,0 +1,49 @@
+"""Queries that were once answered by an internal error, wrongly, or far too slowly."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mdr_service.problems import MEDIA_TYPE
+from tests.conftest import Client
+from tests.contract import strict_json
+
+QUERIES: dict[str, Any] = json.loads(
+    Path(__file__).with_name("data").joinpath("hard_queries.json").read_text("utf-8")
+)
+ENDPOINTS = {
+    "normal": "/v1/normal",
+    "tangential": "/v1/tangential",
+    "history": "/v1/tangential/history",
+    "stress": "/v1/stress",
+    "wear": "/v1/wear",
+    "evolution": "/v1/wear/evolution",
+}
+
+
+@pytest.mark.parametrize(
+    "name",
+    # An extreme ratio of moduli: some seconds until the tolerance proves unreachable.
+    [
+        pytest.param(name, marks=[pytest.mark.long] if name == "evolution_gstar1" else [])
+        for name in QUERIES
+    ],
+)
+def test_hard_query_has_finite_numbers_or_a_pointer_to_its_fault(client: Client, name: str) -> None:
+    query = QUERIES[name]
+    response = client.post(ENDPOINTS[query["ask"]], query["request"])
+    # The parser accepts neither NaN nor Infinity.
+    answer = strict_json.loads(response.content)
+    if response.status_code == 200:
+        assert 0 < answer["error_estimate"] < 1
+    else:
+        assert response.status_code == 422
+        assert response.headers["content-type"] == MEDIA_TYPE
+        assert all(error["pointer"] for error in answer["errors"])
+
+
+@pytest.mark.parametrize("ask", ENDPOINTS)
+def test_every_query_type_is_among_the_hard_ones(ask: str) -> None:
+    assert any(query["ask"] == ask for query in QUERIES.values())

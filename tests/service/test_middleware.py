@@ -1,0 +1,226 @@
+"""The middleware between the server and the application: long bodies, failures and endings."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import pytest
+from fastapi import FastAPI, Request
+from starlette.responses import Response
+
+from mdr_service import middleware, transfers
+from mdr_service.middleware import read_body
+from mdr_service.settings import SETTINGS
+from mdr_service.transfers import LONG, Transfers
+
+TEXT = bytes(range(256)) * (LONG // 100)
+
+
+class Connection:
+    """One request to an application of one endpoint, and what is sent in response."""
+
+    def __init__(
+        self, app: FastAPI, method: str = "GET", body: bytes = b"", **headers: str
+    ) -> None:
+        self.app = app
+        self.scope: dict[str, Any] = {
+            "type": "http",
+            "method": method,
+            "path": "/",
+            "query_string": b"",
+            "headers": [
+                (name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()
+            ],
+        }
+        self.incoming: list[dict[str, Any]] = [{"type": "http.request", "body": body}]
+        self.sent: list[dict[str, Any]] = []
+        self.reading = asyncio.Event()
+        self.reading.set()
+
+    async def receive(self) -> dict[str, Any]:
+        return self.incoming.pop(0) if self.incoming else {"type": "http.disconnect"}
+
+    async def send(self, message: dict[str, Any]) -> None:
+        self.sent.append(message)
+        await self.reading.wait()
+
+    async def run(self) -> "Connection":
+        await self.app(self.scope, self.receive, self.send)
+        return self
+
+    @property
+    def status(self) -> int:
+        return int(self.sent[0]["status"])
+
+    @property
+    def body(self) -> bytes:
+        return b"".join(message.get("body", b"") for message in self.sent[1:])
+
+    @property
+    def problem(self) -> str:
+        return str(json.loads(self.body)["type"]).removeprefix("urn:mdr:problem:")
+
+
+def application(endpoint: Callable[[Request], Awaitable[Response]], limit: int = 2**20) -> FastAPI:
+    app = FastAPI(openapi_url=None)
+    app.add_route("/", endpoint, methods=["GET", "HEAD", "POST"])
+    app.state.transfers = Transfers(limit)
+    middleware.install(app)
+    return app
+
+
+async def long_response(_request: Request) -> Response:
+    return Response(TEXT)
+
+
+async def echo(request: Request) -> Response:
+    return Response(await read_body(request))
+
+
+def test_long_response_is_sent_in_pieces() -> None:
+    async def test() -> None:
+        app = application(long_response)
+        found = await Connection(app).run()
+        assert found.body == TEXT
+        pieces = [len(message["body"]) for message in found.sent[1:]]
+        assert max(pieces) == LONG
+        # The server waits until the client has read most of it before it takes the last message.
+        assert pieces[-1] == 0
+        assert [message.get("more_body", False) for message in found.sent[1:]][-2:] == [True, False]
+        assert app.state.transfers._total == 0
+
+    asyncio.run(test())
+
+
+def test_long_response_is_refused_while_others_are_sent() -> None:
+    async def test() -> None:
+        app = application(long_response, len(TEXT))
+        slow = Connection(app)
+        slow.reading.clear()
+        sending = asyncio.create_task(slow.run())
+        await asyncio.sleep(0)
+        found = await Connection(app).run()
+        assert (found.status, found.problem) == (503, "busy")
+        assert (b"retry-after", b"1") in found.sent[0]["headers"]
+        slow.reading.set()
+        await sending
+        assert slow.body == TEXT
+        assert (await Connection(app).run()).status == 200
+
+    asyncio.run(test())
+
+
+def test_oldest_response_is_aborted_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(transfers, "_READ_SECONDS", 0.0)
+
+    async def test() -> None:
+        app = application(long_response, len(TEXT))
+        slow = Connection(app)
+        slow.reading.clear()
+        sending = asyncio.create_task(slow.run())
+        await asyncio.sleep(0.01)
+        assert (await Connection(app).run()).status == 503
+        await sending
+        assert slow.body != TEXT
+        assert (await Connection(app).run()).status == 200
+
+    asyncio.run(test())
+
+
+def test_long_body_is_refused_while_others_are_received() -> None:
+    async def test() -> None:
+        app = application(echo, 4 * LONG)
+        json_type = {"content_type": "application/json"}
+        first = Connection(app, "POST", TEXT, **json_type)
+        first.incoming[0]["more_body"] = True
+        arrived = asyncio.Event()
+
+        async def wait() -> dict[str, Any]:
+            if first.incoming:
+                return first.incoming.pop(0)
+            await arrived.wait()
+            return {"type": "http.request", "body": TEXT}
+
+        first.receive = wait  # type: ignore[method-assign]
+        receiving = asyncio.create_task(first.run())
+        await asyncio.sleep(0)
+        found = await Connection(app, "POST", TEXT, **json_type).run()
+        assert (found.status, found.problem) == (503, "busy")
+        # Short ones are not counted.
+        assert (await Connection(app, "POST", b"{}", **json_type).run()).body == b"{}"
+        arrived.set()
+        await receiving
+        assert first.body == TEXT * 2
+
+    asyncio.run(test())
+
+
+@pytest.mark.parametrize(
+    ("body", "headers", "status"),
+    [
+        (b"{}", {"content_type": "application/json; charset=utf-8"}, 200),
+        (b"{}", {"content_type": "text/plain"}, 415),
+        (b"{}", {}, 415),
+        (b"{}", {"content_type": "application/json", "content_length": str(2**40)}, 413),
+        (bytes(SETTINGS.max_body_bytes + 1), {"content_type": "application/json"}, 413),
+    ],
+)
+def test_body_is_refused_by_type_and_length(
+    body: bytes, headers: dict[str, str], status: int
+) -> None:
+    found = asyncio.run(Connection(application(echo, 2**30), "POST", body, **headers).run())
+    assert found.status == status
+    # The rest of the body is not read.
+    assert ((b"connection", b"close") in found.sent[0]["headers"]) == (status == 413)
+
+
+def test_client_that_disconnects_gets_no_response() -> None:
+    connection = Connection(application(echo), "POST", content_type="application/json")
+    connection.incoming.clear()
+    assert not asyncio.run(connection.run()).sent
+
+
+@pytest.mark.parametrize("responding", [False, True])
+def test_request_in_flight_at_the_end_of_a_shutdown_is_refused(*, responding: bool) -> None:
+    async def wait(_request: Request) -> Response:
+        await asyncio.sleep(60)
+        return Response()
+
+    async def test() -> None:
+        found = Connection(application(long_response if responding else wait))
+        if responding:
+            found.reading.clear()
+        task = asyncio.create_task(found.run())
+        await asyncio.sleep(0.01)
+        found.reading.set()
+        task.cancel()
+        if responding:
+            # The server then closes the connection.
+            with pytest.raises(asyncio.CancelledError):
+                await task
+        else:
+            await task
+            assert (found.status, found.problem) == (503, "stopping")
+
+    asyncio.run(test())
+
+
+def test_internal_error_is_a_problem_unless_the_response_has_begun() -> None:
+    async def broken(_request: Request) -> Response:
+        raise RuntimeError("a secret")
+
+    class Interrupted(Response):
+        async def __call__(self, scope: object, receive: object, send: Any) -> None:
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+            await send({"type": "http.response.body", "body": b"a", "more_body": True})
+            raise RuntimeError
+
+    async def interrupted(_request: Request) -> Response:
+        return Interrupted()
+
+    found = asyncio.run(Connection(application(broken)).run())
+    assert (found.status, found.problem) == (500, "internal-error")
+    assert b"secret" not in found.body
+    with pytest.raises(RuntimeError):
+        asyncio.run(Connection(application(interrupted)).run())

@@ -1,0 +1,169 @@
+"""Stresses beneath the surface over HTTP: the core's numbers, textbooks, formats, rejections."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from mdr_core import normal, subsurface, tangential
+from mdr_core.profiles import Paraboloid
+from mdr_service.schemas.examples import SUBSURFACE_EXAMPLES
+
+if TYPE_CHECKING:
+    from tests.conftest import Client
+
+PATH = "/v1/subsurface"
+AXIS = SUBSURFACE_EXAMPLES["hertz_on_the_axis"]["value"]
+MAP: dict[str, Any] = {
+    "profile": {"kind": "paraboloid", "radius": 2.0},
+    "material": {"e_star": 3.0, "g_star": 2.5, "poissons_ratio": 0.3},
+    "load": {"contact_radius": [0.1, 0.2]},
+    "friction_coefficient": 0.3,
+    "tangential": {"stick_radius": 0.05},
+    "body": 2,
+    "x": [-0.1, 0.0, 0.05, 0.3],
+    "z": [0.0, 0.04, 0.2],
+    "y": 0.01,
+}
+NAMES = [
+    *("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz"),
+    *("von_mises", "maximum_shear", "mean_stress"),
+]
+
+
+def answer(client: Client, query: dict[str, Any]) -> dict[str, Any]:
+    response = client.post(PATH, query)
+    assert response.status_code == 200, response.content
+    found: dict[str, Any] = response.json()
+    return found
+
+
+def pointers(client: Client, query: dict[str, Any]) -> list[str]:
+    response = client.post(PATH, query)
+    assert response.status_code == 422
+    return [error["pointer"] for error in response.json()["errors"]]
+
+
+def test_hertz_on_the_axis(client: Client) -> None:
+    """Johnson, Eqs. (3.45), (4.10): stresses on the axis, their peak, and the onset of yield."""
+    found = answer(client, AXIS)
+    modulus = 210e9 / (2 * (1 - 0.3**2))
+    a = (0.75 * 10.0 * 0.01 / modulus) ** (1 / 3)
+    peak = 1.5 * 10.0 / (np.pi * a * a)
+    s = np.array(AXIS["z"]) / a
+    vertical = -peak / (1 + s * s)
+    radial = -peak * (1.3 * (1 - s * np.arctan2(1, s)) - 0.5 / (1 + s * s))
+    assert np.ravel(found["stress_zz"]) == pytest.approx(vertical, rel=1e-10, abs=0)
+    assert np.ravel(found["stress_xx"]) == pytest.approx(radial, rel=0, abs=1e-10 * peak)
+    difference = np.abs(vertical - radial)
+    assert np.ravel(found["von_mises"]) == pytest.approx(difference, rel=0, abs=1e-10 * peak)
+    largest = found["largest"]["maximum_shear"]
+    assert largest["value"][0] / peak == pytest.approx(0.310, abs=5e-4)
+    assert largest["z"][0] / a == pytest.approx(0.481, abs=1e-3)
+    # p_0 = 1.613 Y, and F_N grows with the cube of p_0.
+    for force in found["yield_onset_force"].values():
+        onset = peak * (force[0] / 10.0) ** (1 / 3)
+        assert onset / 1e9 == pytest.approx(1.613, abs=1e-3)
+
+
+@pytest.mark.parametrize("factor", [0.99, 1.01])
+def test_yield_is_warned_of_from_its_onset_on(client: Client, factor: float) -> None:
+    onset = answer(client, AXIS)["yield_onset_force"]["tresca"][0]
+    found = answer(client, AXIS | {"load": {"normal_force": [factor * onset, 0.5 * onset]}})
+    codes = [notice["code"] for notice in found["warnings"]]
+    assert codes == (["yield"] if factor > 1 else [])
+
+
+def test_numbers_are_those_of_the_core(client: Client) -> None:
+    principal = ["principal_1", "principal_2", "principal_3"]
+    found = answer(client, MAP | {"quantities": NAMES + principal})
+    contact = tangential.solve(
+        normal.solve(Paraboloid(2.0), 3.0, contact_radius=[0.1, 0.2]), 2.5, 0.3, stick_radius=0.05
+    )
+    x, z = np.array(MAP["x"]), np.array(MAP["z"])[:, None]
+    tensor = subsurface.stress(contact, x, 0.01, z, poissons_ratio=0.3, body=2)
+    for name in NAMES:
+        expected = getattr(tensor, name.removeprefix("stress_"))
+        assert np.array_equal(np.array(found[name]), expected)
+    for name, expected in zip(principal, np.moveaxis(tensor.principal, -1, 0)[::-1], strict=True):
+        assert np.array_equal(np.array(found[name]), expected)
+    assert found["error_estimate"] < 1e-10
+    assert "largest" not in found
+    assert "yield_onset_force" not in found
+
+
+def test_bodies_give_their_own_ratio(client: Client) -> None:
+    steel = {"youngs_modulus": 2e11, "poissons_ratio": 0.3}
+    rubber = {"youngs_modulus": 2e6, "poissons_ratio": 0.5}
+    given = AXIS | {"material": {"bodies": [steel, rubber]}, "quantities": ["mean_stress"]}
+    one, two = (answer(client, given | {"body": body})["mean_stress"] for body in (1, 2))
+    # The trace is proportional to 1 + nu.
+    assert np.array(one) * 1.5 == pytest.approx(np.array(two) * 1.3, rel=1e-9, abs=0)
+
+
+def test_chosen_points_cover_the_contact(client: Client) -> None:
+    query = {key: value for key, value in MAP.items() if key not in ("x", "z")}
+    found = answer(client, query | {"points": 7})
+    assert found["x"][0] == -found["x"][-1] == pytest.approx(-0.3, rel=1e-14, abs=0)
+    assert (found["z"][0], found["z"][-1]) == (0.0, found["x"][-1])
+    assert np.shape(found["von_mises"]) == (2, 7, 7)
+
+
+def test_infinite_stress_is_null_with_a_warning(client: Client) -> None:
+    cone = MAP | {"profile": {"kind": "cone", "slope": 0.05}, "y": 0.0, "largest": True}
+    found = answer(client, cone | {"quantities": ["stress_zz", "von_mises", "stress_xy"]})
+    for name in ("stress_zz", "von_mises", "stress_xy"):
+        assert found[name][0][0][1] is None
+    assert found["largest"]["von_mises"]["value"] == [None, None]
+    assert "singular" in {warning["code"] for warning in found["warnings"]}
+
+
+def test_formats(client: Client) -> None:
+    given = MAP | {"quantities": ["von_mises", "stress_xy"], "largest": True}
+    numbers = answer(client, given)
+    headers = {"accept": "text/csv"}
+    rows = client.request("POST", PATH, json=given, headers=headers).text.splitlines()
+    assert rows[0] == "load,z,x,von_mises,stress_xy"
+    assert len(rows) == 1 + 2 * 3 * 4
+    cells = np.array([[float(cell) for cell in row.split(",")] for row in rows[1:]])
+    assert np.array_equal(cells[:, 3], np.ravel(numbers["von_mises"]))
+    assert cells[5].tolist()[:3] == [0.0, 0.04, 0.0]
+    headers = {"accept": "application/x-npz"}
+    content = client.request("POST", PATH, json=given, headers=headers).content
+    with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+        assert archive["von_mises"].shape == (2, 3, 4)
+        assert archive["largest.von_mises.z"].shape == (2,)
+    headers = {"accept": "image/svg+xml"}
+    picture = client.request("POST", PATH, json=given, headers=headers).text
+    assert "<svg" in picture
+    for text in ("contact", "stick", "maximum", "von Mises stress", "1 of 2 loads"):
+        assert text in picture
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [
+        ({"x": None}, "/x"),
+        ({"z": [-1.0]}, "/z/0"),
+        ({"body": 3}, "/body"),
+        ({"quantities": ["pressure"]}, "/quantities/0"),
+        ({"points": 3}, "/x"),
+        ({"friction_coefficient": ...}, "/friction_coefficient"),
+        ({"tangential": ...}, "/tangential"),
+        ({"z": ...}, "/z"),
+        ({"material": {"e_star": 3.0, "g_star": 2.5}}, "/material/poissons_ratio"),
+        (
+            {"material": {"bodies": [{"youngs_modulus": 1.0, "poissons_ratio": 0.3}, "rigid"]}},
+            "/body",
+        ),
+        ({"x": [0.0] * 10_000, "z": [0.0] * 10_000}, "/x"),
+    ],
+)
+def test_invalid_requests_point_at_the_fault(
+    client: Client, change: dict[str, Any], place: str
+) -> None:
+    query = {key: value for key, value in (MAP | change).items() if value is not ...}
+    assert place in pointers(client, query)

@@ -1,0 +1,386 @@
+"""Compute processes: time limits, the queue, and processes that end, stop or do not start."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from functools import partial
+from pathlib import Path
+
+import anyio
+import pytest
+
+from mdr_core.errors import AccuracyError, DefectError, InputError
+from mdr_service import observability, problems, workers
+from mdr_service.problems import ServiceError
+from mdr_service.settings import Settings
+from mdr_service.transfers import Transfers
+from mdr_service.workers import WorkerPool
+
+pytestmark = [pytest.mark.long, pytest.mark.alone]
+
+ONE = Settings(
+    compute_processes=1,
+    queue_length=1,
+    queue_seconds=60.0,
+    budget_seconds=60.0,
+    shutdown_seconds=121,
+)
+PATIENCE = 30.0
+
+
+def begin() -> observability.RequestRecord:
+    """Begin the record of a request."""
+    record = observability.RequestRecord("id", "GET")
+    observability.CURRENT.set(record)
+    return record
+
+
+def process_exists(number: int) -> bool:
+    return Path(f"/proc/{number}").exists()
+
+
+def own_process() -> int:
+    return os.getpid()
+
+
+def asleep(seconds: float) -> int:
+    time.sleep(seconds)
+    return os.getpid()
+
+
+def until(path: Path) -> int:
+    """Return once there is a file."""
+    while not path.exists():
+        time.sleep(0.01)
+    return os.getpid()
+
+
+def kill_itself() -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def let_go(path: Path) -> None:
+    path.touch()
+
+
+def die_unless(path: Path) -> None:
+    if not path.exists():
+        kill_itself()
+
+
+def print_something() -> int:
+    os.write(1, b"on standard output")
+    return os.getpid()
+
+
+def wrong() -> None:
+    raise InputError(("load", "normal_force", 3), "is wrong")
+
+
+def inaccurate() -> None:
+    raise AccuracyError("not so exact")
+
+
+def refused() -> None:
+    raise ServiceError(problems.NOT_ACCEPTABLE, "not so", [("/load", "why")])
+
+
+def broken() -> None:
+    raise RuntimeError("a bug")
+
+
+def run(
+    test: Callable[[WorkerPool], Awaitable[None]],
+    settings: Settings = ONE,
+    warm_up: Callable[[], object] = own_process,
+) -> None:
+    async def main() -> None:
+        pool = WorkerPool(settings, Transfers(2**20))
+        async with pool.started(warm_up):
+            await test(pool)
+
+    anyio.run(main)
+
+
+@asynccontextmanager
+async def occupied(pool: WorkerPool, path: Path) -> AsyncIterator[None]:
+    """Keep the only process busy within the context."""
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(pool.run_in_process, until, path)
+        await anyio.sleep(0.05)
+        yield
+        let_go(path)
+
+
+async def failure(awaited: Awaitable[object]) -> ServiceError:
+    with pytest.raises(ServiceError) as caught:
+        await awaited
+    return caught.value
+
+
+def ready_processes() -> float:
+    (metric,) = observability.PROCESSES.collect()
+    return metric.samples[0].value
+
+
+async def wait_for(happened: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not happened() and time.monotonic() < deadline:  # noqa: ASYNC110 -- no event tells
+        await anyio.sleep(0.02)
+    assert happened()
+
+
+def test_computations_run_in_a_process_that_is_kept() -> None:
+    async def test(pool: WorkerPool) -> None:
+        first = await pool.run_in_process(own_process)
+        assert first != os.getpid()
+        assert await pool.run_in_process(own_process) == first
+
+    run(test)
+
+
+def test_failures_return_from_the_process() -> None:
+    async def test(pool: WorkerPool) -> None:
+        found = await failure(pool.run_in_process(wrong))
+        assert found.type == problems.INVALID_REQUEST
+        assert found.errors == (("/load/normal_force/3", "is wrong"),)
+        assert (await failure(pool.run_in_process(inaccurate))).type == problems.ACCURACY
+        found = await failure(pool.run_in_process(refused))
+        assert (found.type, found.errors) == (problems.NOT_ACCEPTABLE, (("/load", "why"),))
+        with pytest.raises(DefectError, match="a bug"):
+            await pool.run_in_process(broken)
+        assert ready_processes() == 1
+
+    run(test)
+
+
+def test_large_result_needs_room_in_memory() -> None:
+    async def test(pool: WorkerPool) -> None:
+        record = begin()
+        # A single one may be as long as it likes.
+        assert await pool.run_in_process(bytes, 2**22) == bytes(2**22)
+        assert record.response == 2**22
+        begin()
+        found = await failure(pool.run_in_process(bytes, 2**18))
+        assert (found.type, found.retry_after) == (problems.BUSY, 1)
+        # The process is not affected, and small results need no room.
+        assert await pool.run_in_process(bytes, 2**15) == bytes(2**15)
+        assert ready_processes() == 1
+
+    run(test)
+
+
+def test_standard_output_of_the_process_is_not_mistaken_for_a_result() -> None:
+    async def test(pool: WorkerPool) -> None:
+        assert await pool.run_in_process(print_something) == await pool.run_in_process(own_process)
+
+    run(test)
+
+
+def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answered() -> None:
+    async def test(pool: WorkerPool) -> None:
+        first = await pool.run_in_process(own_process)
+        began = time.monotonic()
+        found = await failure(pool.run_in_process(asleep, 60.0))
+        assert time.monotonic() - began < PATIENCE
+        assert found.type == problems.TIME_EXCEEDED
+        assert not process_exists(first)
+        assert await pool.run_in_process(own_process) != first
+        assert ready_processes() == 1
+
+    run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
+
+
+def test_process_that_ends_loses_its_own_computation_only() -> None:
+    async def test(pool: WorkerPool) -> None:
+        found = await failure(pool.run_in_process(kill_itself))
+        assert (found.type, found.retry_after) == (problems.LOST, 1)
+        assert ready_processes() == 0
+        assert await pool.run_in_process(own_process) != os.getpid()
+        assert ready_processes() == 1
+
+    run(test)
+
+
+def test_process_stopped_while_idle_is_noticed_by_the_next_query() -> None:
+    async def test(pool: WorkerPool) -> None:
+        stopped = await pool.run_in_process(own_process)
+        os.kill(stopped, signal.SIGSTOP)
+        assert (await failure(pool.run_in_process(own_process))).type == problems.LOST
+        assert not process_exists(stopped)
+        assert await pool.run_in_process(own_process) != stopped
+
+    run(test)
+
+
+def test_process_stopped_while_idle_is_noticed_without_a_query(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(workers, "_BEAT_INTERVAL", 0.1)
+
+    async def test(pool: WorkerPool) -> None:
+        stopped = await pool.run_in_process(own_process)
+        os.kill(stopped, signal.SIGSTOP)
+        await wait_for(lambda: not process_exists(stopped))
+        assert await pool.run_in_process(own_process) != stopped
+
+    run(test)
+
+
+def test_process_stopped_at_work_is_replaced_after_the_time_limit() -> None:
+    async def test(pool: WorkerPool) -> None:
+        stopped = await pool.run_in_process(own_process)
+        async with anyio.create_task_group() as tasks:
+
+            async def expect_loss() -> None:
+                assert (await failure(pool.run_in_process(asleep, 60.0))).type == problems.LOST
+
+            tasks.start_soon(expect_loss)
+            await anyio.sleep(0.3)
+            os.kill(stopped, signal.SIGSTOP)
+        assert not process_exists(stopped)
+        assert await pool.run_in_process(own_process) != stopped
+
+    run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
+
+
+def test_process_that_dies_at_birth_is_reported_and_started_again(tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        found = await failure(pool.run_in_process(own_process))
+        assert (found.type, found.retry_after) == (problems.LOST, 1)
+        assert ready_processes() == 0
+        (tmp_path / "live").touch()
+        await wait_for(lambda: ready_processes() == 1)
+        assert await pool.run_in_process(own_process) != os.getpid()
+
+    run(test, warm_up=partial(die_unless, tmp_path / "live"))
+
+
+def test_process_that_fails_its_self_test_is_not_used() -> None:
+    async def test(pool: WorkerPool) -> None:
+        assert (await failure(pool.run_in_process(own_process))).type == problems.LOST
+        assert ready_processes() == 0
+
+    run(test, warm_up=broken)
+
+
+def test_query_is_refused_when_the_queue_is_full(tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
+            tasks.start_soon(pool.run_in_process, own_process)
+            await anyio.sleep(1.1)
+            found = await failure(pool.run_in_process(own_process))
+            # The first in the queue has waited for so long.
+            assert (found.type, found.retry_after) == (problems.BUSY, 2)
+            let_go(tmp_path / "go")
+
+    run(test)
+
+
+def test_query_that_waits_too_long_is_refused(tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        async with occupied(pool, tmp_path / "go"):
+            assert (await failure(pool.run_in_process(own_process))).type == problems.BUSY
+
+    run(test, ONE.model_copy(update={"queue_seconds": 0.2}))
+
+
+def test_queue_is_served_in_order_and_waiting_does_not_count_as_computing(tmp_path: Path) -> None:
+    order: list[int] = []
+
+    async def ask(pool: WorkerPool, number: int) -> None:
+        await pool.run_in_process(asleep, 0.5)
+        order.append(number)
+
+    async def test(pool: WorkerPool) -> None:
+        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
+            for number in range(4):
+                tasks.start_soon(ask, pool, number)
+                await anyio.sleep(0.01)
+            let_go(tmp_path / "go")
+        assert order == [0, 1, 2, 3]
+
+    # Together they take longer than the time limit of each.
+    run(test, ONE.model_copy(update={"queue_length": 9, "budget_seconds": 1.8}))
+
+
+TWO = ONE.model_copy(update={"compute_processes": 2, "queue_length": 9, "queue_seconds": 2.0})
+
+
+def test_expensive_queries_make_room_for_a_shorter_one() -> None:
+    async def test(pool: WorkerPool) -> None:
+        displaced: list[ServiceError] = []
+
+        async def keep_busy() -> None:
+            try:
+                await pool.run_in_process(asleep, 60.0)
+            except ServiceError as error:
+                displaced.append(error)
+
+        with anyio.CancelScope() as scope:
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(keep_busy)
+                tasks.start_soon(keep_busy)
+                await anyio.sleep(0.1)
+                await pool.run_in_process(own_process)
+                scope.cancel()
+        assert [error.type for error in displaced] == [problems.BUSY]
+
+    run(test, TWO.model_copy(update={"queue_seconds": 20.0}))
+
+
+def test_queries_of_equal_cost_do_not_displace_each_other() -> None:
+    async def test(pool: WorkerPool) -> None:
+        async with anyio.create_task_group() as tasks:
+            for _ in range(3):
+                tasks.start_soon(pool.run_in_process, asleep, 1.0)
+
+    run(test, TWO)
+
+
+def test_time_in_the_queue_is_recorded(tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        record = begin()
+        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
+            tasks.start_soon(pool.run_in_process, own_process)
+            await anyio.sleep(0.1)
+            (length,) = observability.QUEUE.collect()
+            assert length.samples[0].value == 1
+            let_go(tmp_path / "go")
+        (length,) = observability.QUEUE.collect()
+        assert length.samples[0].value == 0
+        assert record.queued > 0.09
+
+    run(test)
+
+
+def test_compute_process_at_work_ends_with_its_server(tmp_path: Path) -> None:
+    code = f"""
+import anyio, pathlib, os
+from mdr_service.settings import SETTINGS
+from mdr_service.transfers import Transfers
+from mdr_service.workers import WorkerPool
+from tests.service.test_workers import asleep, own_process
+
+async def main():
+    pool = WorkerPool(SETTINGS.model_copy(update={{"compute_processes": 1}}), Transfers(0))
+    async with pool.started(own_process):
+        number = await pool.run_in_process(own_process)
+        pathlib.Path({str(tmp_path / "number")!r}).write_text(str(number))
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(pool.run_in_process, asleep, 9.0)
+            await anyio.sleep(0.2)
+            os.kill(os.getpid(), {signal.SIGKILL:d})
+
+anyio.run(main)
+"""
+    subprocess.run([sys.executable, "-c", code], check=False)
+    number = int((tmp_path / "number").read_text())
+    ended = time.monotonic()
+    while process_exists(number):
+        assert time.monotonic() - ended < 5.0
+        time.sleep(0.05)
