@@ -6,21 +6,20 @@ with the same event loop and parser as the service.
 
 import sys
 
-import numpy as np
 import orjson
 import uvicorn
 from fastapi import FastAPI, Response
 from stress_wire_ratio import QUERY
 
-from mdr_service import solve
-from mdr_service.schemas.queries import NormalQuery, StressQuery
+from mdr_service.queries import QUERIES
+from mdr_service.schemas.contacts import NormalQuery
+from mdr_service.schemas.fields import StressQuery
 
 CONSTANT = {"contact_radius": 1.0}
 
-FIELDS = {
-    name: np.array(field)
-    for name, field in solve.stress(StressQuery.model_validate(QUERY)).fields.items()
-}
+_STRESS = StressQuery.model_validate(QUERY)
+_RESULT = QUERIES["stress"].result(_STRESS, QUERIES["stress"].solve(_STRESS))
+FIELDS = {name: _RESULT[name] for name in QUERY["quantities"]}
 
 app = FastAPI(openapi_url=None)
 

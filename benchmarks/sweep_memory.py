@@ -1,6 +1,6 @@
-"""The most memory that all processes of a sweep hold at once, pages that they share counted twice.
+"""Peak memory of all processes of a sweep; shared pages count once for each process.
 
-python benchmarks/sweep_memory.py [scenes]
+python benchmarks/sweep_memory.py [cases]
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import psutil
 import pyarrow.parquet as pq
 from sweep_ratio import mindlin
 
-SCENES = 10_000_000
+CASES = 10_000_000
 PART = 1_000_000
 TARGET = 1024.0
 MIB = 1024**2
 
 
 def held(process: psutil.Process) -> float:
-    """MiB of a process and all its children."""
+    """Return the resident memory of a process and all its children [MiB]."""
     total = 0.0
     for one in (process, *process.children(recursive=True)):
         try:
@@ -31,21 +31,21 @@ def held(process: psutil.Process) -> float:
     return total
 
 
-def write_scenes(path: Path, scenes: int) -> None:
-    part = mindlin(min(scenes, PART))
+def write_cases(path: Path, cases: int) -> None:
+    part = mindlin(min(cases, PART))
     with pq.ParquetWriter(path, part.schema) as writer:
-        for start in range(0, scenes, PART):
-            writer.write_table(part.slice(0, min(PART, scenes - start)))
+        for start in range(0, cases, PART):
+            writer.write_table(part.slice(0, min(PART, cases - start)))
 
 
 def main() -> None:
-    scenes = int(float(sys.argv[1])) if sys.argv[1:] else SCENES
+    cases = int(float(sys.argv[1])) if sys.argv[1:] else CASES
     with TemporaryDirectory() as name:
         folder = Path(name)
-        write_scenes(folder / "scenes.parquet", scenes)
+        write_cases(folder / "cases.parquet", cases)
         (folder / "template.json").write_text('{"profile": {"kind": "paraboloid"}}')
         command = [sys.executable, "-m", "mdr_command", "sweep", "tangential"]
-        command += ["--workers", "2", "--table", "scenes.parquet", "--template", "template.json"]
+        command += ["--workers", "2", "--table", "cases.parquet", "--template", "template.json"]
         start = perf_counter()
         process = psutil.Popen([*command, "--out", "answers.parquet"], cwd=folder)
         most = 0.0
@@ -54,7 +54,7 @@ def main() -> None:
             sleep(0.05)
         seconds = perf_counter() - start
         size = (folder / "answers.parquet").stat().st_size / MIB
-    print(f"{scenes} scenes in {seconds:.0f} s, {size:.0f} MiB of answers")
+    print(f"{cases} cases in {seconds:.0f} s, {size:.0f} MiB of results")
     print(f"at most {most:.0f} MiB in all processes, target <= {TARGET:.0f}")
 
 

@@ -1,10 +1,9 @@
-"""Scenes of rounded punches on one worker and on two.
+"""Times of a sweep over rounded punches with one process and with two workers.
 
-    python benchmarks/sweep_scaling.py [scenes] [rounds]
+    python benchmarks/sweep_scaling.py [cases] [rounds]
 
-Every scene has a profile of its own and all answers of a tangential query. The workers are there
-before. What else the machine does, and the process that hands out the chunks, takes its share of
-the second worker's processor.
+Every case has its own profile and all quantities of a tangential query. The times include the
+start of the workers. The client, and other load on the machine, takes its share of both cores.
 """
 
 from __future__ import annotations
@@ -14,72 +13,53 @@ from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from sweep_ratio import swept
 
-from mdr_sweep import command, engine
-from mdr_sweep.plan import plan
-from mdr_sweep.study import ANSWERS, Study, versions
-from mdr_sweep.tables import Table
-from mdr_sweep.work import Work
-
-if TYPE_CHECKING:
-    from distributed import Client
-
-SCENES = 1_000_000
+CASES = 1_000_000
 ROUNDS = 3
 TARGET = 1.7
-NAMES = ANSWERS["tangential"]
+TEMPLATE = """{"profile": {"kind": "rounded_punch"},
+               "material": {"e_star": 1.15e11, "g_star": 9.5e10}}"""
 
 
-def punches(scenes: int) -> pa.Table:
+def punches(cases: int) -> pa.Table:
     random = np.random.default_rng(1998)
-    force = 10 ** random.uniform(-1, 3, scenes)
-    friction = random.uniform(0.1, 0.9, scenes)
+    force = 10 ** random.uniform(-1, 3, cases)
+    friction = random.uniform(0.1, 0.9, cases)
     return pa.table(
         {
-            "profile.flat_radius": 10 ** random.uniform(-5, -2, scenes),
-            "profile.rounding_radius": 10 ** random.uniform(-3, 0, scenes),
+            "profile.flat_radius": 10 ** random.uniform(-5, -2, cases),
+            "profile.rounding_radius": 10 ** random.uniform(-3, 0, cases),
             "load.normal_force": force,
             "friction_coefficient": friction,
-            "tangential.tangential_force": friction * force * random.uniform(0, 1, scenes),
+            "tangential.tangential_force": friction * force * random.uniform(0, 1, cases),
         }
     )
 
 
-def seconds(client: Client, source: Path, target: Path) -> float:
-    constants = {
-        "profile.kind": "rounded_punch",
-        "material.e_star": 1.15e11,
-        "material.g_star": 9.5e10,
-    }
-    study = Study("tangential", constants, NAMES, (), versions())
-    table = Table(source)
-    cut = plan(study, ["rounded_punch"], table.rows, len(NAMES) + 5, 1)
-    start = perf_counter()
-    command.sweep(client, study, table, cut, Work(target))
-    return perf_counter() - start
-
-
 def main() -> None:
-    scenes = int(float(sys.argv[1])) if sys.argv[1:] else SCENES
+    cases = int(float(sys.argv[1])) if sys.argv[1:] else CASES
     rounds = int(sys.argv[2]) if sys.argv[2:] else ROUNDS
-    with TemporaryDirectory() as name, engine.local(1) as one, engine.local(2) as two:
-        source, target = Path(name) / "scenes.parquet", Path(name) / "answers.parquet"
-        warm = Path(name) / "few.parquet"
-        pq.write_table(punches(scenes), source)
-        pq.write_table(punches(10_000), warm)
-        for client in (one, two):
-            seconds(client, warm, target)
-        times = [
-            (seconds(one, source, target), seconds(two, source, target)) for _ in range(rounds)
-        ]
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        pq.write_table(punches(cases), folder / "cases.parquet")
+        (folder / "template.json").write_text(TEMPLATE)
+        options = ["--table", str(folder / "cases.parquet"), "--out", str(folder / "out.parquet")]
+        options += ["--template", str(folder / "template.json"), "--workers"]
+
+        def seconds(workers: str) -> float:
+            start = perf_counter()
+            swept(*options, workers)
+            return perf_counter() - start
+
+        times = [(seconds("1"), seconds("2")) for _ in range(rounds)]
     ratios = [first / second for first, second in times]
     first, second = (median(column) for column in zip(*times, strict=True))
-    print(f"{scenes} scenes: one worker {first:.1f} s, two workers {second:.1f} s")
+    print(f"{cases} cases: one process {first:.1f} s, two workers {second:.1f} s")
     print(f"ratio {median(ratios):.2f} (highest {max(ratios):.2f}), target >= {TARGET}")
 
 

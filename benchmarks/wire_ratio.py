@@ -57,7 +57,7 @@ def _row(load: Load, other: str, rounds: list[tuple[float, float]]) -> measure.R
         f"/v1/normal, one load, requests/s / {other}",
         load.__name__.removeprefix("_"),
         *measure.spread(rounds),
-        ">= 0.8",
+        ">= 0.7",
         f"{ours:.0f} / {theirs:.0f} requests/s, {CONNECTIONS} connections",
     )
 

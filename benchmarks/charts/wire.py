@@ -24,15 +24,16 @@ from drawing import panels, save, table
 from machine import footer
 from measure import medians
 
-from mdr_service import arrays, wire
-from mdr_service import table as csv
-from mdr_service.questions import QUESTIONS
+from mdr_service.dispatch import parse
+from mdr_service.queries import QUERIES
+from mdr_service.serializers import csv, npz
+from mdr_service.serializers import json as json_format
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 LENGTHS = (1, 10, 100, 1000, 10_000, 100_000)
-WRITERS = {"JSON": wire, "CSV": csv, "NumPy": arrays}
+WRITERS = {"JSON": json_format, "CSV": csv, "NumPy": npz}
 SECONDS, SAMPLES = 2.0, 400
 STAGES = ("validation", "compute", "answer arranged", "serialisation", "HTTP")
 HEADER = ("form", "radii", "bytes in", "bytes out", *(f"{name} [us]" for name in STAGES), "all")
@@ -47,14 +48,14 @@ def body(length: int) -> bytes:
 
 def stages(text: bytes, form: str) -> tuple[dict[str, Callable[[], object]], int]:
     """The service's own functions, and the bytes of the answer."""
-    question, write = QUESTIONS["stress"], WRITERS[form].write
-    query = wire.read(question.model, text)
+    question, write = QUERIES["stress"], WRITERS[form].write
+    query = parse(question.model, text)
     found = question.solve(query)
-    document = question.document(query, found)
+    document = question.result(query, found)
     runs = {
-        "validation": lambda: wire.read(question.model, text),
+        "validation": lambda: parse(question.model, text),
         "compute": lambda: question.solve(query),
-        "answer arranged": lambda: question.document(query, found),
+        "answer arranged": lambda: question.result(query, found),
         "serialisation": lambda: write(document),
     }
     return runs, len(write(document))
