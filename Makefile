@@ -1,42 +1,54 @@
-# Everything happens in .venv, made from the locks; nothing has to be installed by hand
-# but Python 3.11. Figures and answers are to be the same everywhere, so the hashes are checked.
+# Every target runs in .venv, made from the locks; only Python 3.11, with its headers, and a C compiler
+# must be installed. Hashes are checked, so that results are the same on every machine.
 HOST ?= 127.0.0.1
 PORT ?= 8000
 PYTHON ?= python3.11
 
 BIN := .venv/bin
-# What is compiled is compiled again when it changes.
-COMPILED := src/mdr_core/history/walk.py src/mdr_core/history/walk.pxd src/mdr_core/history/slots.pxd
+# Sources of the compiled module.
+COMPILED := src/mdr_core/history/slip_memory_kernel.py src/mdr_core/history/slip_memory_kernel.pxd
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test random check bench costs rates faults sweeps charts figures openapi image-check lock clean
+.PHONY: run test test-all random fuzz check bench faults sweeps charts figures openapi lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
 run: .venv/runtime
 	@exec $(BIN)/python -m mdr_command serve --host $(HOST) --port $(PORT)
 
+# Two tiers: every guard of correctness, within two minutes on two cores; and the long tier, with
+# processes, the browser, killed sweeps and regenerated references.
 test: .venv/development
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "not long"
+
+test-all: test
+	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "long and not alone"
+	$(BIN)/python -m pytest -m alone
 
 check: .venv/development
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
+	$(BIN)/hadolint Dockerfile
 	$(BIN)/python -m mdr_command openapi | diff openapi.json -
+
+# Ordinary engineering queries, each answer held to the laws: 100,000 take half an hour of one core.
+FUZZ ?= --queries 100000
+fuzz: .venv/development
+	$(BIN)/python -m tests.fuzz.campaign $(FUZZ)
 
 bench: .venv/development
 	$(BIN)/python benchmarks/ratios.py
 
-# What nobody thought of: scenes against mpmath, and queries of any sort. A quarter of an hour.
+# Random contacts against mpmath: ten minutes.
 random: .venv/development
 	$(BIN)/python -m tests.core.random_scenes
-	$(BIN)/python -m tests.faults.random_queries
 
-# Full-size figures of sweeps, for a machine that does nothing else: some minutes.
+# Figures of sweeps at full size, on a machine without other load: some minutes.
 sweeps: .venv/development
 	$(BIN)/python benchmarks/sweep_ratio.py
 	$(BIN)/python benchmarks/sweep_memory.py
@@ -51,20 +63,13 @@ charts:
 chart-%: .venv-bench/peers
 	PYTHONPATH=.:benchmarks .venv-bench/bin/python benchmarks/charts/$*.py
 
-# Its curves are those of the tests, which have no peers.
+# Needs no reference codes: the curves are those of the tests.
 chart-stability: .venv/development
 	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/stability.py
 
-# What queries cost: how far the estimates are off, and the rates of this machine in their place.
-costs: .venv/development
-	$(BIN)/python benchmarks/cost_bank.py
-
-rates: .venv/development
-	$(BIN)/python benchmarks/cost_bank.py --write
-
-# What the service stands, over real sockets of this machine: a quarter of an hour.
+# Figures of the service under load and attack, over loopback: half an hour of a quiet machine.
 faults: .venv/development
-	$(BIN)/python -m pytest tests/faults tests/service/test_compute.py
+	$(BIN)/python -m pytest tests/faults tests/service/test_workers.py
 	$(BIN)/python -m tests.faults.campaign
 
 figures: .venv/development
@@ -73,11 +78,7 @@ figures: .venv/development
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json
 
-# Needs root: it builds the image on a Debian base of its own making, runs, asks and stops it.
-image-check:
-	$(PYTHON) image/check.py
-
-# Needs uv on the path; only for those who change a dependency.
+# Needs uv on the path, and only after a dependency has changed.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \
 	--python-version 3.11 --universal pyproject.toml
 lock:
