@@ -11,7 +11,8 @@ from mdr_service.schemas.examples import ANSWERS, PARAMETER_EXAMPLES
 DESCRIPTION: Final = """\
 Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
 
-[Explorer](./): the same queries with charts, in the browser.
+[Explorer](./): the same queries with charts, in the browser. [Introduction](readme),
+with examples. [Licence](license): MIT.
 
 **Units.** Use one consistent system of your choice (N, m, Pa; or N, mm, MPa). Nothing is
 converted; each field names its dimension in brackets, `[1]` for a plain number.

@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+import httpx
 import pytest
 from playwright.sync_api import Locator
 
@@ -46,3 +47,16 @@ def test_a_picture_is_shown_as_a_picture(visit: Visit) -> None:
     picture = operation.locator("img.picture")
     picture.wait_for()
     assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") > 100
+
+
+def test_the_page_links_to_introduction_licence_and_explorer(visit: Visit) -> None:
+    visit.page.goto(f"{visit.address}docs")
+    for name, text in {
+        "Introduction": "# MDR",
+        "Licence": "MIT License",
+        "Explorer": "<!DOCTYPE html>",
+    }.items():
+        link = visit.page.locator(".info a", has_text=name).first.evaluate("link => link.href")
+        answer = httpx.get(link)
+        assert answer.status_code == 200
+        assert answer.text.startswith(text)

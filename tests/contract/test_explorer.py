@@ -138,18 +138,34 @@ def test_everything_on_the_page_can_be_taken_away(visit: Visit, tmp_path: Path) 
     starts = {"PNG": b"\x89PNG", "SVG": b"<svg"}
     for name, start in starts.items():
         with visit.page.expect_download() as download:
-            visit.page.get_by_role("button", name=re.compile(f"as {name}$")).first.click()
+            visit.page.get_by_role("button", name=re.compile(f"^{name} of")).first.click()
         download.value.save_as(tmp_path / name)
         assert (tmp_path / name).read_bytes().startswith(start)
-    with visit.page.expect_download() as download:
-        visit.page.get_by_role("button", name="Download CSV").click()
-    download.value.save_as(tmp_path / "table.csv")
-    assert (tmp_path / "table.csv").read_text().startswith("indentation_depth,")
+    first_columns = {"Download CSV": "indentation_depth,", "CSV of “Pressure”": "radius,"}
+    for name, first in first_columns.items():
+        with visit.page.expect_download() as download:
+            visit.page.get_by_role("button", name=name).click()
+        download.value.save_as(tmp_path / "table.csv")
+        assert (tmp_path / "table.csv").read_text().startswith(first)
     visit.page.select_option("#language", "JSON")
+    visit.page.get_by_role("button", name="Request of “Pressure”").click()
+    assert json.loads(visit.page.locator("#code").inner_text())["quantities"] == ["pressure"]
+    visit.page.get_by_role("button", name="Request of “Force over depth”").click()
     body = json.loads(visit.page.locator("#code").inner_text())
     assert body["profile"] == {"kind": "paraboloid", "radius": 0.01}
     visit.page.select_option("#language", "Python")
     compile(visit.page.locator("#code").inner_text(), "example", "exec")
+
+
+def test_the_radius_under_the_cursor_is_shown_in_every_chart_over_the_radius(visit: Visit) -> None:
+    visit.open("?tab=push")
+    plots = visit.page.locator(
+        "figure", has=visit.page.locator("h2", has_text="Tangential traction")
+    )
+    plots.locator(".plot").hover()
+    shown = visit.page.locator(".hoverlayer:has(.hovertext), .hoverlayer:has(.legend)")
+    shown.nth(1).wait_for(state="attached")
+    assert shown.count() == 2
 
 
 ROUND_TRIP = Path(__file__).with_name("round_trip.js").read_text("utf-8")

@@ -1,4 +1,4 @@
-"""The explorer: the page at ``/`` and its files."""
+"""The explorer, the page at ``/`` with its files, and the texts to which the pages link."""
 
 import asyncio
 import gzip
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fastapi import APIRouter, Request
 from starlette.exceptions import HTTPException
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, PlainTextResponse, Response
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,6 +35,8 @@ _SECURITY: Final = {
 _LINKS: Final = {
     "explorer": "./",
     "documentation": "docs",
+    "readme": "readme",
+    "license": "license",
     "openapi": "openapi.json",
     "profiles": "v1/profiles",
     "limits": "v1/limits",
@@ -92,3 +94,15 @@ async def file(name: str, request: Request) -> Response:
     if name not in known:
         raise HTTPException(404)
     return await _respond(name, request, {"Cache-Control": "no-cache"})
+
+
+@router.get("/readme")
+async def readme() -> Response:
+    """Return the introduction to the service."""
+    return PlainTextResponse(distribution("mdr").metadata.json["description"])
+
+
+@router.get("/license")
+async def license_() -> Response:
+    """Return the licence of the service."""
+    return PlainTextResponse(distribution("mdr").read_text("licenses/LICENSE"))

@@ -80,7 +80,7 @@ function layout(spec, scene, colours) {
     paper_bgcolor: colours.paper, plot_bgcolor: colours.paper,
     margin: { l: 56, r: 16, t: 24, b: 48 },
     showlegend: !spec.map && spec.traces.length > 1,
-    legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" },
+    legend: { orientation: "h", x: 0, y: 1.09, yanchor: "bottom" },
     hovermode: spec.map ? "closest" : "x unified",
     hoverlabel: { bgcolor: colours.paper, font: { color: colours.ink } },
     xaxis: { ...axis(spec.x), type: spec.logarithmic ? "log" : "linear" },
@@ -147,15 +147,21 @@ async function picture(figure, type) {
   canvas.toBlob((blob) => download(`${figure.spec.id}.png`, blob));
 }
 
-function create(spec) {
+function create(spec, actions) {
   const element = document.createElement("figure");
   element.innerHTML =
-    '<figcaption><h2></h2><span class="save"><button type="button">PNG</button><button type="button">SVG</button></span></figcaption>' +
+    '<figcaption><h2></h2><span class="save"></span></figcaption>' +
     '<div class="plot" role="img"></div><details><summary>Data table</summary><div class="data" tabindex="0"></div></details>';
   const figure = { element, spec, plot: element.querySelector(".plot") };
-  const [png, svg] = element.querySelectorAll("button");
-  png.addEventListener("click", () => picture(figure, "png"));
-  svg.addEventListener("click", () => picture(figure, "svg"));
+  const button = (label, act) => {
+    const made = Object.assign(document.createElement("button"), { type: "button", textContent: label });
+    made.addEventListener("click", act);
+    element.querySelector(".save").append(made);
+  };
+  button("Request", () => actions.showRequest(figure.spec.request));
+  button("CSV", () => actions.saveCsv(figure.spec.request));
+  button("PNG", () => picture(figure, "png"));
+  button("SVG", () => picture(figure, "svg"));
   element.querySelector("details").addEventListener("toggle", () => fillTable(figure));
   return figure;
 }
@@ -179,8 +185,12 @@ function link(figure) {
   figure.plot.on("plotly_unhover", () => forOthers((other) => Plotly.Fx.unhover(other.plot)));
 }
 
-/** Draw the charts of an answer, reusing those that are there. */
-export async function draw(container, specs, scene) {
+/**
+ * Draw the charts of an answer, reusing those that are there.
+ *
+ * `actions.showRequest` and `actions.saveCsv` are called with the name of a chart's request.
+ */
+export async function draw(container, specs, scene, actions) {
   const colours = theme();
   for (const [id, figure] of figures) {
     if (specs.some((spec) => spec.id === id)) continue;
@@ -190,12 +200,12 @@ export async function draw(container, specs, scene) {
   }
   for (const spec of specs) {
     const known = figures.get(spec.id);
-    const figure = known ?? create(spec);
+    const figure = known ?? create(spec, actions);
     Object.assign(figure, { spec, scene });
     figure.element.className = spec.size ?? "";
     figure.element.querySelector("h2").textContent = spec.title;
     figure.element.querySelectorAll("button").forEach((button) =>
-      button.setAttribute("aria-label", `Save “${spec.title}” as ${button.textContent}`));
+      button.setAttribute("aria-label", `${button.textContent} of “${spec.title}”`));
     figure.plot.setAttribute("aria-label", `${spec.title}: ${axisTitle(spec.y, scene)} over ${axisTitle(spec.x, scene)}`);
     // In the order of the description, whatever was there before.
     container.append(figure.element);

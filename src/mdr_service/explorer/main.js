@@ -3,27 +3,13 @@
 import { draw } from "./charts.js";
 import { readTable, row, tableText } from "./form.js";
 import { showEditor } from "./load_path.js";
-import { loadFields, QUESTIONS } from "./questions.js";
+import { MATERIALS } from "./materials.js";
+import { bodyFields, loadFields, QUESTIONS } from "./questions.js";
 import { ask, askCsv, download, newestWins, Refusal, source } from "./requests.js";
 import { defaultScene, fromAddress, TABS, toAddress, withKind } from "./scene.js";
-import { DEFAULT_FIELDS, LABELS, outline, OWN_FIELDS, OWN_FORMULAS, wireProfile } from "./shapes.js";
+import { DEFAULT_FIELDS, LABELS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
+import { showSketch } from "./sketch.js";
 import { BASE_UNITS, format, unit } from "./units.js";
-
-// Typical values for a first estimate; a real material may differ by several per cent.
-const MATERIALS = {
-  "Steel": [2.1e11, 0.3],
-  "Stainless steel": [1.93e11, 0.29],
-  "Aluminium alloy": [7e10, 0.33],
-  "Titanium Ti-6Al-4V": [1.14e11, 0.34],
-  "Brass": [1.05e11, 0.34],
-  "Tungsten carbide": [6.3e11, 0.22],
-  "Alumina": [3.8e11, 0.23],
-  "Silicon nitride": [3.1e11, 0.27],
-  "Soda-lime glass": [7e10, 0.23],
-  "Fused silica": [7.3e10, 0.17],
-  "PMMA": [3e9, 0.38],
-  "Natural rubber": [2e6, 0.49],
-};
 
 const $ = (selector) => document.querySelector(selector);
 let scene = fromAddress(location.search, location.hash);
@@ -84,12 +70,6 @@ function profileFields() {
     }));
 }
 
-function bodyFields() {
-  const modulus = (i) => ({ key: `e${i}`, label: `Young’s modulus ${i}`, dimension: "modulus" });
-  const ratio = (i) => ({ key: `nu${i}`, label: `Poisson’s ratio ${i}`, dimension: "1", range: [0, 0.5] });
-  return scene.e2 === "rigid" ? [modulus(1), ratio(1)] : [modulus(1), ratio(1), modulus(2), ratio(2)];
-}
-
 function materialSelect(i) {
   const label = document.createElement("label");
   label.className = "row";
@@ -123,8 +103,7 @@ function showForm() {
     rowOfTable = scene.table.r.map((_, i) => i + 1);
   }
   fill($("#profile-fields"), profileFields(), DEFAULT_FIELDS[scene.kind]);
-  $("#profile-fields").hidden = false;
-  fill($("#bodies"), bodyFields());
+  fill($("#bodies"), bodyFields(scene));
   $("#bodies legend").after(materialSelect(1), materialSelect(2));
   fill($("#loading"), loadFields(scene));
   fill($("#question"), question.fields(scene));
@@ -142,36 +121,13 @@ function showForm() {
   $("#lead").textContent = question.lead;
 }
 
-function showSketch() {
-  const [width, height] = [280, 120];
-  const svg = $("#sketch");
-  const profile = wireProfile(scene);
-  const contact = last?.known?.contact_radius;
-  const reach = (contact ?? scene.radius ?? 1e-4) * 2;
-  const points = outline(profile, reach);
-  const wall = profile.kind === "flat_punch";
-  const [end, top] = [points.at(-1)[0], Math.max(...points.map(([, f]) => f)) || 1];
-  const scale = [(width / 2 - 8) / (wall ? end * 2 : end), (height - 44) / top];
-  const at = ([r, f], side) => `${width / 2 + side * r * scale[0]},${height - 24 - f * scale[1]}`;
-  const right = points.map((point) => at(point, 1));
-  const left = points.map((point) => at(point, -1)).reverse();
-  const corner = (side) => `${width / 2 + side * end * scale[0]},8`;
-  const touch = Math.min(contact ?? 0, end) * scale[0];
-  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-  svg.innerHTML =
-    `<rect class="base" x="0" y="${height - 24}" width="${width}" height="24"/>` +
-    `<polygon class="body" points="${corner(-1)} ${left.join(" ")} ${right.join(" ")} ${corner(1)}"/>` +
-    `<line class="touch" x1="${width / 2 - touch}" x2="${width / 2 + touch}" y1="${height - 24}" y2="${height - 24}"/>`;
-}
-
 // Results ----------------------------------------------------------------------------------------
 
 function showNumbers(numbers) {
   $("#numbers").replaceChildren(...numbers.map(([label, value, dimension]) => {
     const entry = document.createElement("div");
     const shown = dimension ? unit(dimension, scene) : { name: "", factor: 1 };
-    const text = typeof value === "number" || value === null
-      ? `${format(value === null ? null : value / shown.factor)} ${shown.name}` : value;
+    const text = typeof value === "string" ? value : `${format(value && value / shown.factor)} ${shown.name}`;
     entry.innerHTML = "<dt></dt><dd></dd>";
     entry.querySelector("dt").textContent = label;
     entry.querySelector("dd").textContent = text;
@@ -182,8 +138,10 @@ function showNumbers(numbers) {
 function showAccuracy(answers) {
   const error = Math.max(...answers.map((answer) => answer.error_estimate));
   const methods = [...new Set(answers.map((answer) => answer.method.replace("_", " ")))];
+  const fields = Math.max(...answers.map((answer) => answer.field_error_estimate ?? 0));
+  const ofFields = fields ? `, of fields ${format(fields, 2)} of their largest value` : "";
   $("#accuracy").textContent =
-    `Computed by ${methods.join(" and ")}; relative error of every number at most ${format(error, 2)}.`;
+    `Computed by ${methods.join(" and ")}; relative error at most ${format(error, 2)}${ofFields}.`;
   const messages = new Map(answers.flatMap((answer) => answer.warnings.map((w) => [w.code, w.message])));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) => {
     const item = document.createElement("li");
@@ -235,11 +193,20 @@ function showRequests() {
   showSource();
 }
 
-const chosenRequest = () => requests.find(({ name }) => name === $("#request").value);
-
 function showSource() {
-  const request = chosenRequest();
+  const request = requests.find(({ name }) => name === $("#request").value);
   $("#code").textContent = request ? source($("#language").value, request) : "";
+}
+
+function showRequest(name) {
+  $("#request").value = name;
+  showSource();
+  $("#code").focus();
+}
+
+async function saveCsv(name) {
+  const { path, body } = requests.find((request) => request.name === name);
+  download(`${name.toLowerCase().replaceAll(" ", "-")}.csv`, await askCsv(path, body), "text/csv");
 }
 
 function showPath() {
@@ -257,6 +224,8 @@ function showPath() {
   });
 }
 
+const sketch = () => showSketch($("#sketch"), scene, last?.known?.contact_radius);
+
 const solve = newestWins(async (outdated) => {
   const asked = scene;
   const recorded = [];
@@ -271,9 +240,9 @@ const solve = newestWins(async (outdated) => {
     showProblem(null);
     showNumbers(result.numbers);
     showAccuracy(result.answers);
-    showSketch();
+    sketch();
     showRequests();
-    await draw($("#charts"), result.charts, asked);
+    await draw($("#charts"), result.charts, asked, { showRequest, saveCsv });
     document.body.dataset.drawn = toAddress(asked);
   } catch (error) {
     if (!outdated()) showProblem(error);
@@ -287,7 +256,7 @@ function refresh() {
   clearTimeout(refresh.timer);
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(showAddress, 250);
-  if (scene.kind !== "tabulated" || scene.table.r.length) showSketch();
+  if (scene.kind !== "tabulated" || scene.table.r.length) sketch();
   solve();
 }
 
@@ -356,10 +325,7 @@ function connect() {
   $("#request").addEventListener("change", showSource);
   $("#language").addEventListener("change", showSource);
   $("#copy").addEventListener("click", () => navigator.clipboard.writeText($("#code").textContent));
-  $("#csv").addEventListener("click", async () => {
-    const { name, path, body } = chosenRequest();
-    download(`${name.toLowerCase().replaceAll(" ", "-")}.csv`, await askCsv(path, body), "text/csv");
-  });
+  $("#csv").addEventListener("click", () => saveCsv($("#request").value));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", solve);
   addEventListener("popstate", () => {
     scene = fromAddress(location.search, location.hash);

@@ -1,6 +1,6 @@
-// The five questions: their fields, their requests, and the numbers and charts of the answers.
+// The five questions and the fields that they add to the form.
 
-import { basics, pathPoints } from "./scene.js";
+import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./answers.js";
 
 const CONTROLS = {
   normal_force: ["Normal force", "force"],
@@ -8,17 +8,24 @@ const CONTROLS = {
   contact_radius: ["Contact radius", "length"],
 };
 const PUSHES = {
-  ratio: ["Share of the limiting force, F_x/µF_N", "1"],
+  ratio: ["Share of µF_N", "1"],
   tangential_force: ["Tangential force", "force"],
   tangential_displacement: ["Tangential displacement", "displacement"],
 };
 const OSCILLATIONS = {
-  tangential_displacement: ["Amplitude of the displacement", "displacement"],
-  tangential_force: ["Amplitude of the force", "force"],
+  tangential_displacement: ["Displacement amplitude", "displacement"],
+  tangential_force: ["Force amplitude", "force"],
 };
 
 const names = (table) => Object.entries(table).map(([value, [label]]) => ({ value, label }));
 const FRICTION = { key: "mu", label: "Friction coefficient µ", dimension: "1", range: [0.01, 1] };
+
+/** Return the fields of the materials of a scene. */
+export function bodyFields(scene) {
+  const modulus = (i) => ({ key: `e${i}`, label: `Young’s modulus ${i}`, dimension: "modulus" });
+  const ratio = (i) => ({ key: `nu${i}`, label: `Poisson’s ratio ${i}`, dimension: "1", range: [0, 0.5] });
+  return scene.e2 === "rigid" ? [modulus(1), ratio(1)] : [modulus(1), ratio(1), modulus(2), ratio(2)];
+}
 
 /** Return the fields of the load of a scene. */
 export function loadFields(scene) {
@@ -39,325 +46,6 @@ function pushFields(scene) {
     { key: "push", label: "Pushed by", choices: names(PUSHES) },
     { key: "amount", label, dimension, range },
   ];
-}
-
-// Requests --------------------------------------------------------------------------------------
-
-const POINTS = 400;
-
-/** Return the normal force of the load, by which all other requests give it. */
-async function normalForce(scene, ask) {
-  if (scene.control === "normal_force") return scene.load;
-  const load = { [scene.control]: scene.load };
-  return (await ask("Contact", "v1/normal", { ...basics(scene), load })).normal_force[0];
-}
-
-/** Return the tangential load on the wire; a share of the limiting force needs the normal force. */
-function pushOf(scene, force) {
-  if (scene.push !== "ratio") return { [scene.push]: scene.amount };
-  return { tangential_force: scene.amount * scene.mu * force };
-}
-
-/** Return an answer with the value of one load in place of each array. */
-function single(answer, index = 0) {
-  const scalar = ([key, value]) => [key, Array.isArray(value) ? value.at(index) : value];
-  return Object.fromEntries(Object.entries(answer).map(scalar));
-}
-
-const marker = (name, x, y) => ({ name, x: [x], y: [y], mode: "markers", role: "marker" });
-
-async function solvePress(scene, ask) {
-  const force = await normalForce(scene, ask);
-  const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
-  const [curve, field] = await Promise.all([
-    ask("Curve", "v1/normal", { ...basics(scene), load: { normal_force: forces } }),
-    ask("Pressure", "v1/stress", {
-      ...basics(scene), load: { normal_force: force }, points: POINTS, quantities: ["pressure"],
-    }),
-  ]);
-  const now = single(curve, -1);
-  return {
-    answers: [curve, field],
-    known: now,
-    numbers: [
-      ["Contact radius a", now.contact_radius, "length"],
-      ["Indentation depth d", now.indentation_depth, "displacement"],
-      ["Normal force", now.normal_force, "force"],
-      ["Mean pressure", now.mean_pressure, "pressure"],
-      ["Maximum pressure", now.maximum_pressure, "pressure"],
-      ["Normal stiffness", now.normal_stiffness, "stiffness"],
-      ["Elastic energy", now.elastic_energy, "energy"],
-    ],
-    charts: [
-      pressureChart(field, [["a", now.contact_radius]], "wide"),
-      {
-        id: "force-depth", title: "Force over depth",
-        x: ["Indentation depth", "displacement"], y: ["Normal force", "force"],
-        traces: [
-          { name: "force", x: [0, ...curve.indentation_depth], y: [0, ...curve.normal_force] },
-          marker("this load", now.indentation_depth, now.normal_force),
-        ],
-      },
-      {
-        id: "radius-force", title: "Contact radius over force",
-        x: ["Normal force", "force"], y: ["Contact radius", "length"],
-        traces: [
-          { name: "contact radius", x: curve.normal_force, y: curve.contact_radius },
-          marker("this load", now.normal_force, now.contact_radius),
-        ],
-      },
-    ],
-  };
-}
-
-function pressureChart(field, edges, size) {
-  return {
-    id: "pressure", title: "Pressure", size, linked: true, edges,
-    x: ["Radius", "length"], y: ["Pressure", "pressure"],
-    traces: [{ name: "pressure", x: field.radius, y: field.pressure[0], fill: true }],
-  };
-}
-
-function tractionChart(field, mu, edges) {
-  const envelope = field.pressure[0].map((p) => (p === null ? null : mu * p));
-  return {
-    id: "traction", title: "Tangential traction", linked: true, edges,
-    x: ["Radius", "length"], y: ["Traction", "pressure"],
-    traces: [
-      { name: "traction", x: field.radius, y: field.shear_stress[0], fill: true },
-      { name: "limit µp", x: field.radius, y: envelope, role: "limit" },
-    ],
-  };
-}
-
-/** Return a field with gaps outside the contact, where it means nothing. */
-function within(field, contactRadius, quantity) {
-  return field[quantity][0].map((value, i) => (field.radius[i] > contactRadius ? null : value));
-}
-
-async function solvePush(scene, ask) {
-  const force = await normalForce(scene, ask);
-  const limit = scene.mu * force;
-  const base = { ...basics(scene), load: { normal_force: force }, friction_coefficient: scene.mu };
-  const shares = Array.from({ length: 61 }, (_, i) => 1 - (1 - i / 60) ** 2);
-  const tangential = pushOf(scene, force);
-  const [state, curve, field] = await Promise.all([
-    ask("State", "v1/tangential", { ...base, tangential }),
-    ask("Curve", "v1/tangential", {
-      ...base, tangential: { tangential_force: shares.map((share) => share * limit) },
-    }),
-    ask("Fields", "v1/stress", {
-      ...base, tangential, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
-    }),
-  ]);
-  const now = single(state);
-  const edges = [["c", now.stick_radius], ["a", now.contact_radius]];
-  return {
-    answers: [state, curve, field],
-    known: now,
-    numbers: [
-      ["Regime", now.regime.replace("_", " ")],
-      ["Stick radius c", now.stick_radius, "length"],
-      ["Contact radius a", now.contact_radius, "length"],
-      ["Slip width a − c", now.slip_width, "length"],
-      ["Tangential force", now.tangential_force, "force"],
-      ["Tangential displacement", now.tangential_displacement, "displacement"],
-      ["Tangential stiffness", now.tangential_stiffness, "stiffness"],
-      ["Dissipated energy", now.dissipated_energy, "energy"],
-    ],
-    charts: [
-      tractionChart(field, scene.mu, edges),
-      {
-        id: "force-displacement", title: "Tangential force over displacement",
-        x: ["Tangential displacement", "displacement"], y: ["Tangential force", "force"],
-        traces: [
-          { name: "force", x: curve.tangential_displacement, y: curve.tangential_force },
-          marker("this load", now.tangential_displacement, now.tangential_force),
-        ],
-      },
-      {
-        id: "stick-force", title: "Stick radius over tangential force",
-        x: ["Tangential force", "force"], y: ["Stick radius", "length"],
-        traces: [
-          { name: "stick radius", x: curve.tangential_force, y: curve.stick_radius },
-          marker("this load", Math.abs(now.tangential_force), now.stick_radius),
-        ],
-      },
-      {
-        id: "slip", title: "Slip", linked: true, edges,
-        x: ["Radius", "length"], y: ["Slip", "displacement"],
-        traces: [{ name: "slip", x: field.radius, y: within(field, now.contact_radius, "slip") }],
-      },
-    ],
-  };
-}
-
-async function solveCycle(scene, ask) {
-  const points = pathPoints(scene);
-  const column = (i) => points.map((point) => point[i]);
-  const body = {
-    ...basics(scene),
-    friction_coefficient: scene.mu,
-    history: {
-      normal: { [scene.normal]: column(0) },
-      tangential: { [scene.tangential]: column(1) },
-    },
-  };
-  const sampled = { ...body, history: { ...body.history, samples_per_step: 40 } };
-  const [history, field] = await Promise.all([
-    ask("History", "v1/tangential/history", sampled),
-    ask("Fields at the end", "v1/stress", {
-      ...body, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
-    }),
-  ]);
-  const last = (values) => values[values.length - 1];
-  const edges = [...history.slip_fronts.map((r) => ["", r]), ["a", last(history.contact_radius)]];
-  const position = history.step.map((_, i) => (i + 1) / 40);
-  return {
-    answers: [history, field],
-    known: { contact_radius: last(history.contact_radius) },
-    numbers: [
-      ["Regime at the end", last(history.regime).replace("_", " ")],
-      ["Contact radius a", last(history.contact_radius), "length"],
-      ["Normal force", last(history.normal_force), "force"],
-      ["Tangential force", last(history.tangential_force), "force"],
-      ["Tangential displacement", last(history.tangential_displacement), "displacement"],
-      ["Dissipated energy", last(history.dissipated_energy), "energy"],
-    ],
-    charts: [
-      {
-        id: "loop", title: "Hysteresis", size: "wide",
-        x: ["Tangential displacement", "displacement"], y: ["Tangential force", "force"],
-        traces: [
-          { name: "path", x: history.tangential_displacement, y: history.tangential_force },
-          marker("end", last(history.tangential_displacement), last(history.tangential_force)),
-        ],
-      },
-      tractionChart(field, scene.mu, edges),
-      {
-        id: "dissipation", title: "Dissipated energy along the path",
-        x: ["Point of the path", "1"], y: ["Dissipated energy", "energy"],
-        traces: [{ name: "dissipated energy", x: position, y: history.dissipated_energy }],
-      },
-    ],
-  };
-}
-
-async function solveStress(scene, ask) {
-  const force = await normalForce(scene, ask);
-  const tangential = pushOf(scene, force);
-  const base = {
-    ...basics(scene), load: { normal_force: force }, friction_coefficient: scene.mu, tangential,
-  };
-  const material = { ...base.material, yield_strength: scene.yield };
-  const [contact, field, map] = await Promise.all([
-    ask("Contact", "v1/normal", { ...basics(scene), load: { normal_force: force } }),
-    ask("Surface", "v1/stress", {
-      ...base, points: POINTS, quantities: ["pressure", "shear_stress", "normal_displacement"],
-    }),
-    ask("Beneath", "v1/subsurface", {
-      ...base, material, body: scene.body, points: 61, quantities: ["von_mises"], largest: true,
-    }),
-  ]);
-  const now = single(contact);
-  const [mises, shear] = [single(map.largest.von_mises), single(map.largest.maximum_shear)];
-  const edges = [["a", now.contact_radius]];
-  return {
-    answers: [contact, field, map],
-    known: now,
-    numbers: [
-      ["Largest von Mises stress", mises.value, "pressure"],
-      ["… at depth z", mises.z, "length"],
-      ["… at x", mises.x, "length"],
-      ["Largest shear stress", shear.value, "pressure"],
-      ["Yield begins at, von Mises", map.yield_onset_force.von_mises[0], "force"],
-      ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
-      ["Maximum pressure", now.maximum_pressure, "pressure"],
-      ["Contact radius a", now.contact_radius, "length"],
-    ],
-    charts: [
-      {
-        id: "map", title: "Von Mises stress beneath the surface", size: "wide", map: true, edges,
-        x: ["x, along the tangential force", "length"], y: ["Depth z", "length"],
-        z: ["von Mises stress", "pressure"],
-        traces: [
-          { name: "von Mises stress", x: map.x, y: map.z, z: map.von_mises[0] },
-          marker("largest", mises.x, mises.z),
-        ],
-      },
-      pressureChart(field, edges),
-      tractionChart(field, scene.mu, edges),
-      {
-        id: "displacement", title: "Normal displacement of the surface", linked: true, edges, size: "wide",
-        x: ["Radius", "length"], y: ["Displacement", "displacement"],
-        traces: [{ name: "displacement", x: field.radius, y: field.normal_displacement[0] }],
-      },
-    ],
-  };
-}
-
-async function solveWear(scene, ask) {
-  const body = {
-    ...basics(scene),
-    load: { [scene.control]: scene.load },
-    friction_coefficient: scene.mu,
-    oscillation: { [scene.oscillation]: scene.amplitude },
-  };
-  const decades = Array.from({ length: 17 }, (_, i) => 10 ** (i / 2));
-  const cycles = [...new Set([...decades, scene.cycles])].sort((a, b) => a - b);
-  const at = cycles.indexOf(scene.cycles);
-  const course = await ask("Evolution", "v1/wear/evolution", {
-    ...body, wear_coefficient: scene.wear, cycles, points: 200,
-  });
-  const limit = await ask("Limit", "v1/wear", { ...body, radius: course.radius });
-  const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
-  const now = single(limit);
-  const edges = [["c", now.stick_radius], ["limit", now.wear_radius]];
-  return {
-    answers: [limit, course],
-    numbers: [
-      ["Worn volume", course.worn_volume[at], "volume"],
-      ["Worn volume in the limit", now.worn_volume, "volume"],
-      ["Contact radius", course.contact_radius[at], "length"],
-      ["Wear radius in the limit", now.wear_radius, "length"],
-      ["Stick radius c", now.stick_radius, "length"],
-      ["Indentation depth", course.indentation_depth[at], "displacement"],
-      ["Normal force", course.normal_force[at], "force"],
-      ["Dissipated energy", course.dissipated_energy[at], "energy"],
-    ],
-    charts: [
-      {
-        id: "worn-profile", title: "Profile", linked: true, edges,
-        x: ["Radius", "length"], y: ["Height", "displacement"],
-        traces: [
-          { name: "after these cycles", x: course.radius, y: course.profile[at] },
-          { name: "unworn", x: course.radius, y: limit.initial_profile, role: "limit" },
-          { name: "limit", x: course.radius, y: limit.limiting_profile[0], role: "second" },
-        ],
-      },
-      {
-        id: "worn-depth", title: "Worn depth", linked: true, edges,
-        x: ["Radius", "length"], y: ["Depth", "displacement"],
-        traces: [
-          { name: "after these cycles", x: course.radius, y: depth(course.profile[at]) },
-          { name: "limit", x: course.radius, y: depth(limit.limiting_profile[0]), role: "limit" },
-        ],
-      },
-      {
-        id: "pressure", title: "Pressure after these cycles", linked: true, edges,
-        x: ["Radius", "length"], y: ["Pressure", "pressure"],
-        traces: [{ name: "pressure", x: course.radius, y: course.pressure[at], fill: true }],
-      },
-      {
-        id: "worn-volume", title: "Worn volume over the cycles", logarithmic: true,
-        x: ["Cycles", "1"], y: ["Worn volume", "volume"],
-        traces: [
-          { name: "worn volume", x: course.cycles, y: course.worn_volume },
-          marker("these cycles", scene.cycles, course.worn_volume[at]),
-        ],
-      },
-    ],
-  };
 }
 
 export const QUESTIONS = {
