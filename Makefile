@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test test-all random fuzz check bench faults sweeps charts figures openapi lock clean
+.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -71,6 +71,10 @@ chart-stability: .venv/development
 faults: .venv/development
 	$(BIN)/python -m pytest tests/faults tests/service/test_workers.py
 	$(BIN)/python -m tests.faults.campaign
+
+# Figures of the explorer in Chromium, on a machine without other load: a minute.
+pages: .venv/development
+	PYTHONPATH=. $(BIN)/python benchmarks/explorer.py
 
 figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py

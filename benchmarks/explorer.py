@@ -1,0 +1,163 @@
+"""Figures of the explorer in headless Chromium, beside a service on this machine.
+
+    make pages
+
+Prints the time to the first chart, without and with the browser's cache; from a slider to the new
+charts; and of small queries while twenty browsers drag.
+"""
+
+import asyncio
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from statistics import median
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from playwright.sync_api import BrowserContext, Page, sync_playwright
+from tests.contract.conftest import CHROMIUM
+from tests.faults.campaign import small_queries
+from tests.faults.load import clients, percentile, post
+from tests.faults.server import free_port, running, service
+
+REPEATS = 5
+BROWSERS = 20
+SECONDS = 10.0
+# A browser draws for about this time before it asks again [s].
+DRAWING = 0.04
+SLIDERS = {"press": "load", "push": "amount"}
+# Moves a slider step by step, each as soon as the charts show the last one, and returns the times.
+DRAG = """async key => {
+    const drawn = async () => {
+        while (!document.body.dataset.drawn) await new Promise(requestAnimationFrame);
+    };
+    await drawn();
+    const slider = document.querySelector(`.field[data-key=${key}] [type=range]`);
+    const [low, high] = [Number(slider.min), Number(slider.max)];
+    const times = [];
+    for (let i = 1; i <= 20; i++) {
+        const start = performance.now();
+        delete document.body.dataset.drawn;
+        slider.value = low + (high - low) * (0.3 + 0.02 * i);
+        slider.dispatchEvent(new Event("input"));
+        await drawn();
+        times.push(performance.now() - start);
+    }
+    return times;
+}"""
+
+
+@contextmanager
+def browser() -> Iterator[BrowserContext]:
+    """Yield a browser that keeps its cache between pages."""
+    with TemporaryDirectory() as folder, sync_playwright() as playwright:
+        context = playwright.chromium.launch_persistent_context(
+            folder, executable_path=CHROMIUM, args=["--no-sandbox", "--disable-dev-shm-usage"]
+        )
+        yield context
+        context.close()
+
+
+def first_chart(context: BrowserContext, address: str) -> float:
+    """Return the time until a new page shows its first chart [s]."""
+    page = context.new_page()
+    start = time.monotonic()
+    page.goto(address, wait_until="commit")
+    page.locator("figure .plot .main-svg").first.wait_for()
+    taken = time.monotonic() - start
+    page.wait_for_timeout(1000)
+    page.close()
+    return taken
+
+
+def drag(page: Page, address: str, tab: str, kind: str) -> list[float]:
+    """Return the times from the slider to the new charts [ms]."""
+    page.goto(f"{address}?tab={tab}&kind={kind}")
+    times: list[float] = page.evaluate(DRAG, SLIDERS[tab])
+    return times
+
+
+def recorded(page: Page, address: str) -> list[list[Any]]:
+    """Return the requests of a dragged slider, by drawing."""
+    asked: list[Any] = []
+    page.on(
+        "request",
+        lambda each: each.method == "POST" and asked.append([each.url, each.post_data_json]),
+    )
+    drag(page, address, "push", "rounded_punch")
+    of_path = [[url.partition("/v1")[2], body] for url, body in asked[3:]]
+    return [of_path[i : i + 3] for i in range(0, len(of_path) - 2, 3)]
+
+
+async def dragging(port: int, drawings: list[list[Any]]) -> None:
+    """Ask what a browser asks that drags without end."""
+    async with clients(port, 3) as connections:
+        while True:
+            for drawing in drawings:
+                asked = [post(f"/v1{path}", body) for path, body in drawing]
+                await asyncio.gather(
+                    *(client.ask(text) for client, text in zip(connections, asked, strict=True))
+                )
+                await asyncio.sleep(DRAWING)
+
+
+async def replay(port: int, drawings: list[list[Any]]) -> None:
+    await asyncio.gather(*(dragging(port, drawings) for _ in range(BROWSERS)))
+
+
+def beside_browsers(port: int, drawings: list[list[Any]]) -> tuple[float, float]:
+    """Return the 99th percentile of small queries, idle and while browsers drag [s]."""
+    asyncio.run(small_queries(port, 1.0))
+    idle = percentile(asyncio.run(small_queries(port, SECONDS)), 0.99)
+    others = subprocess.Popen(
+        [sys.executable, __file__, str(port)], stdin=subprocess.PIPE, text=True
+    )
+    assert others.stdin
+    others.stdin.write(json.dumps(drawings))
+    others.stdin.close()
+    time.sleep(2.0)
+    busy = percentile(asyncio.run(small_queries(port, SECONDS)), 0.99)
+    assert others.poll() is None
+    others.kill()
+    others.wait()
+    return idle, busy
+
+
+def main() -> None:
+    port = free_port()
+    address = f"http://127.0.0.1:{port}/"
+    with running(service(port), port, subprocess.DEVNULL):
+        firsts = []
+        for _ in range(REPEATS):
+            with browser() as context:
+                firsts.append(first_chart(context, address))
+        with browser() as context:
+            first_chart(context, address)
+            first_chart(context, address)
+            again = [first_chart(context, address) for _ in range(REPEATS)]
+            page = context.new_page()
+            moves = {
+                (tab, kind): median(drag(page, address, tab, kind))
+                for tab in SLIDERS
+                for kind in ("paraboloid", "rounded_punch")
+            }
+            drawings = recorded(page, address)
+        idle, busy = beside_browsers(port, drawings)
+    print(f"first chart            {median(firsts):6.2f} s   (bound 1.5)")
+    print(f"first chart, cached    {median(again):6.2f} s   (bound 0.7)")
+    for (tab, kind), taken in moves.items():
+        print(f"{tab:5} {kind:16} {taken:6.0f} ms  (bound 100)")
+    print(
+        f"small query, p99       {1e3 * busy:6.2f} ms  while {BROWSERS} browsers drag, "
+        f"{1e3 * idle:.2f} ms idle: {busy / idle:.1f} x (bound 10)"
+    )
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        asyncio.run(replay(int(sys.argv[1]), json.load(sys.stdin)))
+    else:
+        main()
