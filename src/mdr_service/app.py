@@ -13,7 +13,7 @@ from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
 from mdr_service import health, middleware, openapi
-from mdr_service.api import explorer, operations, queries
+from mdr_service.api import explorer, operations, parameters, queries
 from mdr_service.settings import SETTINGS
 from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
@@ -41,7 +41,11 @@ def create_app() -> FastAPI:
     """Return the application."""
     app = FastAPI(
         # Routes of an included router would take some microseconds longer per request.
-        routes=[*queries.router.routes, *operations.router.routes, *explorer.router.routes],
+        routes=[
+            route
+            for part in (queries, parameters, operations, explorer)
+            for route in part.router.routes
+        ],
         title="MDR",
         version=version("mdr"),
         description=openapi.DESCRIPTION,

@@ -5,11 +5,12 @@ import os
 import re
 from asyncio import CancelledError
 from collections.abc import Mapping
-from typing import Final
+from typing import Any, Final
 
 import orjson
 from anyio import move_on_after
 from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
@@ -42,6 +43,7 @@ def install(app: FastAPI) -> None:
     """Add the middleware and the exception handlers to `app`."""
     for failure in problems.FAILURES:
         app.exception_handler(failure)(_failure)
+    app.exception_handler(RequestValidationError)(_invalid_parameters)
     app.exception_handler(HTTPException)(_http_exception)
     app.add_middleware(ServiceMiddleware, transfers=app.state.transfers)
     if SETTINGS.cors_origins:
@@ -239,6 +241,12 @@ def _routed(scope: Scope) -> str | None:
 
 def _failure(_request: Request, error: Exception) -> Response:
     return problem_response(problems.to_problem(error))
+
+
+def _invalid_parameters(_request: Request, error: RequestValidationError) -> Response:
+    # The framework puts the part of the request, `query`, first.
+    found: Any = [{**each, "loc": each["loc"][1:]} for each in error.errors()]
+    return problem_response(problems.from_errors(found))
 
 
 def _http_exception(request: Request, error: HTTPException) -> Response:

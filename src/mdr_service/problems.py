@@ -1,7 +1,7 @@
 """Problem documents of failed requests (RFC 9457)."""
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -127,7 +127,11 @@ def from_validation(error: ValidationError) -> ServiceError:
     if count > _MAX_BUILT:
         detail = f"{count} values are invalid, too many to list"
         return ServiceError(INVALID_REQUEST, detail, [("", detail)])
-    found = error.errors(include_url=False, include_context=False, include_input=False)
+    return from_errors(error.errors(include_url=False, include_context=False, include_input=False))
+
+
+def from_errors(found: Sequence[ErrorDetails]) -> ServiceError:
+    """Return the failure with errors of pydantic, whose locations start in the request."""
     if found[0]["type"] == "json_invalid":
         return ServiceError(MALFORMED_JSON, found[0]["msg"], [("", found[0]["msg"])])
     return ServiceError(

@@ -10,7 +10,7 @@ from mdr_service import problems
 from mdr_service.dispatch import parse
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import Query
-from mdr_sweep.request_fields import nested
+from mdr_service.schemas.flat import nested
 from mdr_sweep.spec import ERROR, WARNING, Spec
 
 

@@ -12,19 +12,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mdr_service import problems
-from mdr_service.api import parameters
-from mdr_service.api.parameters import Parameters
+from mdr_service.api.parameters import PARAMETERS
 from mdr_service.schemas import examples
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.contract import strict_json
 
-MODELS: dict[str, type[Parameters]] = {
-    "normal": parameters.NormalParameters,
-    "tangential": parameters.TangentialParameters,
-    "stress": parameters.StressParameters,
-    "wear": parameters.WearParameters,
-}
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
 BALL = {"kind": "paraboloid", "radius": 0.01}
 MODULI = {"e_star": 1.15e11, "g_star": 9.5e10}
@@ -352,7 +345,7 @@ def test_number_of_a_spreadsheet_is_accepted(client: Client, written: str) -> No
     assert answer.content == client.get(at("normal", NORMAL)).content
 
 
-@pytest.mark.parametrize("question", MODELS)
+@pytest.mark.parametrize("question", PARAMETERS)
 def test_documented_parameters_have_a_result(client: Client, question: str) -> None:
     get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
     shown = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
@@ -360,18 +353,18 @@ def test_documented_parameters_have_a_result(client: Client, question: str) -> N
     assert client.get(at(question, shown)).status_code == 200
 
 
-@pytest.mark.parametrize("question", MODELS)
+@pytest.mark.parametrize("question", PARAMETERS)
 def test_every_parameter_is_documented(question: str) -> None:
     get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
     names = [each["name"] for each in get["parameters"]]
-    assert sorted(names) == sorted([*MODELS[question].model_fields, "format"])
+    assert sorted(names) == sorted(PARAMETERS[question].model_fields)
     assert all(each["in"] == "query" and each["description"] for each in get["parameters"])
     for each in get["parameters"]:
         if {"type": "number"} in each["schema"].get("anyOf", ()):
             assert re.search(r"\[[a-z0-9/*^()-]+\]$", each["description"])
 
 
-@pytest.mark.parametrize("question", MODELS)
+@pytest.mark.parametrize("question", PARAMETERS)
 def test_the_documentation_page_accepts_exponents(question: str) -> None:
     # Swagger UI compares the text of a parameter of the one type number with a pattern of its own.
     get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
@@ -410,11 +403,11 @@ def test_head_has_the_headers_of_get(client: Client) -> None:
 
 
 def test_problem_without_pointers_has_none_for_parameters() -> None:
-    given = parameters.NormalParameters.model_validate({"kind": "cone"})
+    given = PARAMETERS["normal"].model_validate({"kind": "cone"})
     assert given.pointed(problems.INTERNAL_ERROR).errors == ()
 
 
-NAMES = sorted({name for model in MODELS.values() for name in model.paths})
+NAMES = sorted({name for model in PARAMETERS.values() for name in model.fields})
 ENDS = [f"{name}{end}" for name in NAMES for end in ("_from", "_to")]
 TEXTS = (
     st.text(max_size=8)
@@ -435,7 +428,7 @@ ADDRESSES = st.builds(
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
-@given(question=st.sampled_from(list(MODELS)), asked=ADDRESSES)
+@given(question=st.sampled_from(list(PARAMETERS)), asked=ADDRESSES)
 def test_random_parameters_have_a_result_or_a_pointer(
     client: Client, question: str, asked: dict[str, object]
 ) -> None:
@@ -444,7 +437,7 @@ def test_random_parameters_have_a_result_or_a_pointer(
     if answer.status_code == 422:
         document = strict_json.loads(answer.content)
         assert isinstance(document, dict)
-        known = MODELS[question].paths
+        known = PARAMETERS[question].fields
         pointers = [error["pointer"].removeprefix("/") for error in document["errors"]]
         assert pointers
         assert {*pointers} <= {*asked, *known, *ENDS, "n"}

@@ -8,8 +8,8 @@ from typing import Any
 
 import pyarrow as pa
 
+from mdr_service.schemas.flat import nested
 from mdr_sweep import vectorized
-from mdr_sweep.request_fields import nested
 from mdr_sweep.spec import QUANTITIES, Spec
 from tests.conftest import Client
 

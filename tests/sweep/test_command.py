@@ -18,9 +18,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from mdr_core.errors import InputError
+from mdr_service.schemas.flat import nested
 from mdr_sweep import command, resources, vectorized
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.request_fields import fields, flat, gaps, generic, nested
+from mdr_sweep.request_fields import fields, flat, gaps, generic
 from mdr_sweep.spec import QUANTITIES, Spec, UsageError
 from mdr_sweep.sweep import Failures
 from mdr_sweep.tables import Grid, Table, axis, regrouped

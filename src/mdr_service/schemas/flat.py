@@ -1,0 +1,65 @@
+"""Requests as flat fields with dotted names such as ``load.normal_force``.
+
+Members of a list are named by their index, as in ``profile.terms.0.exponent``.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from mdr_core.errors import InputError
+
+Schema = Mapping[str, Any]
+
+
+def leaves(
+    root: Schema, node: Schema | None = None, name: str = ""
+) -> Iterator[tuple[str, Schema]]:
+    """Yield names and schemas of the numbers, strings and arrays of these in a request.
+
+    Parameters
+    ----------
+    root : JSON schema of the request.
+    node, name : the part of it to walk, and its name; by default all.
+    """
+    node = root if node is None else node
+    if "$ref" in node:
+        node = root["$defs"][node["$ref"].rpartition("/")[2]]
+    for branch in node.get("oneOf", ()):
+        yield from leaves(root, branch, name)
+    for member, child in node.get("properties", {}).items():
+        yield from leaves(root, child, f"{name}.{member}" if name else member)
+    if node.get("type") == "array" and node["items"].get("type") not in {"number", "string"}:
+        # `#` stands for any index.
+        yield from leaves(root, node["items"], f"{name}.#")
+    elif node.get("type") in {"array", "number", "integer", "string"}:
+        yield name, node
+
+
+def nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the request with the given fields.
+
+    Raises
+    ------
+    InputError : a name is a part of another one, or the indices of a list have a gap.
+    """
+    root: dict[str, Any] = {}
+    for name, value in values.items():
+        *path, last = name.split(".")
+        place: Any = root
+        for step in path:
+            place = place.setdefault(step, {}) if isinstance(place, dict) else None
+        if not isinstance(place, dict) or last in place:
+            raise InputError((*path, last), "is given in two ways")
+        place[last] = value
+    return {name: _with_lists((name,), part) for name, part in root.items()}
+
+
+def _with_lists(path: tuple[str, ...], part: Any) -> Any:
+    if not isinstance(part, dict):
+        return part
+    inner = {name: _with_lists((*path, name), value) for name, value in part.items()}
+    if not inner or not all(name.isdecimal() for name in inner):
+        return inner
+    if set(inner) != {str(index) for index in range(len(inner))}:
+        raise InputError(path, "the indices of a list start at 0 and have no gaps")
+    return [inner[str(index)] for index in range(len(inner))]
