@@ -200,9 +200,10 @@ async def post_history(
     """Follow a load path from first contact, and return samples along it.
 
     The controls vary linearly from point to point. Paths of depths and displacements, and of
-    normal and tangential forces, are solved exactly. A depth with a tangential force, or a normal
-    force with a displacement, is integrated to `rtol` where both change. A negative depth is a
-    separation, which erases the slip memory. A tangential force beyond µ F_N, at a point or between
+    normal and tangential forces, are solved exactly. Where a depth changes with a tangential force,
+    or a normal force with a displacement, the path is replaced by chords: the error is mostly 1e-9
+    to 1e-7 and within `error_estimate`. A negative depth is a separation, which erases the slip
+    memory. A tangential force beyond µ F_N, at a point or between
     points, has no equilibrium and is rejected.
 
     `error_estimate` is relative to the largest value on the path. A warning `accuracy` says where
