@@ -1,8 +1,11 @@
-# Every target runs in .venv, made from the locks; only Python 3.11, with its headers, and a C compiler
-# must be installed. Hashes are checked, so that results are the same on every machine.
+# Every target runs in .venv, made from the locks by the newest supported Python that is found (or
+# PYTHON=). Hashes are checked, so that results are the same on every machine.
 HOST ?= 127.0.0.1
 PORT ?= 8000
-PYTHON ?= python3.11
+PYTHONS := python3.14 python3.13 python3.12 python3.11
+# A name on the path may be a shim of a Python that is not selected, or lack the module venv: try it.
+PYTHON ?= $(shell for python in $(PYTHONS); do \
+	$$python -c 'import ensurepip, venv' 2>/dev/null && echo $$python && break; done)
 
 BIN := .venv/bin
 # Sources of the compiled module.
@@ -12,7 +15,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi lock clean
+.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi dist lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -82,20 +85,26 @@ figures: .venv/development
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json
 
+# The source distribution, a wheel for this Python, and one of Python text alone for every other.
+dist: .venv/development
+	$(BIN)/python -m build --no-isolation
+	MDR_PLAIN=1 $(BIN)/python -m build --no-isolation --wheel
+
 # Needs uv on the path, and only after a dependency has changed.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \
 	--python-version 3.11 --universal pyproject.toml
 lock:
-	$(LOCK) --extra build --output-file requirements.lock
+	$(LOCK) --extra build --extra service --output-file requirements.lock
 	$(LOCK) --extra build --extra sweep --output-file requirements-sweep.lock
 	$(LOCK) --all-extras --output-file requirements-dev.lock
-	$(LOCK) --extra build requirements-bench.in --output-file requirements-bench.lock
+	$(LOCK) --extra build --extra service requirements-bench.in --output-file requirements-bench.lock
 
 clean:
 	rm -rf .venv .venv-bench build dist src/*.egg-info src/mdr_core/history/*.so .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 .venv/bin/python:
+	@test -n "$(PYTHON)" || { echo "MDR needs one of $(PYTHONS), with the module venv; none is on the path." >&2; exit 1; }
 	$(PYTHON) -m venv .venv
 
 # The project goes in without build isolation: its build tool is in the lock like all else.

@@ -1,10 +1,20 @@
-"""Compiles the one sequential loop; everything else is said in pyproject.toml."""
+"""Compiles the one sequential loop where a C compiler is found; the rest is in pyproject.toml.
+
+Without a compiler, or with MDR_PLAIN=1 in the environment, the uncompiled text of the loop is
+installed instead. It gives the same bits.
+"""
+
+import os
 
 from Cython.Build import cythonize
 from setuptools import Extension, setup
 
-setup(
-    ext_modules=cythonize(
+
+def extensions() -> list[Extension]:
+    """Return the compiled module, none for a wheel of Python text alone."""
+    if os.environ.get("MDR_PLAIN"):
+        return []
+    modules = cythonize(
         Extension(
             "mdr_core.history.slip_memory_kernel",
             ["src/mdr_core/history/slip_memory_kernel.py"],
@@ -23,4 +33,10 @@ setup(
             "annotation_typing": False,
         },
     )
-)
+    for module in modules:
+        # A failure to compile is a warning. Cython drops this argument of an extension.
+        module.optional = True
+    return modules
+
+
+setup(ext_modules=extensions())

@@ -6,10 +6,10 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.metadata import version
 from typing import Any, Final, Protocol, cast
 
 from mdr_command.exit_status import ExitStatus
+from mdr_core import __version__
 
 
 class Module(Protocol):
@@ -58,7 +58,12 @@ def main(given: Sequence[str] | None = None) -> int:
 
 def _run(given: Sequence[str]) -> int:
     name = given[0] if given else ""
-    module = _loaded(COMMANDS[name]) if name in COMMANDS else None
+    try:
+        module = _loaded(COMMANDS[name]) if name in COMMANDS else None
+    except ModuleNotFoundError as error:
+        remedy = "run `pip install '.[service]'` in the checkout"
+        sys.stderr.write(f"mdr {name}: {error.name} is missing; {remedy}\n")
+        return ExitStatus.NOT_INSTALLED
     arguments = _parser(name, module).parse_args(given)
     return module.run(arguments) if module else ExitStatus.INVALID_INPUT
 
@@ -82,7 +87,7 @@ def _parser(chosen: str, module: Module | None) -> argparse.ArgumentParser:
 
 class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_others: Any) -> None:
-        sys.stdout.write(f"mdr {version('mdr')}\n")
+        sys.stdout.write(f"mdr {__version__}\n")
         parser.exit()
 
 

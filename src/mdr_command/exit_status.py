@@ -12,6 +12,8 @@ class ExitStatus(IntEnum):
     """As argparse reports invalid arguments."""
     ACCURACY_NOT_REACHABLE = 3
     OUTPUT_FAILED = 4
+    NOT_INSTALLED = 5
+    """The packages of the command are missing."""
     INTERRUPTED = 130
     """As shells report programs terminated by SIGINT."""
     PIPE_CLOSED = 141

@@ -6,12 +6,12 @@ import signal
 import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
+from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, parameters, queries
 from mdr_service.settings import SETTINGS
@@ -47,7 +47,7 @@ def create_app() -> FastAPI:
             for route in part.router.routes
         ],
         title="MDR",
-        version=version("mdr"),
+        version=__version__,
         description=openapi.DESCRIPTION,
         openapi_tags=openapi.TAGS,
         license_info={"name": "MIT", "identifier": "MIT"},

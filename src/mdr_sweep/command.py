@@ -50,8 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         status: int = import_module("mdr_sweep.sweep").run(arguments)
     except ModuleNotFoundError as error:
-        requirements = "pip install --require-hashes -r requirements-sweep.lock"
-        return _exit(f"{error.name} is missing; run `{requirements}` in the checkout", _FAILED)
+        remedy = "run `pip install '.[sweep]'` in the checkout"
+        return _exit(f"{error.name} is missing; {remedy}", _FAILED)
     except UsageError as error:
         return _exit(error, _INVALID_INPUT)
     except (SweepError, OSError) as error:

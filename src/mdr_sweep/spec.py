@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any, Final
 
+from mdr_core import __version__
 from mdr_service.results import members
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnswer
 
@@ -26,7 +27,7 @@ WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""
 # Packages on which the last digits of the result, and the bytes of its file, depend.
-_PACKAGES: Final = ("mdr", "numpy", "scipy", "pyarrow")
+_PACKAGES: Final = ("numpy", "scipy", "pyarrow")
 
 
 class SweepError(Exception):
@@ -57,4 +58,4 @@ class Spec:
 
 def versions() -> dict[str, str]:
     """Return the versions of the packages on which the result depends."""
-    return {name: version(name) for name in _PACKAGES}
+    return {"mdr": __version__} | {name: version(name) for name in _PACKAGES}
