@@ -85,10 +85,11 @@ figures: .venv/development
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json
 
-# The source distribution, a wheel for this Python, and one of Python text alone for every other.
+# The source distribution, a wheel for this Python, and one of Python text alone for the others, each
+# built from the unpacked source distribution: a folder that has been built in may hold old modules.
 dist: .venv/development
 	$(BIN)/python -m build --no-isolation
-	MDR_PLAIN=1 $(BIN)/python -m build --no-isolation --wheel
+	MDR_PLAIN=1 $(BIN)/python -m build --no-isolation
 
 # Needs uv on the path, and only after a dependency has changed.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \
