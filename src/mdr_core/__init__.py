@@ -1,5 +1,78 @@
-"""The physics of MDR: contact of axisymmetric bodies by their one-dimensional image."""
+"""Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
+
+Pass a profile and effective moduli to `normal.solve`, and the contact that it returns to
+`tangential.solve`, `fields`, `subsurface` or `wear`. `history` follows load paths and steps through
+time. Use one consistent system of units.
+
+>>> import mdr_core as mdr
+>>> steel = mdr.Body(youngs_modulus=210e9, poissons_ratio=0.3)
+>>> pair = mdr.from_bodies([steel, steel])
+>>> contact = mdr.normal.solve(mdr.Paraboloid(radius=0.01), pair.e_star, normal_force=10.0)
+>>> round(float(contact.contact_radius) * 1e6, 3)
+86.624
+"""
 
 from typing import Final
 
+from mdr_core import fields, history, normal, subsurface, tangential, wear
+from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
+from mdr_core.materials import RIGID, Body, Material, from_bodies
+from mdr_core.profiles import (
+    KINDS,
+    CappedParaboloid,
+    Cone,
+    Ellipsoid,
+    FlatPunch,
+    Hyperboloid,
+    Paraboloid,
+    Power,
+    PowerTerm,
+    Profile,
+    RoundedCone,
+    RoundedPunch,
+    Series,
+    Sphere,
+    SphericalTipCone,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+
 __version__: Final = "0.1.0"
+
+__all__ = [
+    "KINDS",
+    "RIGID",
+    "AccuracyError",
+    "Body",
+    "CappedParaboloid",
+    "Cone",
+    "DefectError",
+    "Ellipsoid",
+    "FlatPunch",
+    "Hyperboloid",
+    "InputError",
+    "MDRError",
+    "Material",
+    "Notice",
+    "Paraboloid",
+    "Power",
+    "PowerTerm",
+    "Profile",
+    "RoundedCone",
+    "RoundedPunch",
+    "Series",
+    "Sphere",
+    "SphericalTipCone",
+    "Tabulated",
+    "TruncatedCone",
+    "TruncatedParaboloid",
+    "__version__",
+    "fields",
+    "from_bodies",
+    "history",
+    "normal",
+    "subsurface",
+    "tangential",
+    "wear",
+]

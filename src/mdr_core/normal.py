@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,8 @@ from mdr_core.equivalent_1d import (
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.profiles import Profile
+from mdr_core.profiles.base import NORMAL_QUANTITIES
+from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     extremes,
@@ -36,8 +38,8 @@ _COORDINATE_FROM: Final = {
 _DECADES: Final = 150.0
 
 
-@dataclass(frozen=True)
-class NormalContact:
+@dataclass(frozen=True, repr=False)
+class NormalContact(Results):
     """Profile pressed into a half-space, under any number of loads.
 
     Results are arrays over the loads and the cases of a sweep, without dimension if the load is a
@@ -51,6 +53,7 @@ class NormalContact:
     rtol: float = 1e-10
     control: str = "contact_radius"
     """Name of the prescribed load, which is exact."""
+    quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
 
     @cached_property
     def contact_radius(self) -> Array:

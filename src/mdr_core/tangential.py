@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.normal import NormalContact, not_reached
 from mdr_core.profiles import Profile
+from mdr_core.results import Results
 from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
@@ -30,8 +31,8 @@ _EDGE_ERROR: Final = 2 * _LOAD_ERROR
 _Step = Callable[[Profile, Array, Array, Array], Array]
 
 
-@dataclass(frozen=True)
-class TangentialContact:
+@dataclass(frozen=True, repr=False)
+class TangentialContact(Results):
     """Normal contact under a tangential load, at any number of pairs of loads.
 
     Results are arrays over the broadcast loads. Each is computed on first use.
@@ -52,6 +53,19 @@ class TangentialContact:
     """Displacement beyond that of full slip [length]; a single 0 for no case."""
     control: str = "tangential_displacement"
     """Name of the prescribed tangential load."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        "tangential_force",
+        "tangential_displacement",
+        "stick_radius",
+        "slip_width",
+        "tangential_stiffness",
+        "dissipated_energy",
+        "regime",
+    )
+
+    def values(self) -> dict[str, Any]:
+        """Return the quantities by name, those of the normal contact among them."""
+        return self.normal.values() | super().values()
 
     @cached_property
     def _coordinate(self) -> Array:

@@ -2,11 +2,11 @@
 
 import subprocess
 import sys
-from importlib.metadata import version
 
 import pytest
 
 from mdr_command import __main__ as command
+from mdr_core import __version__
 from mdr_service.queries import QUERIES
 from tests.faults.server import PATIENCE
 
@@ -30,7 +30,7 @@ def test_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         command.main(["--version"])
     assert ended.value.code == 0
-    assert capsys.readouterr().out == f"mdr {version('mdr')}\n"
+    assert capsys.readouterr().out == f"mdr {__version__}\n"
 
 
 @pytest.mark.parametrize("given", [[], ["nothing"], ["--nothing"], ["normal", "--nothing"]])
@@ -48,6 +48,19 @@ def test_missing_module_raises(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(command.COMMANDS, "broken", broken)
     with pytest.raises(ModuleNotFoundError):
         command.main(["broken"])
+
+
+def test_a_command_without_its_packages_tells_the_remedy() -> None:
+    code = (
+        "import sys\nsys.modules['orjson'] = None\nfrom mdr_command.__main__ import main\n"
+        "raise SystemExit(main(['normal']))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 5
+    assert (
+        done.stderr
+        == "mdr normal: orjson is missing; run `pip install '.[service]'` in the checkout\n"
+    )
 
 
 def test_help_imports_no_numerical_module() -> None:

@@ -118,4 +118,4 @@ def test_every_limit_is_shown_with_its_default() -> None:
 
 def test_nothing_shown_is_left_untried() -> None:
     tried = [*examples("sh", "json"), *examples("sh", "csv"), *examples("python", "text")]
-    assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 12
+    assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 13

@@ -2,16 +2,17 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from mdr_core.equivalent_1d import coordinate_from_depth, stick_from_depth, stick_from_force
 from mdr_core.errors import InputError
-from mdr_core.history import slip_memory
-from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
+from mdr_core.history import dissipation, slip_memory
+from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
 from mdr_core.history.traction_branches import SHORT, TractionBranches
 from mdr_core.profiles import Profile
+from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import require_positive
 
@@ -30,8 +31,8 @@ class TractionSegments(NamedTuple):
     inverse: bool = False
 
 
-@dataclass(frozen=True)
-class ContactState:
+@dataclass(frozen=True, repr=False)
+class ContactState(Results):
     """A contact after any load history, as the polyline of its springs' anchors.
 
     A spring is identified by the depth w of its first contact. Its anchor U - q_x/(mu E*), with
@@ -47,6 +48,20 @@ class ContactState:
     """Polyline over depths; chords stand for the arcs of curved load steps."""
     arcs: TractionSegments | None = None
     """Segments with the arcs of curved load steps, if there are any."""
+    last_step: FrontPath | None = None
+    """Path of the slip front on the step of `advance` that led here, None at the start."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        "indentation_depth",
+        "normal_force",
+        "contact_radius",
+        "tangential_displacement",
+        "tangential_force",
+        "elastic_energy",
+        "tangential_energy",
+        "dissipation",
+        "slip_fronts",
+    )
+    about: ClassVar[tuple[str, ...]] = ()
 
     @property
     def compliance(self) -> float:
@@ -114,9 +129,43 @@ class ContactState:
         return float(self.profile.contact_radius(self.coordinate[-1])) if self.in_contact else 0.0
 
     @property
+    def normal_force(self) -> float:
+        """F_N [force]."""
+        if not self.in_contact:
+            return 0.0
+        return float(self.e_star * self.profile.reduced_force(self.coordinate[-1]))
+
+    @property
+    def elastic_energy(self) -> float:
+        """Energy stored by the normal load, int F_N dd [force length]."""
+        if not self.in_contact:
+            return 0.0
+        return float(self.e_star * self.profile.reduced_energy(self.coordinate[-1]))
+
+    @property
+    def tangential_energy(self) -> float:
+        """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
+        return self._energy_unit * float(self._branches.square[-1]) if self.in_contact else 0.0
+
+    @cached_property
+    def dissipation(self) -> float:
+        """Energy dissipated by friction on the step of `advance` that led here [force length]."""
+        if self.last_step is None:
+            return 0.0
+        segments = slip_memory.slip_segments(self.last_step)
+        return self._energy_unit * float(
+            dissipation.per_segment(self.profile, segments, by_force=False).sum()
+        )
+
+    @property
+    def _energy_unit(self) -> float:
+        """(mu E*)^2/G* [pressure]."""
+        return self.friction_coefficient * self.e_star * self.compliance
+
+    @property
     def slip_fronts(self) -> Array:
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
-        if self.profile.slips_at_once:
+        if self.profile.slips_at_once or not self.in_contact:
             return np.zeros(0)
         return self.profile.contact_radius(self.segments.coordinate[1:-1])
 
@@ -226,5 +275,5 @@ def advance(
     coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
     once = np.zeros(1, dtype=bool), np.zeros(1, dtype=np.intp)
     points = LoadPoints(depth, displacement / state.compliance, *once)
-    _, _, polyline = slip_memory.apply_steps(state.polyline, points)
-    return replace(state, polyline=polyline, arcs=None)
+    _, path, polyline = slip_memory.apply_steps(state.polyline, points)
+    return replace(state, polyline=polyline, arcs=None, last_step=path)

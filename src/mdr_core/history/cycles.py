@@ -2,21 +2,43 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mdr_core.errors import InputError
+from mdr_core.errors import InputError, Notice
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.profiles import Profile
+from mdr_core.results import Results
 from mdr_core.typing import Array
 
 
-@dataclass(frozen=True)
-class LoadCycles:
+@dataclass(frozen=True, repr=False)
+class LoadCycles(Results):
     """Load history of identical cycles, with the energy and the stiffness of each."""
 
     history: LoadHistory
     count: int
+    quantities: ClassVar[tuple[str, ...]] = ("energy_per_cycle", "secant_stiffness")
+
+    def values(self) -> dict[str, Any]:
+        """Return the quantities by name, those of the history among them."""
+        return self.history.values() | super().values()
+
+    @property
+    def method(self) -> str:
+        """Most expensive method among the results."""
+        return self.history.method
+
+    @property
+    def error_estimate(self) -> float:
+        """Bound on the error of each result, relative to its largest value in the history."""
+        return self.history.error_estimate
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """Warnings of the history."""
+        return self.history.warnings
 
     @cached_property
     def energy_per_cycle(self) -> Array:

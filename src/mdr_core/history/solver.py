@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,14 +18,15 @@ from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.history.traction_branches import TractionBranches
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
+from mdr_core.results import Results
 from mdr_core.typing import Array, Indices
 
 # Rounding error of the sums over the branches, relative to that of the profile.
 _SUMS: Final = 40.0
 
 
-@dataclass(frozen=True)
-class LoadHistory:
+@dataclass(frozen=True, repr=False)
+class LoadHistory(Results):
     """Results of a load history at every sample; each is computed on first use."""
 
     path: SampledPath
@@ -34,6 +35,19 @@ class LoadHistory:
     results: StepResults | ExtrapolatedResults
     """Results of the tangential foundation in reduced units."""
     rtol: float
+    quantities: ClassVar[tuple[str, ...]] = (
+        "step",
+        "indentation_depth",
+        "normal_force",
+        "contact_radius",
+        "tangential_displacement",
+        "tangential_force",
+        "dissipated_energy",
+        "elastic_energy",
+        "tangential_energy",
+        "regime",
+        "slip_fronts",
+    )
 
     @cached_property
     def contact(self) -> NormalContact:

@@ -1,1 +1,5 @@
-"""Fretting wear: the shape that a partially slipping contact wears down to, and the way there."""
+"""Fretting wear: the limiting state in `limit`, the way there over the cycles in `evolution`."""
+
+from mdr_core.wear import evolution, limit
+
+__all__ = ["evolution", "limit"]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import inf, isfinite
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from mdr_core import tangential
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
+from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
 from mdr_core.wear.annulus_state import Held
@@ -60,12 +61,21 @@ _SAMPLES: Final = np.linspace(0.02, 0.98, 33)
 _NEAR: Final = 0.05
 
 
-@dataclass(frozen=True)
-class WearEvolution(WornSurface):
+@dataclass(frozen=True, repr=False)
+class WearEvolution(Results, WornSurface):
     """Worn contact at each requested number of cycles, with error estimates."""
 
     coarse: WornSurface = field(kw_only=True)
     """Worn contact by fewer nodes and a looser tolerance, for the error estimates."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        "cycles",
+        "worn_volume",
+        "indentation_depth",
+        "normal_force",
+        "stick_radius",
+        "contact_radius",
+        "dissipated_energy",
+    )
 
     @cached_property
     def error_estimate(self) -> float:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from mdr_core import fields, tangential
 from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
+from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import first_index
@@ -33,8 +34,8 @@ _WARNINGS: Final = {
 }
 
 
-@dataclass(frozen=True)
-class LimitingWear:
+@dataclass(frozen=True, repr=False)
+class LimitingWear(Results):
     """State in which all slip has worn off; arrays over the broadcast loads.
 
     In full slip under a constant force the wear is unbounded: depth, wear radius and worn volume
@@ -46,6 +47,14 @@ class LimitingWear:
     amplitude: str
     """Name of the prescribed amplitude: "tangential_displacement" or "tangential_force"."""
     stuck: limiting_stick.LimitingStick
+    quantities: ClassVar[tuple[str, ...]] = (
+        "stick_radius",
+        "wear_radius",
+        "indentation_depth",
+        "normal_force",
+        "worn_volume",
+        "regime",
+    )
 
     @property
     def _normal(self) -> NormalContact:

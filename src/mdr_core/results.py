@@ -1,0 +1,62 @@
+"""Readable form of results, and their conversion to a dictionary."""
+
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+# Digits that a readable form shows; `to_dict` has them all.
+_DIGITS: Final = 7
+
+
+class Results:
+    """Object whose results are attributes; `quantities` lists their names."""
+
+    quantities: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", "warnings")
+
+    def values(self) -> dict[str, Any]:
+        """Return the quantities by name."""
+        return {name: _plain(getattr(self, name)) for name in self.quantities}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every result by name, as the HTTP service names it.
+
+        Returns
+        -------
+        Quantities as arrays over the loads, or as single numbers for a single load; `method`,
+        `error_estimate`, and `warnings` as a list of dictionaries with `code` and `message`.
+        """
+        values = self.values() | {name: getattr(self, name) for name in self.about}
+        if "warnings" in values:
+            values["warnings"] = [vars(notice) for notice in values["warnings"]]
+        return values
+
+    def __repr__(self) -> str:
+        """Return the class with one line for each result."""
+        values = self.to_dict()
+        width = max(map(len, values))
+        lines = [f"{name:>{width}}: {_short(value)}" for name, value in values.items()]
+        return "\n".join([f"{type(self).__name__}:", *lines])
+
+
+def _plain(value: Any) -> Any:
+    """Return a single number or text for an array without dimension."""
+    return value.item() if isinstance(value, np.ndarray | np.generic) and not value.ndim else value
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.{_DIGITS}g}"
+    if isinstance(value, np.ndarray):
+        # One line, with the first and the last values of a long array.
+        return np.array2string(
+            value,
+            max_line_width=10_000,
+            separator=", ",
+            threshold=6,
+            edgeitems=2,
+            formatter={"float_kind": _short},
+        )
+    if isinstance(value, list):
+        return ", ".join(notice["code"] for notice in value) or "none"
+    return str(value)

@@ -1,0 +1,119 @@
+"""The names that `import mdr_core` offers, their readable results, and time-stepping by states."""
+
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mdr_core as mdr
+from mdr_core.history import advance, unloaded
+from mdr_core.results import Results
+
+ROOT = Path(__file__).parents[2]
+BALL, PAIR = mdr.Paraboloid(0.01), mdr.from_bodies([mdr.Body(210e9, 0.3)] * 2)
+G_STAR = PAIR.g_star or 0.0
+CONTACT = mdr.normal.solve(BALL, PAIR.e_star, normal_force=10.0)
+FRICTION = (BALL, PAIR.e_star, G_STAR, 0.3)
+
+RESULTS: list[Results] = [
+    CONTACT,
+    mdr.normal.solve(mdr.Cone(0.1), 1.0, indentation_depth=[1.0, 2.0]),
+    mdr.tangential.solve(CONTACT, G_STAR, 0.3, tangential_force=[1.0, 2.0]),
+    mdr.history.solve(*FRICTION, normal_force=10.0, tangential_force=[0.0, 2.0, 0.0]),
+    mdr.history.cycles(*FRICTION, normal_force=10.0, tangential_force=2.0),
+    unloaded(*FRICTION),
+    advance(unloaded(*FRICTION), 1e-6, 1e-7),
+    mdr.wear.limit.solve(CONTACT, G_STAR, 0.3, tangential_force=2.0),
+]
+
+
+def test_every_public_name_exists() -> None:
+    assert all(hasattr(mdr, name) for name in mdr.__all__)
+    assert {cls.__name__ for cls in mdr.KINDS.values()} <= set(mdr.__all__)
+
+
+@pytest.mark.parametrize("result", RESULTS, ids=lambda result: type(result).__name__)
+def test_the_readable_form_shows_every_result_on_a_line(result: Results) -> None:
+    title, *lines = repr(result).splitlines()
+    assert title == f"{type(result).__name__}:"
+    assert [line.split(":")[0].strip() for line in lines] == list(result.to_dict())
+
+
+@pytest.mark.parametrize("result", RESULTS, ids=lambda result: type(result).__name__)
+def test_the_dictionary_holds_the_attributes(result: Results) -> None:
+    values = result.to_dict()
+    for name in result.quantities:
+        np.testing.assert_array_equal(values[name], getattr(result, name))
+    assert all(not isinstance(value, np.ndarray) or value.ndim for value in values.values())
+
+
+def test_the_dictionary_names_the_warnings() -> None:
+    codes = [notice["code"] for notice in RESULTS[1].to_dict()["warnings"]]
+    assert "singular" in codes
+
+
+def test_the_readable_form_of_many_loads_stays_short() -> None:
+    contact = mdr.normal.solve(BALL, PAIR.e_star, normal_force=np.linspace(1.0, 10.0, 1000))
+    assert max(map(len, repr(contact).splitlines())) < 100
+
+
+@pytest.mark.parametrize(
+    "profile", [BALL, mdr.Cone(0.1), mdr.RoundedPunch(1e-4, 0.01), mdr.FlatPunch(1e-4)]
+)
+def test_states_keep_the_energies_of_the_history(profile: mdr.Profile) -> None:
+    rng = np.random.default_rng(7)
+    depth, displacement = rng.uniform(-1e-7, 1e-6, 60), np.cumsum(rng.normal(0.0, 1e-7, 60))
+    given = (profile, *FRICTION[1:])
+    history = mdr.history.solve(
+        *given, indentation_depth=depth, tangential_displacement=displacement
+    )
+    state, dissipated = unloaded(*given), 0.0
+    for i, place in enumerate(zip(depth, displacement, strict=True)):
+        state = advance(state, *place)
+        dissipated += state.dissipation
+        for name in ("normal_force", "elastic_energy", "tangential_force", "tangential_energy"):
+            largest = np.abs(getattr(history, name)).max()
+            expected = pytest.approx(getattr(history, name)[i], rel=0, abs=1e-13 * largest)
+            assert getattr(state, name) == expected, name
+        assert dissipated == pytest.approx(history.dissipated_energy[i], rel=1e-12, abs=0)
+
+
+def test_a_step_at_full_stick_dissipates_nothing() -> None:
+    state = advance(advance(unloaded(*FRICTION), 1e-6, 0.0), 2e-6, 1e-8)
+    assert state.dissipation == 0
+    assert state.tangential_energy > 0
+
+
+def test_an_impact_keeps_its_energy_and_rebounds_as_measured() -> None:
+    path = ROOT / "examples" / "bouncing_sphere.py"
+    done = subprocess.run([sys.executable, path], check=True, capture_output=True, text=True)
+    rows = [list(map(float, line.split())) for line in done.stdout.splitlines()[1:]]
+    assert [row[0] for row in rows] == [4.2, 9.8, 20.2, 30.4, 39.5]
+    for _, measured, computed, energy_error in rows:
+        # The spread of single measurements is of this size.
+        assert computed == pytest.approx(measured, abs=0.04)
+        assert energy_error < 1e-13
+
+
+def test_public_functions_document_their_parameters() -> None:
+    entries = [
+        mdr.normal.solve,
+        mdr.tangential.solve,
+        mdr.history.solve,
+        mdr.history.cycles,
+        mdr.history.unloaded,
+        mdr.history.advance,
+        mdr.wear.limit.solve,
+        mdr.wear.evolution.solve,
+        mdr.subsurface.stress,
+        mdr.subsurface.largest,
+        mdr.subsurface.yield_onset_force,
+        mdr.fields.pressure,
+        mdr.from_bodies,
+    ]
+    for function in entries:
+        text = inspect.getdoc(function) or ""
+        assert "Parameters\n----------" in text, function
