@@ -21,7 +21,7 @@ from time import perf_counter
 
 import measure
 import numpy as np
-from tests.oracles.wear_explicit import Held, Scene, State
+from tests.oracles.wear_explicit import Controls, Scene, State
 
 from mdr_core.normal import solve
 from mdr_core.profiles import Paraboloid
@@ -63,7 +63,7 @@ class CycleByCycle:
         self.scene = Scene(self.r, self.r**2 / 2, 1.0, 1.0, 1.0, WEAR)
 
     def __call__(self) -> State:
-        held = Held(depth=1.0, displacement=MOVED)
+        held = Controls(depth=1.0, displacement=MOVED)
         return self.scene.run(held, [CYCLES], longest=1.0)[0]
 
 

@@ -210,7 +210,7 @@ def _pyabel(scene: Scene, stick: float) -> Iterator[Way]:
         for points in sizes:
 
             def run(transform: Callable = transform, points: int = points) -> Array:
-                g = scene.image(_grid(points))
+                g = scene.equivalent_profile(_grid(points))
                 if stick:
                     np.maximum(g, g[round(stick * (points - 1))], out=g)
                 answer = transform((g[-1] - g)[None], EDGE / (points - 1))

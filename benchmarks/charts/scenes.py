@@ -44,7 +44,7 @@ class Scene:
     """g' for arrays."""
     scalar: Callable[[float, float], float] | None
     """g' for one number, by the functions of `math`; None where it has to be an array's."""
-    image: Callable[[Array], Array]
+    equivalent_profile: Callable[[Array], Array]
     """g."""
     b: float = 0.0
     spacing: int = 4
@@ -120,12 +120,12 @@ def _rounded(b: float, stick: float) -> Scene:
         s = math.sqrt(max(above, 0.0) * (x + b))
         return 2 * s - b * math.atan(s / b)
 
-    def image(x: Array) -> Array:
+    def equivalent_profile(x: Array) -> Array:
         s = np.sqrt(np.maximum(x - b, 0.0) * (x + b))
         return x * (s - b * np.arctan(s / b))
 
     fields = {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": 1.0}
-    return Scene(f"rounded punch b/a = {b}", fields, stick, slope, scalar, image, b)
+    return Scene(f"rounded punch b/a = {b}", fields, stick, slope, scalar, equivalent_profile, b)
 
 
 def _sphere(radius: float) -> Scene:
@@ -135,11 +135,11 @@ def _sphere(radius: float) -> Scene:
     def scalar(x: float, _above: float) -> float:
         return math.atanh(x / radius) + x * radius / ((radius - x) * (radius + x))
 
-    def image(x: Array) -> Array:
+    def equivalent_profile(x: Array) -> Array:
         return x * np.arctanh(x / radius)
 
     fields = {"kind": "sphere", "radius": radius}
-    return Scene("exact sphere a/R = 0.5", fields, 0.7, slope, scalar, image)
+    return Scene("exact sphere a/R = 0.5", fields, 0.7, slope, scalar, equivalent_profile)
 
 
 #: Points of the rule by which a user of a peer takes the table's g' from its spline.
@@ -161,7 +161,7 @@ def _table(points: int) -> Scene:
         values = spline(rho, 1) + rho * spline(rho, 2)
         return (weights @ values).reshape(np.shape(x))
 
-    def image(x: Array) -> Array:
+    def equivalent_profile(x: Array) -> Array:
         rho = np.multiply.outer(sine, np.ravel(x))
         return x * (weights @ CubicSpline(r, f)(rho, 1)).reshape(np.shape(x))
 
@@ -173,7 +173,9 @@ def _table(points: int) -> Scene:
         "breaks": [],
     }
     # One radius of its reference takes a fifth of a second.
-    return Scene(f"table of {points} points", fields, 0.7, slope, None, image, spacing=25)
+    return Scene(
+        f"table of {points} points", fields, 0.7, slope, None, equivalent_profile, spacing=25
+    )
 
 
 def _cone() -> Scene:
@@ -190,7 +192,7 @@ def _cone() -> Scene:
 
 def scenes() -> list[Scene]:
     """All seven."""
-    slope, scalar, image = _power(1.5)
+    slope, scalar, equivalent_profile = _power(1.5)
     return [
         Scene(
             "paraboloid",
@@ -210,7 +212,7 @@ def scenes() -> list[Scene]:
             0.7,
             slope,
             scalar,
-            image,
+            equivalent_profile,
         ),
         _table(200),
     ]

@@ -86,8 +86,8 @@ def test_fifty_legs_are_those_of_the_springs(name: str) -> None:
     found = solve(name, indentation_depth=d, tangential_displacement=u)
     errors = []
     for count in (SPRINGS // 100, SPRINGS // 10, SPRINGS):
-        bed = springs.bed(PROFILES[name], float(np.max(d)), count)
-        errors.append(apart(found, springs.simulate(bed, MATERIAL, d, u)))
+        foundation = springs.foundation(PROFILES[name], float(np.max(d)), count)
+        errors.append(apart(found, springs.simulate(foundation, MATERIAL, d, u)))
     assert errors[-1] <= OWN, errors
     if name != "flat-punch":
         # The difference is the springs': it falls as theirs must, by a hundred in the limit.
@@ -104,8 +104,8 @@ def test_samples_within_a_leg_are_those_of_the_springs(name: str) -> None:
     fine_u = np.interp(at, np.arange(21), np.append(0.0, u))
     assert found.indentation_depth == pytest.approx(fine_d, rel=1e-13, abs=1e-15)
     assert found.tangential_displacement == pytest.approx(fine_u, rel=1e-13, abs=1e-15)
-    bed = springs.bed(PROFILES[name], float(np.max(d)), SPRINGS)
-    assert apart(found, springs.simulate(bed, MATERIAL, fine_d, fine_u)) <= OWN
+    foundation = springs.foundation(PROFILES[name], float(np.max(d)), SPRINGS)
+    assert apart(found, springs.simulate(foundation, MATERIAL, fine_d, fine_u)) <= OWN
 
 
 @everywhere
@@ -115,10 +115,10 @@ def test_the_state_is_that_of_each_spring(name: str) -> None:
         d, u = random_path(4, legs)
         d[-1] = abs(d[-1])
         state = solve(name, indentation_depth=d, tangential_displacement=u).state
-        bed = springs.bed(PROFILES[name], float(np.max(d)), 2000)
-        load = springs.simulate(bed, MATERIAL, d, u).load
-        inside = bed.touch < d[-1]
-        found = np.interp(bed.touch[inside], state.depth, state.load)
+        foundation = springs.foundation(PROFILES[name], float(np.max(d)), 2000)
+        load = springs.simulate(foundation, MATERIAL, d, u).load
+        inside = foundation.touch < d[-1]
+        found = np.interp(foundation.touch[inside], state.depth, state.load)
         size = MATERIAL.mu * MATERIAL.e_star * DEPTH
         assert found == pytest.approx(load[inside], rel=1e-12, abs=1e-13 * size)
         assert state.depth[0] == 0
@@ -131,8 +131,8 @@ def force_path(name: str, legs: int, normal: str, tangential: str) -> dict[str, 
     """A path in the given controls; forces stay within friction at every point of every leg."""
     random = np.random.default_rng(8)
     d = random.uniform(0.05, 1.0, legs) * DEPTH
-    bed = springs.bed(PROFILES[name], DEPTH, 20_000)
-    force = springs.simulate(bed, MATERIAL, d, np.zeros(legs)).normal_force
+    foundation = springs.foundation(PROFILES[name], DEPTH, 20_000)
+    force = springs.simulate(foundation, MATERIAL, d, np.zeros(legs)).normal_force
     # With the depth held straight, the force lags behind a straight line of forces.
     part = 0.95 if normal == "normal_force" else 0.3
     least = force if normal == "normal_force" else np.minimum(force, np.append(0, force[:-1]))
@@ -163,7 +163,7 @@ def test_springs_that_follow_the_found_motion_bear_the_given_forces(
 ) -> None:
     """Curved ways in (d, u) are handed to the springs as ever shorter chords."""
     controls = force_path(name, 4, normal, tangential)
-    bed = springs.bed(PROFILES[name], DEPTH, 20_000)
+    foundation = springs.foundation(PROFILES[name], DEPTH, 20_000)
     errors = []
     for samples in (8, 32):
         found = solve(name, **controls, samples_per_step=samples)
@@ -171,7 +171,7 @@ def test_springs_that_follow_the_found_motion_bear_the_given_forces(
         for control, given in controls.items():
             assert getattr(found, control)[ends] == pytest.approx(given, rel=1e-12, abs=0), control
         summed = springs.simulate(
-            bed, MATERIAL, found.indentation_depth, found.tangential_displacement
+            foundation, MATERIAL, found.indentation_depth, found.tangential_displacement
         )
         errors.append(apart(found, summed))
         line = np.arange(1, 4 * samples + 1) / samples

@@ -26,7 +26,7 @@ from mdr_core.profiles import (
 )
 from mdr_core.wear import evolution, limit
 from mdr_core.wear.rates import WearModel
-from tests.oracles.wear_explicit import Held, Scene
+from tests.oracles.wear_explicit import Controls, Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -263,9 +263,11 @@ def test_explicit_cycles_find_the_same(control: str) -> None:
     sideways, contact = found.initial.sideways, found.initial.contact
     force, moved = float(contact.normal_force), float(sideways.tangential_displacement)
     held = {
-        CONTROLS[0]: Held(depth=float(contact.indentation_depth), displacement=moved),
-        CONTROLS[1]: Held(normal_force=force, tangential_force=float(sideways.tangential_force)),
-        CONTROLS[2]: Held(normal_force=force, displacement=moved),
+        CONTROLS[0]: Controls(depth=float(contact.indentation_depth), displacement=moved),
+        CONTROLS[1]: Controls(
+            normal_force=force, tangential_force=float(sideways.tangential_force)
+        ),
+        CONTROLS[2]: Controls(normal_force=force, displacement=moved),
     }[control]
     states = scene.run(held, found.cycles.tolist())
     depth = found.worn_depth(r)

@@ -140,12 +140,12 @@ def test_the_limit_is_a_fixed_point(profile: Profile, part: float) -> None:
     def worn(s: Any) -> Any:
         return wear.worn_depth(np.hypot(c, s))
 
-    image = Chebyshev.interpolate(worn, 40, domain=[0, S]).deriv()
+    worn_slope = Chebyshev.interpolate(worn, 40, domain=[0, S]).deriv()
     nodes, weights = gauss_legendre(60)
     turn = (1 + nodes) * np.pi / 4
     for X in S * np.array([0.2, 0.6, 0.95]):
         x = np.hypot(c, X)
-        added = x * np.pi / 4 * (weights @ image(X * np.sin(turn)))
+        added = x * np.pi / 4 * (weights @ worn_slope(X * np.sin(turn)))
         assert added == pytest.approx(d - float(profile.g(np.array([x]))[0]), rel=1e-8, abs=0)
 
 

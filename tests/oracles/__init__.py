@@ -1,1 +1,1 @@
-"""Expected values in high precision, computed from the definitions and never from the product."""
+"""Reference values in high precision, computed from the definitions without the product."""

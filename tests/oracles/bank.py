@@ -1,17 +1,22 @@
-"""Banks of stored reference cases; `scenes` chooses them, and the `generate` modules make them.
+"""Banks of stored reference cases; `scenes` selects them and the `generate` modules compute them.
 
-Numbers of the input are JSON numbers and mean their double exactly. Expected values are strings of
-30 digits, or "inf". Condition numbers are relative, |d log(output)/d log(input)|, and None if they
-have no meaning. Lists of given and expected values have the same length.
+Inputs are JSON numbers and denote exact doubles. Expected values are strings of 30 digits, or
+"inf". Condition numbers are relative, |d log(output)/d log(input)|, and None where undefined. Lists
+of prescribed and expected values have equal length.
 
-`normal`: d, F_N, a, ... of one load. `pressure`: p over radii. `profile`: f, f', g, g' over x.
-`tabulated`: all of these for tables. `tangential`: one record per contact and tangential control.
-`slip_fields`: one record per state, over its radii. `history_cycles`: one record per contact and
-tangential control at constant normal load. `history_inphase`: the normal load oscillates with the
-tangential displacement; expected values are lists over the cycles. `history_paths`: depth and
-displacement at the points of a path. `subsurface`: the stress tensor over E* of one contact in
-partial slip, over its points. `wear_limit`: one record per contact and pair of held and
-oscillating quantity; `fields` are those of some amplitudes, by index.
+- `normal`: d, F_N, a, ... of one load.
+- `pressure`: p at given radii.
+- `profile`: f, f', g, g' at given x.
+- `tabulated`: all of these for tables.
+- `tangential`: one record per contact and tangential control.
+- `slip_fields`: one record per state, at given radii.
+- `history_cycles`: one record per contact and tangential control, constant normal load.
+- `history_inphase`: the normal load oscillates in phase with the tangential displacement; expected
+  values are lists over the cycles.
+- `history_paths`: depth and displacement at the points of a load path.
+- `subsurface`: stress tensor over E* of one contact in partial slip, at given points.
+- `wear_limit`: one record per contact and pair of constant and oscillating quantity; `fields` are
+  indexed by amplitude.
 """
 
 from __future__ import annotations
@@ -29,5 +34,5 @@ Record = dict[str, Any]
 
 @functools.cache
 def load(name: str) -> tuple[Record, ...]:
-    """Return all records of one of `NAMES`, in the stored order."""
+    """Return all records of a bank in `NAMES`, in the stored order."""
     return tuple(json.loads((DATA / f"{name}.json").read_text(encoding="utf-8")))

@@ -1,4 +1,4 @@
-"""Write the bank: ``python -m tests.oracles.generate``. The output is reproducible to the byte."""
+"""Generate the banks: ``python -m tests.oracles.generate``. The output is byte-reproducible."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def digits(value: mpf) -> str:
 
 
 def condition(value: mpf) -> float | None:
-    """Round a condition number to three digits; None if it has no meaning (infinite values)."""
+    """Round a condition number to three digits; None if it is undefined (infinite values)."""
     return None if mp.isinf(value) or mp.isnan(value) else float(mp.nstr(abs(value), 4))
 
 
@@ -69,7 +69,7 @@ def _numbers(value: Any) -> Iterable[float]:
 
 
 def profile_at(family: Family, scale: str) -> Profile | None:
-    """Return the family's profile at a scale, if its coefficients are doubles there."""
+    """Return the family's profile at a scale, or None if a coefficient is not representable."""
     try:
         profile = family.make(SCALES[scale][0])
     except OverflowError:
@@ -78,7 +78,7 @@ def profile_at(family: Family, scale: str) -> Profile | None:
 
 
 def loads(family: Family, profile: Profile, ratio: float, scale: str) -> dict[str, float]:
-    """Return the given double of each control, for nearly the same contact."""
+    """Return the prescribed double of each control, for nearly identical contacts."""
     length, e_star = SCALES[scale]
     size = family.unit(profile)
     if profile["kind"] == "cone" or (profile["kind"] == "power" and profile["exponent"] == 1):
@@ -162,7 +162,7 @@ def _normal_record(
 
 
 def radii(family: Family, profile: Profile, a: float) -> list[float]:
-    """Return doubles in the contact: near the axis, the edge and both sides of the break."""
+    """Return radii in the contact: near the axis, near the edge and on both sides of the break."""
     inside = [a * fraction for fraction in FRACTIONS]
     b = family.break_radius(profile)
     if b > 0:
@@ -178,7 +178,7 @@ def pressure_cases() -> Iterable[Record]:
         for regime, ratio in family.regimes:
             if regime not in family.pressure:
                 continue
-            # A radius given exactly leaves no excuse; a depth or a force has a condition.
+            # A radius is exact; a depth or a force has a condition number.
             for control in ("contact_radius", CONTROLS[turn % 2]):
                 scale = names[turn % len(names)]
                 turn += 1
@@ -260,12 +260,12 @@ def pressure_at(given: PressureState, radius: mpf | float) -> mpf:
 
 
 def _rate_radius(given: PressureState, r: mpf, p: mpf) -> mpf:
-    """r p'(r)/p by a difference much narrower than any distance of the bank."""
+    """r p'(r)/p by a difference quotient with a step far below any distance in the bank."""
     if r == 0 or mp.isinf(p):
         return mpf(0) if r == 0 else mp.inf
     width = mpf(10) ** -17
     if r == given.shape.b:
-        # One-sided: p has a vertical tangent here, and only the order of magnitude is meant.
+        # One-sided: p has a vertical tangent here, and only the order of magnitude matters.
         return (p - pressure_at(given, r * (1 - width))) / width / p
     below, above = (pressure_at(given, r * (1 + sign * width)) for sign in (-1, 1))
     return (above - below) / (2 * width) / p
@@ -314,7 +314,7 @@ def _profile_record(family: Family, profile: Profile, scale: str) -> Record:
     }
     with mp.workdps(CLOSED_DIGITS):
         shape = shape_of(profile)
-        # The steepest powers leave the doubles near the axis.
+        # The steepest powers are not representable near the axis.
         points[:] = [x for x in points if not 0 < shape.f(mpf(x)) < mpf("1e-250")]
         for name in ("f", "df", "g", "dg"):
             fn = getattr(shape, name)
@@ -338,7 +338,7 @@ def table_cases() -> Iterable[Record]:
 def _table_records(
     scene: TableScene, table: Table, radius: float, *, fields: bool
 ) -> Iterable[Record]:
-    """Return one record per control; fields are stored for the contact radius alone."""
+    """Return one record per control; fields are stored for a prescribed contact radius only."""
     loads_ = {
         "contact_radius": radius,
         "indentation_depth": float(table.g(mpf(radius))),
@@ -375,10 +375,10 @@ def _table_records(
 
 
 def table_radii(scene: TableScene, a: float) -> list[float]:
-    """Return radii between knots, beside one, beside breaks, near the axis and near the edge.
+    """Return radii between knots, next to a knot and to breaks, near the axis and near the edge.
 
-    Not the axis itself: the interpolant of a smooth body has a slope of rounding's or the
-    spline's own size there, and so formally an infinite pressure.
+    The axis is excluded: the slope of a smooth body's interpolant there is a rounding or spline
+    error, so that its pressure is formally infinite.
     """
     knots = scene.profile["r"]
     middle = next((r for r in knots if r > a / 2), a / 2)
@@ -404,7 +404,7 @@ def _table_fields(scene: TableScene, table: Table, radius: float) -> Record:
 
 
 def finite_range(record: Record) -> bool:
-    """Return all records; a value that is not representable is an error of the cases."""
+    """Return all records; a value that is not representable is a defect of the case selection."""
     return all(math.isfinite(value) for value in _numbers(record))
 
 

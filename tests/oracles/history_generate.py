@@ -1,6 +1,6 @@
-"""Write the bank of histories: ``python -m tests.oracles.history_generate``.
+"""Generate the banks of histories: ``python -m tests.oracles.history_generate``.
 
-The same input gives the same bytes. Two processes share the work; the order is that of the scenes.
+The output is byte-reproducible. Two processes share the work; the order is that of the cases.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 Record = dict[str, Any]
 
-#: Amplitude over the one that slides the whole contact; the last four by displacement alone.
+#: Amplitude over that of full slip; the last four under displacement control only.
 RATIOS = (1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.9, 0.999, 1 - 1e-9)
-PAST = (1.0, 1.000001, 1.5, 100.0)
+BEYOND_FULL_SLIP = (1.0, 1.000001, 1.5, 100.0)
 SHORT = {
     "indentation_depth": "d",
     "normal_force": "F",
@@ -36,17 +36,17 @@ SHORT = {
     "tangential_displacement": "u",
 }
 TABLES = ("truncated-cone", "two-points", "graded")
-#: Step of the difference quotients that stand for condition numbers.
+#: Relative step of the difference quotients for condition numbers.
 NUDGE = mpf(10) ** -18
-#: Cycles of a contact whose normal load oscillates: by how much of its mean, and the amplitude as
-#: a part of the one that slides all. Those with a ratio of these below one never slip.
+#: Cycles with oscillating normal load: its relative amplitude, and the tangential amplitude as a
+#: fraction of full slip. Those with a ratio below one never slip.
 COUNT = 3
 WAVES = ((1 / 64, 0.1), (1 / 8, 0.3), (1 / 8, 1e-3), (1 / 2, 0.7), (3 / 4, 1.5), (2**-10, 1e-2))
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A contact: its profile and its two normal loads, meant for nearly the same radius."""
+    """A profile and its two normal loads, chosen for nearly identical contact radii."""
 
     family: str
     regime: str
@@ -74,8 +74,8 @@ class Scene:
         return own[self.turn % len(own)]
 
 
-def _wanted(family: Family) -> Iterator[tuple[str, float]]:
-    """The first regime, and the edges of a break where there is one."""
+def _chosen_regimes(family: Family) -> Iterator[tuple[str, float]]:
+    """The first regime, and those next to a break."""
     yield family.regimes[0]
     for regime, ratio in family.regimes[1:]:
         if regime in (*CLOSE, "b/a=0.95") and family.name in ("rounded-punch", "rounded-cone0.3"):
@@ -86,7 +86,7 @@ def scenes() -> Iterator[Scene]:
     turn = 0
     names = list(SCALES)
     for family in FAMILIES:
-        for regime, ratio in _wanted(family):
+        for regime, ratio in _chosen_regimes(family):
             turn += 1
             scale = names[turn % len(names)]
             profile = profile_at(family, scale)
@@ -121,17 +121,17 @@ def scenes() -> Iterator[Scene]:
 
 def _setting(scene: Scene, control: str, load: mpf) -> Setting:
     with mp.workdps(WORK_DIGITS):
-        # A load nudged by less than a double can say passes as it is.
+        # A perturbed load is not representable and is therefore passed unrounded.
         return slip.setting(scene.profile, control, load, scene.material)
 
 
-def _sliding(at: Setting) -> mpf:
-    """u_max, for the flat punch the same formula (Eqs. 5.17, 5.33)."""
+def _full_slip_displacement(at: Setting) -> mpf:
+    """u_max; the flat punch has the same formula (Eqs. 5.17, 5.33)."""
     return at.shift * at.depth
 
 
 def loop(at: Setting, control: str, amplitude: mpf) -> tuple[mpf, mpf]:
-    """W and (F_max - F_min)/(u_max - u_min) of a cycle between -amplitude and amplitude."""
+    """W and secant stiffness (F_max - F_min)/(u_max - u_min) of a cycle of given amplitude."""
     body, factor = at.body, 8 * (at.mu * at.e_star) ** 2 / at.g_star
     bound = at.mu * at.e_star * at.n
     if at.flat_punch:
@@ -139,10 +139,10 @@ def loop(at: Setting, control: str, amplitude: mpf) -> tuple[mpf, mpf]:
         if control == "tangential_force" or amplitude * stiffness <= bound:
             return mpf(0), stiffness
         return 4 * bound * (amplitude - bound / stiffness), bound / amplitude
-    if control == "tangential_displacement" and amplitude >= _sliding(at):
+    if control == "tangential_displacement" and amplitude >= _full_slip_displacement(at):
         edge = body.b if body.blunt else mpf(0)
         # 4 mu F_N u0 - (8 mu^2 E*^2/G*) int (d - g)^2 dx, with int (d - g) dx = N/2.
-        way = 4 * bound * (amplitude - _sliding(at))
+        way = 4 * bound * (amplitude - _full_slip_displacement(at))
         return way + factor * overlap(at, edge), bound / amplitude
     c = slip.stick_radius(at, control, amplitude)
     force = at.mu * at.e_star * (at.n - body.force(c))
@@ -168,12 +168,16 @@ def cycle_record(scene: Scene, normal: str, control: str) -> Record:
         "condition": {"energy_per_cycle": [], "secant_stiffness": []},
         "condition_load": {"energy_per_cycle": [], "secant_stiffness": []},
     }
-    ratios = RATIOS if control == "tangential_force" else (*RATIOS, *PAST)
+    ratios = RATIOS if control == "tangential_force" else (*RATIOS, *BEYOND_FULL_SLIP)
     if at.flat_punch:
-        # It slides at once, and where it is about to, its loss is rounding.
+        # Immediate full slip; just below it, the loss is rounding error.
         ratios = tuple(ratio for ratio in ratios if ratio != 1)
     with mp.workdps(WORK_DIGITS):
-        most = at.mu * at.e_star * at.n if control == "tangential_force" else _sliding(at)
+        most = (
+            at.mu * at.e_star * at.n
+            if control == "tangential_force"
+            else _full_slip_displacement(at)
+        )
         near = _setting(scene, normal, mpf(load) * (1 + NUDGE))
         for ratio in ratios:
             given = float(mpf(ratio) * most)
@@ -193,13 +197,15 @@ def cycle_record(scene: Scene, normal: str, control: str) -> Record:
 # Normal and tangential load in phase ------------------------------------------------------------
 
 
-def _wave(mean: mpf, swing: mpf, amplitude: mpf) -> list[tuple[mpf, mpf]]:
-    top, bottom = (mean + swing, amplitude), (mean - swing, -amplitude)
+def _wave(mean: mpf, normal_amplitude: mpf, amplitude: mpf) -> list[tuple[mpf, mpf]]:
+    top, bottom = (mean + normal_amplitude, amplitude), (mean - normal_amplitude, -amplitude)
     return [(mean, mpf(0)), top, *[bottom, top] * COUNT]
 
 
-def _losses(scene: Scene, mean: mpf, swing: mpf, amplitude: mpf) -> tuple[list[mpf], list[mpf]]:
-    path = _wave(mean, swing, amplitude)
+def _losses(
+    scene: Scene, mean: mpf, normal_amplitude: mpf, amplitude: mpf
+) -> tuple[list[mpf], list[mpf]]:
+    path = _wave(mean, normal_amplitude, amplitude)
     found = history(scene.profile, path, scene.material)
     steps = range(1, len(path) - 1, 2)
     lost = [found[i + 2].dissipated_energy - found[i].dissipated_energy for i in steps]
@@ -208,15 +214,15 @@ def _losses(scene: Scene, mean: mpf, swing: mpf, amplitude: mpf) -> tuple[list[m
 
 
 def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
-    # Few enough digits that mean + swing and mean - swing are doubles.
+    # Few digits, so that mean + swing and mean - swing are representable.
     mean = float(np.float32(scene.loads["indentation_depth"] / (1 + part)))
-    swing = mean * part
+    normal_amplitude = mean * part
     top = scene.material.mu * scene.material.e_star / scene.material.g_star * mean
-    given = (mean, swing, ratio * top)
+    given = (mean, normal_amplitude, ratio * top)
     with mp.workdps(WORK_DIGITS):
         exact = [mpf(value) for value in given]
-        assert mpf(mean + swing) - mean == swing
-        assert mean - mpf(mean - swing) == swing
+        assert mpf(mean + normal_amplitude) - mean == normal_amplitude
+        assert mean - mpf(mean - normal_amplitude) == normal_amplitude
         lost, stiffness = _losses(scene, *exact)
         conditions = [mpf(0)] * COUNT
         for index in range(3):
@@ -230,7 +236,7 @@ def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
         "equation": "(5.8)",
         **scene.common(),
         "mean": mean,
-        "swing": swing,
+        "swing": normal_amplitude,
         "amplitude": given[2],
         "expected": {
             "energy_per_cycle": [digits(value) for value in lost],
@@ -244,7 +250,7 @@ def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
 
 
 def random_path(name: str, legs: int, depth: float, most: float) -> list[tuple[float, float]]:
-    """Depths up to `depth` and gaps among them; legs of one direction, and returns."""
+    """Depths up to `depth` and separations; monotonic load steps and reversals."""
     source = random.Random(name)
     path: list[tuple[float, float]] = []
     d, u = 0.0, 0.0
@@ -306,7 +312,7 @@ def tasks() -> Iterator[Task]:
 
 
 def _new_kind(everything: list[Scene], number: int) -> bool:
-    """The first scene of a kind; of powers and tables, all that are not steep."""
+    """The first scene of each kind; all but steep ones for powers and tables."""
     scene = everything[number]
     if scene.regime in CLOSE:
         return False

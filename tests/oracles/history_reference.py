@@ -1,13 +1,12 @@
-"""Exact answers for histories of depth and displacement, by following single springs in mpmath.
+"""Exact results for histories of depth and displacement, from single springs in mpmath.
 
-The spring that touches at the depth w goes through the whole history on its own. In each leg it is
-outside, comes into contact, stays or leaves, and sticks or slips forward or backward: its *branch*.
-While the branches of all legs are the same, its loads are linear in w, and every condition that
-decides a branch is a linear inequality in w. So springs with the same branches are an interval of
-depths: two springs with equal branches have nothing else between them. Bisection therefore finds
-all intervals with certainty. On each the tangential load is linear, and the energies are quadratic
-polynomials of w = g(x), whose integrals over x need int dx = x, int g dx = x g - N/2 and
-int g^2 dx alone, at the ends of the intervals.
+A spring whose first contact is at the depth w is followed through the whole history. In each load
+step it is out of contact, comes into contact, stays or separates, and sticks or slips forward or
+backward: its *branch*. While the branches of all steps are equal, its loads are linear in w, and
+every condition that decides a branch is a linear inequality in w. Springs with equal branches
+therefore form an interval of depths, and bisection finds all intervals reliably. On each interval
+the tangential load is linear, and the energies are quadratic polynomials of w = g(x). Their
+integrals over x need only int dx = x, int g dx = x g - N/2 and int g^2 dx at the interval ends.
 """
 
 from __future__ import annotations
@@ -37,29 +36,29 @@ if TYPE_CHECKING:
 
     Path = Sequence[tuple[float, float]]
 
-#: Ends of intervals are found to so many digits of the largest depth.
+#: Interval ends are resolved to this many digits of the largest depth.
 FRONT_DIGITS = 48
-#: How far a quadratic may miss a fourth point, per its size.
+#: Relative tolerance of a quadratic at a fourth point.
 LINEAR = mpf(10) ** -40
-#: A spring that leaves without slip arrives at zero up to rounding, which is no slip.
+#: A spring that separates without slip reaches zero up to rounding error, which is not slip.
 ROUNDING = mpf(10) ** -80
-#: More intervals than any path here makes.
+#: Upper bound on the number of intervals of any load path here.
 MOST = 1000
 
 Branches = tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class Life:
-    """What one spring of depth w went through: its load and cumulative loss after each leg."""
+class SpringHistory:
+    """Load and cumulative loss of the spring of depth w after each load step."""
 
     load: tuple[mpf, ...]
     lost: tuple[mpf, ...]
     branches: Branches
 
 
-def follow(w: mpf, path: Path, material: Material) -> Life:
-    """One spring from (0, 0) through straight legs to the points of `path`."""
+def follow(w: mpf, path: Path, material: Material) -> SpringHistory:
+    """Follow one spring from (0, 0) along straight load steps to the points of `path`."""
     limit, g_star = mpf(material.mu) * mpf(material.e_star), mpf(material.g_star)
     q = lost = d = u = mpf(0)
     loads, losses, branches = [], [], []
@@ -71,7 +70,7 @@ def follow(w: mpf, path: Path, material: Material) -> Life:
         loads.append(q)
         losses.append(lost)
         branches.append(branch)
-    return Life(tuple(loads), tuple(losses), tuple(branches))
+    return SpringHistory(tuple(loads), tuple(losses), tuple(branches))
 
 
 def _leg(
@@ -92,7 +91,7 @@ def _leg(
         return trial, mpf(0), kind
     sign = 1 if trial > 0 else -1
     excess, room = abs(trial) - limit * last, limit * first - sign * q
-    # It begins to slip where the growing load meets the changing limit, then slips to the end.
+    # Slip starts where the growing load meets the changing limit, and lasts until the end.
     onset = limit * (first + (last - first) * room / (room + excess))
     return sign * limit * last, excess / g_star * (onset + limit * last) / 2, kind + (sign % 3)
 
@@ -118,13 +117,13 @@ def fronts(path: Path, material: Material) -> list[mpf]:
         middle = (low + high) / 2
         waiting += [(middle, high), (low, middle)]
         if len(found) > MOST:
-            raise ArithmeticError("a branch is decided by rounding")
+            raise ArithmeticError("a branch depends on rounding error")
     return [*found, top]
 
 
 @dataclass(frozen=True)
 class Sample:
-    """The sums over the foundation at the end of a leg; the loss is that since the start."""
+    """Sums over the foundation at the end of a load step; the loss accumulates from the start."""
 
     normal_force: mpf
     tangential_force: mpf
@@ -142,7 +141,7 @@ class _Moments:
 
 
 def overlap(at: Setting, c: mpf) -> mpf:
-    """int_c^a (g(a) - g) (g - g(c)) dx, for a table by a rule that knows its own error."""
+    """int_c^a (g(a) - g) (g - g(c)) dx; for tables by a rule with an error estimate."""
     body = at.body
     if isinstance(body, ShapeBody):
         return slip.overlap(at, c)
@@ -155,8 +154,13 @@ def overlap(at: Setting, c: mpf) -> mpf:
                     width: mpf = width) -> mpf:  # fmt: skip
             with mp.workdps(WORK_DIGITS):
                 s = start + width * part
-                image = panel.image(s)
-                return width * (at.depth - image) * (image - low) * panel.ratio(s)
+                equivalent_profile = panel.equivalent_profile(s)
+                return (
+                    width
+                    * (at.depth - equivalent_profile)
+                    * (equivalent_profile - low)
+                    * panel.ratio(s)
+                )
 
         with mp.workdps(RULE_DIGITS):
             total += integral(density, [mpf(0), mpf(1)])
@@ -175,24 +179,24 @@ def _moments(body: Body, w: mpf) -> _Moments:
 
 
 def _quadratic(points: Sequence[tuple[mpf, mpf]]) -> tuple[mpf, mpf, mpf]:
-    """Coefficients of 1, w, w^2 through three points, proved on a fourth."""
+    """Coefficients of 1, w, w^2 through three points, checked at a fourth."""
     (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points
     first = (y1 - y0) / (x1 - x0)
     second = ((y2 - y0) / (x2 - x0) - first) / (x2 - x1)
     size = max(abs(y) for _, y in points)
     guess = y0 + (x3 - x0) * (first + second * (x3 - x1))
     if abs(guess - y3) > LINEAR * size:
-        raise ArithmeticError("the springs of an interval do not share one polynomial")
+        raise ArithmeticError("the springs of an interval do not follow one polynomial")
     return y0 - first * x0 + second * x0 * x1, first - second * (x0 + x1), second
 
 
-def _parts(lives: Sequence[Life], leg: int) -> tuple[list[mpf], list[mpf], list[mpf]]:
-    loads = [life.load[leg] for life in lives]
-    return loads, [q * q for q in loads], [life.lost[leg] for life in lives]
+def _parts(histories: Sequence[SpringHistory], leg: int) -> tuple[list[mpf], list[mpf], list[mpf]]:
+    loads = [life.load[leg] for life in histories]
+    return loads, [q * q for q in loads], [life.lost[leg] for life in histories]
 
 
 def history(profile: Mapping[str, Any], path: Path, material: Material) -> list[Sample]:
-    """Exact sums after each leg of a path of (depth, displacement) from (0, 0)."""
+    """Exact sums after each load step of a path of (depth, displacement) from (0, 0)."""
     with mp.workdps(WORK_DIGITS):
         body = body_of(profile)
         if isinstance(body, ShapeBody) and isinstance(body.shape, FlatPunch):
@@ -204,7 +208,7 @@ def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
     e_star, g_star = mpf(material.e_star), mpf(material.g_star)
     totals = [[mpf(0)] * 3 for _ in path]
     borders = fronts(path, material)
-    # Between intervals lies a gap as narrow as the fronts are known.
+    # Between intervals lies a gap as narrow as the resolution of the fronts.
     margin = borders[-1] * mpf(10) ** (1 - FRONT_DIGITS)
     moments = [_moments(body, w) for w in borders]
     for number, (low, high) in enumerate(itertools.pairwise(borders)):
@@ -217,13 +221,13 @@ def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
             above.second - below.second,
         )
         inside = [low + margin, (low + high) / 2, high - margin, low + (high - low) / 3]
-        lives = [follow(w, path, material) for w in inside]
+        histories = [follow(w, path, material) for w in inside]
         for leg, total in enumerate(totals):
-            for index, values in enumerate(_parts(lives, leg)):
+            for index, values in enumerate(_parts(histories, leg)):
                 parts = _quadratic(list(zip(inside, values, strict=True)))
                 total[index] += 2 * mp.fdot(parts, steps)
     if body.blunt:
-        # The springs under the flat are all the first one.
+        # All springs under the flat are identical to the first one.
         life = follow(mpf(0), path, material)
         for leg, total in enumerate(totals):
             for index, (value,) in enumerate(_parts([life], leg)):
@@ -240,7 +244,7 @@ def _bearing(body: Body, depth: mpf) -> mpf:
 
 
 def _punch(body: Body, path: Path, material: Material) -> list[Sample]:
-    """All springs of a flat punch are one."""
+    """All springs of a flat punch are identical."""
     width = 2 * body.b
     life = follow(mpf(0), path, material)
     return [

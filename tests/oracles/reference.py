@@ -1,9 +1,9 @@
-"""Reference results from f alone by mpmath quadrature, and the same by closed forms, faster.
+"""Reference results by mpmath: quadrature of f', and equivalent, faster closed forms.
 
-``quad_*`` are the definitions: g from f' (Eq. 5.74), d = g(a), N = F_N/E* = 2 int x g' dx written
-with f', all in the angle r = x sin t and split at the break. ``state`` and ``pressure`` are what
-the bank stores; they use the closed forms of ``shapes``, which ``test_proofs`` checks against
-``quad_*``. All arguments are mpf, made from the exact doubles of a case.
+``quad_*`` are the definitions: g from f' (Eq. 5.74), d = g(a), N = F_N/E* = 2 int x g' dx in terms
+of f', all in the angle r = x sin t and split at the break. ``state`` and ``pressure`` are stored in
+the bank; they use the closed forms of ``shapes``, which ``test_proofs`` compares with ``quad_*``.
+All arguments are mpf converted from the exact doubles of a case.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tests.oracles.shapes import FlatPunch, Monomials, Shape, shape_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-#: Digits carried by closed forms: sphere and rounded punch lose up to some 30 of them.
+#: Digits of closed forms: sphere and rounded punch lose up to about 30 by cancellation.
 CLOSED_DIGITS = 80
-#: Digits carried by quadrature.
+#: Digits of quadrature.
 QUAD_DIGITS = 50
-#: Quadrature whose own error estimate is larger than this (relative) is refused.
+#: Largest accepted relative error estimate of a quadrature.
 QUAD_BOUND = mpf(10) ** -34
 
-#: Digits of every root, proved by a change of sign.
+#: Digits of every root, verified by a change of sign.
 ROOT_DIGITS = 42
 
 CONTROLS = ("indentation_depth", "normal_force", "contact_radius")
@@ -41,9 +41,9 @@ OUTPUTS = (
 
 
 def integral(fn: Callable[[mpf], mpf], points: list[mpf]) -> mpf:
-    """Integrate by the tanh-sinh rule; fail rather than return fewer digits than requested.
+    """Integrate by the tanh-sinh rule; raise if the requested digits are not reached.
 
-    mpmath's stopping rule is absolute, so each piece is scaled to unit width and height first.
+    mpmath's stopping rule is absolute, so each piece is first scaled to unit width and height.
     """
     total, doubt = mpf(0), mpf(0)
     for low, high in itertools.pairwise(points):
@@ -64,7 +64,7 @@ def integral(fn: Callable[[mpf], mpf], points: list[mpf]) -> mpf:
 
 
 def _over_angle(shape: Shape, x: mpf, weight: Callable[[mpf], mpf]) -> mpf:
-    """int_0^{pi/2} weight(sin t) f'(x sin t) dt, with t = v^m where the tip is sharper than r."""
+    """int_0^{pi/2} weight(sin t) f'(x sin t) dt, with t = v^m for tips sharper than r."""
     m = 1 if shape.tip_exponent >= 1 else int(mp.ceil(2 / shape.tip_exponent))
 
     def integrand(v: mpf) -> mpf:
@@ -80,7 +80,7 @@ def _over_angle(shape: Shape, x: mpf, weight: Callable[[mpf], mpf]) -> mpf:
 
 
 def quad_g(shape: Shape, x: mpf) -> mpf:
-    """g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr (Eq. 5.74)."""
+    """g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr, Eq. (5.74)."""
     if shape.blunt and x <= shape.b:
         return mpf(0)
     return x * _over_angle(shape, x, lambda sine: mpf(1))
@@ -99,7 +99,7 @@ def quad_force(shape: Shape, a: mpf) -> mpf:
 
 
 def energy(shape: Shape, a: mpf, s: mpf | None = None) -> mpf:
-    """U/E* = int_0^a (d - g)^2 dx: the energy of the springs of the foundation."""
+    """U/E* = int_0^a (d - g)^2 dx: elastic energy of the foundation springs."""
     d = shape.g(a, s)
     b = shape.b
     top = s if s is not None else (shape.beyond(a) if a > b else mpf(0))
@@ -123,17 +123,17 @@ def energy(shape: Shape, a: mpf, s: mpf | None = None) -> mpf:
 
 def _monomial_energy(shape: Monomials, a: mpf) -> mpf:
     d = shape.g(a)
-    single = mp.fsum(c * a ** (n + 1) / (n + 1) for c, n in shape.image)
+    single = mp.fsum(c * a ** (n + 1) / (n + 1) for c, n in shape.equivalent_terms)
     double = mp.fsum(
         c1 * c2 * a ** (n1 + n2 + 1) / (n1 + n2 + 1)
-        for c1, n1 in shape.image
-        for c2, n2 in shape.image
+        for c1, n1 in shape.equivalent_terms
+        for c2, n2 in shape.equivalent_terms
     )
     return d**2 * a - 2 * d * single + double
 
 
 def solve_increasing(fn: Callable[[mpf], mpf], target: mpf, start: mpf) -> mpf:
-    """Return w with fn(w) = target for an increasing positive fn; a sign change proves the root."""
+    """Return w with fn(w) = target for an increasing positive fn, verified by a change of sign."""
     goal = mp.log(target)
 
     def excess(w: mpf) -> mpf:
@@ -146,10 +146,10 @@ def solve_increasing(fn: Callable[[mpf], mpf], target: mpf, start: mpf) -> mpf:
     while excess(high) < 0:
         high, step = high + step, 2 * step
         if step > 1e6:
-            raise ArithmeticError("no contact is that large")
+            raise ArithmeticError("the load exceeds that of the largest contact")
     root = low
     if low != high:
-        # The residual is not checked: the sign change below says more.
+        # The residual is not checked: the change of sign below is the stronger test.
         root = mp.findroot(
             excess,
             (low, high),
@@ -160,7 +160,7 @@ def solve_increasing(fn: Callable[[mpf], mpf], target: mpf, start: mpf) -> mpf:
         )
     margin = mpf(10) ** -ROOT_DIGITS
     if not excess(root - margin) < 0 < excess(root + margin):
-        raise ArithmeticError("the root is not bracketed to the digits promised")
+        raise ArithmeticError("the root is not bracketed to the required digits")
     return root
 
 
@@ -171,14 +171,14 @@ def contact_radius(shape: Shape, control: str, reduced: mpf) -> tuple[mpf, mpf |
     fn = shape.g if control == "indentation_depth" else shape.force
     start = mp.log(shape.b) if shape.b > 0 else mpf(0)
     if isinstance(shape, Monomials) and control == "indentation_depth":
-        c, n = shape.image[0]
+        c, n = shape.equivalent_terms[0]
         start = mp.log(abs(reduced / c)) / n
     return shape.radius_of(solve_increasing(lambda w: fn(*shape.radius_of(w)), reduced, start))
 
 
 @dataclass(frozen=True)
 class State:
-    """Results of a case, and their relative condition numbers with respect to the load."""
+    """Results of a case and their relative condition numbers with respect to the load."""
 
     values: dict[str, mpf]
     condition: dict[str, mpf]
@@ -233,8 +233,8 @@ def state(profile: Mapping[str, Any], control: str, load: float, e_star: float) 
 def _pressure_beyond(shape: Shape, r: mpf, top: mpf) -> mpf:
     """int g' dx/sqrt(x^2 - r^2) over max(r, b) < x < a, where s(a) = ``top``.
 
-    In s the integral is dg/ds ds/sqrt(s^2 - (r^2 - b^2)); s = k cosh y or k sinh y removes the
-    root, and dg/ds is smooth where g' is not.
+    In terms of s the integral is dg/ds ds/sqrt(s^2 - (r^2 - b^2)). The substitution s = k cosh y or
+    k sinh y removes the singularity, and dg/ds is smooth where g' is not.
     """
     b = shape.b
 
@@ -266,7 +266,7 @@ def pressure(shape: Shape, r: mpf, a: mpf, s: mpf | None = None, depth: mpf | No
     if isinstance(shape, Monomials) and r == 0:
         if shape.tip_exponent <= 1:
             return mp.inf
-        return mp.fsum(c * n * a ** (n - 1) / (n - 1) for c, n in shape.image) / mp.pi
+        return mp.fsum(c * n * a ** (n - 1) / (n - 1) for c, n in shape.equivalent_terms) / mp.pi
     if shape.jump and r == shape.b:
         return mp.inf
     total = mpf(0)

@@ -1,4 +1,4 @@
-"""Cases of the bank: families of shapes, their regimes, and scales of units."""
+"""Cases of the bank: families of shapes, contact regimes and scales of units."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ SCALES: dict[str, tuple[float, float]] = {
 
 @dataclass(frozen=True)
 class Family:
-    """A shape in units of a length, and the contact radii in units of its characteristic one.
+    """A shape in units of a length, and contact radii in units of its characteristic length.
 
-    `regimes` are ratios a/`unit(profile)`; the first is run at every scale, the others in turn.
+    `regimes` are ratios a/`unit(profile)`; the first is used at every scale, the others in turn.
     For the flat punch they are depths over the radius.
     """
 
@@ -41,7 +41,7 @@ def _by(*ratios: float) -> tuple[tuple[str, float], ...]:
     return tuple((f"{ratio:g}", ratio) for ratio in ratios)
 
 
-#: a/b just beyond the break, and far from it (b/a = 0.95, 0.5, 1e-3, 1e-6).
+#: a/b just beyond the break, and far beyond it (b/a = 0.95, 0.5, 1e-3, 1e-6).
 BEYOND = (
     ("b/a=0.5", 2.0),
     ("b(1+1e-9)", 1 + 1e-9),
@@ -51,7 +51,7 @@ BEYOND = (
     ("b/a=1e-3", 1e3),
     ("b/a=1e-6", 1e6),
 )
-#: The same, and contacts inside the break.
+#: `BEYOND` and contacts inside the break.
 AROUND = (
     *BEYOND,
     ("1e-9b", 1e-9),
@@ -79,7 +79,7 @@ def _power_family(exponent: float) -> Family:
         return _power(exponent, 0.7, length)
 
     def unit(profile: Profile) -> float:
-        # Inverts `make`: the profile itself has a length only together with its exponent.
+        # Inverts `make`: the profile's length follows only from coefficient and exponent together.
         if exponent == 1:
             return 1.0
         return float((profile["coefficient"] / 0.7) ** (1 / (1 - exponent)))
@@ -233,7 +233,7 @@ FAMILIES: tuple[Family, ...] = (
     _series_family("2", (0.4, 2.0), (0.3, 4.0)),
     _series_family("real", (0.2, 1.0), (0.5, 1.7), (0.3, 3.2)),
     _series_family("4", (0.1, 0.5), (0.2, 1.0), (0.5, 2.0), (0.05, 6.5)),
-    # Convex for every r, in spite of the sign.
+    # Convex for every r in spite of the negative coefficient.
     _series_family("negative", (1.0, 2.0), (-0.1, 3.0), (0.1, 4.0)),
     _blunt("rounded-punch", "(5.61)", "rounded_punch", field="rounding_radius", value=2.7, power=1),
     _blunt("truncated-cone", "(5.74)", "truncated_cone", field="slope", value=0.35, power=0),
@@ -246,14 +246,14 @@ FAMILIES: tuple[Family, ...] = (
     _capped("blunted", 3.0, 1.1),
     _capped("worn", 40.0, 1.1),
     _capped("same", 1.1, 1.1),
-    # A crossover of the two terms, or of cap and flank, at no radius that matters.
+    # The crossover of two terms, or of cap and flank, lies at an irrelevant radius.
     replace(_capped("nearly-same", 1.1, 1.0957), pressure=()),
     replace(_series_family("close", (1.0, 0.65625), (0.125, 0.66015625)), pressure=()),
 )
 
 
 def scenes() -> Iterator[tuple[Family, str, float, str]]:
-    """Return every family's first regime at every scale, its others at one scale each in turn."""
+    """Return every family's first regime at every scale, the others at one scale each in turn."""
     names = list(SCALES)
     turn = 0
     for family in FAMILIES:
@@ -266,8 +266,8 @@ def scenes() -> Iterator[tuple[Family, str, float, str]]:
                 turn += 1
 
 
-#: Ratios of parameters and loads far from any of the above, each found by searching at random for
-#: the least digits: name, equation, profile, E*, control and load.
+#: Extreme ratios of parameters and loads, found by a random search for the least accuracy: name,
+#: equation, profile, E*, control and load.
 EXTREMES: tuple[tuple[str, str, Profile, float, str, float], ...] = (
     *(
         (
@@ -286,7 +286,7 @@ EXTREMES: tuple[tuple[str, str, Profile, float, str, float], ...] = (
                 (1917.9501850290217, 49127093.6, 0.0783556, 1.0, "normal_force", 191.4831634144924),
                 (1.84e-08, 3.47e-14, 7.32e-22, 1.0, "indentation_depth", 0.00975232630480784),
                 (5.1e-08, 8.77e-17, 2.85e-24, 1.0, "contact_radius", 6e-08),
-                # The kink is too small to be felt, but the inverse has to cross it.
+                # The slope discontinuity is negligible, but the inverse has to cross it.
                 (
                     0.25083630309819094,
                     0.07425340857930318,

@@ -1,12 +1,12 @@
 """Profiles of the catalogue in mpmath: f, the equivalent profile g and the force, at ``mp.dps``.
 
-Two kinds of statement live here. ``f`` and ``df`` are the definition of each kind. ``inner_*`` and
-``outer_*`` are closed forms for g, g' and N = F_N/E*; they are only there for speed, and
-``test_proofs`` shows each of them equal to the quadrature of f' on both sides of every break.
+``f`` and ``df`` define each kind. ``inner_*`` and ``outer_*`` are closed forms of g, g' and N =
+F_N/E*, used for speed; ``test_proofs`` compares each with the quadrature of f' on both sides of
+every break.
 
-Every kind has at most one break b (0 where there is none). Beyond it the closed forms take
-s = sqrt(x^2 - b^2) as a second argument, so that a caller who knows s loses nothing as x -> b
-(s > 0 says that x is beyond the break even where x rounds to b).
+Every kind has at most one break b (0 if none). Beyond it the closed forms take s = sqrt(x^2 - b^2)
+as a second argument, which avoids cancellation as x -> b (s > 0 means beyond the break even where x
+rounds to b).
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 class Shape:
-    """One profile; the defaults are those of a profile that is smooth from the tip on."""
+    """A profile; the defaults are those of a profile that is smooth everywhere."""
 
-    #: Radius where f' or f'' jumps.
+    #: Radius of a jump in f' or f''.
     b: mpf
-    #: Whether the tip is flat up to ``b``, so that the contact radius never lies below it.
+    #: True if the tip is flat up to ``b``, so that the contact radius is at least ``b``.
     blunt = False
-    #: Whether f' jumps upward at ``b`` (g' and p are then infinite there).
+    #: True if f' jumps upward at ``b`` (g' and p are infinite there).
     jump = False
     #: Supremum of the contact radii.
     limit: mpf = mp.inf
@@ -93,12 +93,12 @@ def kappa(n: mpf) -> mpf:
 
 
 class Monomials(Shape):
-    """Sum of C r^n: the power, the series, the cone and the paraboloid."""
+    """Sum of terms C r^n: power, series, cone and paraboloid."""
 
     def __init__(self, terms: Sequence[tuple[mpf, mpf]]) -> None:
         super().__init__()
         self.terms = tuple(terms)
-        self.image = tuple((c * kappa(n), n) for c, n in self.terms)
+        self.equivalent_terms = tuple((c * kappa(n), n) for c, n in self.terms)
         self.tip_exponent = min(n for _, n in self.terms)
 
     def f(self, r: mpf) -> mpf:
@@ -108,13 +108,13 @@ class Monomials(Shape):
         return mp.fsum(c * n * r ** (n - 1) for c, n in self.terms)
 
     def outer_g(self, x: mpf, s: mpf) -> mpf:
-        return mp.fsum(c * x**n for c, n in self.image)
+        return mp.fsum(c * x**n for c, n in self.equivalent_terms)
 
     def outer_dg(self, x: mpf, s: mpf) -> mpf:
-        return mp.fsum(c * n * x ** (n - 1) for c, n in self.image)
+        return mp.fsum(c * n * x ** (n - 1) for c, n in self.equivalent_terms)
 
     def outer_force(self, a: mpf, s: mpf) -> mpf:
-        return mp.fsum(2 * n / (n + 1) * c * a ** (n + 1) for c, n in self.image)
+        return mp.fsum(2 * n / (n + 1) * c * a ** (n + 1) for c, n in self.equivalent_terms)
 
 
 class Ellipsoid(Shape):
@@ -200,7 +200,7 @@ class TruncatedCone(Shape):
 class CappedParaboloid(Shape):
     """Curvature ``inner`` everywhere, and ``k`` more on r^2 - b^2 beyond b.
 
-    With ``inner`` = 0 it is the truncated paraboloid.
+    The truncated paraboloid has ``inner`` = 0.
     """
 
     def __init__(self, b: mpf, inner: mpf, k: mpf) -> None:
@@ -338,7 +338,7 @@ class Hyperboloid(Shape):
 
 
 class FlatPunch(Shape):
-    """Flat punch: the contact radius is given, and g = 0 on the whole contact."""
+    """Flat punch: the contact radius is prescribed, and g = 0 on the whole contact."""
 
     def __init__(self, radius: mpf) -> None:
         super().__init__()
@@ -383,10 +383,10 @@ _MAKERS: dict[str, Callable[[Mapping[str, Any]], Shape]] = {
     ),
 }
 
-#: The kinds with a formula; ``tabulated`` is in ``tables``.
+#: Kinds with a closed form; ``tabulated`` is in ``tables``.
 KINDS = tuple(_MAKERS)
 
 
 def shape_of(profile: Mapping[str, Any]) -> Shape:
-    """Return the shape of a request's `profile`; its doubles are exact."""
+    """Return the shape of a request's `profile`, with its doubles taken as exact."""
     return _MAKERS[profile["kind"]](profile)

@@ -1,6 +1,6 @@
-"""Write the bank of partial slip: ``python -m tests.oracles.slip_generate``.
+"""Generate the bank of partial slip: ``python -m tests.oracles.slip_generate``.
 
-The same input gives the same bytes. Two processes share the work; the order is that of the scenes.
+The output is byte-reproducible. Two processes share the work; the order is that of the cases.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ TANGENTIAL = {
     "stick_radius": "c",
 }
 NORMAL = ("contact_radius", "normal_force", "indentation_depth")
-#: rho = F_x/(mu F_N): from the first whisper to the brink of sliding.
+#: rho = F_x/(mu F_N): from incipient slip to the onset of full slip.
 RATIOS = (1e-14, 1e-10, 1e-6, 1e-3, 0.1, 0.5, 0.9, 0.999, 1 - 1e-6, 1 - 1e-9, 1 - 1e-12)
-#: Friction coefficients and ratios E*/G* that take turns.
+#: Friction coefficients and ratios E*/G*, used in turn.
 FRICTION = (0.3, 0.05, 0.9)
 MISMATCH = (1.2, 1.0, 1.5)
-#: Families run at every scale, and regimes that deserve all of `RATIOS`.
+#: Families at every scale, and regimes that use all of `RATIOS`.
 EVERYWHERE = ("hertz", "cone0.3", "rounded-punch", "power7.3", "sphere")
 CLOSE = ("b(1+1e-9)", "b(1+1e-6)")
 BLUNT = ("rounded_punch", "truncated_cone", "truncated_paraboloid")
-#: Kinds whose break the core computes, so that radii near it stand for a neighbourhood.
+#: Kinds whose break is a computed result, so that radii near it carry its rounding error.
 DERIVED_BREAK = ("rounded_cone", "spherical_tip_cone")
 
-#: Equations of the chapter by kind, per control; two of them take turns.
+#: Equations of the chapter by kind, per control, used in turn.
 EQUATIONS: dict[str, tuple[tuple[str, ...], ...]] = {
     "paraboloid": (("(5.15)", "(5.16)"), ("(5.12)", "(5.17)"), ("(5.16)", "(5.15)")),
     "cone": (("(5.49)", "(5.50)"), ("(5.47)", "(5.50)"), ("(5.48)", "(5.47)")),
@@ -65,7 +65,7 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True)
 class Task:
-    """Task of one record: a contact, a tangential control and the values to prescribe."""
+    """One record: a contact, a tangential control and the values to prescribe."""
 
     name: str
     equation: str
@@ -77,7 +77,7 @@ class Task:
     tangential: str
     sign: int
     #: rho, or ("c", radius), or ("past", multiple of u_max).
-    wanted: tuple[Any, ...]
+    target: tuple[Any, ...]
     energy: bool = True
     break_radius: float = 0.0
 
@@ -144,14 +144,14 @@ def _task(
             return None
     given = loads(family, profile, ratio, scale)
     if not representable(*given.values()):
-        # A steep power's contact has no force there that a double could hold.
+        # The force of a steep power is not representable there.
         profile, scale = profile_at(family, "m-GPa") or profile, "m-GPa"
         given = loads(family, profile, ratio, scale)
     if not representable(*given.values()):
         return None
-    wanted: tuple[Any, ...] = rhos
+    target: tuple[Any, ...] = rhos
     if tangential == "tangential_displacement" and turn % 2:
-        wanted = (*rhos, ("past", 1.5))
+        target = (*rhos, ("past", 1.5))
     equation = _equation(profile["kind"], tangential, turn)
     ident = (
         f"{family.name}-{equation[1:-1]}-{regime}-{SHORT[normal]}-{TANGENTIAL[tangential]}-{scale}"
@@ -166,7 +166,7 @@ def _task(
         given[normal],
         tangential,
         -1 if turn % 4 == 1 and tangential != "stick_radius" else 1,
-        wanted,
+        target,
     )
 
 
@@ -219,21 +219,21 @@ def _table_tasks() -> Iterator[Task]:
                 )
 
 
-def meant(at: Setting, task: Task, wanted: Any) -> float | None:
-    """Return the prescribed double, nearest to the wanted rho or stick radius."""
+def prescribed_value(at: Setting, task: Task, target: Any) -> float | None:
+    """Return the double to prescribe that is nearest to the target rho or stick radius."""
     with mp.workdps(WORK_DIGITS):
         full = at.mu * at.e_star * at.n
-        if isinstance(wanted, tuple) and wanted[0] == "past":
-            # At depth d: u_max of Eq. (5.17), and F_N/(2 E* a) for the punch, are one formula.
-            return task.sign * float(mpf(wanted[1]) * at.shift * at.depth)
-        if task.tangential == "tangential_force" and not isinstance(wanted, tuple):
-            return task.sign * float(mpf(wanted) * full)
+        if isinstance(target, tuple) and target[0] == "past":
+            # At depth d, u_max of Eq. (5.17) and F_N/(2 E* a) of the punch have the same formula.
+            return task.sign * float(mpf(target[1]) * at.shift * at.depth)
+        if task.tangential == "tangential_force" and not isinstance(target, tuple):
+            return task.sign * float(mpf(target) * full)
         if at.flat_punch:
-            return task.sign * float(mpf(wanted) * full / (2 * at.g_star * at.a))
-        if isinstance(wanted, tuple):
-            c = mpf(wanted[1])
+            return task.sign * float(mpf(target) * full / (2 * at.g_star * at.a))
+        if isinstance(target, tuple):
+            c = mpf(target[1])
         else:
-            force = mpf(wanted) * full
+            force = mpf(target) * full
             c = reference.stick_radius(at, "tangential_force", force)
         if task.tangential == "stick_radius":
             return _inside(at, task, float(c))
@@ -242,7 +242,7 @@ def meant(at: Setting, task: Task, wanted: Any) -> float | None:
 
 
 def _inside(at: Setting, task: Task, c: float) -> float | None:
-    """Return a stick radius that rounding keeps in [b, a]."""
+    """Return a stick radius that stays in [b, a] after rounding."""
     margin = 0.0 if task.control == "contact_radius" else 64 * 2.0**-52
     if mpf(c) > at.a * (1 - margin) or (at.body.blunt and mpf(c) <= at.body.b):
         return None
@@ -250,7 +250,7 @@ def _inside(at: Setting, task: Task, c: float) -> float | None:
 
 
 def _head(task: Task) -> Record:
-    """Return the first members of every record of a task: its name and its case."""
+    """Return the leading members of a task's record: its id and its case."""
     return {
         "id": task.name,
         "equation": task.equation,
@@ -277,27 +277,36 @@ def tangential_record(task: Task) -> Record | None:
         "condition_load": {name: [] for name in outputs},
     }
     seen = set()
-    for wanted in task.wanted:
-        given = meant(at, task, wanted)
+    for target in task.target:
+        given = prescribed_value(at, task, target)
         if given is None or given in seen or not representable(given):
             continue
         seen.add(given)
-        _append(record, at, task, given, past=isinstance(wanted, tuple) and wanted[0] == "past")
+        _append(
+            record,
+            at,
+            task,
+            given,
+            beyond_full_slip=isinstance(target, tuple) and target[0] == "past",
+        )
     return record if record["given"] else None
 
 
-def _append(record: Record, at: Setting, task: Task, given: float, *, past: bool) -> None:
+def _append(
+    record: Record, at: Setting, task: Task, given: float, *, beyond_full_slip: bool
+) -> None:
     conditions: dict[str, dict[str, mpf]] = {"condition": {}, "condition_load": {}}
     if at.flat_punch:
         answers = reference.flat_answer(at, task.tangential, given)
-    elif past:
+    elif beyond_full_slip:
         answers = reference.full_slip(at, given)
     else:
         answer = reference.solve(at, task.tangential, given, energy=task.energy)
         answers = answer.values
         loads_ = answer.condition_load
         if task.tangential == "stick_radius" and task.control != "contact_radius":
-            # The contact radius is then an answer, rounded as such, and c lies beside it.
+            # The contact radius is then a computed result, rounded accordingly, and c lies next to
+            # it.
             edge = {
                 name: value / abs(answer.rates["a_load"]) * at.a for name, value in loads_.items()
             }
@@ -312,7 +321,7 @@ def _append(record: Record, at: Setting, task: Task, given: float, *, past: bool
     for name, row in record["expected"].items():
         row.append(digits(answers[name]))
         for kind, found in conditions.items():
-            # Where there is no partial slip the answers are proportional to what was given.
+            # Without partial slip the results are proportional to the prescribed value.
             record[kind][name].append(condition(found.get(name, mpf(2))))
 
 
@@ -321,10 +330,10 @@ class FieldTask:
     task: Task
     given: float
     radii: tuple[float, ...]
-    past: bool = False
+    beyond_full_slip: bool = False
 
 
-#: Ratios c/a of the fields; and between b and a for the blunt, in units of a - b.
+#: Ratios c/a of the fields; for blunt profiles between b and a, in units of a - b.
 STICKS = (0.5, 1e-3, 1 - 1e-3, 1 - 1e-7)
 FIELD_FAMILIES = (
     "hertz", "cone0.3", "cone0.001", "sphere", "ellipsoid-tall", "power0.2", "power0.5",
@@ -335,7 +344,7 @@ FIELD_FAMILIES = (
 
 
 def field_radii(a: float, c: float, b: float, *, exact: bool) -> tuple[float, ...]:
-    """Doubles near and between 0, b, c and a, and outside."""
+    """Radii near and between 0, b, c and a, and outside."""
     near = [a * q for q in (0.0, 1e-9, 1e-3, 0.5)]
     near += [a * (1 + side * 1e-9) for side in (-1, 1)]
     near += [c * (1 + side * 1e-9) for side in (-1, 1)]
@@ -398,7 +407,7 @@ FAR = {
 }
 
 
-#: A narrow annulus of many panels, and one beside a break; both radii exact.
+#: A narrow annulus over many panels, and one next to a break; both radii exact.
 TABLE_FIELDS = {"sphere200": (0.5, 0.49), "rounded-punch": (0.65, 0.62)}
 
 
@@ -428,7 +437,7 @@ def _table_fields() -> Iterator[FieldTask]:
 def _field_task(
     family: Family, regime: str, size: float, ratio: float, turn: int
 ) -> FieldTask | None:
-    """Return the controls: both radii, given exactly, for most records; forces for every fourth."""
+    """Return the controls: exact radii for most records, forces for every fourth."""
     profile, scale = _profile(family, list(SCALES)[turn % len(SCALES)])
     given = loads(family, profile, size, scale)
     a = given["contact_radius"]
@@ -458,7 +467,7 @@ def _field_task(
         break_radius=family.break_radius(profile),
     )
     at = reference.setting(task.profile, task.control, task.load, task.material)
-    asked = meant(at, task, ("c", c))
+    asked = prescribed_value(at, task, ("c", c))
     if asked is None:
         return None
     radii = field_radii(a, c, task.break_radius, exact=exact)
@@ -484,7 +493,7 @@ def _flat_fields(family: Family) -> Iterator[FieldTask]:
             (0.4,),
         )
         at = reference.setting(task.profile, task.control, task.load, task.material)
-        asked = meant(at, task, 0.4)
+        asked = prescribed_value(at, task, 0.4)
         assert asked is not None
         yield FieldTask(task, asked, radii)
 
@@ -539,7 +548,7 @@ def _flat_field_rows(at: Setting, task: Task, job: FieldTask) -> Callable[[mpf],
 
 def _field_rows(at: Setting, task: Task, job: FieldTask) -> Callable[[mpf], Row]:
     answer = reference.solve(at, task.tangential, job.given, energy=False)
-    doubts = Doubts(at, answer, task)
+    doubts = FieldConditions(at, answer, task)
 
     def row(r: mpf) -> Row:
         c = answer.c
@@ -558,17 +567,17 @@ def _field_rows(at: Setting, task: Task, job: FieldTask) -> Callable[[mpf], Row]
 
 
 def signed(value: mpf) -> str:
-    """`digits` that keep the sign of an infinity."""
+    """Like `digits`, with the sign of an infinity."""
     return f"-{digits(-value)}" if value < 0 else digits(value)
 
 
-class Doubts:
+class FieldConditions:
     """Condition numbers of a field at an exact radius.
 
-    Nothing is in doubt where a and c were both given. Where not, the field has the conditions of
-    the given two; and an edge that is a rounded answer is uncertain in its place: with the slip
-    annulus shifted as a whole (so that its width keeps its own digits), and, where only c is an
-    answer, beside c alone.
+    They are zero where a and c are both prescribed. Otherwise the field has the condition numbers
+    of the two prescribed values. An edge that is a rounded result is also uncertain in its
+    position: the slip annulus shifts as a whole (its width is free of cancellation), or c alone
+    shifts if only c is a result.
     """
 
     def __init__(self, at: Setting, answer: reference.Answer, task: Task) -> None:
@@ -591,7 +600,7 @@ class Doubts:
         return total / abs(value)
 
     def _break(self, r: mpf, value: mpf, fn: Callable[[mpf], mpf]) -> mpf:
-        """r d/dr at an exact distance from a break that is itself known to rounding alone."""
+        """r d/dr at an exact distance from a break that carries rounding error."""
         if self.task.profile["kind"] not in DERIVED_BREAK or value == 0 or mp.isinf(value):
             return mpf(0)
         if abs(r - self.at.body.b) > mpf("0.01") * self.at.body.b:
@@ -622,7 +631,7 @@ class Doubts:
         return self._total(value, at.body.dg(at.a) * share, mpf(0), r)
 
     def load(self, x: mpf, value: mpf) -> mpf:
-        """q is a difference by its definition: the radius itself conditions it."""
+        """q is a difference by definition, so the radius itself conditions it."""
         at, c = self.at, self.answer.c
         if value == 0:
             return mpf(0)

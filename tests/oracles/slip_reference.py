@@ -1,12 +1,13 @@
 """Reference results for partial slip: the tangential problem and the fields over the radius.
 
-A body is a row of panels. On each the image g is smooth in s = sqrt(x^2 - k^2), where k is the
-panel's left end: the break of a shape, a knot of a table, or zero. Every integral is taken in s,
-or in an angle or a hyperbolic angle of s that removes the kernel's root, panel by panel.
+A body is a sequence of panels. On each panel the equivalent profile g is smooth in s = sqrt(x^2 -
+k^2), where k is the panel's left end: the break of a shape, a knot of a table, or zero. Every
+integral is taken in s, or in an angle or a hyperbolic angle of s that removes the kernel's
+singularity, panel by panel.
 
-Differences such as g(a) - g(c) are simply taken, at `WORK_DIGITS` digits: those of a slip annulus
-as thin as 1e-16 a, and of a rounded edge's last 1e-9, leave more than forty of them. The radius c
-is solved for at the same digits and proved by a change of sign `SIGN_DIGITS` digits down.
+Differences such as g(a) - g(c) are formed directly, with `WORK_DIGITS` digits: more than forty
+remain for a slip annulus of 1e-16 a and for the last 1e-9 of a rounded edge. The stick radius c is
+solved for with the same digits and verified by a change of sign at `SIGN_DIGITS` digits.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ from tests.oracles.tables import Table
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-#: Digits carried by values and their differences, and by quadrature rules.
+#: Digits of values and their differences, and of quadrature rules.
 WORK_DIGITS = 110
 RULE_DIGITS = 42
-#: A root is proved to so many digits.
+#: Digits to which a root is verified.
 SIGN_DIGITS = 75
 
 CONTROLS = ("tangential_force", "tangential_displacement", "stick_radius")
@@ -56,7 +57,7 @@ class Panel:
     def s(self, x: mpf) -> mpf:
         return mp.sqrt((x - self.k) * (x + self.k))
 
-    def image(self, s: mpf) -> mpf:
+    def equivalent_profile(self, s: mpf) -> mpf:
         return self.g(self.x(s), s)
 
     def slope(self, s: mpf) -> mpf:
@@ -108,7 +109,7 @@ class ShapeBody:
             return width * integral(unit, [mpf(0), mpf(1)])
 
     def unknown(self, x: mpf) -> Callable[[mpf], tuple[mpf, mpf]]:
-        """x and dx/dw for w = log s beyond a break that lies below `x`, else w = log x."""
+        """x and dx/dw for w = log s beyond a break below `x`, else for w = log x."""
         b, limit = self.b, self.shape.limit
 
         def beyond(w: mpf) -> tuple[mpf, mpf]:
@@ -137,7 +138,7 @@ class ShapeBody:
 
 
 class TableBody:
-    """A table's interpolant: a panel between any two knots."""
+    """A table's interpolant: one panel between adjacent knots."""
 
     blunt = False
 
@@ -160,7 +161,7 @@ class TableBody:
                 yield Panel(knots[i], start, end, lambda x, s: self.table.g(x), self._dg(i))
 
     def _dg(self, number: int) -> Callable[[mpf, mpf], mpf]:
-        # The root of the panel's own knot keeps its digits where x rounds to the knot.
+        # s of the panel's own knot is free of cancellation where x rounds to the knot.
         return lambda x, s: self.table.dg(x, s if self.table.panel(x) == number else None)
 
     def integrate(self, fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
@@ -188,7 +189,7 @@ def body_of(profile: Mapping[str, Any]) -> Body:
 
 def invert(body: Body, fn: Callable[[mpf], mpf], slope: Callable[[mpf], mpf], goal: mpf,
            upper: mpf) -> mpf:  # fmt: skip
-    """The x < upper with fn(x) = goal > 0, by Newton's method in logarithms within a bracket."""
+    """The x < upper with fn(x) = goal > 0, by bracketed Newton's method in logarithms."""
     low_break = body.b if isinstance(body, ShapeBody) and not body.blunt else mpf(0)
     top = low_break if low_break and low_break < upper and fn(low_break) >= goal else upper
     radius = body.unknown(top)
@@ -207,7 +208,7 @@ def invert(body: Body, fn: Callable[[mpf], mpf], slope: Callable[[mpf], mpf], go
     root = _newton(excess, lambda w: _log_slope(fn, slope, radius(w)), low, high)
     margin = mpf(10) ** -SIGN_DIGITS
     if not excess(root - margin) < 0 < excess(root + margin):
-        raise ArithmeticError("the stick radius is not bracketed to the digits promised")
+        raise ArithmeticError("the stick radius is not bracketed to the required digits")
     return radius(root)[0]
 
 
@@ -226,12 +227,12 @@ def _newton(excess: Callable[[mpf], mpf], rate: Callable[[mpf], mpf], low: mpf, 
         if abs(moved - w) < mpf(10) ** (-SIGN_DIGITS - 5):
             return moved
         w = moved
-    raise ArithmeticError("Newton's method did not settle")
+    raise ArithmeticError("Newton's method did not converge")
 
 
 @dataclass(frozen=True)
 class Setting:
-    """The contact (edge a, depth, reduced force) and the material; all known to `WORK_DIGITS`."""
+    """Contact (edge a, depth, reduced force) and material; all to `WORK_DIGITS` digits."""
 
     body: Body
     a: mpf
@@ -240,13 +241,13 @@ class Setting:
     e_star: mpf
     g_star: mpf
     mu: mpf
-    #: dL/da and L of what was given of the normal problem.
+    #: dL/da and L of the load prescribed in the normal problem.
     load_rate: mpf
     load: mpf
 
     @property
     def shift(self) -> mpf:
-        """mu E*/G*: tangential per normal displacement."""
+        """mu E*/G*: ratio of tangential to normal displacement."""
         return self.mu * self.e_star / self.g_star
 
     @property
@@ -302,15 +303,15 @@ def overlap(at: Setting, c: mpf) -> mpf:
     for panel in body.panels(max(c, body.b) if body.blunt else c, at.a):
 
         def density(s: mpf, panel: Panel = panel) -> mpf:
-            image = panel.image(s)
-            return (at.depth - image) * (image - low) * panel.ratio(s)
+            equivalent_profile = panel.equivalent_profile(s)
+            return (at.depth - equivalent_profile) * (equivalent_profile - low) * panel.ratio(s)
 
         total += body.integrate(density, panel.s(panel.low), panel.s(panel.high))
     return total
 
 
 def _monomial_overlap(shape: Monomials, a: mpf, c: mpf) -> mpf:
-    high, low, terms = shape.g(a), shape.g(c), shape.image
+    high, low, terms = shape.g(a), shape.g(c), shape.equivalent_profile
 
     def power(n: mpf) -> mpf:
         return (a ** (n + 1) - c ** (n + 1)) / (n + 1)
@@ -322,13 +323,13 @@ def _monomial_overlap(shape: Monomials, a: mpf, c: mpf) -> mpf:
 
 @dataclass(frozen=True)
 class Answer:
-    """Results, and their condition numbers with respect to the tangential and the normal load."""
+    """Results and their condition numbers with respect to the tangential and the normal load."""
 
     c: mpf
     values: dict[str, mpf]
     condition: dict[str, mpf]
     condition_load: dict[str, mpf]
-    #: d log c / d log of the given two, with the rate of a, for the fields.
+    #: d log c / d log of the two prescribed values, with the rate of a, for the fields.
     rates: dict[str, mpf]
 
 
@@ -349,7 +350,7 @@ def values(at: Setting, c: mpf, *, energy: bool = True) -> dict[str, mpf]:
 
 
 def gradients(at: Setting, c: mpf) -> dict[str, tuple[mpf, mpf]]:
-    """(d/da, d/dc) of each answer; those of the energy by parts."""
+    """(d/da, d/dc) of each result; those of the energy by parts."""
     body, a = at.body, at.a
     slope_a, slope_c = body.dg(a), body.dg(c)
     step, half = at.depth - body.g(c), (at.n - body.force(c)) / 2
@@ -369,7 +370,7 @@ def gradients(at: Setting, c: mpf) -> dict[str, tuple[mpf, mpf]]:
 
 
 def solve(at: Setting, control: str, given: float, *, energy: bool = True) -> Answer:
-    """Return all results for one tangential quantity below full slip."""
+    """Return all results for one prescribed tangential quantity below full slip."""
     with mp.workdps(WORK_DIGITS):
         c = stick_radius(at, control, mpf(given))
         if c == at.a:
@@ -411,7 +412,7 @@ def flat_answer(at: Setting, control: str, given: float) -> dict[str, mpf]:
 
 
 def full_slip(at: Setting, displacement: float) -> dict[str, mpf]:
-    """Return the results beyond u_max: full slip, and the excess work is dissipated."""
+    """Return the results beyond u_max: in full slip, the excess work is dissipated."""
     with mp.workdps(WORK_DIGITS):
         edge = at.body.b if at.body.blunt else mpf(0)
         found = values(at, edge)
@@ -438,7 +439,7 @@ def _abel(body: Body, panel: Panel, r: mpf) -> mpf:
 
 
 def _singular(at: Setting, c: mpf, r: mpf) -> bool:
-    """Report whether the traction is infinite: on a convex kink that slips, or on a sharp tip."""
+    """True if the traction is infinite: at a convex slope discontinuity that slips, or at a tip."""
     body = at.body
     if not isinstance(body, ShapeBody) or not c <= r < at.a:
         return False
@@ -481,7 +482,7 @@ def slip(at: Setting, c: mpf, r: mpf) -> mpf:
             return mpf(0)
         base = body.g(c)
         total = mp.fsum(
-            _back(body, panel, r, lambda s, panel=panel: panel.image(s) - base)
+            _back(body, panel, r, lambda s, panel=panel: panel.equivalent_profile(s) - base)
             for panel in body.panels(low, r)
         )
         return -at.shift * 2 / mp.pi * total
@@ -495,7 +496,9 @@ def displacement(at: Setting, r: mpf) -> mpf:
         body, low = at.body, at.body.b if at.body.blunt else mpf(0)
         total = at.depth * mp.asin(low / r)
         for panel in body.panels(low, at.a):
-            total += _back(body, panel, r, lambda s, panel=panel: at.depth - panel.image(s))
+            total += _back(
+                body, panel, r, lambda s, panel=panel: at.depth - panel.equivalent_profile(s)
+            )
         return total * 2 / mp.pi
 
 

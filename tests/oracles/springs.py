@@ -1,13 +1,13 @@
-"""A foundation of many separate springs, each with its own memory: Eqs. (5.4)-(5.9), step by step.
+"""Discrete foundation of independent springs with slip memory, Eqs. (5.4)-(5.9), step by step.
 
-A spring at x bears q = E* (d - g(x)) per length while d > g(x), its tangential load follows the
-displacement, q_x' = q_x + G* (u' - u), and is cut off at mu q (Eq. 5.9); what was cut off is slip.
-During a straight step of depth and displacement all of these change linearly in time, so that the
-state at its end, the work and the loss of each spring are known in closed form.
+A spring at x carries q = E* (d - g(x)) per length while d > g(x). Its tangential load follows the
+displacement, q_x' = q_x + G* (u' - u), and is clipped at mu q (Eq. 5.9); the excess is slip. During
+a straight load step all of these change linearly in time, so that the final state, the work and the
+loss of each spring follow in closed form.
 
-What is left is the error of the sum over springs. They are the midpoints of a coordinate in which
-g is smooth between its breaks, so the error falls with the square of their number; it stays of
-that order because q_x has kinks wherever slip once came to rest.
+The only error is that of the sum over springs. Their positions are midpoints of a coordinate in
+which g is smooth between its breaks, so the error decreases with the square of their number. The
+order is limited to that because q_x has kinks at former slip fronts.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ GRADING = 2.0
 
 
 @dataclass(frozen=True)
-class Bed:
-    """Springs: the depth g(x) at which each touches, and the length that it stands for.
+class Foundation:
+    """Springs: the depth g(x) of first contact of each, and its length.
 
-    The length counts both sides of the axis. The springs under a flat are all alike, and are one.
+    The length covers both sides of the axis. All springs under a flat are identical and form one.
     """
 
     touch: Array
     length: Array
 
 
-def bed(profile: Mapping[str, Any], depth: float, count: int) -> Bed:
+def foundation(profile: Mapping[str, Any], depth: float, count: int) -> Foundation:
     """About `count` springs for every contact not deeper than `depth`."""
     if profile["kind"] == "flat_punch":
-        return Bed(np.zeros(1), np.array([2 * profile["radius"]]))
+        return Foundation(np.zeros(1), np.array([2 * profile["radius"]]))
     with mp.workdps(WORK_DIGITS):
         body = body_of(profile)
         edge = float(body.radius("indentation_depth", mpf(depth)))
@@ -65,17 +65,17 @@ def bed(profile: Mapping[str, Any], depth: float, count: int) -> Bed:
         end = np.sqrt((high - low) * (high + low))
         number = max(count // (len(knots) - 1), 1)
         grading = GRADING if low == 0 else 1.0
-        # x(t) at midpoints of t; the length is dx/dt there, as the midpoint rule wants it.
+        # x(t) at midpoints of t; the length is dx/dt there, as required by the midpoint rule.
         t = (np.arange(number) + 0.5) / number
         middle = end * t**grading
         rate = grading * end * t ** (grading - 1) / number
         x = np.hypot(low, middle)
-        touch.append(image(profile, x, middle, low))
+        touch.append(equivalent_profile(profile, x, middle, low))
         length.append(2 * rate * middle / x)
     if flat:
         touch.append(np.zeros(1))
         length.append(np.array([2 * flat]))
-    return Bed(np.concatenate(touch), np.concatenate(length))
+    return Foundation(np.concatenate(touch), np.concatenate(length))
 
 
 def _breaks(body: ShapeBody | TableBody) -> list[float]:
@@ -84,7 +84,7 @@ def _breaks(body: ShapeBody | TableBody) -> list[float]:
     return [float(body.b)]
 
 
-def image(profile: Mapping[str, Any], x: Array, s: Array, low: float) -> Array:
+def equivalent_profile(profile: Mapping[str, Any], x: Array, s: Array, low: float) -> Array:
     """g at the radii x = sqrt(low^2 + s^2); `low` is the break at or below them."""
     kind = profile["kind"]
     if kind == "tabulated":
@@ -111,7 +111,7 @@ def _spherical_tip(p: Profile, x: Array, s: Array, phi: Array) -> Array:
     return x * (np.log((big + x) / (big / np.hypot(1, t) + s)) + t * phi)
 
 
-#: (profile, x, s, angle, whether beyond the break) -> g, of the kinds that are no sums of powers.
+#: (profile, x, s, angle, whether beyond the break) -> g, for kinds that are not sums of powers.
 _IMAGES: dict[str, Any] = {
     "sphere": lambda p, x, s, phi, far: _ellipsoid(p["radius"], p["radius"], x),
     "ellipsoid": lambda p, x, s, phi, far: _ellipsoid(p["radius"], p["height"], x),
@@ -138,7 +138,7 @@ _IMAGES: dict[str, Any] = {
 
 
 def _table_image(profile: Mapping[str, Any], x: Array) -> Array:
-    """Sum over knots of the steps of f', f'' and f''', taken about each knot."""
+    """Sum over knots of the jumps in f', f'' and f''', expanded about each knot."""
     with mp.workdps(WORK_DIGITS):
         table = Table(profile)
         rows = [
@@ -166,12 +166,12 @@ class Samples:
     dissipated_energy: Array
     tangential_energy: Array
     work: Array
-    #: Tangential load of each spring at the end of all.
+    #: Tangential load of each spring at the end of the history.
     load: Array
 
 
 def simulate(
-    springs: Bed,
+    springs: Foundation,
     material: Material,
     depth: Sequence[float] | Array,
     displacement: Sequence[float] | Array,
@@ -179,9 +179,9 @@ def simulate(
     substeps: int = 1,
     start: tuple[float, float] = (0.0, 0.0),
 ) -> Samples:
-    """Follow straight legs between (depth, displacement), from an unloaded contact at `start`.
+    """Follow straight load steps in (depth, displacement), from an unloaded contact at `start`.
 
-    A depth below zero is a gap. More substeps change nothing but the rounding.
+    A negative depth is a separation. Substeps only change rounding errors.
     """
     e, g_star, mu = material.e_star, material.g_star, material.mu
     w, length = springs.touch, springs.length
@@ -213,11 +213,11 @@ def _step(
     end: tuple[float, float],
     constants: tuple[float, float, float],
 ) -> tuple[Array, Array, Array]:
-    """Loads after one straight step, and what each spring lost and took up, per length."""
+    """Loads after one straight step, and the loss and work of each spring, per length."""
     (d, u), (new_d, new_u) = begin, end
     e, g_star, mu = constants
     rise, push = new_d - d, new_u - u
-    # When a spring touches and when it leaves, in units of the step.
+    # Times of contact and of separation of a spring, in units of the step.
     first = np.zeros_like(w)
     last = np.ones_like(w)
     if rise > 0:
@@ -232,7 +232,7 @@ def _step(
     new = np.clip(trial, -limit_last, limit_last)
     excess = np.abs(trial - new)
     slipping = excess > 0
-    # |q + G* push t| reaches the limit after this part of the spring's own time.
+    # |q + G* push t| reaches the limit after this fraction of the spring's own time.
     room = limit_first - np.sign(trial) * q
     share = np.where(slipping, room / np.where(slipping, room + excess, 1.0), 1.0)
     limit_share = limit_first + (limit_last - limit_first) * share

@@ -1,8 +1,9 @@
-"""Write the bank of stresses beneath the surface: ``python -m tests.oracles.subsurface_generate``.
+"""Generate the bank of subsurface stresses: ``python -m tests.oracles.subsurface_generate``.
 
-Straight from the foundation's loads: the potentials are V = int q/rho dx and so on, and their
-derivatives are taken under the integral. Nothing is integrated by parts, and slip is the load q_x
-itself. The kernels are therefore one order more singular than those of the library.
+The stresses follow directly from the foundation's loads: the potentials are V = int q/rho dx and so
+on, differentiated under the integral sign. There is no integration by parts, and the load q_x
+enters in place of the slip. The kernels are therefore one order more singular than those of the
+library.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from tests.oracles.shapes import Shape, shape_of
 
 WORK_DIGITS = 55
 NODES = 32
-#: Kinds with a contact radius of 1; stick radii are chosen at random beyond b.
+#: Profiles with contact radius 1; stick radii are chosen at random beyond b.
 PROFILES: tuple[dict[str, Any], ...] = (
     {"kind": "paraboloid", "radius": 1.7},
     {"kind": "cone", "slope": 0.2},
@@ -64,7 +65,7 @@ def rule() -> tuple[list[mpf], list[mpf]]:
 
 
 def stops(low: mpf, high: mpf, centre: mpf, near: mpf) -> list[mpf]:
-    """Return ends of panels in [low, high] that double away from `centre` and quadruple from 0."""
+    """Panel ends in [low, high] that double away from `centre` and quadruple from 0."""
     found = {low, high}
     distance = near / 4
     while distance < 4 * high:
@@ -100,7 +101,7 @@ def kernels(x: mpf, r: mpf, z: mpf) -> list[mpf]:
 def derivatives(
     shape: Shape, a: mpf, c: mpf | None, r: mpf, z: mpf
 ) -> tuple[list[mpf], list[mpf] | None]:
-    """Return the derivatives of the potentials of q/E* and of q_x/(mu E*)."""
+    """Derivatives of the potentials of q/E* and of q_x/(mu E*)."""
     depth, held = shape.g(a), None if c is None else shape.g(a) - shape.g(c)
     pressed, sheared = [mpf(0)] * 9, [mpf(0)] * 9
     parts = [(mpf(0), mpf(0), a)] if not shape.b else [(shape.b, mpf(0), shape.beyond(a))]
@@ -132,7 +133,7 @@ def derivatives(
 def tensor(
     shape: Shape, a: mpf, c: mpf | None, friction: mpf, nu: mpf, place: tuple[mpf, mpf, mpf]
 ) -> list[mpf]:
-    """Return xx, yy, zz, xy, xz, yz over E* in the body on which the shear stress acts."""
+    """xx, yy, zz, xy, xz, yz over E* in the body on which the shear stress acts."""
     x, y, z = place
     r = mp.sqrt(x * x + y * y)
     k, m = (x / r, y / r) if r else (mpf(1), mpf(0))

@@ -1,4 +1,4 @@
-"""The tables of the bank, what they sample, and the contacts asked of each."""
+"""Tables of the bank, the bodies they sample, and their contacts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Profile = dict[str, Any]
 
 @dataclass(frozen=True)
 class TableScene:
-    """A table; `truth` is the smooth body it samples, where it is close enough to it."""
+    """A table; `truth` is the smooth body it samples, if the table is fine enough."""
 
     name: str
     profile: Profile
@@ -55,7 +55,7 @@ def _truncated(r: float) -> float:
 
 
 def table_scenes() -> Iterator[TableScene]:
-    """All tables, of sizes near 1: their scale is that of their numbers."""
+    """All tables, of unit size: scales are covered elsewhere."""
     sphere = {"kind": "sphere", "radius": 1.0}
     yield TableScene("sphere200", _table(_sphere, uniform(0.6, 200)), (0.5, 0.02, 0.001), sphere)
     yield TableScene("power1.5", _table(lambda r: r**1.5, uniform(1.0, 60)), (0.8, 0.1))

@@ -1,9 +1,9 @@
-"""The exact transforms of a table's interpolant.
+"""Exact transforms of a table's interpolant.
 
-What a table means is its interpolant, a piecewise cubic polynomial with double coefficients, and
-these are taken as exact rationals. They come from scipy itself: per segment between declared
-breaks, ``CubicSpline(bc_type="not-a-knot")`` (two points: a line, three: the parabola through
-them, as scipy does), ``PchipInterpolator``, or straight lines.
+A table represents its interpolant, a piecewise cubic polynomial with double coefficients, which are
+taken as exact rationals. They come from scipy: per segment between declared breaks,
+``CubicSpline(bc_type="not-a-knot")`` (two points: a line; three: the parabola through them, as in
+scipy), ``PchipInterpolator``, or straight lines.
 
 With f' = sum_j H(r - x_j) (A_j + B_j r + C_j r^2) over the knots x_j, every transform is a sum of
 the elementary moments I_k = int_{x_j}^x r^k/sqrt(x^2 - r^2) dr.
@@ -25,9 +25,9 @@ from tests.oracles.reference import solve_increasing
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-#: Digits carried: the sums over knots cancel some fifteen of them.
+#: Digits: the sums over knots lose about fifteen by cancellation.
 TABLE_DIGITS = 64
-#: Gauss-Legendre rule and longest piece of its variable: the next singularity is pi/2 away.
+#: Gauss-Legendre rule and longest subpanel: the nearest singularity is at a distance of pi/2.
 POINTS = 30
 PIECE = mpf("1.8")
 
@@ -35,7 +35,7 @@ Row = tuple[mpf, mpf, mpf, mpf]
 
 
 def segments(profile: Mapping[str, Any]) -> Iterator[slice]:
-    """Runs of points between declared breaks, both ends included."""
+    """Index ranges between declared breaks, both ends included."""
     r = list(profile["r"])
     ends = [0, *(r.index(b) for b in profile.get("breaks", ())), len(r) - 1]
     for low, high in itertools.pairwise(ends):
@@ -66,7 +66,7 @@ def local_coefficients(profile: Mapping[str, Any]) -> list[Row]:
 
 
 class Table:
-    """The interpolant and its transforms, at the ``mp.dps`` it was made with."""
+    """The interpolant and its transforms, at the ``mp.dps`` of its construction."""
 
     def __init__(self, profile: Mapping[str, Any]) -> None:
         self.knots = [mpf(r) for r in profile["r"]]
@@ -115,7 +115,7 @@ class Table:
         return x * total
 
     def dg(self, x: mpf, own: mpf | None = None) -> mpf:
-        """Sum of the moments of f' + r f'', and a root for each kink."""
+        """Sum of the moments of f' + r f'', and a root for each slope discontinuity."""
         roots, angles = self._angles(x, own)
         total = mpf(0)
         rows = zip(self.knots, roots, angles, self.jumps, self.kinks, strict=False)
@@ -137,11 +137,11 @@ class Table:
         return 2 * total
 
     def contact_radius(self, control: str, reduced: mpf) -> mpf:
-        """Radius for a depth, F_N/E* or radius."""
+        """Radius for a prescribed depth, F_N/E* or radius."""
         if control == "contact_radius":
             return reduced
         fn = self.g if control == "indentation_depth" else self.force
-        # The first radius that touches: behind a flat, where g and N are zero.
+        # First radius of contact: beyond a flat, where g and N are zero.
         flat = next(k for k, jump in zip(self.knots, self.jumps, strict=False) if any(jump))
         width = self.knots[-1] - flat
 
@@ -151,7 +151,7 @@ class Table:
         return radius_of(solve_increasing(lambda w: fn(radius_of(w)), reduced, mpf(0)))
 
     def pieces(self, low: mpf, high: mpf, fn: Callable[[mpf], mpf]) -> mpf:
-        """Gauss-Legendre integral over pieces no longer than `PIECE`."""
+        """Gauss-Legendre integral over subpanels no longer than `PIECE`."""
         count = int(mp.ceil((high - low) / PIECE)) or 1
         step = (high - low) / count
         return mp.fsum(
@@ -159,17 +159,17 @@ class Table:
         )
 
     def _panels(self, low: mpf, high: mpf) -> Iterator[tuple[int, mpf]]:
-        """Panels between two radii, and s = sqrt(x^2 - x_i^2) at each one's end."""
+        """Panels between two radii, with s = sqrt(x^2 - x_i^2) at each panel's end."""
         for i in range(self.panel(low), self.panel(high) + 1):
             end = min(self.knots[i + 1], high)
             if end > max(low, self.knots[i]):
                 yield i, mp.sqrt((end - self.knots[i]) * (end + self.knots[i]))
 
     def _sampled(self, i: int, top: mpf) -> list[tuple[mpf, mpf, mpf]]:
-        """(s, weight, dg/ds) on a panel; the same for every r far below it."""
+        """(s, weight, dg/ds) on a panel; independent of r if r is far below it."""
         key = (i, top)
         if key not in self._slopes:
-            # The root at the knot before lies this far from the panel's beginning.
+            # Distance of the preceding knot's root from the panel's left end.
             near = mp.sqrt(self.knots[i] ** 2 - self.knots[i - 1] ** 2) if i else top
             ends = [top]
             while ends[-1] > 2 * near:
@@ -186,7 +186,7 @@ class Table:
         return self.dg(x, s) * s / x
 
     def pressure(self, r: mpf, a: mpf) -> mpf:
-        """p/E* at 0 < r < a, r no knot: the substitution of ``reference`` on every panel."""
+        """p/E* at 0 < r < a, r not at a knot: the substitution of ``reference`` on every panel."""
         total = mpf(0)
         home = self.panel(r)
         for i, top in self._panels(r, a):
@@ -217,7 +217,7 @@ class Table:
 
 @functools.cache
 def _legendre(count: int, digits: int) -> list[tuple[mpf, mpf]]:
-    """Gauss-Legendre nodes and weights on [0, 1], by Newton's method from numpy's."""
+    """Gauss-Legendre nodes and weights on [0, 1], by Newton's method starting from numpy's."""
     rule = []
     for start in np.polynomial.legendre.leggauss(count)[0].tolist():
         x = mpf(start)

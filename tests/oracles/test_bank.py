@@ -1,4 +1,4 @@
-"""Consistency of the banks: ids, sources, coverage, and a sample computed again."""
+"""Consistency of the banks: ids, sources, coverage, and a recomputed sample."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_every_equation_is_among_the_sources() -> None:
 def test_every_kind_is_covered_by_every_control() -> None:
     covered = {(r["profile"]["kind"], r["control"]) for r in bank.load("normal")}
     expected = {(kind, control) for kind in KINDS for control in CONTROLS}
-    # A flat punch has its radius; it cannot be asked for.
+    # The radius of a flat punch is a parameter and cannot be prescribed.
     assert covered == expected - {("flat_punch", "contact_radius")}
 
 

@@ -1,4 +1,4 @@
-"""The bank of histories checks itself: ids, sources, coverage, and a sample computed again."""
+"""Consistency of the banks of histories: ids, sources, coverage, and a recomputed sample."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def test_every_kind_cycles_by_both_controls() -> None:
 def test_every_scale_and_a_separation_are_covered() -> None:
     scales = {record["tags"]["scale"] for record in everything()}
     assert scales >= {"nm-TPa", "um-GPa", "mm-MPa", "m-GPa", "km-kPa"}
-    lost = [record for record in bank.load("history_paths") if _is_lost(record)]
+    lost = [record for record in bank.load("history_paths") if _separates_and_touches_again(record)]
     assert len(lost) >= 12
 
 
-def _is_lost(record: bank.Record) -> bool:
-    """Report whether the bodies separate and touch again."""
+def _separates_and_touches_again(record: bank.Record) -> bool:
+    """True if the bodies separate and touch again."""
     depths = record["indentation_depth"]
     gone = [index for index, depth in enumerate(depths) if depth <= 0]
     return bool(gone) and max(depths[: gone[0]], default=0) > 0 and max(depths[gone[0] :]) > 0

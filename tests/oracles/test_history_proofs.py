@@ -1,4 +1,4 @@
-"""Springs, the exact history and the closed forms of a cycle prove each other."""
+"""Mutual checks of the discrete foundation, the exact history and the closed forms of a cycle."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.long
 
 MATERIAL = Material(3.7, 2.9, 0.37)
-#: Exact by construction, up to the quadratures of int g^2 dx.
+#: Exact up to the quadratures of int g^2 dx.
 PROOF = mpf(10) ** -35
 PROFILES: dict[str, dict[str, Any]] = {
     "paraboloid": {"kind": "paraboloid", "radius": 1.3},
@@ -59,37 +59,39 @@ everywhere = pytest.mark.parametrize("name", PROFILES)
 few = pytest.mark.parametrize("name", ["paraboloid", "truncated-cone", "sphere", "flat-punch"])
 
 
-def shift(depth: float) -> float:
-    """mu E*/G* d, which slides the whole contact (Eq. 5.17)."""
+def full_slip_displacement(depth: float) -> float:
+    """mu E*/G* d: displacement of full slip (Eq. 5.17)."""
     return MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * depth
 
 
 def random_path(seed: int, legs: int) -> Path:
-    """Gaps among the depths, and some legs that are purely normal or purely tangential."""
+    """Includes separations and some purely normal or purely tangential load steps."""
     random = np.random.default_rng(seed)
     path, d, u = [], 0.0, 0.0
     for kind in random.integers(0, 5, legs):
         d = d if kind == 0 else float(DEPTH * random.uniform(-0.1, 1.0))
-        u = u if kind == 1 else float(shift(DEPTH) * random.uniform(-1.2, 1.2))
+        u = u if kind == 1 else float(full_slip_displacement(DEPTH) * random.uniform(-1.2, 1.2))
         path.append((d, u))
     return path
 
 
-def columns(found: Sequence[Sample]) -> dict[str, Array]:
+def columns(computed: Sequence[Sample]) -> dict[str, Array]:
     names = ("normal_force", "tangential_force", "tangential_energy", "dissipated_energy")
-    return {name: np.array([float(getattr(one, name)) for one in found]) for name in names}
+    return {name: np.array([float(getattr(one, name)) for one in computed]) for name in names}
 
 
 def run(name: str, path: Path, count: int = 4000, **options: Any) -> springs.Samples:
     top = max(d for d, _ in path)
     steps = zip(*path, strict=True)
-    return springs.simulate(springs.bed(PROFILES[name], top, count), MATERIAL, *steps, **options)
+    return springs.simulate(
+        springs.foundation(PROFILES[name], top, count), MATERIAL, *steps, **options
+    )
 
 
-def error(found: springs.Samples, exact: dict[str, Array]) -> float:
-    """The largest of all four, each in units of its own largest."""
+def error(computed: springs.Samples, exact: dict[str, Array]) -> float:
+    """Largest of the four errors, each relative to its own largest value."""
     return max(
-        float(np.max(np.abs(getattr(found, name) - values)) / np.max(np.abs(values)))
+        float(np.max(np.abs(getattr(computed, name) - values)) / np.max(np.abs(values)))
         for name, values in exact.items()
     )
 
@@ -115,8 +117,8 @@ def test_springs_have_the_equivalent_profile_of_every_kind() -> None:
                 expected = float(shape.g(mpf(r)))
                 if expected == 0 or r >= shape.limit:
                     continue
-                found = springs.image(profile, x, s, low)
-                assert found[0] == pytest.approx(expected, rel=1e-13, abs=0), (profile, r)
+                computed = springs.equivalent_profile(profile, x, s, low)
+                assert computed[0] == pytest.approx(expected, rel=1e-13, abs=0), (profile, r)
     assert proved == set(KINDS) - {"flat_punch"}
 
 
@@ -126,7 +128,9 @@ def test_springs_have_the_equivalent_profile_of_a_table(name: str) -> None:
         table = Table(PROFILES[name])
         x = np.array([0.1, 0.3, 0.5, 0.9, 1.3, 1.9])
         expected = [float(table.g(mpf(one))) for one in x.tolist()]
-    assert springs.image(PROFILES[name], x, x, 0.0) == pytest.approx(expected, rel=1e-13, abs=0)
+    assert springs.equivalent_profile(PROFILES[name], x, x, 0.0) == pytest.approx(
+        expected, rel=1e-13, abs=0
+    )
 
 
 @everywhere
@@ -137,7 +141,7 @@ def test_springs_converge_to_the_exact_history(name: str) -> None:
     if name == "flat-punch":
         assert max(errors) < 1e-14
         return
-    # The square of ten, with room for where the kinks happen to lie between springs.
+    # Second order, with an allowance for the position of kinks between springs.
     assert errors[1] < errors[0] / 25
     assert errors[2] < errors[1] / 25
     assert errors[2] < 3e-9
@@ -154,11 +158,11 @@ def test_springs_need_no_substeps(name: str) -> None:
 
 @everywhere
 def test_each_spring_balances_its_energy(name: str) -> None:
-    """Work and loss are computed apart from each other."""
-    found = run(name, random_path(7, 40))
-    balance = found.tangential_energy + found.dissipated_energy
-    assert balance == pytest.approx(found.work, rel=1e-13, abs=0)
-    assert np.all(np.diff(found.dissipated_energy) >= 0)
+    """Work and loss are computed independently."""
+    computed = run(name, random_path(7, 40))
+    balance = computed.tangential_energy + computed.dissipated_energy
+    assert balance == pytest.approx(computed.work, rel=1e-13, abs=0)
+    assert np.all(np.diff(computed.dissipated_energy) >= 0)
 
 
 @pytest.mark.parametrize("name", [name for name in PROFILES if name != "flat-punch"])
@@ -167,28 +171,32 @@ def test_first_loading_is_partial_slip(name: str, rho: float) -> None:
     """Eqs. (5.19), (5.20), and the loss as the integral over the annulus."""
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
-    known = slip.solve(at, "tangential_displacement", rho * shift(DEPTH)).values
-    found = history(PROFILES[name], [(DEPTH, 0.0), (DEPTH, rho * shift(DEPTH))], MATERIAL)[-1]
+    known = slip.solve(at, "tangential_displacement", rho * full_slip_displacement(DEPTH)).values
+    computed = history(
+        PROFILES[name], [(DEPTH, 0.0), (DEPTH, rho * full_slip_displacement(DEPTH))], MATERIAL
+    )[-1]
     with mp.workdps(slip.WORK_DIGITS):
-        assert same(found.tangential_force, known["tangential_force"])
+        assert same(computed.tangential_force, known["tangential_force"])
         factor = 2 * (at.mu * at.e_star) ** 2 / at.g_star
-        assert same(found.dissipated_energy, factor * overlap(at, known["stick_radius"]))
+        assert same(computed.dissipated_energy, factor * overlap(at, known["stick_radius"]))
         if "table" not in name:
-            assert same(found.dissipated_energy, known[LOSS])
+            assert same(computed.dissipated_energy, known[LOSS])
 
 
 def cycle(name: str, amplitude: float) -> tuple[mpf, mpf]:
     """Loss per cycle of u between -amplitude and amplitude, and the largest force."""
     path = [(DEPTH, u) for u in (0.0, amplitude, -amplitude, amplitude)]
-    found = history(PROFILES[name], path, MATERIAL)
+    computed = history(PROFILES[name], path, MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
-        return found[3].dissipated_energy - found[1].dissipated_energy, found[1].tangential_force
+        return computed[3].dissipated_energy - computed[1].dissipated_energy, computed[
+            1
+        ].tangential_force
 
 
 @pytest.mark.parametrize("rho", [1e-6, 0.3, 1 - 1e-9])
-def test_cycle_of_a_power_law_is_known(rho: float) -> None:
+def test_cycle_of_a_power_law(rho: float) -> None:
     """Mindlin and Deresiewicz for the paraboloid, and the other closed forms."""
-    amplitude = rho * shift(DEPTH)
+    amplitude = rho * full_slip_displacement(DEPTH)
     with mp.workdps(slip.WORK_DIGITS):
         e_star, g_star, mu = mpf(MATERIAL.e_star), mpf(MATERIAL.g_star), mpf(MATERIAL.mu)
         front = mu**2 * e_star**2 / g_star
@@ -211,18 +219,18 @@ def test_cycle_is_four_first_loadings(name: str) -> None:
     if name == "flat-punch":
         return
     for rho in (1e-6, 0.4):
-        amplitude = rho * shift(DEPTH)
+        amplitude = rho * full_slip_displacement(DEPTH)
         with mp.workdps(slip.WORK_DIGITS):
             at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
             known = 4 * slip.solve(at, "tangential_displacement", amplitude).values[LOSS]
-            # A small loss is a third difference of quadratures that have 42 digits.
+            # A small loss is a third difference of quadratures with 42 digits.
             assert abs(cycle(name, amplitude)[0] - known) < PROOF / mpf(rho) ** 3 * known
 
 
 @few
-def test_full_slip_dissipates_friction_times_the_travel(name: str) -> None:
+def test_full_slip_dissipates_friction_times_sliding_distance(name: str) -> None:
     """W = 4 mu F_N u0 - (8 mu^2 E*^2/G*) int (d - g)^2 dx, the integral from the normal energy."""
-    amplitude = 1.7 * shift(DEPTH)
+    amplitude = 1.7 * full_slip_displacement(DEPTH)
     lost, force = cycle(name, amplitude)
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
@@ -236,8 +244,8 @@ def test_full_slip_dissipates_friction_times_the_travel(name: str) -> None:
 
 
 def test_cycle_is_the_area_of_its_curve() -> None:
-    """W = 8 int Phi du - 4 F0 u0 on the sphere, by quadrature of Eqs. (5.19), (5.20)."""
-    amplitude = 0.6 * shift(DEPTH)
+    """W = 8 int Phi du - 4 F0 u0 for the sphere, by quadrature of Eqs. (5.19), (5.20)."""
+    amplitude = 0.6 * full_slip_displacement(DEPTH)
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES["sphere"], "indentation_depth", DEPTH, MATERIAL)
         c = slip.stick_radius(at, "tangential_displacement", mpf(amplitude))
@@ -246,7 +254,7 @@ def test_cycle_is_the_area_of_its_curve() -> None:
 
             def density(x: mpf) -> mpf:
                 virgin = at.mu * at.e_star * (at.n - at.body.force(x))
-                return virgin * at.shift * at.body.dg(x)
+                return virgin * at.full_slip_displacement * at.body.dg(x)
 
             area = mp.quad(density, [c, at.a])
         assert mp.almosteq(lost, 8 * area - 4 * force * mpf(amplitude), mpf(10) ** -30)
@@ -260,25 +268,27 @@ def virgin(at: slip.Setting, u: mpf) -> mpf:
 def test_unloading_is_the_virgin_curve_scaled_by_two() -> None:
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES["sphere"], "indentation_depth", DEPTH, MATERIAL)
-        top, back = 0.8 * shift(DEPTH), 0.3 * shift(DEPTH)
-        found = history(PROFILES["sphere"], [(DEPTH, 0.0), (DEPTH, top), (DEPTH, back)], MATERIAL)
-        assert same(found[1].tangential_force, virgin(at, mpf(top)))
+        top, back = 0.8 * full_slip_displacement(DEPTH), 0.3 * full_slip_displacement(DEPTH)
+        computed = history(
+            PROFILES["sphere"], [(DEPTH, 0.0), (DEPTH, top), (DEPTH, back)], MATERIAL
+        )
+        assert same(computed[1].tangential_force, virgin(at, mpf(top)))
         fall = 2 * virgin(at, (mpf(top) - mpf(back)) / 2)
-        assert same(found[2].tangential_force, found[1].tangential_force - fall)
+        assert same(computed[2].tangential_force, computed[1].tangential_force - fall)
 
 
 @few
 @pytest.mark.parametrize("direction", [1, -1])
-def test_oblique_loading_sticks_and_leaves_its_share_of_friction(name: str, direction: int) -> None:
-    """Slope beta < mu from the first touch on, then Cattaneo and Mindlin with mu -+ beta."""
+def test_oblique_loading_sticks_and_shifts_the_friction_limit(name: str, direction: int) -> None:
+    """Slope beta < mu from first contact on, then Cattaneo and Mindlin with mu -+ beta."""
     beta = 0.5 * MATERIAL.mu
     u = beta * MATERIAL.e_star / MATERIAL.g_star * DEPTH
-    more = direction * 0.2 * shift(DEPTH)
-    found = history(PROFILES[name], [(DEPTH, u), (DEPTH, u + more)], MATERIAL)
+    more = direction * 0.2 * full_slip_displacement(DEPTH)
+    computed = history(PROFILES[name], [(DEPTH, u), (DEPTH, u + more)], MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
-        assert found[0].dissipated_energy == 0
+        assert computed[0].dissipated_energy == 0
         slope = mpf(u) / mpf(DEPTH) * mpf(MATERIAL.g_star) / mpf(MATERIAL.e_star)
-        assert same(found[0].tangential_force, slope * found[0].normal_force)
+        assert same(computed[0].tangential_force, slope * computed[0].normal_force)
         left = mpf(MATERIAL.mu) - direction * slope
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
         at = slip.Setting(
@@ -286,32 +296,34 @@ def test_oblique_loading_sticks_and_leaves_its_share_of_friction(name: str, dire
         )
         moved = abs(mpf(u + more) - mpf(u))
         step = 2 * at.g_star * at.a * moved if at.flat_punch else virgin(at, moved)
-        expected = found[0].tangential_force + direction * step
-        assert same(found[1].tangential_force, expected)
+        expected = computed[0].tangential_force + direction * step
+        assert same(computed[1].tangential_force, expected)
 
 
 @few
 def test_normal_load_at_constant_displacement(name: str) -> None:
-    """Raised, nothing slips; lowered, the force is the first curve's of the lower load."""
-    u = 0.3 * shift(DEPTH)
-    found = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u), (DEPTH, u)], MATERIAL)
+    """Increasing: no slip. Decreasing: the force is that of first loading at the lower normal
+    load.
+    """
+    u = 0.3 * full_slip_displacement(DEPTH)
+    computed = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u), (DEPTH, u)], MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
-        assert same(found[2].tangential_force, found[1].tangential_force)
-        assert found[2].dissipated_energy == found[1].dissipated_energy
-    found = history(PROFILES[name], [(DEPTH, 0.0), (DEPTH, u), (DEPTH / 2, u)], MATERIAL)
+        assert same(computed[2].tangential_force, computed[1].tangential_force)
+        assert computed[2].dissipated_energy == computed[1].dissipated_energy
+    computed = history(PROFILES[name], [(DEPTH, 0.0), (DEPTH, u), (DEPTH / 2, u)], MATERIAL)
     direct = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u)], MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
-        assert same(found[2].tangential_force, direct[1].tangential_force)
+        assert same(computed[2].tangential_force, direct[1].tangential_force)
 
 
 @few
 def test_separation_erases_slip_memory(name: str) -> None:
-    """It touches again where it is, half way of this leg."""
-    u = 0.4 * shift(DEPTH)
-    found = history(PROFILES[name], [(DEPTH, u), (-DEPTH, 2 * u), (DEPTH, 3 * u)], MATERIAL)
+    """The contact is re-established where it is, half-way through this load step."""
+    u = 0.4 * full_slip_displacement(DEPTH)
+    computed = history(PROFILES[name], [(DEPTH, u), (-DEPTH, 2 * u), (DEPTH, 3 * u)], MATERIAL)
     fresh = history(PROFILES[name], [(DEPTH, 3 * u - 2.5 * u)], MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
-        assert found[1].tangential_force == found[1].tangential_energy == 0
-        # The doubles 3 u and 2.5 u are rounded.
+        assert computed[1].tangential_force == computed[1].tangential_energy == 0
+        # 3 u and 2.5 u are rounded doubles.
         exact = fresh[0].tangential_force
-        assert abs(found[2].tangential_force - exact) < mpf(10) ** -15 * exact
+        assert abs(computed[2].tangential_force - exact) < mpf(10) ** -15 * exact

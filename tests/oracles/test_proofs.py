@@ -1,4 +1,4 @@
-"""Closed form = quadrature from f, for every kind, below and above each break, to 35 digits."""
+"""Closed form = quadrature of f', for every kind, below and above each break, to 35 digits."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.long
 
 PROOF = mpf(10) ** -35
-#: Points in units of the break, or of the shape's size where it has none.
+#: Points in units of the break, or of the shape's size if it has none.
 AROUND = (0.01, 0.4, 1 - 1e-6, 1 + 1e-6, 1.07, 2.5, 1e3)
 SMOOTH = (1e-4, 0.4, 0.93)
-#: One family of each kind, and the powers that are hardest on the substitution.
+#: One family of each kind, and the powers that are hardest for the substitution.
 CHOSEN = (
     "hertz", "cone0.3", "sphere", "ellipsoid-flat", "power0.2", "power0.5", "power1.5", "power7.3",
     "power60", "series-4", "series-negative", "rounded-punch", "truncated-cone",
@@ -135,12 +135,12 @@ def elliptic_pressure(b: mpf, big: mpf, a: mpf, r: mpf) -> mpf:
 
 def power_pressure(c: mpf, n: mpf, a: mpf, r: mpf) -> mpf:
     s = mp.sqrt(a**2 - r**2)
-    image = Monomials([(c, n)]).image[0][0]
-    return n * image / mp.pi * a ** (n - 2) * s * mp.hyp2f1(1, 1 - n / 2, 1.5, (s / a) ** 2)
+    coefficient = Monomials([(c, n)]).equivalent_terms[0][0]
+    return n * coefficient / mp.pi * a ** (n - 2) * s * mp.hyp2f1(1, 1 - n / 2, 1.5, (s / a) ** 2)
 
 
 @pytest.mark.parametrize("ratio", [0.03, 0.5, 0.97])
-def test_pressures_known_in_closed_form(ratio: float) -> None:
+def test_closed_form_pressures(ratio: float) -> None:
     with mp.workdps(QUAD_DIGITS):
         a, b, big, t = mpf("1.25"), mpf("0.8"), mpf("1.9"), mpf("0.3")
         r = a * ratio
@@ -156,7 +156,7 @@ def test_pressures_known_in_closed_form(ratio: float) -> None:
 
 @pytest.mark.parametrize("name", CHOSEN)
 def test_pressure_is_the_singular_integral_of_the_equivalent_profile(name: str) -> None:
-    """The same integral without the substitution in s, split at the break, at twice the digits."""
+    """The integral without the substitution in s, split at the break, with twice the digits."""
     with mp.workdps(100):
         shape = shape_of(PROFILES[name])
         a = shape.b * 2 if shape.b > 0 else mpf("0.5")

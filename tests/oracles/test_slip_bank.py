@@ -1,4 +1,4 @@
-"""Consistency of the banks of partial slip: coverage, and a sample computed again."""
+"""Consistency of the banks of partial slip: coverage, and a recomputed sample."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def everything() -> list[bank.Record]:
 def test_every_kind_is_covered_by_every_control() -> None:
     covered = {(r["profile"]["kind"], r["tangential_control"]) for r in everything()}
     expected = {(kind, control) for kind in (*KINDS, "tabulated") for control in CONTROLS}
-    # A flat punch has one stick radius, and it says nothing about the force.
+    # A flat punch has a single stick radius, independent of the force.
     assert covered == expected - {("flat_punch", "stick_radius")}
 
 

@@ -1,4 +1,4 @@
-"""The slip reference against closed forms of the chapter and against the plain integrals."""
+"""Slip reference against closed forms of the chapter and direct quadrature."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.long
 
 PROOF = mpf(10) ** -33
-#: The plain integrals are singular at their ends, where tanh-sinh keeps half of its digits.
-PLAIN_DIGITS = 100
-PLAIN = mpf(10) ** -30
+#: The direct integrals have endpoint singularities, where tanh-sinh keeps half of its digits.
+DIRECT_DIGITS = 100
+DIRECT = mpf(10) ** -30
 MATERIAL = Material(2.1, 1.7, 0.3)
 
 HERTZ: Profile = {"kind": "paraboloid", "radius": 1.3}
@@ -31,7 +31,7 @@ CONE: Profile = {"kind": "cone", "slope": 0.3}
 
 @pytest.fixture(autouse=True)
 def _digits() -> Iterator[None]:
-    """Work at full precision: numbers of a test must not be rounded to fifteen digits."""
+    """Work at full precision: literals of a test must not be rounded to fifteen digits."""
     with mp.workdps(reference.WORK_DIGITS):
         yield
 
@@ -45,7 +45,7 @@ def setting_of(profile: Profile, radius: float) -> Setting:
 
 
 def chosen(name: str) -> Setting:
-    """Return a contact that reaches beyond the break, if there is one."""
+    """Return a contact that extends beyond the break, if there is one."""
     profile = PROFILES[name]
     b = float(reference.body_of(profile).b)
     return setting_of(profile, 1.7 * b if b else 0.5)
@@ -68,7 +68,7 @@ def test_stick_radius_of_a_power(profile: Profile, rho: str) -> None:
     """Eqs. (5.16), (5.31), (5.32), (5.49), with the increments by expm1."""
     at = setting_of(profile, 0.7)
     with mp.workdps(60):
-        n = at.body.shape.image[0][1]
+        n = at.body.shape.equivalent_terms[0][1]
         power = mp.log1p(-mpf(rho)) / (n + 1)
     force = mpf(rho) * at.mu * at.e_star * at.n
     found = reference.values(at, reference.stick_radius(at, "tangential_force", force))
@@ -92,7 +92,7 @@ def test_controls_agree(name: str, rho: str) -> None:
 
 
 def test_energy_of_the_paraboloid_and_the_cone() -> None:
-    """A quarter of the cycle's: the notes' factored forms."""
+    """A quarter of the cycle's loss, by the factored forms of the notes."""
     for c in ("1e-3", "0.4", "0.6999999"):
         at, other = setting_of(HERTZ, 0.7), setting_of(CONE, 0.7)
         with mp.workdps(60):
@@ -105,14 +105,14 @@ def test_energy_of_the_paraboloid_and_the_cone() -> None:
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_energy_is_the_plain_integral(name: str) -> None:
+def test_energy_equals_direct_quadrature(name: str) -> None:
     at = chosen(name)
     for c in sticks(at):
         with mp.workdps(50):
             body, base = at.body, at.body.g(c)
             knots = [c, body.b, at.a] if c < body.b else [c, at.a]
             plain = mp.quad(lambda x: (at.depth - body.g(x)) * (body.g(x) - base), knots)  # noqa: B023 -- used up
-            assert same(reference.overlap(at, c), plain, PLAIN)
+            assert same(reference.overlap(at, c), plain, DIRECT)
 
 
 @pytest.mark.parametrize("name", ["power0.2", "power60", "series-4"])
@@ -124,8 +124,8 @@ def test_energy_of_monomials_is_free_of_cancellation(name: str) -> None:
             base, width = at.body.g(c), at.a - c
 
             def density(u: mpf) -> mpf:
-                image = at.body.g(c + width * u)  # noqa: B023 -- used up within the round
-                return (at.depth - image) * (image - base) / at.depth**2  # noqa: B023 -- as above
+                g = at.body.g(c + width * u)  # noqa: B023 -- used up within the round
+                return (at.depth - g) * (g - base) / at.depth**2  # noqa: B023 -- as above
 
             plain = width * at.depth**2 * at.body.integrate(density, mpf(0), mpf(1))
             assert same(found, plain)
@@ -168,7 +168,7 @@ def test_fields_of_the_paraboloid() -> None:
 
 
 def test_fields_of_the_cone() -> None:
-    """Eqs. (5.53) and (5.54); the slip's form is the notes'."""
+    """Eqs. (5.53) and (5.54); the form of the slip is that of the notes."""
     at, c = setting_of(CONE, 0.7), mpf("0.4")
     with mp.workdps(60):
         a, t = at.a, mpf(CONE["slope"])
@@ -183,35 +183,35 @@ def test_fields_of_the_cone() -> None:
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_traction_is_the_plain_integral(name: str) -> None:
+def test_traction_equals_direct_quadrature(name: str) -> None:
     at = chosen(name)
     for c in sticks(at):
         for r in (c / 3, (c + at.a) / 2):
-            with mp.workdps(PLAIN_DIGITS):
+            with mp.workdps(DIRECT_DIGITS):
                 low, b = max(r, c), at.body.b
                 knots = [low, b, at.a] if low < b < at.a else [low, at.a]
                 plain = mp.quad(lambda x, r=r: at.body.dg(x) / mp.sqrt((x - r) * (x + r)), knots)
                 plain *= at.e_star / mp.pi
-                assert same(reference.traction(at, c, r), plain, PLAIN)
+                assert same(reference.traction(at, c, r), plain, DIRECT)
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_slip_is_the_plain_integral(name: str) -> None:
+def test_slip_equals_direct_quadrature(name: str) -> None:
     at = chosen(name)
     for c in sticks(at):
         r = (c + 2 * at.a) / 3
-        with mp.workdps(PLAIN_DIGITS):
+        with mp.workdps(DIRECT_DIGITS):
             base, b = at.body.g(c), at.body.b
             knots = [c, b, r] if c < b < r else [c, r]
             plain = mp.quad(
                 lambda x, r=r, base=base: (at.body.g(x) - base) / mp.sqrt((r - x) * (r + x)), knots
             )
-            assert same(reference.slip(at, c, r), -at.shift * 2 / mp.pi * plain, PLAIN)
+            assert same(reference.slip(at, c, r), -at.shift * 2 / mp.pi * plain, DIRECT)
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_slip_of_the_whole_contact_is_the_shape(name: str) -> None:
-    """With c = 0 the transform of g is f again (Eq. 5.75)."""
+def test_slip_with_zero_stick_radius_is_the_shape(name: str) -> None:
+    """For c = 0 the inverse transform of g is f (Eq. 5.75)."""
     at = chosen(name)
     r = at.a * mpf("0.9")
     with mp.workdps(50):
@@ -219,13 +219,13 @@ def test_slip_of_the_whole_contact_is_the_shape(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_displacement_outside_is_the_plain_integral(name: str) -> None:
+def test_displacement_outside_equals_direct_quadrature(name: str) -> None:
     at = chosen(name)
     for r in (at.a * mpf("1.1"), at.a * 50):
-        with mp.workdps(PLAIN_DIGITS):
+        with mp.workdps(DIRECT_DIGITS):
             b = at.body.b
             knots = [mpf(0), b, at.a] if b else [mpf(0), at.a]
             plain = mp.quad(lambda x, r=r: at.body.dg(x) * mp.asin(x / r), knots) * 2 / mp.pi
-            assert same(reference.displacement(at, r), plain, PLAIN)
+            assert same(reference.displacement(at, r), plain, DIRECT)
         far = reference.displacement(at, at.a * mpf(10) ** 20)
-        assert same(far, at.n / (mp.pi * at.a * mpf(10) ** 20), PLAIN)
+        assert same(far, at.n / (mp.pi * at.a * mpf(10) ** 20), DIRECT)

@@ -1,4 +1,4 @@
-"""The bank of wear limits checks itself: ids, sources, coverage, and a sample computed again."""
+"""Consistency of the bank of wear limits: ids, sources, coverage, and a recomputed sample."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wear reference against the book's own forms and against the plain integrals."""
+"""Wear reference against the book's equations and direct quadrature."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.long
 
 PROOF = mpf(10) ** -33
-#: The plain integrals are singular at their ends, where tanh-sinh keeps half of its digits.
-PLAIN = mpf(10) ** -30
+#: The direct integrals have endpoint singularities, where tanh-sinh keeps half of its digits.
+DIRECT = mpf(10) ** -30
 MATERIAL = Material(2.1, 1.7, 0.3)
 SOME = [name for name in CHOSEN if PROFILES[name]["kind"] != "flat_punch"]
 DEPTH, DISPLACEMENT = "indentation_depth", "tangential_displacement"
@@ -29,7 +29,7 @@ DEPTH, DISPLACEMENT = "indentation_depth", "tangential_displacement"
 
 @pytest.fixture(autouse=True)
 def _digits() -> Iterator[None]:
-    """What a test writes down itself must not be rounded to fifteen digits."""
+    """Literals of a test must not be rounded to fifteen digits."""
     with mp.workdps(WORK_DIGITS):
         yield
 
@@ -39,7 +39,7 @@ def same(left: mpf, right: mpf, bound: mpf = PROOF) -> bool:
 
 
 def chosen(name: str) -> Limit:
-    """Half of the depth is left at the stick edge; the contact reaches beyond any break."""
+    """Half of the depth remains at the stick edge; the contact extends beyond any break."""
     profile = PROFILES[name]
     at = reference.setting(profile, "contact_radius", 1.0, MATERIAL)
     b = at.body.b
@@ -65,34 +65,34 @@ def test_equation_5_83(name: str) -> None:
         for panel in body.panels(body.b if body.blunt else mpf(0), c):
             inside += body.integrate(
                 lambda s, panel=panel, r=r: (
-                    panel.image(s) * panel.ratio(s) / mp.sqrt(r**2 - panel.x(s) ** 2)
+                    panel.equivalent_profile(s) * panel.ratio(s) / mp.sqrt(r**2 - panel.x(s) ** 2)
                 ),
                 panel.s(panel.low),
                 panel.s(panel.high),
             )
         book = 2 / mp.pi * (inside + limit.depth * mp.acos(c / r))
-        assert same(reference.field(limit, "limiting_profile", r), book, PLAIN)
+        assert same(reference.field(limit, "limiting_profile", r), book, DIRECT)
 
 
 @pytest.mark.parametrize("name", SOME)
-def test_worn_shape_meets_the_initial_one_by_equation_5_88(name: str) -> None:
+def test_worn_profile_meets_the_initial_one_by_equation_5_88(name: str) -> None:
     limit = chosen(name)
     edge = limit.c + limit.width
     near = limit.width * mpf(10) ** -30
     before = reference.worn_depth(limit, edge - near)
     assert 0 < before < limit.step * mpf(10) ** -28
-    # The bracket of the root: beyond the contact's edge, before f has the depth's height.
+    # Bracket of the root: beyond the contact edge, where f is still below the depth.
     assert limit.at.a < edge
     assert limit.at.body.f(edge) < limit.depth
 
 
 @pytest.mark.parametrize("name", ["paraboloid", "cone", "rounded_punch"])
-def test_the_volume_is_that_under_the_worn_depth(name: str) -> None:
+def test_worn_volume_is_the_integral_of_the_worn_depth(name: str) -> None:
     chosen_name = next(n for n in SOME if PROFILES[n]["kind"] == name)
     limit = chosen(chosen_name)
     c, width = limit.c, limit.width
     with mp.workdps(25):
-        # r = c + width u^2: the worn depth starts like u.
+        # r = c + width u^2: the worn depth starts linearly in u.
         total = mp.quad(
             lambda u: (
                 reference.worn_depth(limit, c + width * u**2) * (c + width * u**2) * 2 * width * u
@@ -124,8 +124,8 @@ def test_equation_5_90() -> None:
     assert same(book, force)
 
 
-def test_the_largest_stick_zone_of_a_held_depth_and_force() -> None:
-    """c (d - g(c)) = F_x/(2 mu E*) is a cubic for the paraboloid: its middle root."""
+def test_largest_stick_zone_at_constant_depth_and_force() -> None:
+    """c (d - g(c)) = F_x/(2 mu E*) is a cubic for the paraboloid; the limit is its middle root."""
     profile = {"kind": "paraboloid", "radius": 1.3}
     force, d = mpf(0.05), mpf(0.4)
     limit = reference.solve(profile, DEPTH, d, MATERIAL, "tangential_force", force)

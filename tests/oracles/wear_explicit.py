@@ -1,13 +1,14 @@
-"""Fretting wear cycle by cycle, the plain way: an explicit scheme on a uniform grid of radii.
+"""Fretting wear cycle by cycle: an explicit scheme on a uniform grid of radii.
 
-It shares nothing with the product: no substitution, no moving coordinate, no implicit step. All
-fields live on one grid r_i = i dr; f and q are straight between its points, for which each
-integral of the method is elementary. What is straight between points is first order where a
-square root starts, so the scheme is good to about dr/a of the depth.
+The scheme is independent of the product: no substitution, no moving coordinate, no implicit step.
+All fields live on one grid r_i = i dr; f and q are linear between its points, so that each integral
+of the method is elementary. Linear interpolation is first order at a square root, so the error is
+about dr/a of the depth.
 
-Per cycle: f -> g -> depth and stick level from what is held -> p and slip -> f += K mu p 4|s|.
-A wavy profile is answered by a pressure E* k/2 times its height, so the step is stable only while
-4 K mu S_max E* pi/(2 dr) stays below 2; within that bound several cycles are taken at once.
+Per cycle: f -> g -> depth and stick level from the constant loads -> p and slip -> f += K mu p
+4|s|. A wavy profile of wavenumber k causes a pressure of E* k/2 times its height, so the step is
+stable only while 4 K mu S_max E* pi/(2 dr) stays below 2; several cycles are merged within that
+bound.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Held:
-    """What is held over the cycles: exactly one of each pair [length or force]."""
+class Controls:
+    """Quantities held constant over the cycles: exactly one of each pair [length or force]."""
 
     depth: float | None = None
     normal_force: float | None = None
@@ -35,7 +36,7 @@ class Held:
 
 @dataclass
 class State:
-    """The scene after `cycles`; `dissipated` is the sum of the cycles' friction work."""
+    """State after `cycles`; `dissipated` is the accumulated friction work."""
 
     cycles: float
     profile: Array
@@ -62,15 +63,15 @@ class Scene:
         x = r[1:, None]
         part = np.arcsin(np.minimum(high / x, 1.0)) - np.arcsin(np.minimum(low / x, 1.0))
         self._forward = x * part
-        # p(r) = -(1/pi) sum of q'_k [ln(x + sqrt(x^2 - r^2))] over each piece above r; at the
-        # axis, where the logarithm is infinite for a tip, half a step outside.
+        # p(r) = -(1/pi) sum of q'_k [ln(x + sqrt(x^2 - r^2))] over each piece above r; on the axis,
+        # where the logarithm is infinite for a tip, evaluated half a step off.
         at = np.maximum(r, self.dr / 2)[:, None]
         log_high, log_low = (
             np.log(np.maximum(end, at) + np.sqrt(np.maximum(end, at) ** 2 - at**2))
             for end in (high, low)
         )
         self._stress = -(log_high - log_low) / np.pi
-        # s(r) = (2/pi) int u/sqrt(r^2 - x^2) dx with u straight on each piece.
+        # s(r) = (2/pi) int u/sqrt(r^2 - x^2) dx with u linear on each piece.
         angle = np.arcsin(np.minimum(high / x, 1.0)) - np.arcsin(np.minimum(low / x, 1.0))
         root = np.sqrt(np.maximum(x**2 - low**2, 0.0)) - np.sqrt(np.maximum(x**2 - high**2, 0.0))
         slope_part = (root - low * angle) / self.dr
@@ -85,16 +86,16 @@ class Scene:
 
     def run(
         self,
-        held: Held,
+        controls: Controls,
         cycles: list[float],
         safety: float = 0.4,
         longest: float = float("inf"),
     ) -> list[State]:
-        """The scene at each of the ascending numbers of cycles, `longest` cycles to a step."""
+        """States at ascending numbers of cycles, with at most `longest` cycles per step."""
         f, count, dissipated, states = self.f0.copy(), 0.0, 0.0, []
         for target in cycles:
             while True:
-                state, slip = self._look(f, held, count, dissipated)
+                state, slip = self._state(f, controls, count, dissipated)
                 if count >= target:
                     states.append(state)
                     break
@@ -115,20 +116,22 @@ class Scene:
     def _over_area(self, values: Array) -> float:
         return float(2 * np.pi * np.sum(values * self.r) * self.dr)
 
-    def _look(self, f: Array, held: Held, count: float, dissipated: float) -> tuple[State, Array]:
+    def _state(
+        self, f: Array, controls: Controls, count: float, dissipated: float
+    ) -> tuple[State, Array]:
         g = self.equivalent(f)
-        depth = held.depth
+        depth = controls.depth
         if depth is None:
-            assert held.normal_force is not None
-            depth = self._root(lambda d: self._force(g, d) - held.normal_force, g)
+            assert controls.normal_force is not None
+            depth = self._root(lambda d: self._force(g, d) - controls.normal_force, g)
         load = np.maximum(depth - g, 0.0)
-        # The first point out of contact closes it.
+        # The contact ends at the first point out of contact.
         load[np.argmax(load <= 0) :] = 0.0
-        if held.displacement is not None:
-            level = self.g_star * held.displacement / (self.friction * self.e_star)
+        if controls.displacement is not None:
+            level = self.g_star * controls.displacement / (self.friction * self.e_star)
         else:
-            assert held.tangential_force is not None
-            wanted = held.tangential_force / (2 * self.friction * self.e_star)
+            assert controls.tangential_force is not None
+            wanted = controls.tangential_force / (2 * self.friction * self.e_star)
             level = self._root(lambda v: self._sum(np.minimum(load, v)) - wanted, g)
         ahead = np.maximum(level - load, 0.0)
         ahead[load <= 0] = level
@@ -156,7 +159,7 @@ class Scene:
         return state, slip
 
     def _sum(self, load: Array) -> float:
-        """int load dx by trapezia."""
+        """int load dx by the trapezoidal rule."""
         return float((load.sum() - load[0] / 2) * self.dr)
 
     def _force(self, g: Array, depth: float) -> float:
@@ -164,7 +167,7 @@ class Scene:
 
     @staticmethod
     def _root(function: object, g: Array) -> float:
-        """Bisection between 0 and the grid's last depth."""
+        """Bisection between 0 and the last depth of the grid."""
         low, high = 0.0, float(g[-1])
         for _ in range(60):
             middle = (low + high) / 2

@@ -1,6 +1,6 @@
-"""Write the bank of wear limits: ``python -m tests.oracles.wear_generate``.
+"""Generate the bank of wear limits: ``python -m tests.oracles.wear_generate``.
 
-The same input gives the same bytes. Two processes share the work; the order is that of the scenes.
+The output is byte-reproducible. Two processes share the work; the order is that of the cases.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from tests.oracles.wear_reference import FIELDS, OUTPUTS, Limit
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: c/a, or its place between the flat and a; every second one in turn.
+#: c/a, or its position between the flat and a; every second one in turn.
 PLACES = (1e-3, 0.1, 0.5, 0.9, 1 - 1e-3, 1 - 1e-6)
 PAIRS = (
     ("indentation_depth", "tangential_displacement"),
@@ -37,9 +37,9 @@ PAIRS = (
 )
 SHORT = {"indentation_depth": "d", "normal_force": "F"}
 AMPLITUDE = {"tangential_displacement": "u", "tangential_force": "Fx"}
-#: Flats that hold nearly all of the contact.
+#: Flats that make up nearly all of the contact.
 CLOSE = ("b(1+1e-3)", "b(1+1e-6)")
-#: The equations that a pair stands for; they take turns.
+#: Equations that apply to a pair, used in turn.
 EQUATIONS = {
     PAIRS[0]: ("(5.80)", "(5.82)", "(5.83)"),
     PAIRS[1]: ("(5.82)", "(5.83)"),
@@ -54,7 +54,7 @@ OF_PARABOLOID = {
 }
 #: Tables with fewer points are short; those with more are left out.
 SHORT_TABLE, MOST_POINTS, THIN = 10, 70, 1 - 1e-3
-#: Beyond it two neighbouring doubles as amplitudes have nothing in common.
+#: Beyond it, adjacent doubles as amplitudes give unrelated results.
 MOST_CONDITION = 1e11
 WIDE, NARROW = mpf("0.5"), mpf("1e-6")
 
@@ -63,7 +63,7 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True)
 class Task:
-    """One record to be."""
+    """One record to compute."""
 
     name: str
     equation: str
@@ -87,7 +87,7 @@ def tasks() -> Iterator[Task]:
                 continue
             for pair in PAIRS:
                 turn += 1
-                # Every pair passes every scale: five scales, four pairs.
+                # Every pair is used at every scale: five scales, four pairs.
                 wanted = names[turn % len(names)]
                 for scale in (wanted, "m-GPa"):
                     profile = profile_at(family, scale)
@@ -103,7 +103,7 @@ def tasks() -> Iterator[Task]:
 
 
 def _table_tasks(turn: int) -> Iterator[Task]:
-    """Small tables by every pair; long ones, with many panels, by a narrow worn annulus."""
+    """Small tables for every pair; long ones, with many panels, for a narrow worn annulus."""
     for scene in table_scenes():
         points = len(scene.profile["r"])
         if points > MOST_POINTS:
@@ -135,8 +135,8 @@ def _task(
     return Task(name, equation, tags, profile, material, pair[0], load, pair[1], places)
 
 
-def meant(at: Setting, task: Task, place: float) -> float | None:
-    """The double to ask with for a stick edge at this place; None where there is no such limit."""
+def prescribed_value(at: Setting, task: Task, place: float) -> float | None:
+    """Amplitude to prescribe for a stick edge at this position; None if there is no such limit."""
     body = at.body
     with mp.workdps(WORK_DIGITS):
         low = body.b if body.blunt else mpf(0)
@@ -150,13 +150,13 @@ def meant(at: Setting, task: Task, place: float) -> float | None:
                 return float(at.mu * at.e_star * lost)
             step = lost / (2 * c)
             return float(at.shift * step) if step < at.depth * WIDE * 2 else None
-        # Only on the branch that is reached from outside: c (d - g) falls with c.
+        # Only the branch that is reached from outside: c (d - g) decreases with c.
         share = c * step
         return float(2 * at.mu * at.e_star * share) if step < c * body.dg(c) else None
 
 
-def nudged(task: Task, given: float) -> tuple[Limit, ...]:
-    """The limit, and those at a load and an amplitude that differ in a far digit."""
+def perturbed(task: Task, given: float) -> tuple[Limit, ...]:
+    """The limit, and the limits for a perturbed load and a perturbed amplitude."""
     with mp.workdps(WORK_DIGITS):
         far = 1 + mpf(10) ** -reference.NUDGE_DIGITS
         exact = mpf(task.load), mpf(given)
@@ -186,11 +186,11 @@ def record_of(task: Task) -> Record | None:
     given: list[float] = []
     fields: list[Record] = []
     for place in task.places:
-        amplitude = meant(at, task, place)
+        amplitude = prescribed_value(at, task, place)
         if amplitude is None or amplitude in given or not representable(amplitude):
             continue
         try:
-            limits = nudged(task, amplitude)
+            limits = perturbed(task, amplitude)
         except ArithmeticError as error:
             if "profile's end" in str(error) or "no stick zone" in str(error):
                 continue
@@ -228,14 +228,14 @@ def record_of(task: Task) -> Record | None:
 
 
 def field_rows(limits: tuple[Limit, ...]) -> Record:
-    """All fields at doubles from the axis to beyond the worn annulus, near both of its edges."""
+    """All fields from the axis to beyond the worn annulus, with radii near both of its edges."""
     first = limits[0]
     c, width, end = first.c, first.width, reference._end(first.at)
     inside = [c * q for q in (mpf("1e-9"), mpf("1e-3"), WIDE, 1 - mpf("1e-3"), 1 - mpf("1e-8"))]
     parts = (NARROW, mpf("1e-3"), WIDE, 1 - mpf("1e-3"), 1 - NARROW)
     radii = [float(r) for r in (*inside, *(c + width * q for q in parts), (c + width) * 3)]
     b = first.at.body.b
-    # No nearer to an edge than a double can tell.
+    # No closer to an edge than the resolution of a double.
     edges = [edge for edge in (b, c, c + width) if edge]
     apart = [r for r in radii if all(abs(r - edge) > edge * 1e-13 for edge in edges)]
     kept = sorted({r for r in apart if mpf(r) <= end})
@@ -259,7 +259,7 @@ def field_rows(limits: tuple[Limit, ...]) -> Record:
 
 
 def _own(limit: Limit, name: str, r: mpf, value: mpf) -> mpf:
-    """What the rounding of c itself does: c d/dc at an exact radius."""
+    """Effect of the rounding error of c: c d/dc at an exact radius."""
     c, step, at = limit.c, limit.step, limit.at
     if value == 0 or mp.isinf(value):
         return mpf(0)

@@ -1,10 +1,10 @@
-"""Reference answers for the limit of fretting wear, Eqs. (5.80)-(5.90), for any shape.
+"""Reference results for the limit of fretting wear, Eqs. (5.80)-(5.90), for any shape.
 
-Everything is written from the limiting image of Eq. (5.82), g = g_0 for x < c and g = d for
-c < x < r_out: the force is its integral, the shape its back transform, the outer radius the root at
-which that transform meets the first shape, the pressure the transform of its slope with the jump at
-c. Panels, digits and quadrature are those of partial slip; condition numbers are differences of the
-answers themselves, taken at inputs that differ in the 30th digit.
+Everything follows from the limiting equivalent profile of Eq. (5.82), g = g_0 for x < c and g = d
+for c < x < r_out. The force is its integral, the shape its inverse transform, and the outer radius
+the root at which that transform meets the initial shape. The pressure is the transform of its slope
+with the jump at c. Panels, digits and quadrature are those of partial slip; condition numbers are
+difference quotients for inputs that differ in the 30th digit.
 """
 
 from __future__ import annotations
@@ -62,19 +62,19 @@ class Limit:
 
 
 def stick_edge(at: Setting, control: str, name: str, given: mpf) -> tuple[mpf, mpf]:
-    """c and d - g(c) for what is held (`control`) and what oscillates (`name`)."""
+    """c and d - g(c) from the constant load (`control`) and the oscillating one (`name`)."""
     body = at.body
     rest = {
         "tangential_displacement": at.depth - given / at.shift,
         "tangential_force": at.n - given / (at.mu * at.e_star),
     }
     if rest[name] <= 0:
-        raise ArithmeticError("no stick zone is left")
+        raise ArithmeticError("no stick zone remains")
     if control == "indentation_depth" and name == "tangential_displacement":
-        # Eq. (5.80): c is where it was.
+        # Eq. (5.80): c keeps its initial value.
         return stick_radius(at, name, given), given / at.shift
     if control == "normal_force" and name == "tangential_force":
-        # F_N(c) = F_N - F_x/mu stays, and all of F_x is carried inside c.
+        # F_N(c) = F_N - F_x/mu is constant, and all of F_x acts inside c.
         c = stick_radius(at, name, given)
         return c, given / (2 * at.mu * at.e_star * c)
     if control == "normal_force":
@@ -96,14 +96,14 @@ def stick_edge(at: Setting, control: str, name: str, given: mpf) -> tuple[mpf, m
 def _largest(body: Body, at: Setting, share: mpf) -> mpf:
     """The largest c < a with c (d - g(c)) = share.
 
-    From above, c -> g^-1(d - share/c) falls towards it and never past it: c (d - g) at the root is
-    at most that with any larger factor c. Then Newton's method from so near.
+    Starting from above, c -> g^-1(d - share/c) decreases monotonically towards the root: c (d - g)
+    at the root is at most its value with any larger factor c. Newton's method follows close to it.
     """
     c = at.a
     for _ in range(400):
         goal = at.depth - share / c
         if goal <= 0:
-            raise ArithmeticError("no stick zone is left")
+            raise ArithmeticError("no stick zone remains")
         lower = invert(body, body.g, body.dg, goal, at.a)
         near = (c - lower) < c * mpf(10) ** -6
         c = lower
@@ -115,7 +115,7 @@ def _largest(body: Body, at: Setting, share: mpf) -> mpf:
         done, c = abs(moved - c) < c * mpf(10) ** -SIGN_DIGITS, moved
         if done:
             return c
-    raise ArithmeticError("the largest stick radius did not settle")
+    raise ArithmeticError("the largest stick radius did not converge")
 
 
 def _parts(at: Setting, c: mpf, r: mpf, density: Callable[[mpf], mpf], *, root: int) -> mpf:
@@ -129,7 +129,7 @@ def _parts(at: Setting, c: mpf, r: mpf, density: Callable[[mpf], mpf], *, root: 
         def turned(angle: mpf, panel: Panel = panel, reach: mpf = reach) -> mpf:
             s = reach * mp.sin(angle)
             weight = (reach * mp.cos(angle)) ** (root + 1)
-            return density(panel.image(s)) * panel.ratio(s) * weight
+            return density(panel.equivalent_profile(s)) * panel.ratio(s) * weight
 
         total += at.body.integrate(turned, begin, end)
     return total
@@ -140,7 +140,7 @@ def _zero(_x: mpf, _s: mpf) -> mpf:
 
 
 def _whole(body: Body, low: mpf, high: mpf) -> Iterator[Panel]:
-    """All panels, the flat of a blunt shape included: there g = 0, and the integrand is not."""
+    """All panels, including the flat of a blunt shape, where g = 0 and the integrand is nonzero."""
     if body.blunt and low < body.b:
         yield Panel(mpf(0), low, min(body.b, high), _zero, _zero)
         low = body.b
@@ -157,23 +157,23 @@ def worn_depth(limit: Limit, r: mpf) -> mpf:
 
 
 def _worn(at: Setting, c: mpf, step: mpf, r: mpf) -> mpf:
-    """As step - (g - g(c)): the first term is elementary, the second vanishes at c."""
+    """In the form step - (g - g(c)): the first term is elementary, the second vanishes at c."""
     base = at.body.g(c)
-    rises = _parts(at, c, r, lambda image: image - base, root=-1)
+    rises = _parts(at, c, r, lambda equivalent_profile: equivalent_profile - base, root=-1)
     return 2 / mp.pi * (step * mp.acos(c / r) - rises)
 
 
 def _volume(at: Setting, c: mpf, step: mpf, r: mpf) -> mpf:
-    """4 int_c^r (d - g) sqrt(r^2 - x^2) dx: 2 pi int (worn depth) r dr, the order exchanged."""
+    """4 int_c^r (d - g) sqrt(r^2 - x^2) dx = 2 pi int (worn depth) r dr, in exchanged order."""
     base, angle = at.body.g(c), mp.acos(c / r)
-    rises = _parts(at, c, r, lambda image: image - base, root=1)
+    rises = _parts(at, c, r, lambda equivalent_profile: equivalent_profile - base, root=1)
     return 4 * (step * (r**2 * angle - c * mp.sqrt((r - c) * (r + c))) / 2 - rises)
 
 
-def rim_width(at: Setting, c: mpf, step: mpf, near: mpf | None = None) -> mpf:
-    """Where the worn depth vanishes again, by a bracketed secant method in log(width).
+def worn_annulus_width(at: Setting, c: mpf, step: mpf, near: mpf | None = None) -> mpf:
+    """Width at which the worn depth returns to zero, by a bracketed secant method in log(width).
 
-    `near` is a width known to be within `CLOSE` of it.
+    `near` is a known width within `CLOSE` of it.
     """
 
     def worn(w: mpf) -> mpf:
@@ -206,7 +206,7 @@ def _end(at: Setting) -> mpf:
 
 
 def _illinois(fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
-    """The root of fn, falling through zero, to 40 digits: those of the quadrature rule."""
+    """Root of a decreasing fn to 40 digits, the precision of the quadrature rule."""
     at_low, at_high = fn(low), fn(high)
     side = 0
     for _ in range(200):
@@ -230,11 +230,10 @@ def solve(profile: Mapping[str, Any], control: str, load: mpf, material: Materia
     with mp.workdps(WORK_DIGITS):
         at = setting(profile, control, load, material)
         c, step = stick_edge(at, control, name, mpf(given))
-        return Limit(at, c, step, rim_width(at, c, step, near))
+        return Limit(at, c, step, worn_annulus_width(at, c, step, near))
 
 
 def answers(limit: Limit) -> dict[str, mpf]:
-    """Every answer, from the limiting image alone."""
     with mp.workdps(WORK_DIGITS):
         at, c, r = limit.at, limit.c, limit.c + limit.width
         found = (
@@ -251,7 +250,7 @@ def answers(limit: Limit) -> dict[str, mpf]:
 
 
 def pressure(limit: Limit, r: mpf) -> mpf:
-    """(E*/pi) [int_r^c g'/sqrt(x^2 - r^2) dx + (d - g(c))/sqrt(c^2 - r^2)]: Eq. (5.79) of q."""
+    """(E*/pi) [int_r^c g'/sqrt(x^2 - r^2) dx + (d - g(c))/sqrt(c^2 - r^2)]: Eq. (5.79) for q."""
     with mp.workdps(WORK_DIGITS):
         at, c = limit.at, limit.c
         if r >= c:

@@ -1,7 +1,7 @@
-"""Sweeps towards the places where methods fail: our error, and that of the textbook's formula.
+"""Convergence towards limits where methods fail: error of this project and of a naive formula.
 
-The test modules of this folder name in `CURVES` the functions that make them; their tests hold ours
-against the bound, and the charts draw the same curves with the naive formula's beside them.
+Each test module of this package lists curves in `CURVES`. The tests compare the project's error
+with a bound; the charts draw the curves beside those of the naive formulas.
 """
 
 from __future__ import annotations
@@ -22,52 +22,52 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: What the project promises of closed forms, and of quadrature asked for `RTOL`.
+#: Relative error limits of closed forms, and requested tolerance of quadrature.
 CLOSED = 1e-13
 RTOL = 1e-13
-#: An input is a double that stands for its neighbourhood: per unit of condition number.
+#: Allowance per unit of condition number: each input carries the rounding error of a double.
 ROUNDING = 8 * EPS
-FEWEST = 30
-#: Digits of the references: closed forms lose some thirty of them at the far ends.
+MIN_POINTS = 30
+#: Digits of the reference values: closed forms lose about thirty at the far ends.
 DIGITS = 60
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Relative errors over the distance from a limit."""
+    """Relative errors as a function of the distance from a limit."""
 
     name: str
     title: str
     distance: str
-    """What the distance is, as the label of its axis."""
+    """Axis label of the distance."""
     naive_formula: str
     distances: Array
     ours: Array
     naive: Array
-    """Infinite where the naive formula fails or gives no number."""
+    """Infinite where the naive formula fails or is not finite."""
     bound: Array
 
     def holds(self) -> None:
-        """Assert that the sweep is one, and that our error is within the bound everywhere."""
-        assert self.distances.size >= FEWEST
+        """Assert that the project's error is within the bound at every distance."""
+        assert self.distances.size >= MIN_POINTS
         assert self.ours.shape == self.naive.shape == self.bound.shape == self.distances.shape
         beyond = ~(self.ours <= self.bound)
         assert not beyond.any(), list(
             zip(self.distances[beyond], self.ours[beyond], self.bound[beyond], strict=True)
         )
 
-    def naive_dies(self, error: float) -> None:
-        """Assert that the naive formula does reach such an error: else it would be good enough."""
+    def naive_fails(self, error: float) -> None:
+        """Assert that the naive formula reaches this error, so that the case is a hard one."""
         assert np.max(self.naive) >= error
 
 
 def steps(first: float, last: float, count: int = 36) -> Array:
-    """Distances in geometric steps, rounded to doubles."""
+    """Geometrically spaced distances."""
     return np.geomspace(first, last, count)
 
 
 def relative(value: float, exact: mpf) -> float:
-    """Error relative to the exact value; what is no number is infinitely wrong."""
+    """Relative error; infinite if the value is not finite but the exact value is."""
     value = float(value)
     if isinf(exact):
         return 0.0 if value == float(exact) else float("inf")
@@ -79,12 +79,11 @@ def relative(value: float, exact: mpf) -> float:
 
 
 def errors(values: Iterable[float], exact: Iterable[mpf]) -> Array:
-    """Relative errors of many values."""
     return np.array([relative(value, truth) for value, truth in zip(values, exact, strict=True)])
 
 
 def references(formula: Callable[..., mpf], *arguments: Iterable[float]) -> list[mpf]:
-    """The formula of the exact doubles, at `DIGITS` digits."""
+    """Evaluate the formula for the exact doubles, with `DIGITS` digits."""
     with mp.workdps(DIGITS):
         return [+formula(*map(mpf, row)) for row in zip(*map(_row, arguments), strict=True)]
 
@@ -94,7 +93,7 @@ def _row(values: Iterable[float]) -> list[float]:
 
 
 def attempt(formula: Callable[..., Any], *arguments: Iterable[float]) -> Array:
-    """A naive formula over the rows; NaN where it raises."""
+    """Evaluate a naive formula row by row; NaN where it raises."""
     return np.array([_one(formula, row) for row in zip(*map(_row, arguments), strict=True)])
 
 
@@ -108,7 +107,7 @@ def _one(formula: Callable[..., Any], row: tuple[float, ...]) -> float:
 
 
 def plain_quad(density: Callable[[float], float], low: float, high: float) -> float:
-    """The library's adaptive rule as it comes, no substitution and no break declared."""
+    """Adaptive quadrature by SciPy without substitution or break points."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", IntegrationWarning)
         return float(quad(density, low, high, epsabs=0.0, epsrel=1e-12, limit=200)[0])
@@ -120,11 +119,11 @@ def curve(
     distance: str,
     naive_formula: str,
     distances: Array,
-    found: tuple[Iterable[float], Iterable[float], Iterable[mpf]],
+    results: tuple[Iterable[float], Iterable[float], Iterable[mpf]],
     bound: float | Array = CLOSED,
 ) -> Curve:
-    """A curve from our values, the naive ones and the exact ones."""
-    ours, naive, exact = found
+    """Build a curve from the project's, the naive and the exact results."""
+    ours, naive, exact = results
     truth = list(exact)
     return Curve(
         name,

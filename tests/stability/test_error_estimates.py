@@ -1,8 +1,7 @@
-"""Every error estimate of the whole bank against the true error: never below, and not far above.
+"""Error estimates of all bank cases: never below the true error, and rarely far above it.
 
-A case is one query; its estimate holds for the worst of its answers, and so does its error. The
-true error is not known better than to half a unit in the last place, so that an estimate is
-measured by no less: an exact answer does not make an estimate of 3e-14 too large by infinity.
+A case is one query. Its estimate and its true error are maxima over its results. True errors are
+resolved to half a unit in the last place only, so smaller values are replaced by that.
 """
 
 from __future__ import annotations
@@ -20,34 +19,34 @@ from tests.core.test_tangential_bank import solved as pushed
 from tests.core.test_wear_limit_bank import solved as worn
 from tests.oracles import bank
 
-#: How far above the true error an estimate may lie, and for which part of the cases.
-FACTOR, PART = 1e4, 0.95
+#: Maximum ratio of estimate to true error, and the fraction of cases that must satisfy it.
+FACTOR, FRACTION = 1e4, 0.95
 FLOOR = EPS / 2
 
 
 class Measured(NamedTuple):
-    """One case: what was estimated, and what was found."""
+    """Error estimate and true error of one case."""
 
     name: str
     estimate: float
     error: float
 
     @property
-    def above(self) -> float:
+    def overestimation(self) -> float:
         return self.estimate / max(self.error, FLOOR)
 
 
-def largest_error(found: Any, expected: dict[str, list[str]]) -> float:
+def largest_error(computed: Any, expected: dict[str, list[str]]) -> float:
     return max(
         relative_error(float(value), truth)
         for name, row in expected.items()
-        for value, truth in zip(np.ravel(getattr(found, name)), row, strict=True)
+        for value, truth in zip(np.ravel(getattr(computed, name)), row, strict=True)
     )
 
 
-def measured(case: dict[str, Any], found: Any, expected: dict[str, Any]) -> Measured:
+def measured(case: dict[str, Any], computed: Any, expected: dict[str, Any]) -> Measured:
     rows = {name: row if isinstance(row, list) else [row] for name, row in expected.items()}
-    return Measured(str(case["id"]), found.error_estimate, largest_error(found, rows))
+    return Measured(str(case["id"]), computed.error_estimate, largest_error(computed, rows))
 
 
 def of_normal() -> list[Measured]:
@@ -68,19 +67,19 @@ def of_wear_limits() -> list[Measured]:
 
 
 def of_paths() -> list[Measured]:
-    """Relative to the largest value on the way, as a history's estimate is meant."""
-    found = []
+    """Relative to the largest value on the load path, as defined for a history's estimate."""
+    computed = []
     for case in bank.load("history_paths"):
         names = ("indentation_depth", "tangential_displacement")
         followed = history.solve(*material(case), **{name: case[name] for name in names})
         errors = misses(case, followed)
-        found.append(Measured(str(case["id"]), followed.error_estimate, max(errors.values())))
-    return found
+        computed.append(Measured(str(case["id"]), followed.error_estimate, max(errors.values())))
+    return computed
 
 
 def of_cycles() -> list[Measured]:
-    """Of a cycle's loss and stiffness, the second of two equal cycles."""
-    found = []
+    """Dissipated energy and stiffness of the second of two identical cycles."""
+    computed = []
     for case in bank.load("history_cycles"):
         estimate = error = 0.0
         for index, amplitude in enumerate(case["given"]):
@@ -90,8 +89,8 @@ def of_cycles() -> list[Measured]:
             for name in ("energy_per_cycle", "secant_stiffness"):
                 found_there = float(getattr(followed, name)[1])
                 error = max(error, relative_error(found_there, case["expected"][name][index]))
-        found.append(Measured(str(case["id"]), estimate, error))
-    return found
+        computed.append(Measured(str(case["id"]), estimate, error))
+    return computed
 
 
 BANKS = {
@@ -114,7 +113,10 @@ def test_no_estimate_is_below_the_true_error(name: str) -> None:
     assert not below, below
 
 
-def test_estimates_are_near_the_true_error() -> None:
+def test_estimates_are_sharp() -> None:
     cases = [case for name in BANKS for case in all_of(name)]
-    far = sorted((case for case in cases if case.above > FACTOR), key=lambda case: -case.above)
-    assert len(far) <= (1 - PART) * len(cases), far[:20]
+    far = sorted(
+        (case for case in cases if case.overestimation > FACTOR),
+        key=lambda case: -case.overestimation,
+    )
+    assert len(far) <= (1 - FRACTION) * len(cases), far[:20]

@@ -1,7 +1,7 @@
-"""Error estimates of partial slip where a body has two very different scales, or hardly one.
+"""Error estimates in partial slip for bodies with two very different length scales.
 
-Far flatter caps, tips that end in steep flanks, edges within a few roundings of a flat: whatever
-control is given, the estimate holds, the loads' own rounding included.
+The bodies have very flat caps, tips with steep flanks, or contact edges within a few rounding
+errors of a flat. The estimate must cover the rounding error of the loads under any control.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from tests.oracles.slip_reference import Material, setting, solve
 
 MU = 0.4
 MATERIAL = Material(1.0, 1.0, MU)
-#: From the first slip to the brink of sliding, as parts of full slip.
-PARTS = (1e-12, 0.3, 1 - 1e-4, 1 - 1e-8, 1 - 1e-12)
+#: Fractions of full slip, from incipient slip to the onset of full slip.
+FRACTIONS = (1e-12, 0.3, 1 - 1e-4, 1 - 1e-8, 1 - 1e-12)
 CAP: dict[str, Any] = {"kind": "capped_paraboloid", "cap_radius": 1.0, "radius": 1.0}
 TIP: dict[str, Any] = {
     "kind": "spherical_tip_cone",
@@ -27,21 +27,21 @@ TIP: dict[str, Any] = {
 }
 PUNCH: dict[str, Any] = {"kind": "rounded_punch", "flat_radius": 1.0, "rounding_radius": 2.0}
 TRUNCATED: dict[str, Any] = {"kind": "truncated_cone", "flat_radius": 1.0, "slope": 0.3}
-SCENES = {
+CASES = {
     "cap 1e8, outside": (CAP | {"tip_radius": 1e8}, 1.5),
     "cap 1e8, next to the edge": (CAP | {"tip_radius": 1e8}, 1 + 1e-14),
     "cap 1e12": (CAP | {"tip_radius": 1e12}, 10.0),
     "steep flank": (TIP, 1 + 1e-14),
-    "rounding of an edge": (PUNCH, 1 + 4.5e-16),
+    "rounded edge": (PUNCH, 1 + 4.5e-16),
     "edge": (PUNCH, 1 + 1e-12),
     "sharp edge": (TRUNCATED, 1 + 1e-14),
 }
 
 
 @pytest.mark.parametrize("control", ["contact_radius", "indentation_depth", "normal_force"])
-@pytest.mark.parametrize("name", SCENES)
-def test_the_estimate_holds(name: str, control: str) -> None:
-    shape, radius = SCENES[name]
+@pytest.mark.parametrize("name", CASES)
+def test_error_within_estimate(name: str, control: str) -> None:
+    shape, radius = CASES[name]
     profile = profile_from(shape)
     load = float(getattr(normal.solve(profile, 1.0, contact_radius=radius), control))
     contact = normal.solve(profile, 1.0, rtol=1e-13, **{control: load})
@@ -51,7 +51,7 @@ def test_the_estimate_holds(name: str, control: str) -> None:
         "tangential_displacement": MU * float(contact.indentation_depth),
     }
     for push, limit in limits.items():
-        for part in PARTS:
+        for part in FRACTIONS:
             found = tangential.solve(contact, 1.0, MU, **{push: limit * part})
             exact = solve(at, push, limit * part, energy=False).values
             for answer, truth in exact.items():

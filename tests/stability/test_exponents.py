@@ -1,4 +1,4 @@
-"""Power laws of small and of large exponents: n -> 0 and n -> infinity."""
+"""Power-law profiles with small and large exponents, n -> 0 and n -> infinity."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tests.stability.curves import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Contact radius, coefficient and a radius of no special value: a^10000 is a double.
+#: Contact radius, coefficient and an arbitrary radius; a^10000 is representable.
 A, C, R = 0.97, 0.7, 0.75
 SMALL, LARGE = steps(0.9, 1e-6), steps(2.0, 2e3)
 
@@ -45,8 +45,8 @@ def contacts(exponents: Array, **load: float) -> list[normal.NormalContact]:
     return [normal.solve(Power(C, float(n)), 1.0, rtol=RTOL, **load) for n in exponents]
 
 
-def place(name: str, exponents: Array) -> tuple[str, Array]:
-    """Small exponents by themselves, large ones as 1/n: the limit is to the left."""
+def distance_from_limit(name: str, exponents: Array) -> tuple[str, Array]:
+    """Distance from the limit: n for small exponents, 1/n for large ones."""
     return ("n", exponents) if name == "small" else ("1/n", 1 / exponents)
 
 
@@ -56,7 +56,7 @@ def force(name: str, exponents: Array) -> Curve:
     def exact(n: mpf) -> mpf:
         return 2 * n / (n + 1) * kappa(n) * mpf(C) * mpf(A) ** (n + 1)
 
-    label, distances = place(name, exponents)
+    label, distances = distance_from_limit(name, exponents)
     return curve(
         f"exponents-force-{name}",
         f"force of r^n, n → {'0' if name == 'small' else '∞'}",
@@ -73,7 +73,7 @@ def force(name: str, exponents: Array) -> Curve:
 
 
 def stick(name: str, exponents: Array) -> Curve:
-    """a - c at a tenth of a thousandth of full slip: 1 - (1 - rho)^(1/(n+1))."""
+    """a - c at 1e-4 of full slip: 1 - (1 - rho)^(1/(n+1))."""
     rho = 1e-4
     found = [
         tangential.solve(one, 1.0, 1.0, tangential_force=rho * float(one.normal_force))
@@ -84,7 +84,7 @@ def stick(name: str, exponents: Array) -> Curve:
     def exact(n: mpf, ratio: mpf) -> mpf:
         return -mpf(A) * mp.expm1(mp.log1p(-ratio) / (n + 1))
 
-    label, distances = place(name, exponents)
+    label, distances = distance_from_limit(name, exponents)
     return curve(
         f"exponents-width-{name}",
         f"slip annulus of r^n, n → {'0' if name == 'small' else '∞'}",
@@ -96,13 +96,13 @@ def stick(name: str, exponents: Array) -> Curve:
             attempt(lambda n, q: A - A * (1 - q) ** (1 / (n + 1)), exponents, given),
             references(exact, exponents, given),
         ),
-        # The force is a product of rounded numbers, and so is the ratio known.
+        # The force, and therefore the ratio, is a product of rounded numbers.
         CLOSED + 4 * ROUNDING,
     )
 
 
 def pressure(name: str, exponents: Array) -> Curve:
-    """p at r = 0.77 a, by the hypergeometric form; the naive rule is Gauss-Chebyshev's."""
+    """p at r = 0.77 a by the hypergeometric form; the naive method is Gauss-Chebyshev."""
 
     def exact(n: mpf) -> mpf:
         a, r = mpf(A), mpf(R)
@@ -118,7 +118,7 @@ def pressure(name: str, exponents: Array) -> Curve:
         values = naive_kappa(n) * n * C * x ** (n - 1) / x
         return float(top / 2 * (weights @ values) / pi)
 
-    label, distances = place(name, exponents)
+    label, distances = distance_from_limit(name, exponents)
     return curve(
         f"exponents-pressure-{name}",
         f"pressure of r^n at r = 0.77 a, n → {'0' if name == 'small' else '∞'}",
@@ -138,7 +138,7 @@ def pressure(name: str, exponents: Array) -> Curve:
 
 
 def slip(name: str, exponents: Array) -> Curve:
-    """Slid as a whole, the surface lags by its own shape, C r^n, at r = 0.77 a and E* = G*."""
+    """Full slip: slip C r^n at r = 0.77 a, for E* = G*."""
     pushed = [
         tangential.solve(one, 1.0, 1.0, tangential_displacement=float(one.indentation_depth))
         for one in contacts(exponents, contact_radius=A)
@@ -150,12 +150,12 @@ def slip(name: str, exponents: Array) -> Curve:
 
         return 2 / pi * plain_quad(density, 0.0, R)
 
-    label, distances = place(name, exponents)
+    label, distances = distance_from_limit(name, exponents)
     return curve(
         f"exponents-slip-{name}",
-        f"slip of r^n as a whole at r = 0.77 a, n → {'0' if name == 'small' else '∞'}",
+        f"slip of r^n in full slip at r = 0.77 a, n → {'0' if name == 'small' else '∞'}",
         label,
-        "∫ g/√(r²−x²) dx by quad, as it stands",
+        "∫ g/√(r²−x²) dx by quad",
         distances,
         (
             [-float(fields.slip(one, [R], rtol=RTOL)[0]) for one in pushed],
@@ -180,10 +180,10 @@ CURVES: dict[str, Callable[[], Curve]] = (
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_towards_the_last_exponents(name: str) -> None:
+def test_extreme_exponents(name: str) -> None:
     CURVES[name]().holds()
 
 
 @pytest.mark.parametrize("name", [name for name in CURVES if "inf" in name])
-def test_the_naive_formula_leaves_the_doubles(name: str) -> None:
-    CURVES[name]().naive_dies(1e-11)
+def test_naive_formula_overflows(name: str) -> None:
+    CURVES[name]().naive_fails(1e-11)

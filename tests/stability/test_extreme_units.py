@@ -1,7 +1,7 @@
-"""Extreme units: from nanometres to thousands of kilometres, from pascals to terapascals.
+"""Extreme units: nanometres to thousands of kilometres, pascals to terapascals.
 
-Nothing in the core may have a scale of its own: answers in other units are the same answers. The
-naive root finders end at an absolute tolerance, which is one.
+The core has no intrinsic scale, so results must not depend on units. The naive root finders stop at
+an absolute tolerance, which introduces one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mdr_core.profiles import Profile
 
 MODULUS, MU = 1.7, 0.35
-#: What a length is in the caller's unit; the modulus goes the other way.
+#: Factors of the unit of length; the modulus scales inversely.
 UNITS = steps(1e-24, 1e24, 37)
 SHAPES: dict[str, tuple[dict[str, float], dict[str, float]]] = {
     "rounded_punch": ({"flat_radius": 0.8, "rounding_radius": 2.0}, {}),
@@ -41,7 +41,7 @@ def scaled(kind: str, unit: float) -> dict[str, Any]:
 
 
 def force(kind: str) -> Curve:
-    """F_N at a given depth."""
+    """F_N at prescribed depth."""
     found, truth, conditions = [], [], []
     for unit in UNITS:
         shape, load, e_star = scaled(kind, unit), DEPTH * unit, MODULUS / unit
@@ -61,9 +61,9 @@ def force(kind: str) -> Curve:
 
     return curve(
         f"units-{kind.replace('_', '-')}",
-        f"force of a {kind.replace('_', ' ')} at a given depth",
+        f"force of a {kind.replace('_', ' ')} at prescribed depth",
         "unit of length",
-        "brentq of g(a) = d, as it comes",
+        "brentq of g(a) = d",
         UNITS,
         (found, attempt(naive, UNITS), truth),
         CLOSED + ROUNDING * np.array(conditions),
@@ -74,14 +74,14 @@ CURVES = {kind: partial(force, kind) for kind in SHAPES}
 
 
 @pytest.mark.parametrize("kind", CURVES)
-def test_in_every_unit(kind: str) -> None:
+def test_results_are_unit_independent(kind: str) -> None:
     sweep = CURVES[kind]()
     sweep.holds()
-    # The stiffest part of the naive root finder, xtol = 2e-12, is no length at all.
-    sweep.naive_dies(1e-3)
+    # Stiff contacts hit the absolute tolerance of the naive root finder, xtol = 2e-12.
+    sweep.naive_fails(1e-3)
 
 
-def pushed(profile: Profile, unit: float) -> tangential.TangentialContact:
+def tangential_contact(profile: Profile, unit: float) -> tangential.TangentialContact:
     contact = normal.solve(profile, MODULUS / unit, indentation_depth=DEPTH * unit, rtol=RTOL)
     return tangential.solve(
         contact, 0.8 * MODULUS / unit, MU, tangential_displacement=0.2 * DEPTH * unit
@@ -89,14 +89,14 @@ def pushed(profile: Profile, unit: float) -> tangential.TangentialContact:
 
 
 @pytest.mark.parametrize("kind", SHAPES)
-def test_powers_of_two_change_no_digit_worth_naming(kind: str) -> None:
-    """A power of two scales doubles exactly: what is left is the order of the operations."""
-    first = pushed(profile_from(scaled(kind, 1.0)), 1.0)
+def test_scaling_by_powers_of_two(kind: str) -> None:
+    """A power of two scales doubles exactly; only the order of operations can differ."""
+    first = tangential_contact(profile_from(scaled(kind, 1.0)), 1.0)
     r = np.array([0.0, 0.3, 0.7, 0.9]) * float(first.normal.contact_radius)
     for power in (-80, -40, -20, 20, 40, 80):
         unit = 2.0**power
-        other = pushed(profile_from(scaled(kind, unit)), unit)
-        # Lengths scale with the unit, forces too (the modulus goes with 1/unit).
+        other = tangential_contact(profile_from(scaled(kind, unit)), unit)
+        # Lengths and forces scale with the unit, since the modulus scales with its inverse.
         for name in ("tangential_force", "stick_radius", "slip_width"):
             assert float(getattr(other, name)) / unit == pytest.approx(
                 float(getattr(first, name)), rel=1e-14, abs=0

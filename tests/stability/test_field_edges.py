@@ -1,4 +1,4 @@
-"""Fields next to edges that follow from a load, and are known to rounding error only."""
+"""Fields next to edges that follow from a load and carry its rounding error."""
 
 from __future__ import annotations
 
@@ -52,13 +52,15 @@ SHAPES: dict[str, tuple[dict[str, Any], float]] = {
         0.7,
     ),
 }
-#: From a slip annulus of some 1e-10 a to one of most of the contact.
-PARTS = (1e-10, 1e-5, 0.01, 0.5, 0.99)
+#: Fractions of full slip: slip annuli from about 1e-10 a to most of the contact.
+FRACTIONS = (1e-10, 1e-5, 0.01, 0.5, 0.99)
 FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement")
 
 
-def solved(name: str, part: float, control: str) -> tuple[tangential.TangentialContact, Any, mpf]:
-    """A contact under given forces, and the exact setting and stick radius of them."""
+def solved(
+    name: str, fraction: float, control: str
+) -> tuple[tangential.TangentialContact, Any, mpf]:
+    """A contact under prescribed forces, with its exact loads and stick radius."""
     shape, a = SHAPES[name]
     profile = profile_from(shape)
     force = float(normal.solve(profile, 1.0, contact_radius=a).normal_force)
@@ -66,16 +68,15 @@ def solved(name: str, part: float, control: str) -> tuple[tangential.TangentialC
     full = MU * force
     if control == "tangential_displacement":
         full = MU / 0.8 * float(contact.indentation_depth)
-    given = full * part
+    given = full * fraction
     at = setting(shape, "normal_force", force, MATERIAL)
     c = slip_reference.solve(at, control, given, energy=False).c
     return tangential.solve(contact, 0.8, MU, **{control: given}), at, c
 
 
-def misses(
+def field_error(
     contact: tangential.TangentialContact, at: Any, c: mpf, name: str, radii: np.ndarray
 ) -> float:
-    """Error of a field at the radii, relative to the largest value on a grid."""
     truths = {
         "pressure": lambda r: slip_reference.traction(at, mpf(0), r),
         "shear_stress": lambda r: MU * slip_reference.traction(at, c, r),
@@ -97,34 +98,34 @@ def estimate(contact: tangential.TangentialContact, name: str, radii: np.ndarray
 
 
 @pytest.mark.every(6)
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("part", FRACTIONS)
 @pytest.mark.parametrize("shape", SHAPES)
-def test_the_estimate_holds_on_a_grid(shape: str, part: float) -> None:
-    contact, at, c = solved(shape, part, "tangential_force")
+def test_error_within_estimate_on_a_grid(shape: str, fraction: float) -> None:
+    contact, at, c = solved(shape, fraction, "tangential_force")
     radii = fields.grid(contact, 16)
     for name in FIELDS:
         if (shape, name) == ("table", "pressure"):
-            # The slope at its tip is rounding error, which the reference takes for a cone.
+            # The slope at the tip is rounding error, which the reference would take for a cone's.
             radii = radii[radii > 0]
-        assert misses(contact, at, c, name, radii) <= estimate(contact, name, radii), name
+        assert field_error(contact, at, c, name, radii) <= estimate(contact, name, radii), name
 
 
 @pytest.mark.every(3)
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
 @pytest.mark.parametrize("shape", SHAPES)
-def test_the_estimate_holds_next_to_the_edges(shape: str, control: str) -> None:
-    for part in (1e-5, 0.5):
-        contact, at, c = solved(shape, part, control)
+def test_error_within_estimate_next_to_the_edges(shape: str, control: str) -> None:
+    for fraction in (1e-5, 0.5):
+        contact, at, c = solved(shape, fraction, control)
         for offset in (1e-14, 1e-12, 1e-9):
             ends = float(contact.stick_radius), float(contact.normal.contact_radius)
             radii = np.array([end * (1 + side * offset) for end in ends for side in (-1, 1)])
             for name in FIELDS:
-                error = misses(contact, at, c, name, radii)
-                assert error <= estimate(contact, name, radii), (name, part, offset)
+                error = field_error(contact, at, c, name, radii)
+                assert error <= estimate(contact, name, radii), (name, fraction, offset)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_grid_costs_no_accuracy(shape: str) -> None:
+def test_grid_is_as_accurate_as_single_radii(shape: str) -> None:
     """Where the slip annulus is not thin itself, the edges add 1e-12 at most, times two."""
     contact, _, _ = solved(shape, 0.5, "tangential_force")
     radii = fields.grid(contact, 100)
@@ -132,7 +133,7 @@ def test_a_grid_costs_no_accuracy(shape: str) -> None:
         assert all(fields.edge_error(contact, name, radii) <= 2.5e-12 for name in FIELDS)
 
 
-def test_given_edges_are_exact() -> None:
+def test_prescribed_edges_are_exact() -> None:
     contact = normal.solve(profile_from(SHAPES["sphere"][0]), 1.0, contact_radius=0.5)
     pushed = tangential.solve(contact, 0.8, MU, stick_radius=0.3)
     radii = fields.grid(pushed, 30)
@@ -142,8 +143,8 @@ def test_given_edges_are_exact() -> None:
 
 
 @pytest.mark.parametrize("shape", ["paraboloid", "cone", "table"])
-def test_the_edges_of_a_load_are_known_as_well_as_they_are_alone(shape: str) -> None:
-    """The last load is next to full slip, where its stick radius is ill-conditioned."""
+def test_edges_of_a_sweep_match_single_loads(shape: str) -> None:
+    """The last load is next to full slip, where the stick radius is ill-conditioned."""
     profile = profile_from(SHAPES[shape][0])
     forces = normal.solve(profile, 1.0, contact_radius=[0.4, 0.5, 0.6]).normal_force
     pushed = MU * forces * np.array([0.2, 0.5, 1 - 1e-11])

@@ -1,4 +1,4 @@
-"""The first slip, c -> a: an annulus narrower than the rounding of its radius."""
+"""Incipient slip, c -> a: the slip annulus is narrower than the rounding error of its radius."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ RATIOS = steps(0.5, 1e-16, 40)
 
 
 @cache
-def pushed() -> tangential.TangentialContact:
-    """Hertz's contact, all ratios at once; E* = G* = 1."""
+def hertz_contact() -> tangential.TangentialContact:
+    """Hertz contacts at all load ratios, E* = G* = 1."""
     contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
     return tangential.solve(contact, 1.0, MU, tangential_force=RATIOS * (MU * FORCE))
 
 
 def exact_edges(force: mpf) -> tuple[mpf, mpf]:
-    """a and c of Eqs. (5.14), (5.16)."""
+    """a and c from Eqs. (5.14) and (5.16)."""
     a = mp.cbrt(3 * mpf(FORCE) * mpf(BIG) / 4)
     return a, a * mp.cbrt(1 - force / (mpf(MU) * mpf(FORCE)))
 
@@ -46,21 +46,21 @@ def naive_edges(force: float) -> tuple[float, float]:
 
 
 def of_hertz(name: str, title: str, answer: str, exact: Any, naive: tuple[str, Any]) -> Curve:
-    forces = pushed().tangential_force
+    forces = hertz_contact().tangential_force
     return curve(
         f"first-slip-{name}",
         title,
         LABEL,
         naive[0],
         RATIOS,
-        (getattr(pushed(), answer), attempt(naive[1], forces), references(exact, forces)),
+        (getattr(hertz_contact(), answer), attempt(naive[1], forces), references(exact, forces)),
     )
 
 
 def width() -> Curve:
     return of_hertz(
         "width",
-        "width of Hertz's slip annulus",
+        "Hertz contact: width of the slip annulus",
         "slip_width",
         lambda force: exact_edges(force)[0] - exact_edges(force)[1],
         ("a − c", lambda force: naive_edges(force)[0] - naive_edges(force)[1]),
@@ -76,7 +76,7 @@ def displacement() -> Curve:
 
     return of_hertz(
         "displacement",
-        "Mindlin's displacement",
+        "Mindlin: tangential displacement",
         "tangential_displacement",
         lambda force: mpf(MU) / BIG * (exact_edges(force)[0] ** 2 - exact_edges(force)[1] ** 2),
         ("1 − (1 − F_x/µF_N)^(2/3)", naive),
@@ -84,7 +84,7 @@ def displacement() -> Curve:
 
 
 def energy() -> Curve:
-    """Mindlin and Deresiewicz: a quarter of a cycle's loss, with two cancellations."""
+    """Mindlin and Deresiewicz: a quarter of the loss per cycle, with two cancellations."""
 
     def naive(force: float) -> float:
         rest, a = 1 - force / (MU * FORCE), naive_edges(force)[0]
@@ -92,18 +92,20 @@ def energy() -> Curve:
         return float(9 * (MU * FORCE) ** 2 / (10 * a) * braces)
 
     formula = "1 − q^(5/3) − (5/6)(1 − q)(1 + q^(2/3)), q = 1 − F_x/µF_N"
-    title = "energy lost on the way (Mindlin–Deresiewicz)"
+    title = "dissipated energy (Mindlin–Deresiewicz)"
     return of_hertz("energy", title, "dissipated_energy", exact_loss, (formula, naive))
 
 
 def exact_loss(force: mpf) -> mpf:
-    """(4 mu^2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2): a quarter of a cycle's, E* = G* = 1."""
+    """(4 mu^2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2): a quarter of the loss per cycle, E* = G* =
+    1.
+    """
     a, c = exact_edges(force)
     return 4 * mpf(MU) ** 2 / (15 * mpf(BIG) ** 2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)
 
 
 def traction() -> Curve:
-    """The cone's traction well inside, against a difference of two pressures."""
+    """Traction of a cone well inside the stick zone; the naive form subtracts two pressures."""
     widths = steps(0.5, 1e-16, 40)
     contact = normal.solve(Cone(SLOPE), 1.0, indentation_depth=np.pi / 2 * SLOPE, rtol=RTOL)
     moved = widths * (np.pi / 2 * SLOPE)
@@ -138,7 +140,7 @@ PUNCH = {"kind": "rounded_punch", "flat_radius": 0.8, "rounding_radius": 2.0}
 
 
 def rounded_punch() -> Curve:
-    """No closed inverse: the annulus itself is the unknown; the naive way solves for c."""
+    """No closed-form inverse: the annulus width is the unknown; the naive method solves for c."""
     contact = normal.solve(RoundedPunch(0.8, 2.0), 1.0, contact_radius=1.0, rtol=RTOL)
     force = float(contact.normal_force)
     given = RATIOS * (MU * force)
@@ -180,12 +182,12 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_towards_the_first_slip(name: str) -> None:
+def test_incipient_slip(name: str) -> None:
     sweep = CURVES[name]()
     sweep.holds()
-    sweep.naive_dies(1e-4)
+    sweep.naive_fails(1e-4)
 
 
-def test_the_estimate_does_not_understate() -> None:
-    found = pushed()
+def test_error_within_estimate() -> None:
+    found = hertz_contact()
     assert found.error_estimate >= max(float(width().ours.max()), float(energy().ours.max()))

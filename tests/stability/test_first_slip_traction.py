@@ -1,7 +1,7 @@
-"""The pressure kernel of an annulus c < x < a as c -> a: where tangential loading starts.
+"""Pressure kernel of an annulus c < x < a as c -> a: incipient slip.
 
-A difference of two one-limit kernels has no digits left there; the annulus is asked for by its
-width in the kind's own contact coordinate, and so is the truth.
+The difference of two single-limit kernels is dominated by rounding error there. The kernel
+therefore takes the annulus width in the profile's contact coordinate, and so does the reference.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 BOUND = 1e-11
 RTOL = 1e-13
 WIDTHS = (1e-3, 1e-6, 1e-9, 1e-12, 1e-14)
-#: Radii well inside, and as parts of the annulus from c (0) to a (1), also just inside c.
+#: Radii well inside the annulus, and as fractions of it from c (0) to a (1), also just inside c.
 INSIDE = (0.0, 1e-9, 0.5, 0.9)
-PARTS = (-1.0, -1e-3, 0.3, 0.9)
+FRACTIONS = (-1.0, -1e-3, 0.3, 0.9)
 
 SHAPES: dict[str, dict[str, Any]] = {
     "rounded punch": {"kind": "rounded_punch", "flat_radius": 0.95, "rounding_radius": 2.0},
@@ -54,12 +54,12 @@ SHAPES: dict[str, dict[str, Any]] = {
         "breaks": [],
     },
 }
-#: The contact's edge, not a knot of the table.
+#: Contact edge; not a knot of the table.
 A = 1.02
 
 
 class Annulus:
-    """What the coordinate and the width stand for exactly, and the integral of it."""
+    """Exact coordinate and width of an annulus, and its kernel integral."""
 
     def __init__(self, name: str, profile: Profile) -> None:
         self.kind = SHAPES[name]["kind"]
@@ -67,7 +67,7 @@ class Annulus:
         self.profile = profile
 
     def radius(self, coordinate: mpf) -> mpf:
-        """The kind's definition of its coordinate, in mpmath."""
+        """Radius from the profile's contact coordinate, in mpmath."""
         if self.kind == "sphere":
             return mpf(self.profile.radius) * mp.tanh(coordinate)
         if self.kind in {"rounded_punch", "truncated_cone"}:
@@ -112,8 +112,9 @@ def test_narrow_annulus(name: str, relative: float) -> None:
         truth = Annulus(name, profile)
         a = float(truth.radius(mpf(coordinate)))
         c = float(truth.radius(mpf(coordinate) - mpf(width)))
-        places = [a * part for part in INSIDE] + [c + (a - c) * part for part in PARTS]
-        # The edge is the coordinate's here: a radius must lie inside by more than its rounding.
+        places = [a * part for part in INSIDE] + [c + (a - c) * part for part in FRACTIONS]
+        # The edge follows from the coordinate; the radius must lie inside by more than rounding
+        # error.
         r = np.array(sorted({p for p in places if p < a * (1 - 4 * EPS)}))
         found = kernel(profile, coordinate, width, r)
         for radius, value in zip(r, found, strict=True):
@@ -125,7 +126,7 @@ def test_narrow_annulus(name: str, relative: float) -> None:
 
 
 def check(exact: Callable[..., mpf], arguments: tuple[mpf, ...], value: float) -> None:
-    """Within the bound, and what a rounding of the coordinate or of the radius does."""
+    """Assert the bound, including the effect of rounding the coordinate and the radius."""
     truth = exact(*arguments)
     s, w, r = arguments
     eps = mpf(8 * EPS)
@@ -152,26 +153,26 @@ def kernel(profile: Profile, coordinate: float, width: float, r: np.ndarray) -> 
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_wide_annulus_is_a_difference(name: str) -> None:
-    """Jaeger's superposition: c well below a, where the difference has its digits."""
+def test_wide_annulus_equals_difference_of_kernels(name: str) -> None:
+    """Jäger's superposition: for c well below a, the difference is well-conditioned."""
     profile = profile_of(name)
     high = float(profile.coordinate_from_radius(np.array(A)))
     for ratio in (0.9, 0.7):
         low = high * ratio
         c = float(profile.contact_radius(np.array(low)))
         r = np.array([0.0, 0.2, 0.5, 0.9]) * c
-        # On the tip of a cone, or of a spline through a sphere, the whole is infinite.
+        # The full kernel is infinite at the tip of a cone or of a spline.
         r = r[1:] if name in {"cone", "table"} else r
         ones = np.ones_like(r)
         annulus = kernel(profile, high, high - low, r)
         whole = profile.pressure_kernel(abel.Annulus(high * ones), r, RTOL)
         inner = profile.pressure_kernel(abel.Annulus((high - (high - low)) * ones), r, RTOL)
-        # What the difference cancels is at most some ten times what is left.
+        # The cancelled part is at most about ten times the difference.
         assert np.allclose(annulus, whole - inner, rtol=1e-11, atol=1e-14 * whole.max())
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_an_annulus_that_is_the_whole_contact(name: str) -> None:
+def test_annulus_over_the_whole_contact(name: str) -> None:
     profile = profile_of(name)
     high = float(profile.coordinate_from_radius(np.array(A)))
     r = np.array([1e-9, 0.3, 0.97, 0.9999]) * A

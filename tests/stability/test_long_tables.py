@@ -1,4 +1,4 @@
-"""Tables from a handful of points to thousands: the sums over the knots keep their digits."""
+"""Tables of up to thousands of points: sums over the knots are free of cancellation."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def points(count: int) -> tuple[Array, Array]:
 
 
 def trapezoids(r: Array, f: Array, weight: int) -> float:
-    """int f'(r) (r/a)^weight / sqrt(a^2 - r^2) dr as a spreadsheet would have it."""
+    """Trapezoidal rule for int f'(r) (r/a)^weight / sqrt(a^2 - r^2) dr."""
     inside = r < A
     slope = np.gradient(f, r)[inside]
     x = r[inside]
@@ -34,7 +34,7 @@ def trapezoids(r: Array, f: Array, weight: int) -> float:
 
 @cache
 def references() -> list[dict[str, mpf]]:
-    """Depth and force of every table's interpolant."""
+    """Exact depth and force of each table's interpolant."""
     found = []
     with mp.workdps(40):
         for count in SIZES:
@@ -55,9 +55,9 @@ def over_sizes(answer: str) -> Curve:
         naive.append(A * trapezoids(r, f, 0) if depth else 2 * trapezoids(r, f, 2))
     return curve(
         f"long-tables-{answer.replace('_', '-')}",
-        f"{answer.replace('_', ' ')} of a sphere's table, by its length",
+        f"{answer.replace('_', ' ')} of a tabulated sphere against the number of points",
         "1/points",
-        "trapezoids over the table",
+        "trapezoids over the points",
         1 / SIZES,
         (ours, naive, [each[answer] for each in references()]),
         TABLE,
@@ -71,8 +71,8 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_of_any_length(name: str) -> None:
+def test_number_of_points(name: str) -> None:
     sweep = CURVES[name]()
     sweep.holds()
-    # Short of a table for every digit the rule never gets there.
+    # With few points the trapezoidal rule cannot converge.
     assert sweep.naive.min() >= 1e-4

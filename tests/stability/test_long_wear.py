@@ -1,4 +1,4 @@
-"""Limits of wear: the worn annulus down to the narrowest, and up to 1e12 cycles."""
+"""Limits of wear: annuli from the narrowest to full slip, and up to 1e12 cycles."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from tests.stability.curves import (
 
 DEPTH, BIG, MU, WEAR = 1.0, 1.3, 0.4, 1e-4
 FULL = MU * DEPTH
-#: Parts of full slip, E* = G*: from the narrowest annulus to the onset of full slip.
-THIN = steps(0.5, 1e-12, 40)
-BRINK = steps(0.5, 1e-12, 40)
+#: Fractions of full slip for E* = G*: incipient slip and onset of full slip.
+INCIPIENT_SLIP = steps(0.5, 1e-12, 40)
+NEAR_FULL_SLIP = steps(0.5, 1e-12, 40)
 
 
 def amplitudes(end: str) -> Array:
-    return FULL * THIN if end == "thin" else FULL * (1 - BRINK)
+    return FULL * INCIPIENT_SLIP if end == "thin" else FULL * (1 - NEAR_FULL_SLIP)
 
 
 @cache
@@ -71,7 +71,7 @@ class _Doubles:
 
 
 def naive_annulus(u: float) -> tuple[float, float]:
-    """The same in doubles, by bisection for A."""
+    """The annulus in double precision, by bisection for A."""
     c = float(np.sqrt(BIG * (DEPTH - u / MU)))
     low, high = float(np.sqrt(BIG * DEPTH)), 2 * float(np.sqrt(BIG * DEPTH))
     for _ in range(100):
@@ -96,19 +96,17 @@ def of_limit(end: str, answer: str) -> Curve:
         c, outer = naive_annulus(u)
         return outer - c if answer == "wear_width" else float(volume(c, outer, _Doubles))
 
-    said = {"wear_width": "width of the worn annulus", "worn_volume": "volume that wears off"}[
-        answer
-    ]
+    said = {"wear_width": "width of the worn annulus", "worn_volume": "worn volume"}[answer]
     formula = {"wear_width": "A − c, A by bisection", "worn_volume": "4d I₀ − 4 I₂/R"}[answer]
-    rest = np.ones_like(given) if end == "thin" else BRINK
+    rest = np.ones_like(given) if end == "thin" else NEAR_FULL_SLIP
     return curve(
         f"long-wear-{answer.replace('_', '-')}-{end}",
         f"{said}, {'c → a' if end == 'thin' else 'c → 0'}",
         "u_x/u_x,max" if end == "thin" else "1 − u_x/u_x,max",
         formula,
-        THIN if end == "thin" else BRINK,
+        INCIPIENT_SLIP if end == "thin" else NEAR_FULL_SLIP,
         (getattr(found, answer), attempt(naive, given), references(exact, given)),
-        # Near full slip the stick radius hangs on the rounding of the amplitude.
+        # Near full slip the stick radius is ill-conditioned with respect to the amplitude.
         10 * CLOSED + ROUNDING / rest,
     )
 
@@ -128,7 +126,7 @@ def worn() -> evolution.WearEvolution:
 
 
 def to_the_limit() -> Curve:
-    """The worn volume over the cycles: from its first rate to the limit, and no further."""
+    """Worn volume against the number of cycles, up to the limiting state."""
     found = worn()
     number = found.cycles[1:]
     with mp.workdps(60):
@@ -140,9 +138,9 @@ def to_the_limit() -> Curve:
     settled = number > 1e9
     return curve(
         "long-wear-cycles",
-        "worn volume over the cycles, against its limit",
+        "worn volume relative to its limit",
         "1/cycles",
-        "the first cycle's wear, N times",
+        "N times the wear of the first cycle",
         1 / number,
         (found.worn_volume[1:], float(each) * WEAR * number, [last] * number.size),
         np.where(settled, 1e-3, 1.0),
@@ -159,24 +157,24 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_wear_to_the_end(name: str) -> None:
+def test_limiting_state(name: str) -> None:
     CURVES[name]().holds()
 
 
 @pytest.mark.parametrize("name", ["width, thin", "volume, thin", "cycles"])
-def test_where_the_naive_formula_dies(name: str) -> None:
-    CURVES[name]().naive_dies(1e-3)
+def test_naive_formula_fails(name: str) -> None:
+    CURVES[name]().naive_fails(1e-3)
 
 
-def test_the_volume_is_the_work_at_every_number_of_cycles() -> None:
-    """The book-keeping of wear: V = K W, whatever the number of cycles."""
+def test_worn_volume_follows_archard() -> None:
+    """Archard's law: V = K W at any number of cycles."""
     found = worn()
     balance = found.worn_volume[1:] / (WEAR * found.dissipated_energy[1:]) - 1
     assert np.abs(balance).max() <= found.error_estimate
     assert np.all(np.diff(found.worn_volume) >= 0)
 
 
-def test_the_first_cycles_wear_in_proportion() -> None:
+def test_initial_wear_is_proportional_to_cycles() -> None:
     found, big, mu = worn(), mpf(BIG), mpf(MU)
     # g(c) = d - u_x/mu, Eq. (5.80).
     a, c = mp.sqrt(big), mp.sqrt(big * (1 - mpf(0.5 * FULL) / mu))
@@ -184,7 +182,7 @@ def test_the_first_cycles_wear_in_proportion() -> None:
     assert found.worn_volume[1] == pytest.approx(float(each) * WEAR, rel=1e-3, abs=0)
 
 
-def test_the_limit_s_estimate_does_not_understate() -> None:
+def test_error_of_the_limit_within_estimate() -> None:
     for end in ("thin", "brink"):
         worst = max(of_limit(end, name).ours.max() for name in ("wear_width", "worn_volume"))
         assert limits(end).error_estimate >= worst, end

@@ -1,4 +1,4 @@
-"""A sphere up to its equator, a -> R, and so small a contact that it is a paraboloid's, a -> 0."""
+"""Sphere up to its equator, a -> R, and down to its paraboloid limit, a -> 0."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 BIG = 1.0
-#: Contact radii next to R, as doubles; the distance is what they are.
+#: Contact radii next to R; the actual distance is that of the rounded radius.
 EDGES = BIG - steps(0.5, 1.2e-16, 40)
 SMALL = steps(0.9, 1e-40, 40)
 
@@ -52,7 +52,7 @@ def depth(name: str) -> Curve:
 
 
 def force(name: str) -> Curve:
-    """F/E* = (R^2 + a^2) artanh(a/R) - a R: Segedin's, which loses (R/a)^2."""
+    """F/E* = (R^2 + a^2) artanh(a/R) - a R (Segedin); cancellation of order (R/a)^2 as a -> 0."""
     a = EDGES if name == "equator" else SMALL
     contact = normal.solve(Sphere(BIG), 1.0, contact_radius=a, rtol=RTOL)
 
@@ -75,7 +75,7 @@ def force(name: str) -> Curve:
 
 
 def inverse() -> Curve:
-    """The force at a given depth, up to where no double tells a from R."""
+    """Force at prescribed depth, up to the limit where a rounds to R."""
     depths = BIG * steps(0.5, 16.9)
     contact = normal.solve(Sphere(BIG), 1.0, indentation_depth=depths, rtol=RTOL)
 
@@ -95,7 +95,7 @@ def inverse() -> Curve:
 
     return curve(
         "sphere-inverse",
-        "force on a sphere at a given depth",
+        "force on a sphere at prescribed depth",
         "R/d",
         "bisection for a, then the formula in a",
         BIG / depths,
@@ -104,13 +104,13 @@ def inverse() -> Curve:
 
 
 @cache
-def pressure(part: float) -> Curve:
-    """p at a part of the contact radius, which the pole of g' at the equator comes close to."""
+def pressure(fraction: float) -> Curve:
+    """p at a fraction of the contact radius; at the equator the pole of g' approaches the edge."""
     ours = [
         float(
             fields.pressure(
                 normal.solve(Ellipsoid(BIG, 0.5), 1.0, contact_radius=a, rtol=RTOL),
-                [part * a],
+                [fraction * a],
                 rtol=RTOL,
             )[0]
         )
@@ -121,10 +121,10 @@ def pressure(part: float) -> Curve:
         return (m(x) + x / ((1 - x) * (1 + x))) / 2
 
     def exact(a: mpf) -> mpf:
-        r = mpf(float(part * float(a)))
+        r = mpf(float(fraction * float(a)))
 
         def density(v: mpf) -> mpf:
-            # The pole in tanh, x = tanh v, the root by w^2 = v - v_r.
+            # The substitution x = tanh v removes the pole, w^2 = v - v_r the square root.
             w = low + v * v
             x = mp.tanh(w)
             sech = mp.sech(w)
@@ -137,7 +137,7 @@ def pressure(part: float) -> Curve:
         return mp.quad(density, mp.linspace(0, end, 5)) / mp.pi
 
     def naive(a: float) -> float:
-        r = part * a
+        r = fraction * a
 
         def density(x: float) -> float:
             return float(slope(x, np.arctanh) / np.sqrt(x * x - r * r)) if x > r else 0.0
@@ -147,19 +147,21 @@ def pressure(part: float) -> Curve:
     with mp.workdps(25):
         truth = [exact(mpf(float(a))) for a in EDGES]
     return curve(
-        f"sphere-pressure-{part}",
-        f"pressure of an ellipsoid at r = {part} a, a → its radius",
+        f"sphere-pressure-{fraction}",
+        f"pressure of an ellipsoid at r = {fraction} a, a → its radius",
         "1 − a/R",
-        "∫ g′/√(x²−r²) dx by quad, as it stands",
+        "∫ g′/√(x²−r²) dx by quad",
         BIG - EDGES,
         (ours, attempt(naive, EDGES), truth),
         CLOSED,
     )
 
 
-def beside(part: float) -> Curve:
-    """The surface at r = part R, outside the contact: the pole of g' is just behind its edge."""
-    r = part * BIG
+def outside(fraction: float) -> Curve:
+    """Surface displacement outside the contact, r = fraction R: the pole of g' is next to the
+    edge.
+    """
+    r = fraction * BIG
 
     def ours(a: float) -> float:
         contact = normal.solve(Sphere(BIG), 1.0, contact_radius=a, rtol=RTOL)
@@ -180,8 +182,8 @@ def beside(part: float) -> Curve:
 
     edges = EDGES[::-1].tolist()
     return curve(
-        f"sphere-beside-{part}",
-        f"displacement beside a sphere at r = {part} R, a → R",
+        f"sphere-beside-{fraction}",
+        f"displacement outside a sphere at r = {fraction} R, a → R",
         "1 − a/R",
         "∫ g′ arcsin(x/r) dx by quad",
         BIG - EDGES[::-1],
@@ -197,17 +199,17 @@ CURVES = {
     "inverse": inverse,
     "pressure inside": partial(pressure, 0.3),
     "pressure outside": partial(pressure, 0.95),
-    "beside, on the equator's circle": partial(beside, 1.0),
-    "beside": partial(beside, 1.3),
+    "beside, on the equator's circle": partial(outside, 1.0),
+    "beside": partial(outside, 1.3),
 }
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_towards_the_equator_and_the_tip(name: str) -> None:
+def test_equator_and_small_contact_limits(name: str) -> None:
     CURVES[name]().holds()
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["force, a -> 0", "inverse", "pressure inside", "beside"])
-def test_where_the_naive_formula_dies(name: str) -> None:
-    CURVES[name]().naive_dies(1e-6)
+def test_naive_formula_fails(name: str) -> None:
+    CURVES[name]().naive_fails(1e-6)

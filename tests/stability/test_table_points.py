@@ -1,4 +1,4 @@
-"""Kinked, noisy and nearly duplicate points of a table: what is answered is its interpolant."""
+"""Tables with kinks, noise and near-duplicate points: the result is that of the interpolant."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tests.stability.curves import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: What is promised of a table.
+#: Relative error limit of tables.
 TABLE = 1e-12
 A, B, SLOPE, BIG = 1.02, 0.45, 0.3, 1.3
 POINTS = np.array([0.15 * i for i in range(9)])
@@ -35,7 +35,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(100)
 
 
 def naive_force(slope: Callable[[Array], Array]) -> float:
-    """2 a^2 int sin^2 t f'(a sin t) dt, no knot declared."""
+    """2 a^2 int sin^2 t f'(a sin t) dt without break points at the knots."""
     sine = np.sin(np.pi / 4 * (1 + NODES))
     return float(np.pi / 2 * A * A * (WEIGHTS @ (sine**2 * slope(A * sine))))
 
@@ -43,7 +43,7 @@ def naive_force(slope: Callable[[Array], Array]) -> float:
 def of_tables(
     name: str, title: str, distance: str, distances: Array, make: Any, interpolation: str
 ) -> Curve:
-    """The force of one table after another."""
+    """Forces of a sequence of tables."""
     ours, truth, naive = [], [], []
     for size in distances:
         r, f = make(size)
@@ -55,12 +55,12 @@ def of_tables(
             )
             truth.append(exact.force(mpf(A)))
         naive.append(naive_force(body.df))
-    formula = "∫ sin²t f′(a sin t) dt, 100 Gauss points, no knot declared"
+    formula = "∫ sin²t f′(a sin t) dt, 100 Gauss points, without break points"
     return curve(name, title, distance, formula, distances, (ours, naive, truth), TABLE)
 
 
 def kink() -> Curve:
-    """Two straight lines that all but go on into each other: a cone and a truncated cone."""
+    """Two nearly collinear segments: a cone and a truncated cone."""
     jumps = steps(1.0, 1e-15)
     r = np.array([0.0, B, 1.2])
     ours = []
@@ -70,7 +70,7 @@ def kink() -> Curve:
         ours.append(float(normal.solve(body, 1.0, contact_radius=A, rtol=RTOL).normal_force))
 
     def exact(jump: mpf) -> mpf:
-        # The slopes that the rounded points have.
+        # Slopes of the rounded points.
         ends = [mpf(float(value)) for value in (SLOPE * B, SLOPE * 1.2 + float(jump) * (1.2 - B))]
         first = ends[0] / mpf(B)
         second = (ends[1] - ends[0]) / (mpf(1.2) - mpf(B))
@@ -83,8 +83,8 @@ def kink() -> Curve:
 
     return curve(
         "table-kink",
-        "force of a table with a kink, by the size of the kink",
-        "jump of f′",
+        "force of a table with a slope discontinuity",
+        "jump in f′",
         "∫ sin²t f′(a sin t) dt, 100 Gauss points",
         jumps,
         (ours, attempt(naive, jumps), references(exact, jumps)),
@@ -103,8 +103,8 @@ def duplicate(interpolation: str) -> Curve:
 
     return of_tables(
         f"table-duplicate-{interpolation}",
-        f"force of a table with two near points, {interpolation}",
-        "gap over radius",
+        f"force of a table with two close points, {interpolation}",
+        "gap / radius",
         steps(0.1, 1e-13, 30),
         make,
         interpolation,
@@ -120,7 +120,7 @@ def noise(interpolation: str) -> Curve:
     return of_tables(
         f"table-noise-{interpolation}",
         f"force of a noisy table, {interpolation}",
-        "size of the noise over f",
+        "noise amplitude / f",
         steps(3e-3, 1e-16, 30),
         make,
         interpolation,
@@ -138,5 +138,5 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_the_interpolant_is_answered(name: str) -> None:
+def test_result_is_that_of_the_interpolant(name: str) -> None:
     CURVES[name]().holds()

@@ -1,4 +1,4 @@
-"""Fields of wear over the cycles against a fine run: their errors, and what is said of them."""
+"""Wear fields over the cycles: true error against a fine reference run, and error estimate."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ PROFILES: dict[str, Profile] = {
     "rounded_punch": RoundedPunch(0.5, 1.0),
     "hyperboloid": Hyperboloid(0.5, 0.5),
 }
-HELD = {
+CONTROLS = {
     "depth, displacement": Held(force=False, displacement=True),
     "forces": Held(force=True, displacement=False),
     "force, displacement": Held(force=True, displacement=True),
     "depth, force": Held(force=False, displacement=False),
 }
-#: Units of cycles, within which the pressure of the annulus decays.
+#: Characteristic numbers of cycles for the decay of the pressure on the annulus.
 CYCLES = (0.1, 1.0, 10.0, 100.0, 1000.0)
-PAIRS = [(kind, held) for kind in PROFILES for held in HELD]
+PAIRS = [(kind, held) for kind in PROFILES for held in CONTROLS]
 
 
 @cache
 def worn(kind: str, name: str, resolution: int, rtol: float = 1e-6) -> evolution.WearEvolution:
-    """Half the displacement, or force, of full slip."""
-    profile, held = PROFILES[kind], HELD[name]
+    """Wear at half the displacement or force of full slip."""
+    profile, held = PROFILES[kind], CONTROLS[name]
     contact = normal.solve(profile, E_STAR, indentation_depth=DEPTH)
     if held.force:
         contact = normal.solve(profile, E_STAR, normal_force=float(contact.normal_force))
@@ -68,15 +68,15 @@ def worn(kind: str, name: str, resolution: int, rtol: float = 1e-6) -> evolution
 
 
 @cache
-def truth(kind: str, name: str) -> evolution.WearEvolution:
+def reference(kind: str, name: str) -> evolution.WearEvolution:
     return worn(kind, name, 96, 1e-8)
 
 
 @pytest.mark.every(11)
 @pytest.mark.parametrize("resolution", [16, 24, 32, 48, 64])
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
-def test_estimates_do_not_understate(kind: str, name: str, resolution: int) -> None:
-    found, exact = worn(kind, name, resolution), truth(kind, name)
+def test_error_within_estimate(kind: str, name: str, resolution: int) -> None:
+    found, exact = worn(kind, name, resolution), reference(kind, name)
     for scalar in evolution.SCALARS:
         value, true = getattr(found, scalar), getattr(exact, scalar)
         assert np.abs(value / true - 1).max() <= found.error_estimate, scalar
@@ -90,8 +90,8 @@ def test_estimates_do_not_understate(kind: str, name: str, resolution: int) -> N
 @pytest.mark.every(5)
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
 def test_pressure_does_not_ripple(kind: str, name: str) -> None:
-    """Off the edges by 2 % of a, each cycle relative to its own largest pressure."""
-    found, exact = worn(kind, name, 48), truth(kind, name)
+    """Excludes 2 % of a at the edges; relative to the largest pressure of each cycle."""
+    found, exact = worn(kind, name, 48), reference(kind, name)
     for cycle, (c, a) in enumerate(zip(exact.stick_radius, exact.contact_radius, strict=True)):
         radius = np.linspace(0.0, 1.05 * a, 400)[1:]
         off = (np.abs(radius - c) > 0.02 * a) & (np.abs(radius - a) > 0.02 * a)

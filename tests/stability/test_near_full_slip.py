@@ -1,4 +1,4 @@
-"""The brink of sliding, c -> 0: what still sticks hangs on the last digits of the load."""
+"""Near full slip, c -> 0: the stick radius is ill-conditioned with respect to the load."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from tests.stability.curves import (
 
 FORCE, MU, BIG, SLOPE = 1.25, 0.375, 1.3, 0.3
 LABEL = "1 − F_x/(µF_N)"
-#: Of a force near mu F_N a double keeps no smaller part than this.
-RESTS = steps(0.5, 2e-16, 40)
+#: Margins 1 - F_x/(mu F_N): mu F_N - F_x is not resolved below EPS mu F_N.
+MARGINS = steps(0.5, 2e-16, 40)
 
 
-def doubles(limit: float) -> Any:
-    """Loads next to full slip, all different from it."""
-    given = limit * (1 - RESTS)
+def representable_loads(limit: float) -> Any:
+    """Distinct representable loads next to full slip."""
+    given = limit * (1 - MARGINS)
     return np.minimum(given, np.nextafter(limit, 0.0))
 
 
 def hertz() -> Curve:
-    """c = a (1 - F_x/(mu F_N))^(1/3); the naive root finder has an absolute tolerance."""
+    """Hertz: c = a (1 - F_x/(mu F_N))^(1/3). The naive root finder uses an absolute tolerance."""
     limit = MU * FORCE
-    given = doubles(limit)
+    given = representable_loads(limit)
     contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
     found = tangential.solve(contact, 1.0, MU, tangential_force=given)
 
@@ -50,46 +50,48 @@ def hertz() -> Curve:
         a = np.cbrt(3 * FORCE * BIG / 4)
         return float(brentq(lambda c: limit - MU * 4 * c**3 / (3 * BIG) - force, 0.0, a))
 
-    rest = 1 - given / limit
+    margin = 1 - given / limit
     return curve(
         "brink-hertz",
-        "Hertz's stick radius towards full slip",
+        "Hertz contact: stick radius near full slip",
         LABEL,
-        "brentq of F_x(c) = F_x, as it comes",
-        rest,
+        "brentq of F_x(c) = F_x",
+        margin,
         (found.stick_radius, attempt(naive, given), references(exact, given)),
-        CLOSED + ROUNDING / (3 * rest),
+        CLOSED + ROUNDING / (3 * margin),
     )
 
 
 def displacement() -> Curve:
-    """A cone's c = a (1 - u_x/u_max) at given displacements of a contact at given radius."""
+    """Cone: c = a (1 - u_x/u_max) for prescribed displacement and contact radius."""
     limit = MU * pi / 2 * SLOPE
-    given = doubles(limit)
+    given = representable_loads(limit)
     contact = normal.solve(Cone(SLOPE), 1.0, contact_radius=1.0, rtol=RTOL)
     found = tangential.solve(contact, 1.0, MU, tangential_displacement=given)
 
     def exact(u: mpf) -> mpf:
         return 1 - u / (mpf(MU) * mp.pi / 2 * mpf(SLOPE))
 
-    rest = np.array([float(value) for value in references(exact, given)])
+    margin = np.array([float(value) for value in references(exact, given)])
     return curve(
         "brink-cone",
-        "stick radius of a cone towards full slip",
+        "cone: stick radius near full slip",
         "1 − u_x/u_x,max",
-        "brentq of u_x(c) = u_x, as it comes",
-        rest,
+        "brentq of u_x(c) = u_x",
+        margin,
         (
             found.stick_radius,
             attempt(lambda u: brentq(lambda c: limit * (1 - c) - u, 0.0, 1.0), given),
             references(exact, given),
         ),
-        CLOSED + ROUNDING / rest,
+        CLOSED + ROUNDING / margin,
     )
 
 
-def by_rest(name: str, profile: Profile, fields_: dict[str, Any], places: Any) -> Curve:
-    """The force at a given small stick radius: mu F_N less next to nothing, and exactly that."""
+def dissipation_near_full_slip(
+    name: str, profile: Profile, fields_: dict[str, Any], places: Any
+) -> Curve:
+    """Dissipated energy at a small prescribed stick radius; the load follows in closed form."""
     contact = normal.solve(profile, 1.0, contact_radius=1.0, rtol=RTOL)
     first = fields_.get("flat_radius", 0.0)
     given = first + (1 - first) * places if first else places
@@ -99,7 +101,7 @@ def by_rest(name: str, profile: Profile, fields_: dict[str, Any], places: Any) -
     energy = np.vectorize(lambda c: midpoints(profile, c))
     return curve(
         f"brink-{name}",
-        f"energy lost by a {name.replace('-', ' ')} on the way to the brink",
+        f"dissipated energy of a {name.replace('-', ' ')} near full slip",
         "c/a" if not first else "(c − b)/(a − b)",
         "midpoint rule over 1000 springs",
         places,
@@ -109,7 +111,7 @@ def by_rest(name: str, profile: Profile, fields_: dict[str, Any], places: Any) -
 
 
 def midpoints(profile: Profile, c: float) -> float:
-    """(2 mu^2 E*^2/G*) int (g(a) - g)(g - g(c)) dx, as a bed of springs would have it."""
+    """(2 mu^2 E*^2/G*) int (g(a) - g)(g - g(c)) dx of a discrete foundation: midpoint rule."""
     x = c + (1 - c) * (np.arange(1000) + 0.5) / 1000
     g, ends = profile.g(x), profile.g(np.array([c, 1.0]))
     return float(2 * MU**2 * np.mean((ends[1] - g) * (g - ends[0])) * (1 - c))
@@ -117,12 +119,16 @@ def midpoints(profile: Profile, c: float) -> float:
 
 def rounded_cone() -> Curve:
     shape = {"kind": "rounded_cone", "slope": SLOPE, "tip_radius": 0.5}
-    return by_rest("rounded-cone", RoundedCone(SLOPE, 0.5), shape, steps(0.5, 1e-12))
+    return dissipation_near_full_slip(
+        "rounded-cone", RoundedCone(SLOPE, 0.5), shape, steps(0.5, 1e-12)
+    )
 
 
 def rounded_punch() -> Curve:
     shape = {"kind": "rounded_punch", "flat_radius": 0.8, "rounding_radius": 2.0}
-    return by_rest("rounded-punch", RoundedPunch(0.8, 2.0), shape, steps(0.5, 1e-14))
+    return dissipation_near_full_slip(
+        "rounded-punch", RoundedPunch(0.8, 2.0), shape, steps(0.5, 1e-14)
+    )
 
 
 CURVES = {
@@ -134,26 +140,26 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_towards_the_brink(name: str) -> None:
+def test_near_full_slip(name: str) -> None:
     sweep = CURVES[name]()
     sweep.holds()
-    sweep.naive_dies(1e-8)
+    sweep.naive_fails(1e-8)
 
 
 @pytest.mark.parametrize("rest", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
-def test_the_estimate_grows_with_what_is_lost(rest: float) -> None:
-    """Each load alone: what the rounding of a load near full slip does is in its estimate."""
+def test_error_estimate_includes_load_rounding_near_full_slip(margin: float) -> None:
+    """Near full slip, the estimate of a single load covers the rounding error of that load."""
     contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
-    force = MU * FORCE * (1 - rest)
+    force = MU * FORCE * (1 - margin)
     found = tangential.solve(contact, 1.0, MU, tangential_force=force)
     with mp.workdps(40):
         exact = mp.cbrt(3 * mpf(BIG) / 4 * (mpf(FORCE) - mpf(force) / mpf(MU)))
         error = float(abs(mpf(float(found.stick_radius)) / exact - 1))
-    assert error <= found.error_estimate <= 1e-11 + 100 * ROUNDING / rest
+    assert error <= found.error_estimate <= 1e-11 + 100 * ROUNDING / margin
 
 
-def test_the_field_inside_a_vanishing_stick_zone() -> None:
-    """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) with c down to the smallest that counts."""
+def test_traction_with_vanishing_stick_zone() -> None:
+    """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) down to the smallest significant c."""
     contact = normal.solve(Paraboloid(BIG), 1.0, contact_radius=1.0, rtol=RTOL)
     for c in steps(0.1, 1e-140, 30):
         found = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
