@@ -1,10 +1,11 @@
 """Wear that cannot be resolved or represented raises an error that names its cause."""
 
+import numpy as np
 import pytest
 
 from mdr_core import normal
 from mdr_core.errors import AccuracyError, InputError
-from mdr_core.profiles import Paraboloid, Power
+from mdr_core.profiles import Paraboloid, Power, Tabulated
 from mdr_core.wear import evolution, limit
 
 
@@ -46,3 +47,48 @@ def test_a_worn_annulus_without_an_outer_radius_in_doubles_is_refused() -> None:
     with pytest.raises(InputError, match="double precision") as caught:
         _ = limit.solve(contact, 4e27, 38.7, tangential_force=force).wear_radius
     assert caught.value.path == ("load", "normal_force", 0)
+
+
+def kinked() -> Tabulated:
+    """A paraboloid by straight lines, with a corner at r = 1."""
+    r = np.linspace(0.0, 3.0, 13)
+    return Tabulated(tuple(r), tuple(r**2 / 2 + 0.5 * np.maximum(r - 1, 0)), "linear")
+
+
+@pytest.mark.parametrize("width", [0.2, 0.4, 0.6])
+def test_edge_of_the_contact_passes_a_break_in_few_steps(width: float) -> None:
+    """g' is infinite behind the break, which the nodes pass one after the other."""
+    body = kinked()
+    contact = normal.solve(body, 1.3, contact_radius=1.0003)
+    within = normal.solve(body, 1.3, contact_radius=1.0003 - width)
+    contact = normal.solve(body, 1.3, normal_force=float(contact.normal_force))
+    calls: list[int] = []
+    worn = evolution.solve(
+        contact,
+        0.9,
+        0.4,
+        wear_coefficient=2e-4,
+        cycles=[1e2, 1e4],
+        tangential_force=0.4 * float(contact.normal_force - within.normal_force),
+        progress=calls.append,
+    )
+    assert sum(calls) < evolution.EVALUATIONS
+    assert worn.contact_radius[-1] > 1.003
+    lost = 2e-4 * worn.dissipated_energy
+    assert worn.worn_volume == pytest.approx(lost, rel=2 * worn.error_estimate, abs=0)
+
+
+@pytest.mark.parametrize("place", [0.1, 0.5, 0.9])
+def test_first_wear_of_a_narrow_annulus_about_a_break_is_within_its_estimate(place: float) -> None:
+    """Against the friction work of a cycle from partial slip."""
+    body, width = kinked(), 0.01
+    contact = normal.solve(body, 1.3, contact_radius=1 + place * width)
+    within = normal.solve(body, 1.3, contact_radius=1 + (place - 1) * width)
+    given = {"tangential_force": 0.4 * float(contact.normal_force - within.normal_force)}
+    contact = normal.solve(body, 1.3, normal_force=float(contact.normal_force))
+    given |= {"wear_coefficient": 2e-4}
+    cycles = 1e-6 * evolution.solve(contact, 0.9, 0.4, cycles=[0.0], **given).initial.cycle_unit
+    worn = evolution.solve(contact, 0.9, 0.4, cycles=[cycles], **given)
+    work = 4 * float(worn.initial.sideways.dissipated_energy) * cycles
+    bound = pytest.approx(2e-4 * work, rel=worn.error_estimate, abs=0)
+    assert worn.worn_volume[0] == bound

@@ -141,9 +141,14 @@ class AnnulusState:
         return np.append(self.vector[: self.model.first_edge], self.tilt[0] / self.end)
 
     @cached_property
+    def worn_omega(self) -> Array:
+        """(gamma - gamma_0)/x, gamma_0 being gamma of the unworn shape."""
+        return np.asarray(self.model.maps.from_slip @ self.worn)
+
+    @cached_property
     def omega(self) -> Array:
         """gamma/x."""
-        return np.asarray(self.unworn + self.model.maps.from_slip @ self.worn)
+        return self.unworn + self.worn_omega
 
     @cached_property
     def gamma(self) -> Array:
@@ -160,11 +165,10 @@ class AnnulusState:
         """v = sigma/s."""
         return np.asarray(self.model.maps.to_slip @ self.unworn + self.worn)
 
-    @property
+    @cached_property
     def lifted(self) -> float:
-        """int_c^a gamma dx."""
-        maps = self.model.maps
-        return float(self.end**2 * (maps.mean @ self.omega))
+        """int_c^a (gamma - gamma_0) dx."""
+        return float(self.end**2 * (self.model.maps.mean @ self.worn_omega))
 
     @cached_property
     def power(self) -> float:

@@ -112,23 +112,26 @@ class EdgeBalance:
         """
         state, held, maps = self.state, self.held, self.maps
         a, b, c = state.x[-1], state.end, state.stick
-        # Rates of omega, of the unworn shape at moving nodes and of the wear.
-        omega = maps.from_slip @ self.worn
-        slope = self.model.shape.slope(state.x)
-        omega[:, 1:3] += ((slope - state.unworn) / state.x)[:, None] * self.motion.T
-        omega[:, 2] -= self.stick_slope / state.x
+        # Rates of (gamma - gamma_0)/x at the moving nodes, and of omega at the edge.
+        worn = maps.from_slip @ self.worn
+        omega = worn[-1].copy()
+        slope = float(self.model.shape.slope(state.x[-1:])[0])
+        omega[1:3] += (slope - state.unworn[-1]) / a * self.motion[:, -1]
+        omega[2] -= self.stick_slope / a
         # Rates of D and of the level d - D.
         drive = np.array([0.0, 0.0, 0.0, float(held.force and not held.displacement)])
         level = np.array([0.0, 0.0, 0.0, float(held.stick_grows)])
         if held.stick_shrinks:
             drive[2], level[2] = -self.stick_slope, self.stick_slope
         edge = np.array([0.0, *self.motion[:, -1], 0.0])
-        rows = [a * omega[-1] + edge * state.omega[-1] - drive]
+        rows = [a * omega + edge * state.omega[-1] - drive]
         rows[0][0] += _RETURN * (state.gamma[-1] - state.drive)
         if held.force or held.stick_shrinks:
-            # int_c^a dg/dN dx, against what the force takes.
-            risen = b * b * (maps.mean @ omega) - edge * state.drive
+            # Rate of int_c^a (gamma - D) dx, with gamma(a) = D. The integral of gamma_0 changes at
+            # its ends only: by values at nodes it would jump where one passes a break of the slope.
+            risen = b * b * (maps.mean @ worn) - edge * a * state.worn_omega[-1]
             risen[1] += 2 * state.lifted / b
+            risen[2] -= (a - c) * self.stick_slope
             risen += (a - c) * level
             rows.append(np.array([0, 0, 0, a]) - risen if held.force else c * drive - risen)
         if held.stick_grows:

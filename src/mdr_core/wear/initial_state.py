@@ -117,12 +117,20 @@ class _Unworn:
 
     state: InitialState
 
+    @cached_property
+    def breaks(self) -> Array:
+        """Radii at which g_0 is not smooth [length]."""
+        profile = self.state.contact.profile
+        return np.asarray(profile.contact_radius(profile.coordinate_breaks))
+
     def rise(self, shift: float, offset: Array) -> Array:
         """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
         state, profile = self.state, self.state.contact.profile
         unit = state.length_unit
         stick, by = state.stick + unit * shift, unit * offset
-        if by[-1] > _NARROW * stick:
+        # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
+        near = np.abs(self.breaks - stick) < by[-1]
+        if by[-1] > _NARROW * stick or near.any():
             end = state.domain
             g = profile.g(np.minimum(np.append(stick, stick + by), end))
             return np.asarray((g[1:] - g[0]) / state.depth_unit)

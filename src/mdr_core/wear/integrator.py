@@ -37,7 +37,9 @@ class StickTrail(NamedTuple):
 
     def until(self, state: AnnulusState) -> "StickTrail":
         """Return the part behind one state."""
-        before = self.radius <= state.stick
+        # While the stick edge rests, the wear at its radius grows.
+        rests = (self.radius == state.stick) & (self.worn <= state.passed)
+        before = (self.radius < state.stick) | rests
         return StickTrail(
             np.append(self.radius[before], state.stick), np.append(self.worn[before], state.passed)
         )

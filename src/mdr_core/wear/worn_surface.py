@@ -56,16 +56,18 @@ class WornSurface:
 
     @cached_property
     def normal_force(self) -> Array:
-        """F_N [force]: at a constant depth F_N0(c) + 2 E* int_0^a (d - max(g, g(c))) dx."""
+        """F_N [force]: at a constant depth F_N0(a) + 2 E* (a w(a) - int_c^a w dx), w = g - g_0."""
         initial = self.initial
         contact, profile = initial.contact, initial.contact.profile
         if initial.held.force or not self.states:
             return np.full(self.cycles.shape, float(contact.normal_force))
-        # At a shrinking stick edge c = c_0 + shift, the foundation inside c is unworn.
-        edge = profile.coordinate_from_radius(self.stick_radius)
+        edge = profile.coordinate_from_radius(self.contact_radius)
         e_star, unit = float(contact.e_star), initial.depth_unit * initial.length_unit
-        outside = self._each(lambda state: state.drive * float(state.x[-1]) - state.lifted, 0.0)
-        return np.asarray(e_star * (profile.reduced_force(edge) + 2 * unit * outside))
+
+        def worn(state: AnnulusState) -> float:
+            return float(state.x[-1] ** 2 * state.worn_omega[-1]) - state.lifted
+
+        return np.asarray(e_star * (profile.reduced_force(edge) + 2 * unit * self._each(worn, 0.0)))
 
     @cached_property
     def worn_volume(self) -> Array:
