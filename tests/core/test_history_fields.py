@@ -139,3 +139,15 @@ def test_grid_has_every_front() -> None:
     for edge in (state.contact_radius, *state.slip_fronts):
         # Just inside, where the rounding of the edge is not felt.
         assert 0 < np.min(np.abs(grid - edge)) < 1e-3 * edge
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_springs_that_never_slipped_after_normal_loading_have_no_slope(seed: int) -> None:
+    """Not even one by rounding: the stress of any slope is infinite at the tip of a cone."""
+    rng = np.random.default_rng(seed)
+    loads = rng.uniform(0.5, 1.0, 8)
+    forces = 0.3 * MU * loads * rng.uniform(-1, 1, 8)
+    forces[0] = 0.0
+    state = history.solve(Cone(0.3), E, G, MU, normal_force=loads, tangential_force=forces).state
+    assert state.segments.slope[0] == 0
+    assert np.isfinite(fields.shear_stress(state, [0.0])).all()

@@ -47,6 +47,9 @@ cdef class PolylineStack:
     cdef void _cut(
         self, Py_ssize_t lower, Py_ssize_t upper, Py_ssize_t own, Py_ssize_t other, double keep
     ) noexcept
+    cdef void _cut_level(
+        self, Py_ssize_t lower, Py_ssize_t own, Py_ssize_t other, double keep
+    ) noexcept
     @cython.locals(first=bint)
     cdef Py_ssize_t _last_reached(self, Py_ssize_t lower, Py_ssize_t upper) noexcept
     @cython.locals(at=Py_ssize_t)

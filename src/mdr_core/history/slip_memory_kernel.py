@@ -236,6 +236,9 @@ class PolylineStack:
     def _cut(self, lower: int, upper: int, own: int, other: int, keep: float) -> None:
         """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
         growth = self.growth[upper, other]
+        if growth == self.growth[upper, own]:
+            self._cut_level(lower, own, other, keep)
+            return
         ratio = growth / self.growth[upper, own]
         over = self._excess(upper, POINT, own)
         # From the nearer end, so that the distances to both are free of cancellation.
@@ -249,6 +252,20 @@ class PolylineStack:
         self._put(CORNER, other, total + low, _rounding(total, low, total + low), rest)
         if rest <= 0:
             self.constant[upper] = other
+
+    def _cut_level(self, lower: int, own: int, other: int, keep: float) -> None:
+        """Find the corner on a segment of constant anchor, where both sums grow alike.
+
+        Exactly: the stress of a slope that is mere rounding error is infinite at a tip or a kink.
+        """
+        base = self.high[lower, own]
+        move = self.high[POINT, own] - base
+        moved_low = _rounding(self.high[POINT, own], -base, move)
+        moved_low += self.low[POINT, own] - self.low[lower, own]
+        high = self.high[lower, other]
+        total = high + move
+        low = _rounding(high, move, total) + moved_low + self.low[lower, other]
+        self._put(CORNER, other, total + low, _rounding(total, low, total + low), keep)
 
     def _last_reached(self, lower: int, upper: int) -> int:
         """Sum in which the load point is reached further out on a segment where both grow."""
