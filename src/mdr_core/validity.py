@@ -1,23 +1,19 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `half_space`, `plastic`, `elastic_similarity`, `impossible_moduli`,
-`yield` and `yield_unknown`; `singular` and `accuracy` come with the results.
+The codes are `table_end`, `half_space`, `plastic`, `elastic_similarity` and `impossible_moduli`;
+`singular` and `accuracy` come with the results, and `yield` from `mdr_core.subsurface`.
 
 Source: notes, §8.
 """
 
 from collections.abc import Callable, Iterable
-from functools import lru_cache
-from math import atan
 from typing import Final, NamedTuple, Protocol
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from mdr_core.errors import Notice
 from mdr_core.materials import Material
-from mdr_core.profiles import Cone, Paraboloid, Profile
-from mdr_core.profiles.spheroids import Spheroid
+from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 
 # Relative error of the half-space approximation above which it is reported, with room for rounding:
@@ -27,8 +23,8 @@ _HALF_SPACE_ERROR: Final = 0.01 * (1 + 1e-9)
 # hay, by F/F_Sneddon to first order; a paraboloid has two thirds of it.
 _RADIAL: Final = 0.63
 # Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta with it.
-_ASSUMED_RATIO: Final = 0.3
-_ASSUMED_BETA: Final = (1 - 2 * _ASSUMED_RATIO) / (2 * (1 - _ASSUMED_RATIO))
+ASSUMED_RATIO: Final = 0.3
+_ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 # Poisson's ratio of incompressible bodies.
 _INCOMPRESSIBLE: Final = 0.5
 # Part of a table's length from which its end is near; a judgement.
@@ -62,8 +58,6 @@ class LoadedContact(Protocol):
     @property
     def contact_radius(self) -> Array: ...
     @property
-    def maximum_pressure(self) -> Array: ...
-    @property
     def loaded(self) -> Flags: ...
 
 
@@ -77,8 +71,7 @@ def findings(
     material: Material,
     *,
     g_star: Parameter | None = None,
-    tangential: Flags | None = None,
-    yield_strength: float | None = None,
+    slips_from: Parameter = np.inf,
 ) -> list[Finding]:
     """Return all findings that depend on the bodies in contact.
 
@@ -87,14 +80,11 @@ def findings(
     contact : a normal contact.
     material : the bodies; Poisson's ratio 0.3 is assumed where they are unknown.
     g_star : effective shear modulus of a contact with friction [pressure].
-    tangential : cases with a tangential load.
-    yield_strength : of the softer body, in uniaxial tension [pressure].
+    slips_from : least radius with slip in each case [length]; infinite without.
     """
-    found = of_normal_contact(contact, material)
+    found = of_normal_contact(contact, material, slips_from)
     if g_star is not None:
         found += of_moduli(contact.e_star, g_star, material.dundurs_beta)
-    if yield_strength is not None:
-        found += of_strength(contact, material, yield_strength, tangential)
     return found
 
 
@@ -113,7 +103,9 @@ def table_end(contact: LoadedContact) -> Finding:
     return Finding("table_end", np.asarray(near), message)
 
 
-def of_normal_contact(contact: LoadedContact, material: Material | None = None) -> list[Finding]:
+def of_normal_contact(
+    contact: LoadedContact, material: Material | None = None, slips_from: Parameter = np.inf
+) -> list[Finding]:
     """Return `half_space` and `plastic`.
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
@@ -126,6 +118,7 @@ def of_normal_contact(contact: LoadedContact, material: Material | None = None) 
     ----------
     contact : a normal contact.
     material : the bodies; Poisson's ratio 0.3 is assumed where they are unknown.
+    slips_from : least radius with slip in each case [length]; infinite without.
     """
     beta = None if material is None else material.dundurs_beta
     radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
@@ -134,7 +127,7 @@ def of_normal_contact(contact: LoadedContact, material: Material | None = None) 
 
     def size() -> str:
         steepest = float(np.max(slope))
-        assumed = f" (Poisson's ratio {_ASSUMED_RATIO} assumed)" if beta is None else ""
+        assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if beta is None else ""
         return (
             f"the half-space approximation has an estimated error of "
             f"{_per_cent(float(np.max(error)))}: {_per_cent(radial * steepest)} by the neglected "
@@ -148,7 +141,10 @@ def of_normal_contact(contact: LoadedContact, material: Material | None = None) 
             "a real material yields there under any load"
         )
 
-    plastic = infinite_pressure(contact, () if material is None else material.poissons_ratios)
+    ratios = () if material is None else material.poissons_ratios
+    plastic = _infinite(
+        contact, lambda b: infinite_deviator(contact.profile, b, ratios, slips_from)
+    )
     steep = Finding("half_space", np.asarray(error > _HALF_SPACE_ERROR), size)
     return [steep, Finding("plastic", plastic, places)]
 
@@ -193,72 +189,38 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> list[
     ]
 
 
-def of_strength(
-    contact: LoadedContact,
-    material: Material,
-    yield_strength: float,
-    tangential: Flags | None = None,
-) -> list[Finding]:
-    """Return `yield` where Tresca's criterion is met, `yield_unknown` where it is not evaluated.
+def infinite_pressure(contact: LoadedContact) -> Flags:
+    """Return the loads under which the pressure is infinite somewhere."""
+    return _infinite(contact, lambda _radius: True)
 
-    Under a body that is round at the tip the largest shear stress lies on the axis, c(nu) p_0 with
-    c = max of [3/2/(1 + s^2) - (1 + nu)(1 - s arctan(1/s))]/2 over s = z/a: 0.310 for nu = 0.3. A
-    tangential load can only add to it, by an amount that is not computed. Under a cone the largest
-    stress difference in an incompressible body is E* tan(theta).
 
-    Source: johnson, Eqs. (3.45), (4.4) and section 5.2; notes, §8.
+def infinite_deviator(
+    profile: Profile,
+    radius: Parameter,
+    poissons_ratios: tuple[float, ...],
+    slips_from: Parameter = np.inf,
+) -> Flags:
+    """Return whether the deviatoric stress is infinite at a radius of infinite pressure.
+
+    In incompressible bodies a logarithmic singularity, at the tip of a cone or at a slope
+    discontinuity, is hydrostatic unless slip reaches it.
 
     Parameters
     ----------
-    contact : a normal contact.
-    material : the bodies; Poisson's ratio 0.3 is assumed where they are unknown.
-    yield_strength : in uniaxial tension [pressure].
-    tangential : cases with a tangential load; None for none.
+    profile : the profile.
+    radius : a radius of infinite pressure [length].
+    poissons_ratios : of the elastic bodies [1].
+    slips_from : least radius with slip [length]; infinite without.
     """
-    profile, ratios = contact.profile, material.poissons_ratios or (_ASSUMED_RATIO,)
-    plastic = infinite_pressure(contact, ratios)
-    loaded = contact.loaded & ~plastic
-    stress, onset = np.zeros(loaded.shape), np.inf
-    if isinstance(profile, Cone):
-        stress, onset = stress + contact.e_star * profile.slope, yield_strength
-    elif isinstance(profile, Paraboloid | Spheroid):
-        stress = contact.maximum_pressure
-        onset = yield_strength / (2 * max(map(largest_shear, ratios)))
-    yields = loaded & (stress >= onset)
-    known = onset < np.inf
-    sheared = np.asarray(False if tangential is None else tangential)
-    unknown = loaded & ~yields & (sheared | (not known))
-
-    def exceeded() -> str:
-        if not yields.any():
-            return "the stress is infinite: the material yields under any load"
-        name = "stress difference" if isinstance(profile, Cone) else "maximum pressure"
-        reached = float(np.max(stress[yields]))
-        return f"the {name} {reached:.4g} exceeds the onset of yield, {onset:.4g}"
-
-    def not_assessed() -> str:
-        case = "with a tangential load" if known else f"under a {profile.kind}"
-        return f"the onset of yield {case} is not assessed"
-
-    return [
-        Finding("yield", plastic | yields, exceeded),
-        Finding("yield_unknown", np.asarray(unknown), not_assessed),
-    ]
+    if profile.slips_at_once or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
+        return np.asarray(True)  # noqa: FBT003 -- a flag
+    return np.isinf(profile.tip_pressure) | (np.asarray(radius) >= slips_from)
 
 
-def infinite_pressure(contact: LoadedContact, poissons_ratios: tuple[float, ...] = ()) -> Flags:
-    """Return the loads under which the pressure is infinite somewhere.
-
-    If Poisson's ratios of bodies are given that are all incompressible, the tip of a cone does not
-    count: there the infinite stress is hydrostatic.
-    """
+def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> Flags:
     found = np.zeros(contact.contact_radius.shape, dtype=bool)
-    incompressible = bool(poissons_ratios) and min(poissons_ratios) == _INCOMPRESSIBLE
     for b in contact.profile.infinite_pressure_radii:
-        reached = contact.loaded & (b <= contact.contact_radius)
-        if incompressible:
-            reached &= (np.asarray(b) > 0) | np.isinf(contact.profile.tip_pressure)
-        found = found | reached
+        found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
     return np.asarray(found)
 
 
@@ -267,23 +229,6 @@ def infinite_radii(contact: LoadedContact) -> str:
     radii = (float(np.min(b)) for b in contact.profile.infinite_pressure_radii)
     largest = np.max(contact.contact_radius)
     return ", ".join(f"{b:.12g}" for b in radii if b <= largest)
-
-
-@lru_cache(maxsize=64)
-def largest_shear(poissons_ratio: float) -> float:
-    """Return the largest shear stress on the axis under Hertz' pressure, over its peak [1].
-
-    Source: johnson, Eq. (3.45).
-
-    >>> round(largest_shear(0.3), 3)
-    0.31
-    """
-
-    def minus_shear(s: float) -> float:
-        radial = (1 + poissons_ratio) * (1 - s * atan(1 / s))
-        return -(1.5 / (1 + s * s) - radial) / 2
-
-    return -float(minimize_scalar(minus_shear, bounds=(1e-3, 2.0), method="bounded").fun)
 
 
 def _edge_slope(contact: LoadedContact) -> Array:

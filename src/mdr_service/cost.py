@@ -14,7 +14,7 @@ from mdr_service import problems
 from mdr_service.problems import ServiceError
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
-from mdr_service.schemas.fields import FieldQuery, StressQuery
+from mdr_service.schemas.fields import FieldQuery, LoadedQuery, StressQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -60,7 +60,7 @@ def seconds(query: BaseModel) -> float:
     if isinstance(query, SubsurfaceQuery):
         return _beneath(query)
     scale = _complexity(query.profile)
-    path = query.path if isinstance(query, HistoryQuery | StressQuery) else None
+    path = query.path if isinstance(query, HistoryQuery | LoadedQuery) else None
     # Times that are multiplied in full, and those multiplied by the fourth root.
     evaluated, integrated = _START[type(query)], 0.0
     if isinstance(query, FieldQuery):
@@ -126,7 +126,7 @@ def _sizes(query: BaseModel) -> dict[str, int]:
     if isinstance(query, BatchQuery):
         return {"queries": len(query.queries)}
     found: dict[str, int] = {}
-    if isinstance(query, HistoryQuery | StressQuery) and query.path:
+    if isinstance(query, HistoryQuery | LoadedQuery) and query.path:
         found = {"history" if query.has("history") else "cycles": query.path.samples}
     elif isinstance(query, Query):
         found = {"cycles" if isinstance(query, EvolutionQuery) else "load": query.loads}

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mdr_core import validity
+from mdr_core import subsurface, validity
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
@@ -97,24 +97,30 @@ def written(warnings: Iterable[Notice]) -> list[dict[str, str]]:
 
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
-    material = query.material.effective
-    given: dict[str, Any] = {}
-    if query.material.has("yield_strength"):
-        given["yield_strength"] = query.material.yield_strength
+    if isinstance(source, LimitingWear | WearEvolution):
+        return [*_notices(query, unworn(source)), *_own(source)]
     if isinstance(source, NormalContact):
-        contact = source
+        return [*_notices(query, source), *source.bodiless_warnings]
+    return [*_notices(query, source), *_own(source)]
+
+
+def _notices(query: Query, contact: Contact) -> list[Notice]:
+    """Limits that depend on the bodies, which are assessed for the bodies of the query."""
+    material = query.material.effective
+    if isinstance(contact, NormalContact):
+        found = validity.findings(contact, material)
     else:
-        given["g_star"] = material.g_star
-        if isinstance(source, LoadHistory):
-            contact, given["tangential"] = source.contact, source.tangential_force != 0
-        else:
-            partial = source if isinstance(source, TangentialContact) else unworn(source)
-            contact, given["tangential"] = partial.normal, partial.tangential_force != 0
-    # Limits that depend on the bodies are assessed for the bodies of the query.
-    found = validity.notices(validity.findings(contact, material, **given))
-    if source is contact:
-        return [*found, *contact.bodiless_warnings]
-    return found + [each for each in source.warnings if each.code not in validity.OF_BODIES]
+        pressed = contact.contact if isinstance(contact, LoadHistory) else contact.normal
+        slips_from = subsurface.slips_from(contact)
+        found = validity.findings(pressed, material, g_star=material.g_star, slips_from=slips_from)
+    if query.material.has("yield_strength"):
+        ratios = material.poissons_ratios
+        found.append(subsurface.yielding(contact, ratios, query.material.yield_strength))
+    return validity.notices(found)
+
+
+def _own(source: Contact | Wear) -> list[Notice]:
+    return [each for each in source.warnings if each.code not in validity.OF_BODIES]
 
 
 def unworn(worn: Wear) -> TangentialContact:

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from mdr_core import normal, tangential, validity
+from mdr_core import normal, subsurface, tangential, validity
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import KINDS
@@ -151,13 +151,13 @@ def _warnings(
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the order of the service."""
     given: dict[str, Any] = {}
-    if "yield_strength" in query.material.model_fields_set:
-        given["yield_strength"] = query.material.yield_strength
     if isinstance(source, TangentialContact):
-        given["g_star"] = source.g_star
-        # Computed only where yield is assessed.
-        given["tangential"] = source.tangential_force != 0 if "yield_strength" in given else None
-    findings = validity.findings(contact, query.material.effective, **given)
+        given = {"g_star": source.g_star, "slips_from": subsurface.slips_from(source)}
+    material = query.material.effective
+    findings = validity.findings(contact, material, **given)
+    if "yield_strength" in query.material.model_fields_set:
+        strength = query.material.yield_strength
+        findings.append(subsurface.yielding(source, material.poissons_ratios, strength))
     flags: dict[str, Any] = {code: where for code, where, _ in findings}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags["table_end"] = validity.table_end(contact).where

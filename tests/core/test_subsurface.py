@@ -4,14 +4,28 @@ from __future__ import annotations
 
 import itertools
 from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from mdr_core import fields, normal, tangential
+from mdr_core import history as load_history
 from mdr_core.errors import InputError
-from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Profile, RoundedPunch
-from mdr_core.subsurface import StressTensor, error_estimate, stress
+from mdr_core.profiles import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedPunch,
+    Tabulated,
+)
+from mdr_core.subsurface import StressTensor, error_estimate, largest, stress
+
+if TYPE_CHECKING:
+    from mdr_core.history import ContactState, LoadHistory
+    from mdr_core.tangential import TangentialContact
 
 E_STAR, FRICTION = 3.0, 0.3
 EXACT = 1e-13
@@ -133,39 +147,148 @@ def test_point_force_in_the_far_field(profile: Profile) -> None:
         assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
-def test_superposed_point_forces(profile: Profile) -> None:
-    """The definition: the surface tractions as point forces, for normal and sheared contact."""
-    if isinstance(profile, FlatPunch):
-        contact = tangential.solve(pressed(profile), 2.6, FRICTION, tangential_force=0.1)
-    else:
-        contact = sheared(profile, 0.7)
+POINTS = np.array([[0.3, 0.2, 0.6], [-0.9, 0.4, 0.5], [1.4, -0.3, 0.7], [0.05, 0.0, 1.2]])
+
+
+def superposed(
+    contact: normal.NormalContact, partial: TangentialContact | ContactState, stops: list[float]
+) -> np.ndarray:
+    """The definition: stresses at `POINTS` by the surface tractions as point forces."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
-    stops = (0.0, 1.0) if isinstance(profile, FlatPunch) else (0.0, 0.5, 0.7, 1.0)
     # r = stop - width s^2 from either side removes roots at the stops.
-    middle = [(low + high) / 2 for low, high in itertools.pairwise(stops)]
     r, mass = [], []
-    for low, at, high in zip(stops, middle, stops[1:], strict=False):
-        s = (1 + nodes) / 2
+    for low, high in itertools.pairwise(stops):
+        s, at = (1 + nodes) / 2, (low + high) / 2
         for end in (low, high):
             r.append(end + (at - end) * s * s)
             mass.append(np.abs(at - end) * s * weights)
-    radius, mass = np.concatenate(r), np.concatenate(mass)
-    p = fields.pressure(contact.normal, radius, rtol=1e-13)
-    tau = fields.shear_stress(contact, radius, rtol=1e-13)
+    radius, shares = np.concatenate(r), np.concatenate(mass)
+    p = fields.pressure(contact, radius, rtol=1e-13)
+    tau = fields.shear_stress(partial, radius, rtol=1e-13)
     angle = 2 * pi * np.arange(96) / 96
-    around = 2 * pi / 96 * (radius * mass)[:, None]
+    around = 2 * pi / 96 * (radius * shares)[:, None]
     total = []
-    points = np.array([[0.3, 0.2, 0.6], [-0.9, 0.4, 0.5], [1.4, -0.3, 0.7], [0.05, 0.0, 1.2]])
-    for x, y, z in points:
+    for x, y, z in POINTS:
         dx = x - radius[:, None] * np.cos(angle)
         dy = y - radius[:, None] * np.sin(angle)
         depth = np.full_like(dx, z)
         unit = point_force(dx, dy, depth, 0.3, 1.0, 0.0)
         shear = point_force(dx, dy, depth, 0.3, 0.0, 1.0)
         total.append(((unit * p[:, None] + shear * tau[:, None]) * around).sum(axis=(1, 2)))
-    found = np.array(stress(contact, *points.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
-    assert np.abs(found - np.array(total)).max() < 2e-10 * np.abs(found).max()
+    return np.array(total)
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
+def test_superposed_point_forces(profile: Profile) -> None:
+    if isinstance(profile, FlatPunch):
+        contact = tangential.solve(pressed(profile), 2.6, FRICTION, tangential_force=0.1)
+    else:
+        contact = sheared(profile, 0.7)
+    stops = [0.0, 1.0] if isinstance(profile, FlatPunch) else [0.0, 0.5, 0.7, 1.0]
+    expected = superposed(contact.normal, contact, stops)
+    found = np.array(stress(contact, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
+    assert np.abs(found - expected).max() < 2e-10 * np.abs(found).max()
+
+
+TABLE = Tabulated(np.linspace(0, 1.4, 29), np.linspace(0, 1.4, 29) ** 2 / 4)
+# Reversed, oblique, and curved load paths that end at the contact radius 1.
+PATHS = {
+    "reversed": (
+        "indentation_depth",
+        [1.0, 1.0, 1.0],
+        "tangential_displacement",
+        [0.2, -0.1, 0.05],
+    ),
+    "oblique": ("indentation_depth", [0.6, 1.2, 1.0], "tangential_displacement", [0.1, 0.25, 0.1]),
+    "curved": ("normal_force", [0.7, 1.2, 1.0], "tangential_displacement", [0.1, 0.2, 0.05]),
+}
+
+
+def at_end(profile: Profile, name: str) -> tuple[normal.NormalContact, LoadHistory]:
+    contact = pressed(profile)
+    control, loads, other, displacements = PATHS[name]
+    size = float(contact.indentation_depth)
+    loads = [part * float(getattr(contact, control)) for part in loads]
+    given = {control: loads, other: [part * size for part in displacements]}
+    return contact, load_history.solve(profile, E_STAR, 2.6, FRICTION, **given)
+
+
+@pytest.mark.parametrize("name", PATHS)
+@pytest.mark.parametrize(
+    "profile", [Paraboloid(2.0), Cone(0.2), Power(0.3, 1.6), RoundedPunch(0.5, 2.0), TABLE]
+)
+def test_end_of_a_history_by_superposed_point_forces(profile: Profile, name: str) -> None:
+    contact, history = at_end(profile, name)
+    fronts = history.slip_fronts.tolist()
+    breaks = [0.5] if isinstance(profile, RoundedPunch) else []
+    if profile is TABLE:
+        breaks = profile.r[1:20].tolist()
+    stops = sorted({0.0, 1.0, *fronts, *breaks})
+    expected = superposed(contact, history.state, stops)
+    found = np.array(stress(history.state, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
+    assert fronts
+    assert np.abs(found - expected).max() < 1e-8 * np.abs(found).max()
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
+def test_end_of_a_monotonic_history_is_the_tangential_contact(profile: Profile) -> None:
+    contact = pressed(profile)
+    force = 0.6 * FRICTION * float(contact.normal_force)
+    loads = {"normal_force": float(contact.normal_force), "tangential_force": [0.0, force]}
+    history = load_history.solve(profile, E_STAR, 2.6, FRICTION, **loads)
+    once = tangential.solve(contact, 2.6, FRICTION, tangential_force=force)
+    x, z = np.linspace(-1.4, 1.4, 29), np.array([0.0, 1e-9, 0.1, 0.8])[:, None]
+    for body in (1, 2):
+        given = {"poissons_ratio": 0.3, "body": body, "rtol": EXACT}
+        found, expected = (
+            np.array(stress(one, x, 0.2, z, **given)) for one in (history.state, once)
+        )
+        assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+    peaks = [float(largest(one, poissons_ratio=0.3).value) for one in (history.state, once)]
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-5, abs=0)
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_tractions_at_the_end_of_a_history(name: str) -> None:
+    contact, history = at_end(RoundedPunch(0.5, 2.0), name)
+    r = np.concatenate([np.linspace(0, 1.5, 61), [1 - 1e-9], history.slip_fronts])
+    found = stress(history.state, r, 0.0, 0.0, poissons_ratio=0.3, body=2, rtol=EXACT)
+    p, tau = fields.pressure(contact, r), fields.shear_stress(history.state, r)
+    assert np.abs(found.zz + p).max() < 1e-9 * p.max()
+    assert np.abs(found.xz + tau).max() < 1e-9 * p.max()
+
+
+def test_residual_stress_after_the_tangential_force_is_removed() -> None:
+    """Mindlin and Deresiewicz 1953: tau = mu (p(a) - 2 p(b) + p(c)), b and c the slip fronts."""
+    contact = pressed(Paraboloid(2.0))
+    limit = FRICTION * float(contact.normal_force)
+    loads = {"normal_force": float(contact.normal_force), "tangential_force": [0.6 * limit, 0.0]}
+    loads["tangential_force"].insert(0, 0.0)
+    history = load_history.solve(Paraboloid(2.0), E_STAR, 2.6, FRICTION, **loads)
+    c, b = (1 - 0.6) ** (1 / 3), (1 - 0.3) ** (1 / 3)
+    assert history.slip_fronts == pytest.approx([c, b], rel=1e-12, abs=0)
+    place = np.array([0.3, 0.5, 0.9, 1.1]), 0.1, np.array([[0.0], [0.3]])
+    found = np.array(stress(history.state, *place, poissons_ratio=0.3, body=2, rtol=EXACT))
+
+    def of(radius: float) -> np.ndarray:
+        one = normal.solve(Paraboloid(2.0), E_STAR, contact_radius=radius)
+        slides = tangential.solve(one, 2.6, FRICTION, tangential_displacement=100.0)
+        given = {"poissons_ratio": 0.3, "body": 2, "rtol": EXACT}
+        return np.array(stress(slides, *place, **given)) - np.array(stress(one, *place, **given))
+
+    alone = np.array(stress(contact, *place, poissons_ratio=0.3, rtol=EXACT))
+    # The force went to zero by slip of the opposite sign.
+    residual = of(1.0) - 2 * of(b) + of(c)
+    assert np.abs(found - alone + residual).max() < 1e-12 * np.abs(alone).max()
+    separated = load_history.solve(
+        Paraboloid(2.0),
+        E_STAR,
+        2.6,
+        FRICTION,
+        normal_force=[1.0, 0.0],
+        tangential_force=[0.1, 0.0],
+    )
+    assert not np.array(stress(separated.state, *place, poissons_ratio=0.3)).any()
 
 
 @pytest.mark.parametrize("stick", [0.0, 0.6])

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 
+from mdr_core import history as load_history
 from mdr_core import normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
@@ -18,8 +20,10 @@ from mdr_core.profiles import (
     RoundedPunch,
     Sphere,
     Tabulated,
+    TruncatedCone,
 )
-from mdr_core.subsurface import MEASURES, largest, stress, yield_onset_force
+from mdr_core.subsurface import MEASURES, largest, stress, yield_onset_force, yielding
+from tests.oracles.subsurface_generate import shape_of, tensor
 
 STRENGTH = 0.01
 
@@ -143,6 +147,94 @@ def test_incompressible_cone() -> None:
     assert 2 * float(peak.value) == pytest.approx(0.75 * 3.0 * 0.1, rel=1e-5, abs=0)
     assert float(yield_onset_force(contact, 0.2, poissons_ratio=0.5)) == 0
     assert np.isinf(yield_onset_force(contact, 0.3, poissons_ratio=0.5))
+    for factor, expected in ((0.999, True), (1.001, False)):
+        strength = factor * 0.75 * 3.0 * 0.1
+        assert bool(yielding(contact, (0.5,), strength).where) == expected
+    assert bool(yielding(contact, (0.3,), 1e9).where)
+
+
+def test_largest_difference_next_to_the_tip_of_an_incompressible_cone() -> None:
+    """The definition in mpmath: it is on the axis, and not E* tan(theta)."""
+    mp.dps = 30
+    shape = shape_of({"kind": "cone", "slope": 1.0})
+    differences = []
+    for degrees in (1e-6, 20, 45, 70, 89):
+        angle = np.radians(degrees)
+        place = mpf(1e-6 * np.sin(angle)), mpf(0), mpf(1e-6 * np.cos(angle))
+        xx, yy, zz, xy, xz, yz = map(float, tensor(shape, mpf(1), None, mpf(0), mpf(0.5), place))
+        principal = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        differences.append(principal[2] - principal[0])
+    assert differences[0] == pytest.approx(0.75, rel=1e-9, abs=0)
+    assert differences == sorted(differences, reverse=True)
+
+
+def test_slope_discontinuity_of_an_incompressible_body() -> None:
+    """Beneath it the pressure -K ln|x| of plane strain, K = E* t/(2 pi), has the difference 2 K."""
+    contact = normal.solve(TruncatedCone(0.5, 0.1), 3.0, contact_radius=1.0)
+    at = stress(contact, 0.5, 0.0, [1e-8, 1e-6], poissons_ratio=0.5)
+    assert 2 * at.maximum_shear == pytest.approx(0.3 / np.pi, rel=1e-5, abs=0)
+    assert np.isfinite(largest(contact, poissons_ratio=0.5).value)
+    assert np.isinf(largest(contact, poissons_ratio=0.49).value)
+    slides = tangential.solve(contact, 2.5, 0.3, tangential_displacement=10.0)
+    assert np.isinf(largest(slides, poissons_ratio=0.5).value)
+
+
+@pytest.mark.parametrize(("nu", "onset"), [(0.0, 1.299), (0.3, 1.613), (0.5, 1.877)])
+@pytest.mark.parametrize("profile", [Paraboloid(2.0), Sphere(2.0)])
+def test_yielding_under_a_ball(profile: Profile, nu: float, onset: float) -> None:
+    """Johnson, section 6.1; a sphere of 2 mm under 2 um differs by less than the tolerance."""
+    # p_0 = 2 E* a/(pi R).
+    radii = onset * STRENGTH * np.pi * 2.0 / (2 * 3.0) * np.array([0.5, 0.997, 1.003, 2.0])
+    contact = normal.solve(profile, 3.0, contact_radius=radii)
+    assert yielding(contact, (nu,), STRENGTH).where.tolist() == [False, False, True, True]
+    # The softer of two bodies is not known, so the one with the larger stress counts.
+    assert yielding(contact, (nu, 0.0), STRENGTH).where[1] == (nu > 0)
+
+
+def test_friction_brings_yield_forward() -> None:
+    """Full sliding at mu = 0.3, nu = 0.3 yields at p_0 = 1.466 Y instead of 1.613 Y."""
+    radii = STRENGTH * np.pi * 2.0 / (2 * 3.0) * np.array([1.4, 1.5, 1.5, 1.5])
+    contact = normal.solve(Paraboloid(2.0), 3.0, contact_radius=radii)
+    limit = 0.3 * contact.normal_force
+    forces = limit * [0.999, 0.0, 0.2, 0.999]
+    pushed = tangential.solve(contact, 2.5, 0.3, tangential_force=forces)
+    assert yielding(pushed, (0.3,), STRENGTH).where.tolist() == [False, False, False, True]
+    peaks = 2 * largest(pushed, "maximum_shear", poissons_ratio=0.3).value
+    assert (peaks >= STRENGTH).tolist() == [False, False, False, True]
+    history = load_history.solve(
+        Paraboloid(2.0),
+        3.0,
+        2.5,
+        0.3,
+        normal_force=contact.normal_force[3],
+        tangential_force=[forces[3], 0.0, forces[2]],
+    )
+    assert yielding(history, (0.3,), STRENGTH).where.tolist() == [True, False, False]
+
+
+def test_yielding_of_many_loads_is_that_of_each() -> None:
+    rng = np.random.default_rng(5)
+    contact = normal.solve(RoundedPunch(0.5, 20.0), 3.0, contact_radius=rng.uniform(0.51, 0.7, 12))
+    share = rng.uniform(0, 0.99, 12)
+    pushed = tangential.solve(
+        contact, 2.5, 0.4, tangential_force=share * 0.4 * contact.normal_force
+    )
+    peaks = 2 * largest(pushed, "maximum_shear", poissons_ratio=0.3).value
+    strength = float(np.median(peaks))
+    assert np.array_equal(yielding(pushed, (0.3,), strength).where, peaks >= strength)
+
+
+def test_yielding_with_arrays_of_profiles() -> None:
+    radius, modulus = np.array([1.0, 2.0, 4.0]), np.array([2.0, 3.0, 3.0])
+    contact = normal.solve(Hyperboloid(0.1, radius), modulus, normal_force=1e-3)
+    each = [
+        normal.solve(Hyperboloid(0.1, r), e, normal_force=1e-3)
+        for r, e in zip(radius, modulus, strict=True)
+    ]
+    peaks = [2 * float(largest(one, "maximum_shear", poissons_ratio=0.3).value) for one in each]
+    strength = float(np.mean(peaks))
+    expected = [peak >= strength for peak in peaks]
+    assert yielding(contact, (0.3,), strength).where.tolist() == expected
 
 
 def test_stress_that_no_load_reaches() -> None:

@@ -46,6 +46,13 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     return _contact.grid(contact, points)
 
 
+def edges(contact: NormalContact | TangentialContact | ContactState) -> _radii.Edges:
+    """Return the contact radii and slip fronts, with their rounding errors."""
+    if isinstance(contact, ContactState):
+        return _history_end.edges(contact)
+    return _contact.edges(contact)
+
+
 def edge_error(
     contact: NormalContact | TangentialContact | ContactState, name: str, radius: ArrayLike
 ) -> float:
@@ -63,17 +70,14 @@ def edge_error(
     """
     if name not in ("pressure", "shear_stress", "slip", "foundation_shear"):
         return 0.0
-    edges = (
-        _history_end.edges(contact)
-        if isinstance(contact, ContactState)
-        else _contact.edges(contact)
-    )
     stress = name in ("pressure", "shear_stress")
-    return _radii.edge_error(edges, np.atleast_1d(np.asarray(radius, dtype=float)), root=stress)
+    radius = np.atleast_1d(np.asarray(radius, dtype=float))
+    return _radii.edge_error(edges(contact), radius, root=stress)
 
 
 __all__ = [
     "edge_error",
+    "edges",
     "foundation_load",
     "foundation_shear",
     "graded",

@@ -61,7 +61,7 @@ def shear_stress(state: ContactState, radius: ArrayLike, *, rtol: float = 1e-10)
         result = np.zeros(r.shape)
         for a, annulus, slope in _segments(state):
             result += slope * stress(state.profile, annulus, a, r, rtol)
-        for arc in _arcs(state):
+        for arc in arcs(state):
             result += arc.stress(r, rtol) / np.pi
         return modulus * result
 
@@ -91,7 +91,7 @@ def slip(state: ContactState, radius: ArrayLike, *, rtol: float = 1e-10) -> Arra
             if step != 0 and inside.any():
                 result[inside] -= step * slip_kernel(profile, front, r[inside], rtol)
         inside = r <= a
-        for arc in _arcs(state):
+        for arc in arcs(state):
             result[inside] -= arc.slip(r[inside], rtol)
         return state.compliance * result
 
@@ -119,14 +119,14 @@ def foundation_shear(state: ContactState, radius: ArrayLike) -> Array:
         inside = r < edges[-1]
         x = np.maximum(r[inside], edges[0])
         at = profile.coordinate_from_radius(x)
-        arcs = iter(_arcs(state))
+        pieces = iter(arcs(state))
         load = np.zeros(x.shape)
         for i, (slope, rate) in enumerate(zip(segments.slope, segments.rate, strict=True)):
             below = x < edges[i + 1]
             # From the radius, or the lower end of the segment, to its upper end.
             place = np.maximum(x[below], edges[i])
             if rate:
-                load[below] += next(arcs).anchor_step(place)
+                load[below] += next(pieces).anchor_step(place)
             elif slope:
                 lower = np.maximum(at[below], segments.coordinate[i])
                 load[below] += slope * _depth_step(state, i, place, lower)
@@ -187,8 +187,8 @@ def _segments(state: ContactState) -> list[tuple[float, Annulus, float]]:
     return found
 
 
-def _arcs(state: ContactState) -> list[Arc]:
-    """The segments of curved load steps."""
+def arcs(state: ContactState) -> list[Arc]:
+    """Return the segments of curved load steps."""
     profile, segments = state.profile, state.segments
     radii = profile.contact_radius(segments.coordinate)
     found = []

@@ -1,8 +1,10 @@
 """Stresses beneath the surface of a contact."""
 
-from mdr_core.subsurface.largest import MEASURES, Peak, largest, yield_onset_force
+from mdr_core.subsurface.foundation import slips_from
+from mdr_core.subsurface.peaks import MEASURES, Peak, largest
 from mdr_core.subsurface.stress import error_estimate, stress
 from mdr_core.subsurface.tensor import StressTensor
+from mdr_core.subsurface.yielding import yield_onset_force, yielding
 
 __all__ = [
     "MEASURES",
@@ -10,6 +12,8 @@ __all__ = [
     "StressTensor",
     "error_estimate",
     "largest",
+    "slips_from",
     "stress",
     "yield_onset_force",
+    "yielding",
 ]

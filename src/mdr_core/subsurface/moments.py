@@ -4,41 +4,45 @@ With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are Im int
 
     K = 1/rho, zeta/rho^3, 1/(rho u), 1/rho^3, 1/u, 1/u^2, 1/(rho u^2).
 
-On a branch, in s = sqrt(x^2 - b^2), the kernels are singular at s_0 = sqrt((r + i z)^2 - b^2) = p +
-i q alone, which s = p + q sinh(t) moves to t = i pi/2, however close to the surface the point is.
-The values of g' are needed on the real axis only.
+In x^2 the kernels are singular at w = (r + i z)^2 alone. The annulus is cut into pieces on which
+g' is smooth, and pieces are merged in pairs into blocks. A block that is far from w acts like
+masses at a few nodes. On a piece that is near, s = sqrt(x^2 - b^2) = p + q sinh(t) moves the
+singularity p + i q = sqrt(w - b^2) to t = i pi/2, however close to the surface the point is. The
+values of g' are needed on the real axis only.
 
 Source: notes, §14.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import partial
-from math import inf, log, sqrt
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import hypot, inf, sqrt
 from typing import Final, NamedTuple
 
 import numpy as np
+from scipy.interpolate import BarycentricInterpolator
 
 from mdr_core.abel.displacement import Branch
-from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards
+from mdr_core.abel.two_root import Weight
+from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.typing import Array, Indices
 
 # Number of kernels.
 KERNELS: Final = 7
-# Longest panel of a substituted variable: the nearest singularity lies pi/2 beside the axis, or
-# log(2) beyond an end.
+# Longest panel in t: the nearest singularity lies pi/2 beside the axis, or log(2) beyond an end.
 _PANEL: Final = 2.0
-# Powers of s up to this one are resolved by such a panel.
+# Powers of s up to this one are resolved on a piece that doubles s.
 _STEEP: Final = 8.0
-# Nodes of a panel, and a bound on the error that they leave, of the largest stress: at least 2.5
-# times the largest of all kinds at 400 points near edges, axis and surface.
-_NODES: Final = ((8, 2e-5), (10, 5e-8), (12, 1.5e-11), (16, 0.0))
-# The substitution about s_0 begins at this part of |s_0|: below it g' alone needs resolution.
-_SPLIT: Final = 0.5
+# Nodes of a panel and of a block by tolerance, and a bound on the error that they leave, of the
+# largest stress: at least 2.5 times the largest of all kinds at 400 points near edges, axis and
+# surface.
+_NODES: Final = ((8, 10, 2e-5), (10, 12, 5e-8), (12, 16, 1.5e-11), (16, 20, 0.0))
+# Least distance of a far singularity from a block, over its length, both in x^2: interpolation
+# between n nodes of the block errs by 5.8^-n.
+_FAR: Final = 1.0
 # Part of the tolerance that may be left out next to the axis.
 _NEGLIGIBLE: Final = 1e-3
-# Part of the contact radius from which an annulus is narrow.
-_NARROW: Final = 1e-2
+# Distance of a point at the origin from it, over the contact radius.
+_ORIGIN: Final = 1e-34
 # Nodes times points evaluated at once, so that temporaries stay in the processor's cache.
 _BLOCK: Final = 8_192
 
@@ -54,8 +58,7 @@ class Span(NamedTuple):
     """sqrt(a^2 - b^2) behind a flat of radius b, accurate however narrow the rest."""
 
 
-@dataclass(frozen=True)
-class Smooth:
+class Smooth(NamedTuple):
     """A branch of g', and the distance in s over which it changes next to s = 0."""
 
     branch: Branch
@@ -63,211 +66,174 @@ class Smooth:
     """Infinite where g' is analytic at s = 0 on the scale of the branch, zero for a power."""
 
 
-class _Points(NamedTuple):
-    """Points in a half-space, radii and depths > 0, shape (m,)."""
+class _Piece(NamedTuple):
+    """Interval of a branch on which g' is smooth."""
 
-    r: Array
-    z: Array
-
-
-def edge_moments(x: float, weight: float, r: Array, z: Array) -> Array:
-    """Return the moments of a slope that is a single step of g by `weight` at x, shape (7, m).
-
-    Parameters
-    ----------
-    x, weight : radius and height of the step [length].
-    r, z : radii and depths [length], shape (m,).
-    """
-    square = (r - x) * (r + x) + z * z
-    return _sums(square, np.full((1, 1), x), z, np.full((1, 1), weight))
+    weight: Weight
+    base: float
+    s_low: float
+    s_high: float
+    step: float
+    """s_high - s_low, accurate however narrow."""
 
 
-def slope_moments(branches: Sequence[Smooth], span: Span, r: Array, z: Array, rtol: float) -> Array:
-    """Return the moments of g' over an annulus, shape (7, m).
+class Block(NamedTuple):
+    """Part low <= x <= high of an annulus, as masses at a few nodes."""
+
+    low: float
+    high: float
+    width: float
+    """high^2 - low^2, accurate however narrow."""
+    offset: Array
+    """x^2 - low^2 of the nodes, shape (nodes, 1)."""
+    x: Array
+    mass: Array
+    parts: "tuple[Block, Block] | _Piece | None"
+    """The halves of a block that was merged, or the piece."""
+
+
+def step_block(x: float, height: float) -> Block:
+    """Return the block of a slope that is a single step of g at the radius x."""
+    one = np.full((1, 1), x)
+    return Block(x, x, 0.0, np.zeros((1, 1)), one, np.full((1, 1), height), None)
+
+
+def blocks(branches: Sequence[Smooth], span: Span, rtol: float, nearest: float) -> Block | None:
+    """Return the blocks of g' over an annulus, as their root; None where g' vanishes.
 
     Parameters
     ----------
     branches : intervals of g', ascending.
     span : ends of the annulus.
-    r, z : radii and depths [length], z > 0, shape (m,).
     rtol : tolerance, relative to the moment of |g'| |K|.
+    nearest : least distance of the points from the origin [length].
     """
+    nodes, joined, _ = _rule(rtol)
+    level = [block for smooth in branches for block in _leaves(smooth, span, nodes, nearest, rtol)]
+    while len(level) > 1:
+        merged = [_merged(*pair, joined) for pair in zip(level[::2], level[1::2], strict=False)]
+        level = merged + level[2 * len(merged) :]
+    return level[0] if level else None
+
+
+def moments(root: Block, r: Array, z: Array, rtol: float) -> Array:
+    """Return the moments at radii r and depths z > 0 of shape (m,) [length], shape (7, m)."""
     total = np.zeros((KERNELS, r.size))
-    for smooth in branches:
-        branch = smooth.branch
-        begin = max(branch.base, branch.start, span.c)
-        end = min(branch.stop, span.a)
-        if end > begin:
-            total += _branch(smooth, begin, end, span, _Points(r, z), rtol)
-    return total
-
-
-def _branch(
-    smooth: Smooth, begin: float, end: float, span: Span, points: _Points, rtol: float
-) -> Array:
-    """The part of one branch between two radii: below the split of each point, and above it."""
-    base, (r, z) = smooth.branch.base, points
-    s_begin, s_end = (sqrt((x - base) * (x + base)) for x in (begin, end))
-    if end == span.a and span.root is not None:
-        s_end = span.root
-    both = begin == span.c and end == span.a
-    step = span.width * (begin + end) / (s_begin + s_end) if both else s_end - s_begin
-    at = r + 1j * z
-    root = np.sqrt((at - base) * (at + base)) if base > 0 else at
-    # Distances of s_0 from both ends, of a narrow annulus by its width.
-    from_begin = ((at - begin) * (at + begin) / (root + s_begin)).real
-    from_end = ((at - end) * (at + end) / (root + s_end)).real
-    if both and step < _NARROW * s_end:
-        nearer = np.abs(from_begin) < np.abs(from_end)
-        from_begin, from_end = (
-            np.where(nearer, from_begin, from_end + step),
-            np.where(nearer, from_begin - step, from_end),
+    waiting = [(root, np.arange(r.size))]
+    while waiting:
+        block, index = waiting.pop()
+        at_r, at_z = r[index], z[index]
+        # Re w less the square of either end; the nearer one is accurate in a narrow annulus.
+        above_low, above_high = (
+            (at_r - x) * (at_r + x) - at_z * at_z for x in (block.low, block.high)
         )
-    lowest = s_begin if smooth.near == inf else _SPLIT * np.abs(root)
-    split = np.clip(np.broadcast_to(lowest, r.shape), s_begin, s_end)
-    whole = split == s_begin
-    low = np.where(whole, -from_begin, split - root.real) / root.imag
-    high = -from_end / root.imag
-    length = _arcsinh_step(low, high, np.where(whole, step, s_end - split) / root.imag)
-    length[split == s_end] = 0.0
-    ends = _Ends(s_begin, s_end, split, np.arcsinh(high), length)
-    integrals = _Integrals(smooth, root.real, root.imag, z, ends)
-    total = np.zeros((KERNELS, r.size))
-    integrals.add_above(total, rtol)
-    integrals.add_below(total, rtol)
+        nearer = np.abs(above_low) < np.abs(above_high)
+        above_low = np.where(nearer, above_low, above_high + block.width)
+        gap = np.maximum(np.maximum(-above_low, above_low - block.width), 0.0)
+        far = np.hypot(gap, 2 * at_r * at_z) >= _FAR * block.width
+        for part in _in_cache(np.flatnonzero(far), block.x.size):
+            depth = at_z[part]
+            square = above_low[part] + 2 * depth * depth - block.offset
+            total[:, index[part]] += _sums(square, block.x, depth, block.mass)
+        near = index[~far]
+        if near.size and isinstance(block.parts, _Piece):
+            _add_near(total, block, block.parts, near, (r[near], z[near]), _rule(rtol)[0])
+        elif near.size and block.parts:
+            waiting += [(half, near) for half in block.parts if isinstance(half, Block)]
     return total
-
-
-class _Ends(NamedTuple):
-    """Ends of the integrals of a branch, over s and in t; arrays of shape (m,)."""
-
-    s_begin: float
-    s_end: float
-    split: Array
-    top: Array
-    """t at s_end."""
-    length: Array
-    """t at s_end less t at the split."""
-
-
-@dataclass(frozen=True)
-class _Integrals:
-    """Integrals over one branch, for points at s_0 = p + i q and the depth z; shape (m,)."""
-
-    smooth: Smooth
-    p: Array
-    q: Array
-    z: Array
-    ends: _Ends
-
-    def add_above(self, total: Array, rtol: float) -> None:
-        """Add the part above the split, in s = p + q sinh(t)."""
-        length, branch = self.ends.length, self.smooth.branch
-        far = np.hypot(self.p, self.q) > 2 * self.ends.s_end
-        steep = max(1.0, branch.steepness / _STEEP)
-        for away in (False, True):
-            index = np.flatnonzero((length > 0) & (far == away))
-            for group, count in _groups(length[index] * steep):
-                part = index[group]
-                rule = composite_rule(_nodes(rtol), count)
-                if branch.pole < inf:
-                    halvings = halvings_towards(self._distance_of_pole(part) * count) + 1
-                    rule = graded_rule(_nodes(rtol), halvings, count)
-                _fill(total, part, rule, partial(self._above, away=away))
-
-    def _above(self, nodes: Array, weights: Array, index: Indices, *, away: bool) -> Array:
-        branch, p, q, z = self.smooth.branch, self.p[index], self.q[index], self.z[index]
-        step = nodes[:, None] * self.ends.length[index]
-        top = self.ends.top[index]
-        sinh = np.sinh(top - step)
-        if away:
-            # From far away the ends differ by less than the rounding of p.
-            s = self.ends.s_end - 2 * q * np.cosh(top - step / 2) * np.sinh(step / 2)
-        else:
-            s = p + q * sinh
-        s = np.clip(s, self.ends.s_begin, self.ends.s_end)
-        x = np.sqrt(branch.base * branch.base + s * s) if branch.base > 0 else s
-        square = 2 * z * z - q * (sinh * (p + s) + q)
-        run = q * np.sqrt(1 + sinh * sinh) * self.ends.length[index]
-        return _sums(square, x, z, branch.weight(x, s, index) * run * weights[:, None])
-
-    def _distance_of_pole(self, index: Indices) -> float:
-        """Smallest distance of the pole of g' beyond the upper end, in parts of the length."""
-        base, pole = self.smooth.branch.base, self.smooth.branch.pole
-        at = sqrt((pole - base) * (pole + base))
-        gap = np.arcsinh((at - self.p[index]) / self.q[index]) - self.ends.top[index]
-        return float((gap / self.ends.length[index]).min())
-
-    def add_below(self, total: Array, rtol: float) -> None:
-        """Add the part below the split, in y = arcsinh(s/near), or log(s) for powers."""
-        s_begin, split = self.ends.s_begin, self.ends.split
-        index = np.flatnonzero(split > s_begin)
-        if not index.size:
-            return
-        branch, near = self.smooth.branch, self.smooth.near
-        upper = split[index]
-        if near > 0:
-            low = np.full(upper.shape, s_begin / near)
-            length = _arcsinh_step(low, upper / near, (upper - s_begin) / near)
-            top = np.arcsinh(upper / near)
-        else:
-            reach = -log(_NEGLIGIBLE * rtol) / (1 + branch.tip)
-            with np.errstate(divide="ignore"):
-                length = np.minimum(np.log1p((upper - s_begin) / s_begin), reach)
-            top = np.log(upper)
-        steep = max(1.0, branch.steepness / _STEEP)
-        for group, count in _groups(length * steep):
-            below = partial(self._below, length[group], top[group], index[group])
-            part = np.zeros((KERNELS, group.size))
-            _fill(part, np.arange(group.size), composite_rule(_nodes(rtol), count), below)
-            total[:, index[group]] += part
-
-    def _below(
-        self,
-        length: Array,
-        top: Array,
-        points: Indices,
-        nodes: Array,
-        weights: Array,
-        index: Indices,
-    ) -> Array:
-        branch, near = self.smooth.branch, self.smooth.near
-        p, q, z = (part[points[index]] for part in (self.p, self.q, self.z))
-        y = top[index] - nodes[:, None] * length[index]
-        s, run = (near * np.sinh(y), near * np.cosh(y)) if near > 0 else (np.exp(y),) * 2
-        x = np.sqrt(branch.base * branch.base + s * s) if branch.base > 0 else s
-        square = (p - q) * (p + q) + 2 * z * z - s * s
-        mass = branch.weight(x, s, points[index]) * run * length[index] * weights[:, None]
-        return _sums(square, x, z, mass)
-
-
-def _groups(length: Array) -> list[tuple[Indices, int]]:
-    """Integrals with the same number of panels."""
-    count = np.maximum(np.ceil(length / _PANEL), 1).astype(int)
-    return [(np.flatnonzero(count == one), int(one)) for one in np.unique(count)]
-
-
-def _nodes(rtol: float) -> int:
-    return next(count for count, error in _NODES if rtol >= error)
 
 
 def rule_error(rtol: float) -> float:
     """Return a bound on the error of the moments for a tolerance, of the largest stress."""
-    return next(error for _, error in _NODES if rtol >= error)
+    return _rule(rtol)[2]
 
 
-def _fill(
+def _rule(rtol: float) -> tuple[int, int, float]:
+    return next(rule for rule in _NODES if rtol >= rule[2])
+
+
+def _leaves(smooth: Smooth, span: Span, nodes: int, nearest: float, rtol: float) -> Iterator[Block]:
+    """The part of a branch in an annulus, cut where g' changes over less than the rest."""
+    branch, base = smooth.branch, smooth.branch.base
+    begin, end = max(base, branch.start, span.c), min(branch.stop, span.a)
+    if not end > begin:
+        return
+    first, last = (sqrt((x - base) * (x + base)) for x in (begin, end))
+    if end == span.a and span.root is not None:
+        last = span.root
+    # What is left out next to the axis is a small part of that next to the points.
+    left_out = (_NEGLIGIBLE * rtol) ** (1 / (1 + branch.tip))
+    near = smooth.near or left_out * min(last, max(nearest, _ORIGIN * span.a))
+    growth = min(1.0, _STEEP / branch.steepness)
+    pole = sqrt((branch.pole - base) * (branch.pole + base)) if branch.pole < inf else inf
+    cuts = [first]
+    while cuts[-1] < last:
+        at = cuts[-1]
+        cuts.append(min(at + min(growth * hypot(near, at), (pole - at) / 2), last))
+    x = [begin, *(hypot(base, s) for s in cuts[1:-1]), end]
+    u, shares = composite_rule(nodes, 1)
+    for (low, high), (s_low, s_high) in zip(pairwise(x), pairwise(cuts), strict=True):
+        step = s_high - s_low
+        if low == span.c and high == span.a:
+            step = span.width * (low + high) / (s_low + s_high)
+        past = step * u[:, None]
+        s = s_low + past
+        radius = np.sqrt(base * base + s * s)
+        mass = branch.weight(radius, s, slice(0, 1)) * step * shares[:, None]
+        piece = _Piece(branch.weight, base, s_low, s_high, step)
+        yield Block(low, high, step * (s_low + s_high), past * (s_low + s), radius, mass, piece)
+
+
+def _merged(low: Block, high: Block, nodes: int) -> Block:
+    """Two neighbours as one block: Im K/x is interpolated between its nodes in x^2."""
+    width = low.width + high.width
+    place = (1 + gauss_legendre(nodes)[0]) / 2
+    known = np.concatenate([low.offset, low.width + high.offset]) / width
+    shares = BarycentricInterpolator(place, np.eye(nodes))(known[:, 0])
+    mass = np.concatenate([low.mass * low.x, high.mass * high.x])
+    offset = place[:, None] * width
+    x = np.sqrt(low.low * low.low + offset)
+    return Block(low.low, high.high, width, offset, x, shares.T @ mass / x, (low, high))
+
+
+def _add_near(
     total: Array,
+    block: Block,
+    piece: _Piece,
     index: Indices,
-    rule: tuple[Array, Array],
-    values: Callable[[Array, Array, Indices], Array],
+    place: tuple[Array, Array],
+    nodes: int,
 ) -> None:
-    """Add a rule's sums in blocks that stay in the cache."""
-    nodes, weights = rule
-    step = max(_BLOCK // nodes.size, 1)
-    for start in range(0, index.size, step):
-        part = index[start : start + step]
-        total[:, part] += values(nodes, weights, part)
+    """Add the moments of a piece at points near it, in s = p + q sinh(t)."""
+    weight, base, s_low, s_high, step = piece
+    r, z = place
+    at = r + 1j * z
+    root = np.sqrt((at - base) * (at + base)) if base > 0 else at
+    p, q = root.real, root.imag
+    # Distances of s_0 from both ends, in a narrow annulus by its width.
+    past_low = ((at - block.low) * (at + block.low) / (root + s_low)).real
+    past_high = ((at - block.high) * (at + block.high) / (root + s_high)).real
+    nearer = np.abs(past_low) < np.abs(past_high)
+    low = -np.where(nearer, past_low, past_high + step) / q
+    high = -np.where(nearer, past_low - step, past_high) / q
+    top, length = np.arcsinh(high), _arcsinh_step(low, high, step / q)
+    count = np.maximum(np.ceil(length / _PANEL), 1).astype(int)
+    for panels in np.unique(count):
+        u, shares = (part[:, None] for part in composite_rule(nodes, int(panels)))
+        for part in _in_cache(np.flatnonzero(count == panels), u.size):
+            sinh = np.sinh(top[part] - u * length[part])
+            s = np.clip(p[part] + q[part] * sinh, s_low, s_high)
+            x = np.sqrt(base * base + s * s) if base > 0 else s
+            depth = z[part]
+            square = 2 * depth * depth - q[part] * (sinh * (p[part] + s) + q[part])
+            run = q[part] * np.sqrt(1 + sinh * sinh) * length[part]
+            mass = weight(x, s, part) * run * shares
+            total[:, index[part]] += _sums(square, x, depth, mass)
+
+
+def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
+    step = max(_BLOCK // nodes, 1)
+    return (index[start : start + step] for start in range(0, index.size, step))
 
 
 def _sums(square: Array, x: Array, z: Array, mass: Array) -> Array:

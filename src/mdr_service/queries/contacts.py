@@ -14,20 +14,19 @@ from mdr_core.tangential import TangentialContact
 from mdr_service.results import Result, about, by_load, checked, members, notices
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
-from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
-from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.table_cache import TABLES
 
 Arguments = dict[str, Any]
-FrictionQuery = TangentialQuery | StressQuery | SubsurfaceQuery | WearQuery | EvolutionQuery
+FrictionQuery = TangentialQuery | LoadedQuery | WearQuery | EvolutionQuery
 
 _NORMAL: Final = members(NormalAnswer)
 _PARTIAL_SLIP: Final = members(TangentialAnswer, _NORMAL)
 
 
-def solve_normal(query: NormalQuery | StressQuery | WearQuery) -> NormalContact:
+def solve_normal(query: NormalQuery | LoadedQuery | WearQuery) -> NormalContact:
     """Return the normal contact of a query."""
     return normal_contact.solve(**body(query), **control(query.load), rtol=query.rtol)
 
@@ -37,7 +36,7 @@ def normal_result(query: NormalQuery, contact: NormalContact) -> Result:
     return _result(query, contact, by_load(contact, _NORMAL, query.loads))
 
 
-def solve_tangential(query: TangentialQuery | StressQuery | SubsurfaceQuery) -> TangentialContact:
+def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
     """Return the contact with friction of a query."""
     tangential = paired("tangential", query.tangential, query.load)
     return tangential_contact.solve(solve_normal(query), **friction(query), **tangential)

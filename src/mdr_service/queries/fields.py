@@ -23,7 +23,7 @@ from mdr_service.results import (
     without_singular,
     written,
 )
-from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, StressQuery
+from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, StressQuery
 from mdr_service.settings import SETTINGS
 
 _FIELDS: Final[Mapping[str, Callable[..., Array]]] = {
@@ -44,9 +44,30 @@ End = tuple[NormalContact, TangentialContact | ContactState | None]
 def solve_stress(query: StressQuery) -> Contact:
     """Return the contact, or the load history, whose fields a query requests."""
     _require_consistent(query)
-    if query.has("history"):
+    return solve_loaded(query)
+
+
+def solve_loaded(query: LoadedQuery) -> Contact:
+    """Return the contact under the loads of a query, or its load history.
+
+    Raises
+    ------
+    InputError : members of the request contradict each other.
+    """
+    by_path = query.has("history")
+    with_friction = by_path or query.has("tangential")
+    if query.has("load") == by_path:
+        place = "history" if by_path else "load"
+        raise InputError((place,), "exactly one of load, history is needed")
+    if by_path and query.has("tangential"):
+        raise InputError(("tangential",), "is part of history where there is one")
+    if query.has("friction_coefficient") != with_friction:
+        missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
+        raise InputError((missing,), "friction_coefficient goes with tangential or history")
+    if by_path:
+        require_few_samples("history", query.history)
         return solve_points(query)
-    return solve_tangential(query) if query.has("tangential") else solve_normal(query)
+    return solve_tangential(query) if with_friction else solve_normal(query)
 
 
 def stress_result(query: StressQuery, source: Contact) -> Result:
@@ -119,16 +140,7 @@ def require_few_numbers(query: FieldQuery, rows: str = "loads") -> None:
 
 def _require_consistent(query: StressQuery) -> None:
     """Raise InputError where fields that are valid alone contradict each other."""
-    by_path = query.has("history")
-    with_friction = by_path or query.has("tangential")
-    if query.has("load") == by_path:
-        place = "history" if by_path else "load"
-        raise InputError((place,), "exactly one of load, history is needed")
-    if by_path and query.has("tangential"):
-        raise InputError(("tangential",), "is part of history where there is one")
-    if query.has("friction_coefficient") != with_friction:
-        missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
-        raise InputError((missing,), "friction_coefficient goes with tangential or history")
+    with_friction = query.has("tangential") or query.has("history")
     for index, name in enumerate(query.quantities):
         if name in SHEAR_FIELDS and not with_friction:
             raise InputError(("quantities", index), f"{name} needs tangential or history")
@@ -136,8 +148,6 @@ def _require_consistent(query: StressQuery) -> None:
         place = "points" if query.has("points") else "radius"
         raise InputError((place,), "exactly one of radius, points is needed")
     require_few_numbers(query)
-    if by_path:
-        require_few_samples("history", query.history)
 
 
 def _method(source: Contact, contact: NormalContact, names: list[Any]) -> str:

@@ -10,7 +10,7 @@ from mdr_core.history import LoadCycles, LoadHistory
 from mdr_service.queries.contacts import body, control, friction
 from mdr_service.results import Result, about, checked, members, notices, without_singular
 from mdr_service.schemas.answers import HistoryAnswer
-from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.load_paths import HistoryQuery, LoadPath
 from mdr_service.settings import SETTINGS
 
@@ -56,7 +56,7 @@ def solve_path(query: HistoryQuery) -> SolvedPath:
     return SolvedPath(cycles.history, cycles)
 
 
-def solve_points(query: HistoryQuery | StressQuery) -> LoadHistory:
+def solve_points(query: HistoryQuery | LoadedQuery) -> LoadHistory:
     """Return the load history of a query, given by its points."""
     given = query.history
     try:

@@ -6,17 +6,16 @@ import numpy as np
 
 from mdr_core import subsurface
 from mdr_core.errors import InputError, Notice
-from mdr_core.normal import NormalContact, not_reached
+from mdr_core.history import LoadHistory
+from mdr_core.normal import not_reached
 from mdr_core.subsurface import StressTensor
-from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Flags
-from mdr_service.queries.contacts import solve_normal, solve_tangential
-from mdr_service.results import Result, checked, notices, without_singular, written
+from mdr_core.typing import Array
+from mdr_service.queries.fields import at_end, solve_loaded
+from mdr_service.results import Contact, Result, checked, notices, without_singular, written
 from mdr_service.schemas.contacts import Bodies, BodyMaterial
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS
 
-Source = NormalContact | TangentialContact
 # A grid that the service chooses extends to this multiple of the largest contact radius.
 _BEYOND: Final = 1.5
 # Errors of the components that add up in an invariant.
@@ -26,34 +25,40 @@ _OF_SEARCH: Final = 1e-4
 _CRITERIA: Final = {"tresca": "maximum_shear", "von_mises": "von_mises"}
 
 
-def solve_subsurface(query: SubsurfaceQuery) -> Source:
-    """Return the contact whose stresses a query requests."""
-    _require_consistent(query)
-    return solve_tangential(query) if query.has("tangential") else solve_normal(query)
+def solve_subsurface(query: SubsurfaceQuery) -> Contact:
+    """Return the contact, or the load history, whose stresses a query requests."""
+    for name in ("x", "z"):
+        if query.has(name) == query.has("points"):
+            raise InputError((name,), "either x and z or points are needed")
+    if query.numbers > SETTINGS.max_numbers:
+        place = "points" if query.points else "x"
+        detail = f"loads times points times quantities must not exceed {SETTINGS.max_numbers}"
+        raise InputError((place,), detail)
+    poissons_ratio(query)
+    return solve_loaded(query)
 
 
-def subsurface_result(query: SubsurfaceQuery, source: Source) -> Result:
+def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     """Return the requested stresses by load, depth and x, and what else is requested."""
-    contact = source.normal if isinstance(source, TangentialContact) else source
-    x, z = _positions(query, contact)
+    contact, partial = at_end(source)
+    loaded, body = partial or contact, body_of(query)
+    if query.has("x"):
+        x, z = np.array(query.x), np.array(query.z)
+    else:
+        end = _BEYOND * float(np.max(contact.contact_radius)) or 1.0
+        x, z = np.linspace(-end, end, query.points), np.linspace(0.0, end, query.points)
     place = x, query.y, z[:, None]
-    body: dict[str, Any] = {"poissons_ratio": poissons_ratio(query), "body": query.body}
-    tensor = subsurface.stress(source, *place, **body, rtol=query.rtol)
+    tensor = subsurface.stress(loaded, *place, **body, rtol=query.rtol)
     shape = query.loads, z.size, x.size
     values: Result = {
-        name: np.ascontiguousarray(np.broadcast_to(stress_by_name(tensor, name), shape))
+        name: np.ascontiguousarray(np.broadcast_to(_by_name(tensor, name), shape))
         for name in query.quantities
     }
-    flags = np.broadcast_to(np.isinf(tensor.zz), shape)
-    infinite: dict[str, Flags] = dict.fromkeys(values, flags)
-    error = _OF_INVARIANTS * subsurface.error_estimate(source, *place, rtol=query.rtol)
-    warnings = [
-        notice
-        for notice in without_singular(notices(query, source))
-        # Assessed by the stresses of the whole body instead.
-        if notice.code not in {"yield", "yield_unknown"}
-    ]
-    if np.isinf(tensor.zz).any():
+    infinite = np.broadcast_to(np.isinf(tensor.zz), shape)
+    own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
+    error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place, rtol=query.rtol))
+    warnings = without_singular(notices(query, source))
+    if infinite.any():
         message = "stresses are infinite on the surface, where the pressure is"
         warnings.append(Notice("singular", message))
     if error > max(query.rtol, source.error_estimate):
@@ -61,27 +66,22 @@ def subsurface_result(query: SubsurfaceQuery, source: Source) -> Result:
     more: Result = {}
     if query.largest:
         more["largest"] = {
-            measure: _by_load(subsurface.largest(source, measure, **body)._asdict(), query.loads)
+            measure: _by_load(subsurface.largest(loaded, measure, **body)._asdict(), query.loads)
             for measure in subsurface.MEASURES
         }
-    if query.material.has("yield_strength"):
-        strength = query.material.yield_strength
+    if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
         onset = {
-            criterion: subsurface.yield_onset_force(source, strength, measure, **body)
+            criterion: subsurface.yield_onset_force(
+                source, query.material.yield_strength, measure, **body
+            )
             for criterion, measure in _CRITERIA.items()
         }
         more["yield_onset_force"] = _by_load(onset, query.loads)
-        least = np.broadcast_to(np.minimum(*onset.values()), (query.loads,))
-        yields = contact.loaded & (contact.normal_force >= least)
-        if yields.any():
-            first = float(least[yields][0])
-            message = f"the normal force exceeds that at the onset of yield, {first:.4g}"
-            warnings.append(Notice("yield", message))
     if more:
         more["search_error_estimate"] = _OF_SEARCH
     return (
         {"x": x, "z": z}
-        | checked(query, values, infinite)
+        | checked(query, values, dict.fromkeys(values, infinite))
         | more
         | {
             "method": "closed_form" if contact.profile.slips_at_once else "quadrature",
@@ -89,6 +89,11 @@ def subsurface_result(query: SubsurfaceQuery, source: Source) -> Result:
             "warnings": written(warnings),
         }
     )
+
+
+def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
+    """Return the requested body and its Poisson's ratio, as arguments of the core."""
+    return {"poissons_ratio": poissons_ratio(query), "body": query.body}
 
 
 def poissons_ratio(query: SubsurfaceQuery) -> float:
@@ -109,13 +114,11 @@ def poissons_ratio(query: SubsurfaceQuery) -> float:
     return material.poissons_ratio
 
 
-def stress_by_name(tensor: StressTensor, name: str) -> Array:
+def _by_name(tensor: StressTensor, name: str) -> Array:
     """Return a stress by the name of its quantity [pressure]."""
-    if name.startswith("stress_"):
-        return np.asarray(getattr(tensor, name.removeprefix("stress_")))
     if name.startswith("principal_"):
         return np.asarray(tensor.principal[..., 3 - int(name[-1])])
-    return np.asarray(getattr(tensor, name))
+    return np.asarray(getattr(tensor, name.removeprefix("stress_")))
 
 
 def _by_load(values: dict[str, Array], loads: int) -> dict[str, Array]:
@@ -123,25 +126,3 @@ def _by_load(values: dict[str, Array], loads: int) -> dict[str, Array]:
         name: np.ascontiguousarray(np.broadcast_to(value, (loads,)))
         for name, value in values.items()
     }
-
-
-def _positions(query: SubsurfaceQuery, contact: NormalContact) -> tuple[Array, Array]:
-    if query.has("x"):
-        return np.array(query.x), np.array(query.z)
-    end = _BEYOND * float(np.max(contact.contact_radius)) or 1.0
-    return np.linspace(-end, end, query.points), np.linspace(0.0, end, query.points)
-
-
-def _require_consistent(query: SubsurfaceQuery) -> None:
-    """Raise InputError where fields that are valid alone contradict each other."""
-    if query.has("tangential") != query.has("friction_coefficient"):
-        missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
-        raise InputError((missing,), "friction_coefficient goes with tangential")
-    for name in ("x", "z"):
-        if query.has(name) == query.has("points"):
-            raise InputError((name,), "either x and z or points are needed")
-    if query.numbers > SETTINGS.max_numbers:
-        place = "points" if query.points else "x"
-        detail = f"loads times points times quantities must not exceed {SETTINGS.max_numbers}"
-        raise InputError((place,), detail)
-    poissons_ratio(query)

@@ -81,18 +81,8 @@ def quantities(description: str, **field: Any) -> Any:
     )
 
 
-def _describe_stress(schema: dict[str, Any]) -> None:
-    drop_null_defaults(schema)
-    schema["allOf"] = [one_of("radius", "points"), one_of("load", "history")]
-    schema["dependentSchemas"] = {
-        "tangential": {"required": ["load", "friction_coefficient"]},
-        "history": {"required": ["friction_coefficient"]},
-        "friction_coefficient": one_of("tangential", "history"),
-    }
-
-
-class StressQuery(FieldQuery, json_schema_extra=_describe_stress):
-    """Fields of a contact over the radius, with or without friction."""
+class LoadedQuery(Query):
+    """Query of a contact under loads, with or without friction, or at the end of a load path."""
 
     load: Load = left_out("Exactly one control: depth, force or contact radius.")
     friction_coefficient: float = friction(default=None)
@@ -100,9 +90,6 @@ class StressQuery(FieldQuery, json_schema_extra=_describe_stress):
     history: History = left_out(
         "In place of `load` and `tangential`: load path; the fields are those of its end. With "
         "`friction_coefficient`."
-    )
-    quantities: Annotated[list[FieldName], OnceEach] = quantities(
-        "shear_stress, slip and foundation_shear need `tangential` or `history`"
     )
 
     @property
@@ -123,3 +110,25 @@ class StressQuery(FieldQuery, json_schema_extra=_describe_stress):
         if self.has("history"):
             return ("history", *self.history.place("normal", self.history.steps - 1))
         return ("load", *self.load.place(index))
+
+
+LOADS_TOGETHER: Final = {
+    "tangential": {"required": ["load", "friction_coefficient"]},
+    "history": {"required": ["friction_coefficient"]},
+    "friction_coefficient": one_of("tangential", "history"),
+}
+"""Members of a `LoadedQuery` that need others, as `dependentSchemas`."""
+
+
+def _describe_stress(schema: dict[str, Any]) -> None:
+    drop_null_defaults(schema)
+    schema["allOf"] = [one_of("radius", "points"), one_of("load", "history")]
+    schema["dependentSchemas"] = LOADS_TOGETHER
+
+
+class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_describe_stress):
+    """Fields of a contact over the radius, with or without friction."""
+
+    quantities: Annotated[list[FieldName], OnceEach] = quantities(
+        "shear_stress, slip and foundation_shear need `tangential` or `history`"
+    )

@@ -4,15 +4,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Load, NormalQuery, Tangential, friction
-from mdr_service.schemas.fields import OnceEach
-from mdr_service.schemas.quantities import (
-    Signed,
-    Size,
-    drop_null_defaults,
-    left_out,
-    quantity,
-)
+from mdr_service.schemas.fields import LOADS_TOGETHER, LoadedQuery, OnceEach
+from mdr_service.schemas.quantities import Signed, Size, drop_null_defaults, one_of, quantity
 from mdr_service.settings import SETTINGS
 
 SubsurfaceName = Literal[
@@ -33,21 +26,17 @@ SubsurfaceName = Literal[
 
 def _describe(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
-    schema["oneOf"] = [{"required": ["x", "z"]}, {"required": ["points"]}]
-    schema["dependentRequired"] = {
-        "x": ["z"],
-        "z": ["x"],
-        "tangential": ["friction_coefficient"],
-        "friction_coefficient": ["tangential"],
-    }
+    schema["allOf"] = [
+        one_of("load", "history"),
+        {"oneOf": [{"required": ["x", "z"]}, {"required": ["points"]}]},
+    ]
+    schema["dependentRequired"] = {"x": ["z"], "z": ["x"]}
+    schema["dependentSchemas"] = LOADS_TOGETHER
 
 
-class SubsurfaceQuery(NormalQuery, json_schema_extra=_describe):
+class SubsurfaceQuery(LoadedQuery, json_schema_extra=_describe):
     """Stresses in one of the bodies, with or without friction."""
 
-    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
-    friction_coefficient: float = friction(default=None)
-    tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
     body: Literal[1, 2] = Field(
         default=1,
         description="Body 1, with the profile, on which the tangential force acts, or body 2.",
@@ -88,10 +77,6 @@ class SubsurfaceQuery(NormalQuery, json_schema_extra=_describe):
         default=False,
         description="Search the largest von Mises and shear stress of the whole body.",
     )
-
-    @property
-    def loads(self) -> int:
-        return max(self.load.count, self.tangential.count if self.has("tangential") else 1)
 
     @property
     def positions(self) -> int:
