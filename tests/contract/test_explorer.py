@@ -168,6 +168,21 @@ def test_the_radius_under_the_cursor_is_shown_in_every_chart_over_the_radius(vis
     assert shown.count() == 2
 
 
+@pytest.mark.parametrize("tab", TABS)
+def test_a_scene_is_printed_on_one_sheet(visit: Visit, tab: str) -> None:
+    visit.page.emulate_media(color_scheme="dark")
+    visit.open(f"?tab={tab}")
+    assert len(re.findall(rb"/Type\s*/Page\b", visit.page.pdf(prefer_css_page_size=True))) == 1
+    visit.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    given = visit.page.locator("#given").inner_text()
+    assert given.startswith("Shape: Paraboloid (ball); Radius of curvature at the tip: 10 mm; ")
+    assert visit.page.locator("form, #take-away").nth(0).is_hidden()
+    plot = visit.page.locator("figure .main-svg").first
+    assert plot.evaluate("plot => plot.clientWidth <= plot.closest('figure').clientWidth")
+    visit.page.evaluate("dispatchEvent(new Event('afterprint'))")
+    visit.page.locator("#scene").wait_for()
+
+
 ROUND_TRIP = Path(__file__).with_name("round_trip.js").read_text("utf-8")
 
 

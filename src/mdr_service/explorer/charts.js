@@ -30,7 +30,7 @@ function curve(trace, spec, scene, colours) {
     x: scaled(trace.x, unit(spec.x[1], scene).factor),
     y: scaled(trace.y, unit(spec.y[1], scene).factor),
     mode: trace.mode ?? "lines",
-    line: { color: colour, width: 2, dash: role === "limit" ? "dash" : "solid" },
+    line: { color: colour, width: 2, simplify: false, dash: role === "limit" ? "dash" : "solid" },
     marker: { color: colour, size: 10 },
     fill: trace.fill ? "tozeroy" : "none",
     fillcolor: `${colour}22`,
@@ -185,13 +185,27 @@ function link(figure) {
   figure.plot.on("plotly_unhover", () => forOthers((other) => Plotly.Fx.unhover(other.plot)));
 }
 
+function plot({ spec, scene, plot }, size) {
+  const colours = theme();
+  const traces = spec.traces.map((trace) => (trace.z ? contours : curve)(trace, spec, scene, colours));
+  const options = { displayModeBar: false, responsive: true };
+  return Plotly.react(plot, traces, { ...layout(spec, scene, colours), ...size }, options);
+}
+
+/** Draw the charts again at once, in the present colours and sizes. */
+export function redraw() {
+  for (const figure of figures.values()) {
+    const { clientWidth: width, clientHeight: height } = figure.plot;
+    plot(figure, { width, height });
+  }
+}
+
 /**
  * Draw the charts of an answer, reusing those that are there.
  *
  * `actions.showRequest` and `actions.saveCsv` are called with the name of a chart's request.
  */
 export async function draw(container, specs, scene, actions) {
-  const colours = theme();
   for (const [id, figure] of figures) {
     if (specs.some((spec) => spec.id === id)) continue;
     Plotly.purge(figure.plot);
@@ -209,9 +223,7 @@ export async function draw(container, specs, scene, actions) {
     figure.plot.setAttribute("aria-label", `${spec.title}: ${axisTitle(spec.y, scene)} over ${axisTitle(spec.x, scene)}`);
     // In the order of the description, whatever was there before.
     container.append(figure.element);
-    const traces = spec.traces.map((trace) => (trace.z ? contours : curve)(trace, spec, scene, colours));
-    const options = { displayModeBar: false, responsive: true };
-    await Plotly.react(figure.plot, traces, layout(spec, scene, colours), options);
+    await plot(figure, { autosize: true });
     if (!known) link(figure);
     figures.set(spec.id, figure);
     fillTable(figure);

@@ -4,6 +4,7 @@ import { draw } from "./charts.js";
 import { readTable, row, tableText } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS } from "./materials.js";
+import { showForPrint } from "./printing.js";
 import { bodyFields, loadFields, QUESTIONS } from "./questions.js";
 import { ask, askCsv, download, newestWins, Refusal, source } from "./requests.js";
 import { defaultScene, fromAddress, TABS, toAddress, withKind } from "./scene.js";
@@ -17,8 +18,6 @@ let kinds = {};
 let requests = [];
 let last = null;
 let rowOfTable = [];
-
-// Form -------------------------------------------------------------------------------------------
 
 function change(key, value) {
   const structural = ["control", "push", "oscillation", "normal", "tangential"].includes(key);
@@ -327,6 +326,9 @@ function connect() {
   $("#copy").addEventListener("click", () => navigator.clipboard.writeText($("#code").textContent));
   $("#csv").addEventListener("click", () => saveCsv($("#request").value));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", solve);
+  addEventListener("beforeprint", () => showForPrint(true));
+  addEventListener("afterprint", () => showForPrint(false));
+  addEventListener("afterprint", solve);
   addEventListener("popstate", () => {
     scene = fromAddress(location.search, location.hash);
     showForm();
