@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.broadcasting import solve_cases
+from mdr_core.broadcasting import BLOCK, solve_cases
 from mdr_core.equivalent_1d import (
     coordinate_from_depth,
     coordinate_from_force,
@@ -115,7 +115,7 @@ class NormalContact(Results):
     @property
     def error_estimate(self) -> float:
         """Largest of `error_estimates` [1]."""
-        return float(np.max(self.error_estimates))
+        return extremes(self.error_estimates)[1]
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
@@ -192,10 +192,14 @@ def solve(
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
 
-    def coordinates(part: Profile, modulus: Parameter, loads: Array) -> tuple[Array]:
-        return (_coordinate(part, modulus, name, loads),)
+    if spread.size <= BLOCK:
+        coordinate = _coordinate(profile, e_star, name, spread)
+    else:
 
-    (coordinate,) = solve_cases(coordinates, profile, (e_star, spread))
+        def coordinates(part: Profile, modulus: Parameter, loads: Array) -> tuple[Array]:
+            return (_coordinate(part, modulus, name, loads),)
+
+        (coordinate,) = solve_cases(coordinates, profile, (e_star, spread))
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread
