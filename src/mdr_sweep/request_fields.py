@@ -1,7 +1,7 @@
 """Fields of requests by dotted names such as ``load.normal_force``."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import inf
@@ -52,14 +52,6 @@ def fields(query: str) -> Mapping[str, Field]:
 def generic(name: str) -> str:
     """Return a dotted name with `#` in place of indices, as `fields` holds it."""
     return _INDEX.sub("#", name)
-
-
-def gaps(names: Iterable[str]) -> set[str]:
-    """Return the members of lists without a predecessor, like ``terms.2`` without ``terms.1``."""
-    members = {name[: index.end()] for name in names for index in _INDEX.finditer(name)}
-    split = (member.rpartition(".") for member in members)
-    following = {f"{of}.{int(index) + 1}" for of, _, index in split}
-    return {member for member in members - following if not member.endswith(".0")}
 
 
 def flat(part: Any, path: tuple[str, ...] = ()) -> dict[str, Any]:

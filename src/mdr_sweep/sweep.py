@@ -14,10 +14,12 @@ import numpy as np
 import pyarrow as pa
 from tqdm import tqdm
 
+from mdr_core.errors import InputError
+from mdr_service.schemas.flat import nested
 from mdr_sweep import resources, scheduler
 from mdr_sweep.cells import fits
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.request_fields import fields, flat, gaps, generic
+from mdr_sweep.request_fields import fields, flat, generic
 from mdr_sweep.spec import ERROR, MAXIMA, QUANTITIES, WARNING, Spec, UsageError, versions
 from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 
@@ -106,7 +108,10 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     known = fields(query)
     unknown = {name for name in (*constants, *columns) if generic(name) not in known}
     _reject(f"unknown fields of {query} (--keep copies columns):", unknown)
-    _reject("indices of a list start at 0 and have no gaps:", gaps((*constants, *columns)))
+    try:
+        nested(dict.fromkeys((*constants, *columns)))
+    except InputError as error:
+        raise UsageError(f"{'.'.join(map(str, error.path))}: {error.detail}") from None
     kinds = {name: source.schema.field(name).type for name in columns}
     listed = [name for name, value in constants.items() if isinstance(value, list)]
     for name, kind in (kinds | dict.fromkeys(listed, pa.list_(pa.float64()))).items():
@@ -116,11 +121,8 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     return spec, source
 
 
-class Failures:
-    """Failed cases by reason: number, first row, and error of that row."""
-
-    def __init__(self) -> None:
-        self.reasons: dict[str, tuple[int, int, str]] = {}
+class Failures(dict[str, tuple[int, int, str]]):
+    """Number of failed cases, first row and error of that row, by reason."""
 
     def counted(self, batches: Iterable[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
         """Yield the batches of a result and count their errors."""
@@ -130,24 +132,23 @@ class Failures:
             for place in np.flatnonzero(errors.is_valid()).tolist():
                 error = errors[place].as_py()
                 reason = _NUMBER.sub("…", error)
-                count, first, text = self.reasons.get(reason, (0, start + place, error))
-                self.reasons[reason] = count + 1, first, text
+                count, first, text = self.get(reason, (0, start + place, error))
+                self[reason] = count + 1, first, text
             start += len(errors)
             yield batch
 
     @property
     def count(self) -> int:
         """Number of failed cases."""
-        return sum(count for count, _, _ in self.reasons.values())
+        return sum(count for count, _, _ in self.values())
 
     def lines(self, rows: int) -> Iterator[str]:
         """Yield the summary of a sweep of `rows` cases, frequent reasons first."""
         yield f"{rows:,} cases: {rows - self.count:,} solved, {self.count:,} failed"
-        ordered = sorted(self.reasons.values(), reverse=True)
-        for count, row, error in ordered[:_MAX_REASONS]:
+        for count, row, error in sorted(self.values(), reverse=True)[:_MAX_REASONS]:
             yield f"{count:>10,}  {error} (first in row {row:,})"
-        if len(ordered) > _MAX_REASONS:
-            yield f"and {len(ordered) - _MAX_REASONS} more reasons; see the column {ERROR}"
+        if len(self) > _MAX_REASONS:
+            yield f"and {len(self) - _MAX_REASONS} more reasons; see the column {ERROR}"
 
 
 def _check_target(arguments: Namespace, checkpoint: Checkpoint) -> None:

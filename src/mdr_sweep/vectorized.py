@@ -3,21 +3,25 @@
 Cases that the call does not solve are solved one by one.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from mdr_core import normal, subsurface, tangential, validity
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import KINDS
 from mdr_core.tangential import TangentialContact
+from mdr_service import problems
+from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import body, control, friction
-from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
-from mdr_sweep import cells, scalar
+from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
+from mdr_service.schemas.flat import nested
+from mdr_sweep import cells
 from mdr_sweep.cells import Column, Values
 from mdr_sweep.spec import ERROR, MAXIMA, TEXTS, WARNING, Spec
 
@@ -48,7 +52,7 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
             for name, values in group_results.items():
                 results[name][rows] = values
     for row in np.flatnonzero(~solved).tolist():
-        case = scalar.solve(spec, _request(spec, columns, row))
+        case = _solve_alone(spec, _request(spec, columns, row))
         solved[row] = WARNING in case
         for name, value in case.items():
             results[name][row] = value
@@ -100,7 +104,7 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
         rows = rows[column.field.accepts(column.values[rows])]
     while rows.size >= _FEW:
         try:
-            query: Any = scalar.read(spec.query, _request(spec, columns, int(rows[0])))
+            query: Any = _validated(spec, _request(spec, columns, int(rows[0])))
             arrays = {name: column.values[rows] for name, column in swept.items()}
             with np.errstate(all="ignore"):
                 solved, results = _call(spec, query, arrays, rows.size)
@@ -170,5 +174,40 @@ def _warnings(
     found = np.full(size, None)
     for mask in np.unique(bits).tolist():
         named = (code for place, code in enumerate(flags) if mask >> place & 1)
-        found[bits == mask] = scalar.joined(named)
+        found[bits == mask] = _joined(named)
     return found
+
+
+def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the quantities and warnings of the case with the given fields, or its error."""
+    query = QUERIES[spec.query]
+    try:
+        with np.errstate(all="ignore"):
+            request = _validated(spec, given)
+            source = query.solve(request)
+            result = query.result(request, source)
+            values = {
+                name: result[name][0] if name in result else np.ravel(getattr(source, name))[0]
+                for name in spec.quantities
+            }
+        return values | {WARNING: _joined(warning["code"] for warning in result["warnings"])}
+    except problems.FAILURES as error:
+        failure = problems.to_problem(error)
+    except Exception:  # noqa: BLE001 -- an internal error of one case must not end the sweep
+        failure = problems.INTERNAL_ERROR
+    listed = problems.document(failure).get("errors", ())
+    message = "; ".join(f"{each['pointer']} {each['detail']}" for each in listed)
+    return {ERROR: message or failure.detail}
+
+
+def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:
+    """Return the request with the given fields; raise InputError or ServiceError."""
+    try:
+        return QUERIES[spec.query].model.model_validate(nested(given))
+    except ValidationError as error:
+        raise problems.from_validation(error) from None
+
+
+def _joined(codes: Iterable[str]) -> str | None:
+    """Return the different codes of warnings as one text, None if there are none."""
+    return " ".join(dict.fromkeys(codes)) or None

@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 
+from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import solve_tangential
-from mdr_sweep import scalar, vectorized
+from mdr_service.schemas.flat import nested
+from mdr_sweep import vectorized
 from mdr_sweep.spec import Spec
 from tests.conftest import Client
 from tests.sweep.cases import KINDS, Row, random_cases, served, swept, table
@@ -134,7 +136,7 @@ def test_maxima_of_stresses_equal_those_of_the_core(kind: str) -> None:
     for row, told in zip(rows, found, strict=True):
         if told["error"]:
             continue
-        query: Any = scalar.read("tangential", row)
+        query: Any = QUERIES["tangential"].model.model_validate(nested(row))
         pushed = solve_tangential(query)
         expected = (
             float(pushed.normal.contact_radius),
