@@ -11,6 +11,7 @@ import os
 # Before NumPy is loaded: threads of its BLAS would wait for each other.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
+import beneath_ratio
 import core_ratios
 import history_ratio
 import stress_wire_ratio
@@ -22,6 +23,7 @@ def main() -> None:
     header = ("what", "state", "ratio", "half lie in", "target", "medians and accuracy")
     found = [
         *core_ratios.rows(),
+        *beneath_ratio.rows(),
         *history_ratio.rows(),
         *wear_ratio.rows(),
         *wire_ratio.rows(),
