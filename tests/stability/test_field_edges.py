@@ -98,7 +98,7 @@ def estimate(contact: tangential.TangentialContact, name: str, radii: np.ndarray
 
 
 @pytest.mark.every(6)
-@pytest.mark.parametrize("part", FRACTIONS)
+@pytest.mark.parametrize("fraction", FRACTIONS)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_error_within_estimate_on_a_grid(shape: str, fraction: float) -> None:
     contact, at, c = solved(shape, fraction, "tangential_force")

@@ -146,7 +146,7 @@ def test_near_full_slip(name: str) -> None:
     sweep.naive_fails(1e-8)
 
 
-@pytest.mark.parametrize("rest", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
+@pytest.mark.parametrize("margin", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
 def test_error_estimate_includes_load_rounding_near_full_slip(margin: float) -> None:
     """Near full slip, the estimate of a single load covers the rounding error of that load."""
     contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
