@@ -20,9 +20,8 @@ from typing import Any, Final, NamedTuple, Self, TypeVar, cast
 from anyio import CancelScope
 
 from mdr_core.errors import DefectError
-from mdr_service import observability, problems
+from mdr_service import problems
 from mdr_service.problems import Error, ProblemType, ServiceError
-from mdr_service.table_cache import TABLES, Lookups
 
 _Result = TypeVar("_Result")
 Room = Callable[[int], AbstractAsyncContextManager[None]]
@@ -54,7 +53,6 @@ class _Outcome(NamedTuple):
     defect: str | None = None
     length: int = 0
     """Length of a large `result`, which is sent separately if there is room for it."""
-    tables: Lookups = Lookups()
 
 
 class ComputeProcess:
@@ -65,7 +63,6 @@ class ComputeProcess:
         self._room = room
         self._calls = cast("StreamWriter", process.stdin)
         self._outcomes = cast("StreamReader", process.stdout)
-        self._table_bytes = 0
         self.usable = True
 
     @classmethod
@@ -143,7 +140,6 @@ class ComputeProcess:
             outcome: _Outcome = pickle.loads(  # noqa: S301
                 await self._outcomes.readexactly(length)
             )
-            self._count(outcome.tables)
             if not outcome.length:
                 return outcome
             async with self._room(outcome.length):
@@ -157,16 +153,9 @@ class ComputeProcess:
             await self._process.wait()
             return None
 
-    def _count(self, tables: Lookups) -> None:
-        observability.TABLES.labels("hit").inc(tables.hits)
-        observability.TABLES.labels("miss").inc(tables.misses)
-        observability.TABLE_BYTES.inc(tables.size - self._table_bytes)
-        self._table_bytes = tables.size
-
     def kill(self) -> None:
         """Terminate the process at once."""
         self.usable = False
-        self._count(Lookups())
         self._calls.close()
         with suppress(ProcessLookupError):
             self._process.kill()
@@ -192,7 +181,7 @@ def serve() -> None:
         if isinstance(outcome.result, bytes) and len(outcome.result) > _LARGE:
             content = outcome.result
             outcome = outcome._replace(result=None, length=len(content))
-        text = pickle.dumps(outcome._replace(tables=TABLES.report()))
+        text = pickle.dumps(outcome)
         signal.setitimer(signal.ITIMER_REAL, 0)
         outcomes.write(len(text).to_bytes(_HEAD) + text)
         outcomes.flush()

@@ -43,15 +43,6 @@ RESTARTS: Final = Counter(
     ("reason",),
     registry=REGISTRY,
 )
-TABLES: Final = Counter(
-    "mdr_table_lookups",
-    "Tables looked up in the caches of the compute processes.",
-    ("result",),
-    registry=REGISTRY,
-)
-TABLE_BYTES: Final = Gauge(
-    "mdr_table_bytes", "Memory of the tables that the compute processes keep.", registry=REGISTRY
-)
 _requests: Final = logging.getLogger("mdr_service.requests")
 
 

@@ -308,15 +308,16 @@ def test_unbounded_wear_is_named_and_not_drawn() -> None:
     assert {mark.curve for mark in plot.marks} == {0}
 
 
-def test_evolution_shows_the_cycles_and_the_limit() -> None:
+def test_evolution_shows_the_cycles_and_the_initial_profile() -> None:
     plot, result = plotted("evolution", EVOLUTION | {"cycles": [1e4, 1e6]})
     names = ["N = 1e+04", "N = 1e+06"]
-    assert labels(plot) == [*names, "initial", "limiting"]
+    assert labels(plot) == [*names, "initial"]
     assert labels(plot, 1) == names
     styles = [curve.style for curve in plot.panels[0].curves]
-    assert styles == ["-", "-", "--", ":"]
+    assert styles == ["-", "-", "--"]
     assert [panel.y_label for panel in plot.panels] == ["profile f", "pressure p"]
-    assert plot.marks[0].place == pytest.approx(result["stick_radius"][0], rel=1e-9, abs=0)
+    edges = [result["stick_radius"][-1], result["contact_radius"][-1]]
+    assert [(mark.place, mark.symbol) for mark in plot.marks] == [(edges[0], "c"), (edges[1], "a")]
 
 
 def test_text_stays_text() -> None:

@@ -5,12 +5,9 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from mdr_core import fields
-from mdr_core import normal as normal_contact
-from mdr_core.errors import InputError
 from mdr_core.history import LoadHistory
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.wear import limit as wear_limit
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.plots.plot import (
@@ -26,7 +23,6 @@ from mdr_service.plots.plot import (
     Plot,
     some,
 )
-from mdr_service.queries.contacts import body, control, friction
 from mdr_service.queries.fields import at_end, field, solve_stress
 from mdr_service.queries.wear import evolution_grid, solve_wear
 from mdr_service.results import Contact, Result, unworn
@@ -95,7 +91,7 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
 
-def evolution(query: EvolutionQuery, worn: WearEvolution, result: Result) -> Plot:
+def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Plot:
     """Return profile and pressure over the radius at some of the numbers of cycles."""
     size = worn.cycles.size
     shown = np.unique(np.linspace(0, size - 1, min(size, MOST_CURVES)).round().astype(int))
@@ -108,14 +104,9 @@ def evolution(query: EvolutionQuery, worn: WearEvolution, result: Result) -> Plo
         dense = getattr(worn, name)(radius)[shown]
         points = result[name][shown] if name in result else None
         panels.append(_panel(name, radius, dense, names, requested, points))
-    more = [Curve(radius, profile.f(radius), "initial", style="--")]
-    marks = [Mark(float(worn.stick_radius[-1]), "c")]
-    limit = _limit_of(query)
-    if limit is not None and np.isfinite(limit.wear_radius).all():
-        more.append(Curve(radius, np.ravel(limit.limiting_profile(radius)), "limiting", style=":"))
-        marks = _wear_marks(limit, 0)
-    panels[0] = panels[0]._replace(curves=[*panels[0].curves, *more])
-    marks = [mark._replace(curve=None) for mark in marks]
+    initial = Curve(radius, profile.f(radius), "initial", style="--")
+    panels[0] = panels[0]._replace(curves=[*panels[0].curves, initial])
+    marks = [Mark(float(worn.stick_radius[-1]), "c"), Mark(float(worn.contact_radius[-1]), "a")]
     note = some(shown.size, size, "numbers of cycles")
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
@@ -202,17 +193,3 @@ def _wear_marks(limit: LimitingWear, index: int) -> list[Mark]:
     c, end = (float(np.ravel(r)[index]) for r in (limit.stick_radius, limit.wear_radius))
     curve = index if limit.wear_radius.size > 1 else None
     return [Mark(c, "c", curve), Mark(end, "ã", curve)][: 1 + (end > c)]
-
-
-def _limit_of(query: EvolutionQuery) -> LimitingWear | None:
-    """Return the limiting state, None if it depends on the path or the profile ends before it."""
-    if (query.load.control, query.oscillation.control) == (
-        "normal_force",
-        "tangential_displacement",
-    ):
-        return None
-    contact = normal_contact.solve(**body(query), **control(query.load))
-    try:
-        return wear_limit.solve(contact, **friction(query), **control(query.oscillation))
-    except InputError:
-        return None
