@@ -1,4 +1,4 @@
-"""Fixtures: the service in process, for every test that needs no socket; and the two tiers."""
+"""Fixtures: the service in process, and the selection of the two test tiers."""
 
 import signal
 from collections import Counter
@@ -15,11 +15,11 @@ from mdr_service.settings import SETTINGS
 from mdr_service.workers import WorkerPool
 
 JSON = {"content-type": "application/json"}
-# A machine that is busy with other work must not fail a test that does not measure time.
+# Slow machines must not fail tests that do not measure time.
 PATIENT = SETTINGS.model_copy(update={"budget_seconds": 300.0, "queue_seconds": 300.0})
 
-# A shell ignores interrupts in what it starts in the background, and so would every process that a
-# test starts and interrupts.
+# Background processes of a shell ignore SIGINT and pass this on to their children, so restore the
+# default for the processes that tests start and interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
@@ -37,7 +37,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class Client:
-    """Client of the application, called in process."""
+    """In-process client of the application."""
 
     def __init__(self, portal: BlockingPortal, app: FastAPI) -> None:
         self._portal = portal

@@ -6,7 +6,7 @@ from pathlib import Path
 
 TESTS = Path(__file__).parent
 ABSOLUTE = {"approx": "abs", "isclose": "atol", "allclose": "atol"}
-"""Functions that add an absolute tolerance unless the argument of this name says otherwise."""
+"""Functions with a nonzero default absolute tolerance, and the argument that sets it."""
 
 
 def silently_absolute(source: str) -> Iterator[int]:
@@ -28,6 +28,6 @@ def test_every_comparison_states_its_absolute_tolerance() -> None:
     assert found == []
 
 
-def test_a_default_of_the_absolute_tolerance_is_noticed() -> None:
+def test_default_absolute_tolerance_is_detected() -> None:
     assert set(silently_absolute("a == approx(b, rel=1)\nnp.isclose(a, b)")) == {1, 2}
     assert list(silently_absolute("a == pytest.approx(b, rel=1, abs=0)")) == []

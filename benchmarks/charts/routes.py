@@ -7,7 +7,7 @@ profile's own functions. The table is written to docs/routes.md.
 from __future__ import annotations
 
 from drawing import FOLDER
-from tests.core.evaluations import BEYOND, FIELDS, PROFILES, RADII, cost, counted, made
+from tests.core.evaluations import BEYOND, FIELDS, PROFILES, RADII, cost, counted, profile_of
 
 from mdr_core import normal, tangential
 from mdr_core.profiles.base import NORMAL_QUANTITIES
@@ -58,7 +58,7 @@ def field_row(kind: str) -> list[str]:
 
 
 def load_row(kind: str) -> list[str]:
-    profile = made(kind)
+    profile = profile_of(kind)
     force = float(normal.solve(profile, 1.0, indentation_depth=0.1).normal_force)
     loads = {"indentation_depth": 0.1, "normal_force": force, "contact_radius": 1.0}
     cells = [profile.normal_method]

@@ -1,8 +1,8 @@
-"""Where methods fail: our error against the distance from the limit, and the naive formula's.
+"""Stability charts: error of MDR and of a naive formula against the distance from a limit.
 
-`make chart-stability`. The curves are those of tests/stability, where ours are held against the
-bound; here they are drawn, one picture a place. Errors below rounding are drawn on the lower
-edge, and what is no number on the upper.
+`make chart-stability`. The curves are those of tests/stability, which also assert the bounds. There
+is one figure per limit. Errors below rounding are drawn at the lower edge of the axes, and results
+that are not finite at the upper edge.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parents[2] / "tests" / "stability"
 LOWEST, HIGHEST = 1e-17, 1e2
-#: The naive formula is given up where its error passes this.
-DEAD = 1e-6
+#: Error beyond which the naive formula is considered to fail.
+FAILED = 1e-6
 COLUMNS = 3
-#: Letters above a panel.
-WIDEST = 52
-HEADER = ("place", "curve", "ours, largest", "naive, largest", "naive dies at", "naive formula")
+#: Longest title line in characters.
+TITLE_WIDTH = 52
+HEADER = ("limit", "curve", "MDR error", "naive error", "naive fails at", "naive formula")
 
 
 def main() -> None:
@@ -34,23 +34,23 @@ def main() -> None:
     for path in sorted(FOLDER.glob("test_*.py")):
         module = importlib.import_module(f"tests.stability.{path.stem}")
         if hasattr(module, "CURVES"):
-            place = path.stem.removeprefix("test_")
-            found = [make() for make in module.CURVES.values()]
-            draw(place, found)
-            rows += [row(place, each) for each in found]
+            limit = path.stem.removeprefix("test_")
+            computed = [make() for make in module.CURVES.values()]
+            draw(limit, computed)
+            rows += [row(limit, each) for each in computed]
     table(HEADER, rows, "stability")
 
 
-def row(place: str, curve: Curve) -> tuple[object, ...]:
-    dead = curve.distances[~(curve.naive <= DEAD)]
-    at = float(dead.max()) if dead.size else "nowhere"
+def row(limit: str, curve: Curve) -> tuple[object, ...]:
+    failed = curve.distances[~(curve.naive <= FAILED)]
+    at = float(failed.max()) if failed.size else "nowhere"
     worst = float(np.max(np.where(np.isfinite(curve.naive), curve.naive, np.inf)))
     name = curve.title.replace(",", ";")
-    return place, name, float(curve.ours.max()), worst, at, curve.naive_formula.replace(",", ";")
+    return limit, name, float(curve.ours.max()), worst, at, curve.naive_formula.replace(",", ";")
 
 
-def draw(place: str, curves: list[Curve]) -> None:
-    """One picture: a panel for every curve."""
+def draw(limit: str, curves: list[Curve]) -> None:
+    """Draw one figure with a panel for every curve."""
     columns = min(COLUMNS, len(curves))
     lines = -(-len(curves) // columns)
     figure, axes = panels(lines, columns, 3.1, 2.6)
@@ -61,15 +61,15 @@ def draw(place: str, curves: list[Curve]) -> None:
     for axis in axes[::columns]:
         axis.set_ylabel("relative error")
     axes[0].legend(fontsize=6.0)
-    save(figure, f"stability_{place}", footer())
+    save(figure, f"stability_{limit}", footer())
 
 
 def panel(axis: Axes, curve: Curve) -> None:
     order = np.argsort(curve.distances)
     x = curve.distances[order]
     axis.loglog(x, drawn(curve.bound[order]), ":", color="0.5", label="bound")
-    axis.loglog(x, drawn(curve.naive[order]), "s-", color="0.45", label="the naive formula")
-    axis.loglog(x, drawn(curve.ours[order]), "o-", color=OURS, label="ours")
+    axis.loglog(x, drawn(curve.naive[order]), "s-", color="0.45", label="naive formula")
+    axis.loglog(x, drawn(curve.ours[order]), "o-", color=OURS, label="MDR")
     axis.set_ylim(LOWEST / 2, 2 * HIGHEST)
     axis.set_title(
         f"{wrapped(curve.title)}\n{wrapped('naive: ' + curve.naive_formula)}", fontsize=7.0
@@ -78,15 +78,15 @@ def panel(axis: Axes, curve: Curve) -> None:
 
 
 def drawn(errors: np.ndarray) -> np.ndarray:
-    """Errors within the picture; what is no number at its upper edge."""
+    """Errors clipped to the axes; non-finite ones at the upper edge."""
     return np.clip(np.where(np.isfinite(errors), errors, HIGHEST), LOWEST, HIGHEST)
 
 
 def wrapped(title: str) -> str:
-    """The title in two lines where it is long."""
-    if len(title) <= WIDEST:
+    """Break a long title into two lines."""
+    if len(title) <= TITLE_WIDTH:
         return title
-    cut = title.rfind(" ", 0, WIDEST)
+    cut = title.rfind(" ", 0, TITLE_WIDTH)
     return f"{title[:cut]}\n{title[cut + 1 :]}"
 
 

@@ -1,1 +1,1 @@
-"""The core against the bank of expected answers, and against the laws every answer obeys."""
+"""Tests of the core against the reference banks and against general laws."""

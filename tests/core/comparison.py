@@ -1,4 +1,4 @@
-"""Objects of the core made from bank records, and errors measured without rounding them away."""
+"""Core objects from bank records, and relative errors evaluated in high precision."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 EPS = 2.0**-52
 SMALLEST = Decimal("1e-290")
-#: Rounding error of an input, a double that stands for its neighbourhood.
+#: Relative rounding error of an input stored as a double.
 INPUT = 8 * EPS
-#: Largest error by the rounding of the inputs that a bound includes. Results that are worse
-#: conditioned are held to it all the same; tests/oracles/test_bank.py counts them.
+#: Largest allowance for the rounding error of the inputs. Results with a larger one are held to
+#: this limit as well; tests/oracles/test_bank.py counts them.
 LARGEST_ALLOWANCE = 1e-3
-#: Kinds whose break is computed from their parameters, and so is itself known only to rounding.
+#: Kinds whose break is computed from their parameters and carries rounding error.
 DERIVED_BREAK = frozenset({"rounded_cone", "spherical_tip_cone"})
 
 
@@ -36,13 +36,13 @@ def batched(cases: Iterable[Mapping[str, Any]]) -> pytest.MarkDecorator:
 def assert_each(
     cases: Iterable[Mapping[str, Any]], failures_of: Callable[[Any], Iterable[str]]
 ) -> None:
-    """Assert that no record of a batch fails, and list every failure of every record."""
+    """Assert that no record of a batch fails; list every failure of every record."""
     found = [f"{case['id']}: {failure}" for case in cases for failure in failures_of(case)]
     assert not found, "\n" + "\n".join(found)
 
 
 def profile_from(fields: Mapping[str, Any]) -> Profile:
-    """Return the core's profile for the fields of a request."""
+    """Return the core's profile for the `profile` member of a request."""
     given = {name: value for name, value in fields.items() if name != "kind"}
     if fields["kind"] == "series":
         given = {"terms": tuple(PowerTerm(**term) for term in given["terms"])}
@@ -50,18 +50,18 @@ def profile_from(fields: Mapping[str, Any]) -> Profile:
 
 
 def allowance(*conditions: float | None, rounding: float = INPUT) -> float:
-    """Return the error of a result by the rounding error of its inputs, at most 1e-3.
+    """Return the allowance for the rounding error of the inputs, at most 1e-3.
 
     Parameters
     ----------
-    conditions : condition numbers of the result, None where there is none.
+    conditions : condition numbers of the result; None where undefined.
     rounding : relative rounding error of the inputs.
     """
     return min(rounding * sum(each or 0.0 for each in conditions), LARGEST_ALLOWANCE)
 
 
 def relative_error(value: float, expected: str) -> float:
-    """Return the relative error of a value; that of a wrong infinity or a NaN is infinite."""
+    """Return the relative error of a value; infinite for NaN or a wrong infinity."""
     if expected.startswith("-"):
         return relative_error(-value, expected[1:])
     if expected == "inf":
@@ -70,7 +70,7 @@ def relative_error(value: float, expected: str) -> float:
         return float("inf")
     exact = Decimal(expected)
     if abs(exact) < SMALLEST and abs(value) < SMALLEST:
-        # No double holds such a number with its digits.
+        # The expected value underflows.
         return 0.0
     if exact == 0:
         return 0.0 if value == 0 else float("inf")
@@ -80,13 +80,13 @@ def relative_error(value: float, expected: str) -> float:
 def wrong(
     what: str, value: float, expected: str, bound: float, allowed: float, estimate: float
 ) -> list[str]:
-    """Return the failure of a result: its error, or an estimate that understates the error.
+    """Return the failure of a result: its error, or an estimate below its error.
 
     Parameters
     ----------
     what : name of the result.
     value, expected : the result and its stored value.
-    bound : largest relative error by the method.
+    bound : largest relative error of the method.
     allowed : allowance for the rounding error of the inputs.
     estimate : estimate of the relative error, without that of the inputs.
     """
@@ -99,6 +99,6 @@ def wrong(
 
 
 def overstated(estimate: float, allowed: Iterable[float], factor: float) -> list[str]:
-    """Return the failure of an estimate above `factor` times the largest error that is allowed."""
+    """Return the failure of an estimate above `factor` times the largest admissible error."""
     largest = max(allowed)
     return [f"estimate {estimate:.2e} of at most {largest:.2e}"] * (estimate > factor * largest)

@@ -1,6 +1,6 @@
-"""How many values an answer takes: of integrands, and of a profile's own functions.
+"""Number of evaluations per result: of integrands and of profile functions.
 
-Counted, not timed: a count is the same on every machine.
+Evaluations are counted, not timed, because a count does not depend on the machine.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from mdr_core.profiles import Profile
 
-#: One profile of every kind; the contact of radius 1 lies well inside, its break too.
+#: One profile of every kind; the contact radius is 1, and its break lies inside.
 PROFILES: dict[str, dict[str, Any]] = {
     "paraboloid": {"radius": 1.3},
     "cone": {"slope": 0.3},
@@ -44,16 +44,16 @@ PROFILES: dict[str, dict[str, Any]] = {
 }
 FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement")
 RADII = (np.arange(200) + 0.5) / 200
-#: Outside the contact, where the surface is displaced by an integral.
+#: Radii outside the contact, where the displacement is an integral.
 BEYOND = 1.0 + RADII
 FRICTION, STICK = 0.3, 0.8
-#: A profile's functions of a radius or a contact coordinate.
+#: Profile functions of a radius or of a contact coordinate.
 _FUNCTIONS = ("f", "df", "g", "dg", "depth", "depth_slope", "reduced_force")
 
 
 @dataclass
 class Count:
-    """Values that were taken."""
+    """Numbers of evaluated values."""
 
     integrand: int = 0
     profile: int = 0
@@ -61,7 +61,7 @@ class Count:
 
 @contextmanager
 def counted(kind: type[Profile] | None = None) -> Iterator[Count]:
-    """Count values of integrands, and of the functions of one kind of profile."""
+    """Count the values of integrands and of the functions of one kind of profile."""
     count = Count()
     apply, branch_integral = quadrature._apply, displacement._branch
 
@@ -96,8 +96,8 @@ def _counting(kind: type[Profile], name: str, count: Count) -> Callable[..., Any
     return values
 
 
-def made(kind: str) -> Profile:
-    """The profile of that kind."""
+def profile_of(kind: str) -> Profile:
+    """The profile of a kind."""
     given = dict(PROFILES[kind])
     if kind == "series":
         given["terms"] = tuple(PowerTerm(**term) for term in given["terms"])
@@ -105,7 +105,7 @@ def made(kind: str) -> Profile:
 
 
 def solved(profile: Profile, rtol: float) -> tangential.TangentialContact:
-    """Its contact of radius 1, sticking up to 0.8; a flat punch is given forces."""
+    """Contact of radius 1 with stick radius 0.8; a flat punch takes forces."""
     if profile.slips_at_once:
         pressed = normal.solve(profile, 1.0, normal_force=1.0, rtol=rtol)
         return tangential.solve(pressed, 0.8, FRICTION, tangential_force=0.5 * FRICTION)
@@ -113,21 +113,21 @@ def solved(profile: Profile, rtol: float) -> tangential.TangentialContact:
     return tangential.solve(pressed, 0.8, FRICTION, stick_radius=STICK)
 
 
-def field(name: str, pushed: tangential.TangentialContact, rtol: float) -> np.ndarray:
-    """One field: of the displacement, the part outside the contact."""
+def field(name: str, contact: tangential.TangentialContact, rtol: float) -> np.ndarray:
+    """One field; for the displacement, its part outside the contact."""
     if name == "normal_displacement":
-        return fields.normal_displacement(pushed.normal, BEYOND, rtol=rtol)
+        return fields.normal_displacement(contact.normal, BEYOND, rtol=rtol)
     if name == "pressure":
-        return fields.pressure(pushed.normal, RADII, rtol=rtol)
-    return getattr(fields, name)(pushed, RADII, rtol=rtol)
+        return fields.pressure(contact.normal, RADII, rtol=rtol)
+    return getattr(fields, name)(contact, RADII, rtol=rtol)
 
 
 def cost(kind: str, name: str, rtol: float) -> int:
-    """Values of the integrand that a field takes at all radii together."""
-    profile = made(kind)
-    pushed = solved(profile, rtol)
-    # What a table resolves once is not the field's own.
-    field(name, pushed, rtol)
+    """Number of integrand values for a field at all radii."""
+    profile = profile_of(kind)
+    contact = solved(profile, rtol)
+    # A table is resolved only once, which is not part of the field's cost.
+    field(name, contact, rtol)
     with counted() as count:
-        field(name, pushed, rtol)
+        field(name, contact, rtol)
     return count.integrand

@@ -1,9 +1,9 @@
-"""Scenes drawn at random towards every place where digits are lost, against mpmath.
+"""Random contacts biased towards cancellation, compared with mpmath.
 
-    python -m tests.core.random_scenes [seconds] [seed]      # make random
+python -m tests.core.random_scenes [seconds] [seed]      # make random
 
-prints the worst of them. Contact and stick radius are given, and so are exact; stick edges, radii
-and edges of the contact crowd next to breaks, and next to each other.
+Prints the largest errors. Contact and stick radii are prescribed and therefore exact. Stick edges,
+radii and contact edges cluster at breaks and at each other.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from mdr_core.profiles import Profile
 
-#: What the project promises of fields, at the tightest tolerance.
+#: Relative error limit of fields at the tightest tolerance.
 BOUND = 1e-11
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-13)
 EDGE = 1.0
@@ -37,7 +37,7 @@ Draw = random.Random
 
 @dataclass(frozen=True)
 class Scene:
-    """A contact of radius one that sticks up to `stick`, and where it is looked at."""
+    """A contact of radius one with stick radius `stick`, and the radii to check."""
 
     profile: dict[str, Any]
     made: Profile
@@ -48,7 +48,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class Miss:
-    """An answer that is further from the truth than it may be, in units of the bound."""
+    """A result whose error exceeds its limit, in units of the limit."""
 
     times: float
     quantity: str
@@ -62,17 +62,17 @@ class Miss:
 
 
 def _spread(draw: Draw, low: float, high: float) -> float:
-    """A number between two powers of ten."""
+    """Random number, uniform in its logarithm between two powers of ten."""
     return float(10 ** draw.uniform(low, high))
 
 
-def _near(draw: Draw, place: float, closest: float = -12.0) -> float:
-    """A radius next to a place, on either side."""
-    return place * (1 + draw.choice([-1, 1]) * _spread(draw, closest, -2))
+def _near(draw: Draw, position: float, closest: float = -12.0) -> float:
+    """A radius next to a given one, on either side."""
+    return position * (1 + draw.choice([-1, 1]) * _spread(draw, closest, -2))
 
 
 def _break(draw: Draw) -> float:
-    """A break: tiny, next to the contact's edge, or in between."""
+    """A break radius: tiny, next to the contact edge, or in between."""
     near_edge = 1 - _spread(draw, -9, -1)
     return draw.choice([_spread(draw, -6, -0.01), near_edge, draw.uniform(0.05, 0.99)])
 
@@ -98,16 +98,16 @@ def _spherical_tip(draw: Draw) -> dict[str, Any]:
 
 
 def _table(draw: Draw) -> dict[str, Any]:
-    """A few points of a smooth body, of a kinked one or of a cone, evenly and unevenly spread."""
+    """Few points of a smooth profile, of one with a kink, or of a cone, at any spacing."""
     r = 1.2 * np.linspace(0.0, 1.0, draw.choice([4, 6, 10])) ** draw.choice([0.7, 1.0, 2.0])
     kinked = np.maximum(r - r[1], 0.0) ** 1.5
     f = draw.choice([r * r, 0.3 * r, kinked, r * r / 2 + 0.1 * r**3])
-    # A cubic through the kinked one rings, and is refused.
+    # A cubic interpolant of the kinked profile overshoots and is rejected.
     way = draw.choice(["pchip", "linear"] if f is kinked else ["cubic", "pchip", "linear"])
     return {"r": r.tolist(), "f": f.tolist(), "interpolation": way, "breaks": []}
 
 
-KINDS: dict[str, Callable[[Draw], dict[str, Any]]] = {
+PROFILE_GENERATORS: dict[str, Callable[[Draw], dict[str, Any]]] = {
     "paraboloid": lambda draw: {"radius": _spread(draw, -1, 3)},
     "cone": lambda draw: {"slope": _spread(draw, -3, 0)},
     "power": _power,
@@ -139,9 +139,9 @@ KINDS: dict[str, Callable[[Draw], dict[str, Any]]] = {
 
 
 def scene(draw: Draw) -> Scene:
-    """One at random; again where the contact has no annulus."""
-    kind = draw.choice(list(KINDS))
-    profile = {"kind": kind, **KINDS[kind](draw)}
+    """Random contact, drawn again while it has no slip annulus."""
+    kind = draw.choice(list(PROFILE_GENERATORS))
+    profile = {"kind": kind, **PROFILE_GENERATORS[kind](draw)}
     made = profile_from(profile)
     breaks = [float(b) for b in profile.get("r", made.breaks) if 0 < b < EDGE]
     sticks = [draw.uniform(0.02, 0.98), 1 - _spread(draw, -12, -1), _spread(draw, -6, -0.5)]
@@ -150,13 +150,13 @@ def scene(draw: Draw) -> Scene:
     if not flat < stick < EDGE:
         return scene(draw)
     radii = [draw.uniform(0.01, 0.999), 1 - _spread(draw, -14, -2), _spread(draw, -8, -1)]
-    radii += [_near(draw, place) for place in (stick, *breaks[-2:])]
+    radii += [_near(draw, position) for position in (stick, *breaks[-2:])]
     radii += [1 + _spread(draw, -12, 2)]
     return Scene(profile, made, stick, radii, draw.choice(TOLERANCES))
 
 
 def misses(scene: Scene) -> Iterator[Miss]:
-    """What of a scene is not within the tolerance, or the bound where it is tighter."""
+    """Results of a case whose error exceeds the tolerance and the error limit."""
     contact = normal.solve(scene.made, 1.0, contact_radius=EDGE)
     pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=scene.stick)
     radii, rtol = scene.radii, scene.rtol
@@ -178,12 +178,12 @@ def misses(scene: Scene) -> Iterator[Miss]:
             "normal_displacement": slip_reference.displacement(at, r),
         }
         for quantity, truth in truths.items():
-            times = _distance(float(found[quantity][index]), truth) / max(rtol, BOUND)
+            times = _relative_error(float(found[quantity][index]), truth) / max(rtol, BOUND)
             if not times <= 1:
                 yield Miss(times, quantity, radius, scene)
 
 
-def _distance(value: float, truth: mpf) -> float:
+def _relative_error(value: float, truth: mpf) -> float:
     if truth == 0 or isinf(truth):
         return 0.0 if value == float(truth) else float("inf")
     with mp.workdps(40):
@@ -198,7 +198,7 @@ def main(seconds: float = 300.0, seed: int = 1) -> int:
         count += 1
     for miss in sorted(found, key=lambda miss: -miss.times)[:20]:
         sys.stdout.write(f"{miss}\n")
-    sys.stdout.write(f"{count} scenes, {len(found)} answers beyond their bound\n")
+    sys.stdout.write(f"{count} scenes, {len(found)} results beyond their error limit\n")
     return 1 if found else 0
 
 

@@ -30,7 +30,7 @@ def two_root_integral(
     return abel.two_root_integral(lambda x, s, _: weight(x, s), B, r, annulus, odd=odd, rtol=RTOL)
 
 
-# r = B itself is another rule; there and about it the two must meet.
+# At r = B a different rule applies; both must agree around it.
 AROUND = np.array([0.0, 1e-9, 0.3, B * (1 - 1e-9), B, B * (1 + 1e-9), 0.9, END * (1 - 1e-9)])
 
 
@@ -58,8 +58,8 @@ def test_one_sided_pole() -> None:
     assert np.allclose(found, exact, rtol=1e-13, atol=0)
 
 
-def test_one_sided_annulus_is_a_difference() -> None:
-    """Jaeger's superposition, where the difference keeps its digits."""
+def test_one_sided_annulus_equals_difference() -> None:
+    """Ciavarella-Jaeger superposition, where the difference is well-conditioned."""
     c, r = 1.0, AROUND[AROUND < 1.0]
     upper, lower = (np.full(r.shape, np.sqrt(e * e - B * B)) for e in (END, c))
 

@@ -1,4 +1,4 @@
-"""The closed displacements outside a contact against their integral at 40 digits."""
+"""Closed-form displacements outside a contact against their integral at 40 digits."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from mdr_core.profiles import Cone, Paraboloid, Profile
 from tests.core.comparison import EPS
 
 A, E_STAR = 0.37, 2.1
-#: From the edge itself to far away; also right next to the edge.
+#: From the edge to the far field, including radii next to the edge.
 RADII = A * (1 + np.concatenate([[0.0], np.geomspace(1e-15, 1e7, 45)]))
-#: Roundings of a closed form, of which the root next to the edge is one.
+#: Rounding errors of a closed form, including that of the root next to the edge.
 BOUND = 16 * EPS
 
 
 def truth(slope: object, r: float) -> mpf:
-    """(2/pi) int_0^a g'(x) arcsin(x/r) dx: Eq. (5.75) for d - g, by parts."""
+    """(2/pi) int_0^a g'(x) arcsin(x/r) dx: Eq. (5.75) for d - g, integrated by parts."""
     with mp.workdps(40):
         a, point = mpf(A), mpf(r)
-        # x = a sin t: smooth also at the edge r = a.
+        # x = a sin t is smooth at the edge r = a, too.
         return (2 / mp.pi) * mp.quad(
             lambda t: slope(a * mp.sin(t)) * mp.asin(a * mp.sin(t) / point) * a * mp.cos(t),
             [0, mp.pi / 2],

@@ -1,6 +1,7 @@
-"""Traction, slip, displacement and the foundation's loads at stored radii.
+"""Traction, slip, displacement and foundation loads at stored radii.
 
-Within 1e-9 of the axis, the break, the stick radius and the contact's edge, on both sides.
+The radii come as close as 1e-9 to the axis, the break, the stick radius and the contact edge, on
+both sides.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 BOUND = 1e-11
-#: What is promised of the cone's traction on the axis, where its pressure is infinite.
+#: Error limit of the cone's traction on the axis, where its pressure is infinite.
 AXIS = 1e-12
 CASES = bank.load("slip_fields")
 OF_NORMAL = frozenset({"normal_displacement", "foundation_load"})

@@ -1,4 +1,4 @@
-"""Fields of the arcs that a way of mixed control leaves: closed forms, and the balances of all."""
+"""Fields after curved load paths under mixed control: closed forms and balances."""
 
 import itertools
 from functools import partial
@@ -48,7 +48,7 @@ CONTROLS = ("normal_force", "indentation_depth")
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(60)
 
 
-def shaken(profile: Profile, control: str) -> LoadHistory:
+def load_history_end(profile: Profile, control: str) -> LoadHistory:
     depth = normal.solve(profile, E, normal_force=FORCES).indentation_depth
     if control == "normal_force":
         moved = np.array([0.0, 0.0, 0.2, 0.1, 0.3, 0.25]) * MU * E / G * depth[0]
@@ -65,8 +65,8 @@ def stops(way: LoadHistory) -> list[float]:
     return sorted({float(stop) for stop in found if stop <= state.contact_radius})
 
 
-def bent_once(control: str) -> tuple[LoadHistory, float, float, float]:
-    """The unit paraboloid under normal load, and one arc on top: its rate, start and end."""
+def single_arc(control: str) -> tuple[LoadHistory, float, float, float]:
+    """The unit paraboloid under normal load followed by one arc: its rate, start and end."""
     radius = 1.0
     first, last = 0.6, 0.9
     depth = np.array([first, last]) ** 2 / radius
@@ -83,9 +83,9 @@ def bent_once(control: str) -> tuple[LoadHistory, float, float, float]:
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-def test_the_stress_of_one_arc_on_a_paraboloid(control: str) -> None:
+def test_stress_of_one_arc_on_a_paraboloid(control: str) -> None:
     # Eq. (5.70) with q_x' = mu E* k g': k = 2 x rate, or rate/(2 x), and g' = 2 x.
-    way, rate, first, last = bent_once(control)
+    way, rate, first, last = single_arc(control)
     r = np.array([1e-12, 0.2, 0.59999, 0.60001, 0.75, 0.899999])
 
     def integral(x: mpmath.mpf, at: mpmath.mpf) -> mpmath.mpf:
@@ -104,8 +104,8 @@ def test_the_stress_of_one_arc_on_a_paraboloid(control: str) -> None:
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-def test_the_foundation_and_the_slip_of_one_arc_on_a_paraboloid(control: str) -> None:
-    way, rate, first, last = bent_once(control)
+def test_foundation_and_slip_of_one_arc_on_a_paraboloid(control: str) -> None:
+    way, rate, first, last = single_arc(control)
     r = np.array([0.3, 0.6, 0.61, 0.75, 0.9 * (1 - 1e-9)])
 
     def above(x: mpmath.mpf) -> mpmath.mpf:
@@ -119,7 +119,7 @@ def test_the_foundation_and_the_slip_of_one_arc_on_a_paraboloid(control: str) ->
     np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-13 * abs(expected[0]))
 
     def slipped(at: float) -> float:
-        # Eq. (5.40) over the arc alone: what is inside of it moves as one.
+        # Eq. (5.40) over the arc alone; everything inside it moves rigidly.
         if at <= first:
             return 0.0
         slope = (lambda x: 4 * rate * x * x) if control == "normal_force" else (lambda x: rate)
@@ -132,8 +132,8 @@ def test_the_foundation_and_the_slip_of_one_arc_on_a_paraboloid(control: str) ->
 
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
-def test_stress_and_foundation_carry_the_tangential_force(profile: Profile, control: str) -> None:
-    way = shaken(profile, control)
+def test_stress_and_foundation_balance_the_tangential_force(profile: Profile, control: str) -> None:
+    way = load_history_end(profile, control)
     carried, borne = 0.0, 0.0
     for low, high in itertools.pairwise(stops(way)):
         angle = (NODES + 1) * np.pi / 2
@@ -141,7 +141,7 @@ def test_stress_and_foundation_carry_the_tangential_force(profile: Profile, cont
         step = np.pi / 2 * (high - low) / 2 * np.sin(angle) * WEIGHTS
         carried += float((step * 2 * np.pi * r * fields.shear_stress(way.state, r)).sum())
         borne += float((step * 2 * fields.foundation_shear(way.state, r)).sum())
-    # The fields are those of the arcs, the force is extrapolated from chords.
+    # The fields belong to the arcs, whereas the force is extrapolated from chords.
     force = pytest.approx(way.tangential_force[-1], rel=way.error_estimate, abs=0)
     assert carried == force
     assert borne == force
@@ -151,9 +151,10 @@ def test_stress_and_foundation_carry_the_tangential_force(profile: Profile, cont
 
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
-def test_slip_is_the_transform_of_the_foundation(profile: Profile, control: str) -> None:
-    # Eq. (5.40): s = (2/pi) int_0^r s_1D/sqrt(r^2 - x^2) dx, s_1D = q_x/G* less that of the axis.
-    way = shaken(profile, control)
+def test_slip_is_the_transform_of_the_foundation_slip(profile: Profile, control: str) -> None:
+    # Eq. (5.40): s = (2/pi) int_0^r s_1D/sqrt(r^2 - x^2) dx, s_1D = q_x/G* minus its value on the
+    # axis.
+    way = load_history_end(profile, control)
     carried = partial(fields.foundation_shear, way.state)
     on_axis = float(carried([0.0])[0])
     for share in (0.35, 0.9, 1.0):
@@ -173,8 +174,8 @@ def test_slip_is_the_transform_of_the_foundation(profile: Profile, control: str)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
-def test_an_arc_of_given_depth_stays_off_the_axis(profile: Profile) -> None:
-    # k = rate/(2 x) would pass the cone there: so what it divides by is never zero.
-    way = shaken(profile, "indentation_depth")
+def test_arc_under_depth_control_does_not_reach_the_axis(profile: Profile) -> None:
+    # k = rate/(2 x) would exceed the friction limit there, so the denominator is never zero.
+    way = load_history_end(profile, "indentation_depth")
     values = [fields.shear_stress(way.state, [0.0])[0], fields.slip(way.state, [0.0])[0]]
     assert np.all(np.isfinite(values))

@@ -1,8 +1,8 @@
-"""Histories of mixed control: a depth with a tangential force, a normal force with a displacement.
+"""Histories under mixed control: depth with tangential force, or normal force with displacement.
 
-Two legs are known in closed form but for integrals, which mpmath takes; any others obey the balance
-of work. Chords stand for the arcs: the estimate bounds their error, and is at most 1e-5, as `solve`
-states.
+Two load steps are known up to integrals, which mpmath evaluates; all others must satisfy the energy
+balance. Chords approximate the arcs: the estimate bounds their error and is at most 1e-5, as
+documented for `solve`.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from mdr_core.profiles import Profile
 
 MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
-#: Turns anchors into displacements, and an integral of line loads into an energy.
+#: Converts tangential coordinates to displacements, and an integral of line loads to an energy.
 COMPLIANCE = MU * E_STAR / G_STAR
 DIGITS = 30
-#: The largest error estimate of a load path with curved steps at the default tolerance.
+#: Largest error estimate of a load path with curved steps at the default tolerance.
 _LARGEST_ERROR = 1e-5
 
 #: g(x), g' as a function of x - b, and the radius b of the flat.
@@ -57,7 +57,7 @@ class Shape:
         self.flat = B if flat == "b" else mpf(0)
 
     def over(self, density: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
-        """int of density(x) g'(x) dx, whose root behind a flat is taken by x = b + t^2."""
+        """int density(x) g'(x) dx; the square root beyond a flat is removed by x = b + t^2."""
         b = self.flat
         ends = [mp.sqrt(end - b) for end in (low, high)]
         return mp.quad(lambda t: density(b + t * t) * self.slope(t * t) * 2 * t, ends)
@@ -72,7 +72,7 @@ class Shape:
 
     @staticmethod
     def root(function: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
-        """The zero of a function that changes its sign between."""
+        """Root of a function within a bracket."""
         return mp.findroot(function, (low, high), solver="illinois", verify=False, maxsteps=60)
 
 
@@ -95,8 +95,8 @@ def near(value: mpf, found: history.LoadHistory) -> Any:
 @pytest.mark.long
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("sign", [1, -1])
-def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
-    """The springs that touch take the arc as their anchors, until it is as steep as the cone."""
+def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> None:
+    """Springs in first contact follow the arc, up to where it is as steep as the friction limit."""
     shape = Shape(name)
     a1, a2 = (shape.radius(part * DEPTH) for part in (0.3, 1.0))
     i1, i2 = shape.force(a1), shape.force(a2)
@@ -122,7 +122,7 @@ def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
     assert sign * found.tangential_force[1] == near(MU * E_STAR * carried, found)
 
     def stored(x: mpf) -> mpf:
-        # int v^2 dx = -int x d(v^2), and nothing at the edge.
+        # int v^2 dx = -int x d(v^2), without a boundary term at the edge.
         v = shift - rate * (shape.force(x) - i1) if x < c else shape.g(a2) - shape.g(x)
         return 2 * x * v * (2 * x * rate if x < c else 1)
 
@@ -130,7 +130,7 @@ def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
     assert found.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, found)
 
     def lost(x: mpf) -> mpf:
-        # Both leave the turn like roots: the front is as far below it as the load is above.
+        # Both behave like roots at the reversal: the front is as far below it as the load is above.
         front = shape.root(lambda y: eta(y) - eta(x), a1, turn)
         return overlap(shape, front, x) * (2 * x * rate - 1)
 
@@ -147,7 +147,7 @@ def test_force_and_displacement_grow_together(name: str, sign: int) -> None:
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
-    """They slip at first, and stick from where the arc is no steeper than the cone."""
+    """Initial slip, then stick from where the arc is no steeper than the friction limit."""
     shape = Shape(name)
     a1, a2 = (shape.radius(part * DEPTH) for part in (0.5, 1.0))
     d1, d2 = shape.g(a1), shape.g(a2)
@@ -179,28 +179,28 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
     assert found.regime.tolist() == ["stick", "stick"]
 
 
-def wandering(name: str, control: str, legs: int, seed: int) -> dict[str, Any]:
-    """A random way of mixed control, within friction."""
+def random_path(name: str, control: str, steps: int, seed: int) -> dict[str, Any]:
+    """A random path under mixed control within the friction limit."""
     random = np.random.default_rng(seed)
-    d = random.uniform(0.4, 1.0, legs) * DEPTH
+    d = random.uniform(0.4, 1.0, steps) * DEPTH
     if control == "normal_force":
         force = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=d)
-        u = random.uniform(-1.1, 1.1, legs) * MOST
+        u = random.uniform(-1.1, 1.1, steps) * MOST
         return {"normal_force": force.normal_force, "tangential_displacement": u}
     least = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=0.35 * DEPTH)
-    f = random.uniform(-1, 1, legs) * MU * float(least.normal_force)
+    f = random.uniform(-1, 1, steps) * MU * float(least.normal_force)
     f[0] = 0.0
     return {"indentation_depth": d, "tangential_force": f}
 
 
-def with_points(way: dict[str, Any], shares: Any) -> dict[str, Any]:
-    """The same way with more points on every leg."""
+def with_points(path: dict[str, Any], shares: Any) -> dict[str, Any]:
+    """The path with additional points on every load step."""
     return {
         name: (
             np.append(0.0, row[:-1])[:, None]
             + np.subtract(row, np.append(0.0, row[:-1]))[:, None] * np.append(shares, 1.0)
         ).ravel()
-        for name, row in way.items()
+        for name, row in path.items()
     }
 
 
@@ -211,33 +211,33 @@ controls = pytest.mark.parametrize("control", ["normal_force", "indentation_dept
 @pytest.mark.every(9)
 @controls
 @pytest.mark.parametrize("name", KINDS)
-def test_work_is_stored_or_lost(name: str, control: str) -> None:
-    """int F_x du to the end of each leg, by Gauss' rule on many panels of each leg."""
-    way = wandering(name, control, 6, 3)
+def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
+    """int F_x du up to the end of each load step, by Gauss quadrature on many panels per step."""
+    path = random_path(name, control, 6, 3)
     nodes, weights = leggauss(8)
     panels = 200
-    # Panels close in on both ends of a leg, where F_x behaves like a root.
+    # Panels cluster at both ends of a load step, where F_x behaves like a root.
     edges = np.sin(np.linspace(0, np.pi / 2, panels + 1)) ** 2
     width = np.diff(edges)
     shares = (edges[:-1, None] + width[:, None] * (1 + nodes) / 2).ravel()
     measure = (width[:, None] * weights / 2).ravel()
-    found = solve(name, **with_points(way, shares))
-    legs = len(found.step) // (shares.size + 1)
+    found = solve(name, **with_points(path, shares))
+    steps = len(found.step) // (shares.size + 1)
     force, moved = (
-        getattr(found, column).reshape(legs, -1)
+        getattr(found, column).reshape(steps, -1)
         for column in ("tangential_force", "tangential_displacement")
     )
     if control == "normal_force":
-        done = force[:, :-1] @ measure * np.diff(way["tangential_displacement"], prepend=0.0)
+        done = force[:, :-1] @ measure * np.diff(path["tangential_displacement"], prepend=0.0)
     else:
         ends = force[:, -1] * moved[:, -1]
         done = np.diff(ends, prepend=0.0)
-        done -= moved[:, :-1] @ measure * np.diff(way["tangential_force"], prepend=0.0)
+        done -= moved[:, :-1] @ measure * np.diff(path["tangential_force"], prepend=0.0)
     ends = slice(shares.size, None, shares.size + 1)
     balance = (found.tangential_energy + found.dissipated_energy)[ends]
     size = np.max(np.abs(balance))
     assert balance == pytest.approx(np.cumsum(done), rel=0, abs=2e-6 * size)
-    plain = solve(name, **way)
+    plain = solve(name, **path)
     bound = found.error_estimate + plain.error_estimate
     assert plain.error_estimate < _LARGEST_ERROR
     for column in (
@@ -257,11 +257,11 @@ def solve(name: str, **options: Any) -> history.LoadHistory:
 
 @controls
 @pytest.mark.parametrize("name", KINDS)
-def test_the_estimate_covers_what_a_looser_tolerance_misses(name: str, control: str) -> None:
-    way = wandering(name, control, 12, 5)
-    exact = solve(name, **way, rtol=1e-13)
+def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> None:
+    path = random_path(name, control, 12, 5)
+    exact = solve(name, **path, rtol=1e-13)
     for rtol in (1e-3, 1e-6, 1e-9):
-        found = solve(name, **way, rtol=rtol)
+        found = solve(name, **path, rtol=rtol)
         for column in (
             "tangential_force",
             "tangential_displacement",
@@ -276,10 +276,10 @@ def test_the_estimate_covers_what_a_looser_tolerance_misses(name: str, control: 
 
 @controls
 @pytest.mark.parametrize("name", ["paraboloid", "rounded-cone", "series", "cubic-table"])
-def test_the_other_direction_is_the_mirror_image(name: str, control: str) -> None:
-    way = wandering(name, control, 12, 6)
-    pushed = next(key for key in way if key.startswith("tangential"))
-    right, left = solve(name, **way), solve(name, **(way | {pushed: -way[pushed]}))
+def test_reversed_direction_is_the_mirror_image(name: str, control: str) -> None:
+    path = random_path(name, control, 12, 6)
+    pushed = next(key for key in path if key.startswith("tangential"))
+    right, left = solve(name, **path), solve(name, **(path | {pushed: -path[pushed]}))
     for column in ("tangential_force", "tangential_displacement"):
         values = getattr(right, column)
         size = np.max(np.abs(values))
@@ -288,8 +288,8 @@ def test_the_other_direction_is_the_mirror_image(name: str, control: str) -> Non
     assert left.regime.tolist() == right.regime.tolist()
 
 
-def counted(monkeypatch: pytest.MonkeyPatch, kind: type[Profile]) -> list[int]:
-    """How many coordinates each evaluation of a profile's depth is of."""
+def count_evaluations(monkeypatch: pytest.MonkeyPatch, kind: type[Profile]) -> list[int]:
+    """Number of coordinates in each evaluation of a profile's depth."""
     counts: list[int] = []
     plain = kind.depth
 
@@ -303,24 +303,24 @@ def counted(monkeypatch: pytest.MonkeyPatch, kind: type[Profile]) -> list[int]:
 
 @controls
 @pytest.mark.parametrize("name", ["power4", "sphere", "rounded-cone"])
-def test_digits_and_legs_cost_little(
+def test_cost_of_tolerance_and_load_steps(
     name: str, control: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    counts = counted(monkeypatch, type(profile_from(PROFILES[name])))
+    counts = count_evaluations(monkeypatch, type(profile_from(PROFILES[name])))
     taken = []
-    for legs, rtol in ((10, 1e-3), (10, 1e-10), (100, 1e-10)):
+    for steps, rtol in ((10, 1e-3), (10, 1e-10), (100, 1e-10)):
         counts.clear()
-        found = solve(name, **wandering(name, control, legs, 7), rtol=rtol)
+        found = solve(name, **random_path(name, control, steps, 7), rtol=rtol)
         assert found.dissipated_energy[-1] > 0
         taken.append((len(counts), sum(counts)))
-    # Seven more digits, and ten times the legs.
+    # Seven more digits, and ten times as many load steps.
     assert taken[1][1] <= 8 * taken[0][1]
     assert taken[2][0] <= 10 * taken[1][0]
     assert taken[2][1] <= 20 * taken[1][1]
 
 
-def test_a_force_beyond_friction_between_two_points_is_refused() -> None:
-    """Both points are within friction; where the arc is as steep as the cone it is not."""
+def test_force_beyond_friction_between_two_points_is_rejected() -> None:
+    """Both points are within the friction limit, but the path between them is not."""
     name, depths = "paraboloid", np.array([0.1, 1.0]) * DEPTH
     force = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=depths)
     limit = 0.999 * MU * np.asarray(force.normal_force)

@@ -1,4 +1,4 @@
-"""Cycles and random paths of every stored case, by the quick query and by the general one."""
+"""Cycles and random paths of every stored case, by the cycle solver and by the general solver."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 ENERGY = 1e-10
 BOUND = 1e-12
-#: A table is a sum over its knots, and has the normal query's own bound.
+#: Tables are sums over knots; their bound is that of the normal problem.
 TABLE = 1e-11
-#: Of mu F_N on the way that slides all of the contact: a depth is rounded, and so is where on a
-#: slanted way a spring touches and leaves.
+#: Relative to mu F_N at full slip: the depth is rounded, and so are the points of first contact and
+#: of separation on an oblique path.
 TOUCH = 8 * EPS
-#: How far the estimate may exceed the largest error that is allowed.
+#: Largest ratio of estimate to largest admissible error.
 OVERSTATED, OVERSTATED_TABLE = 45.0, 2000.0
 
 
@@ -52,15 +52,16 @@ def bound_of(case: dict[str, Any]) -> float:
     return TABLE if case["profile"]["kind"] == "tabulated" else BOUND
 
 
-def by_inputs(case: dict[str, Any], name: str, index: int) -> float:
+def input_error(case: dict[str, Any], name: str, index: int) -> float:
     return allowance(*(case[kind][name][index] for kind in ("condition", "condition_load")))
 
 
-def by_sliding(case: dict[str, Any], index: int, found: history.LoadHistory) -> float:
-    """Error of the loss by an amplitude that rounding may put past the onset of full slip.
+def full_slip_error(case: dict[str, Any], index: int, found: history.LoadHistory) -> float:
+    """Error of the loss for an amplitude that rounding may move past the onset of full slip.
 
-    Beyond the onset the loss grows by 4 mu F_N du, which is steep next to a flat: the annulus that
-    slips before is narrow, and its loss is small. The stored condition is that of partial slip.
+    Beyond the onset the loss grows by 4 mu F_N du. That is steep next to a flat, where the slip
+    annulus before the onset is narrow and its loss is small. The stored condition number is that of
+    partial slip.
     """
     limit = case["friction_coefficient"] * float(np.max(found.normal_force))
     if case["tangential_control"] == "tangential_force" or not (
@@ -72,12 +73,12 @@ def by_sliding(case: dict[str, Any], index: int, found: history.LoadHistory) -> 
 
 
 def cycle_failures(case: dict[str, Any], index: int, found: Iterable[float]) -> list[str]:
-    """What of one amplitude's loss and stiffness, as often as they were found, is wrong."""
+    """Failures of one amplitude's loss and stiffness, for each method that computes them."""
     failures = []
     names = ("energy_per_cycle", "secant_stiffness")
     for name, bound, value in zip(names, (ENERGY, bound_of(case)), found, strict=True):
         error = relative_error(value, case["expected"][name][index])
-        allowed = bound + by_inputs(case, name, index)
+        allowed = bound + input_error(case, name, index)
         if not error <= allowed:
             failures.append(f"{name} at {case['given'][index]!r}: {error:.2e} > {allowed:.2e}")
     return failures
@@ -94,8 +95,8 @@ def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
             pair = (found.energy_per_cycle[cycle], found.secant_stiffness[cycle])
             failures += cycle_failures(case, index, map(float, pair))
         names = ("energy_per_cycle", "secant_stiffness")
-        allowed = [bound_of(case) + by_inputs(case, name, index) for name in names]
-        allowed.append(by_sliding(case, index, found.history))
+        allowed = [bound_of(case) + input_error(case, name, index) for name in names]
+        allowed.append(full_slip_error(case, index, found.history))
         failures += overstated(found.history.error_estimate, allowed, factor)
     return failures
 
@@ -105,7 +106,7 @@ def test_loss_and_stiffness_of_a_cycle(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of_a_cycle)
 
 
-def failures_along_a_path(case: dict[str, Any]) -> list[str]:
+def failures_of_sampled_cycle(case: dict[str, Any]) -> list[str]:
     """Return the failures of a cycle whose loss is summed over samples within the load steps."""
     failures = []
     for index, amplitude in enumerate(case["given"]):
@@ -123,8 +124,8 @@ def failures_along_a_path(case: dict[str, Any]) -> list[str]:
 
 
 @batched(bank.load("history_cycles")[::3])
-def test_loss_along_a_path_is_that_of_the_cycle(cases: list[dict[str, Any]]) -> None:
-    assert_each(cases, failures_along_a_path)
+def test_loss_of_a_sampled_path_equals_that_of_the_cycle(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, failures_of_sampled_cycle)
 
 
 def failures_in_phase(case: dict[str, Any]) -> list[str]:
@@ -158,8 +159,8 @@ def test_normal_load_in_phase(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_in_phase)
 
 
-def misses(case: dict[str, Any], found: history.LoadHistory) -> dict[str, float]:
-    """The largest errors, each in units of what it is a part of."""
+def scaled_errors(case: dict[str, Any], found: history.LoadHistory) -> dict[str, float]:
+    """Largest errors, each relative to the scale of its quantity."""
     expected = {
         name: np.array([float(value) for value in row]) for name, row in case["expected"].items()
     }
@@ -168,14 +169,14 @@ def misses(case: dict[str, Any], found: history.LoadHistory) -> dict[str, float]
     scales = {
         "normal_force": most,
         "tangential_force": case["friction_coefficient"] * most,
-        # The sum grows; what is left at the end has been through all of it.
+        # The sum accumulates; the last value includes all errors before it.
         "tangential_energy": np.maximum.accumulate(energy),
         "dissipated_energy": np.maximum.accumulate(energy),
     }
     errors = {}
     for name, scale in scales.items():
         difference = np.abs(getattr(found, name) - expected[name])
-        # Before the first contact both are nothing.
+        # Before the first contact both are zero.
         errors[name] = float(
             np.max(np.where(difference == 0, 0.0, difference) / np.maximum(scale, 1e-300))
         )
@@ -188,7 +189,7 @@ def test_random_path(case: dict[str, Any]) -> None:
         name: np.array(case[name]) for name in ("indentation_depth", "tangential_displacement")
     }
     found = history.solve(*material(case), **controls)
-    errors = misses(case, found)
+    errors = scaled_errors(case, found)
     assert max(errors.values()) <= bound_of(case), errors
     assert found.error_estimate >= errors["tangential_force"]
     assert not overstated(found.error_estimate, [bound_of(case)], 50.0)
@@ -201,7 +202,7 @@ def test_random_path(case: dict[str, Any]) -> None:
 
 
 @each(bank.load("history_paths")[::2])
-def test_the_mirrored_path_has_the_mirrored_answers(case: dict[str, Any]) -> None:
+def test_mirrored_path_gives_mirrored_results(case: dict[str, Any]) -> None:
     d, u = np.array(case["indentation_depth"]), np.array(case["tangential_displacement"])
     right, left = (
         history.solve(*material(case), indentation_depth=d, tangential_displacement=sign * u)
@@ -214,7 +215,7 @@ def test_the_mirrored_path_has_the_mirrored_answers(case: dict[str, Any]) -> Non
 
 
 @each(bank.load("history_paths")[1::2])
-def test_one_step_after_another_is_the_whole_path(case: dict[str, Any]) -> None:
+def test_single_steps_equal_the_whole_path(case: dict[str, Any]) -> None:
     d, u = case["indentation_depth"], case["tangential_displacement"]
     state = history.unloaded(*material(case))
     for point in zip(d, u, strict=True):

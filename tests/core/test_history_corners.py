@@ -1,4 +1,4 @@
-"""The histories that are known in closed form, each by the controls that make it exact."""
+"""Histories with a closed-form solution, each under the controls that make it exact."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ SHIFT = E_STAR / G_STAR
 BOUND = 1e-12
 SHAPES = ["paraboloid", "power0.7", "sphere", "rounded-punch", "truncated-cone", "cubic-table"]
 CHOSEN = [*SHAPES, "flat-punch"]
-everywhere = pytest.mark.parametrize("name", CHOSEN)
+every_shape = pytest.mark.parametrize("name", CHOSEN)
 shapes = pytest.mark.parametrize("name", SHAPES)
-both_ways = pytest.mark.parametrize("sign", [1, -1])
-#: F_N of most tests: nearly that at DEPTH, so that the breaks are inside.
+both_directions = pytest.mark.parametrize("sign", [1, -1])
+#: F_N of most tests: close to that at DEPTH, so that the breaks lie inside the contact.
 FORCES = {
     name: float(normal.solve(profile_from(fields), E_STAR, indentation_depth=DEPTH).normal_force)
     for name, fields in PROFILES.items()
@@ -36,8 +36,8 @@ def near(value: Any, absolute: float = 0.0, rel: float = BOUND) -> Any:
     return pytest.approx(value, rel=rel, abs=absolute)
 
 
-class Virgin:
-    """The curve of first loading at one normal load, with its inverse and what both amplify."""
+class FirstLoading:
+    """First loading at one normal load, its inverse, and their condition numbers."""
 
     def __init__(self, name: str, control: str, load: float, mu: mpf | float = MU) -> None:
         with mp.workdps(slip.WORK_DIGITS):
@@ -49,8 +49,8 @@ class Virgin:
             self.bound = float(at.n * at.e_star * mpf(mu))
             self.most = float(self.at.shift * at.depth)
 
-    def _ask(self, control: str, given: float) -> tuple[float, float, float]:
-        """The other quantity, its condition number with respect to the given one, and c."""
+    def _solve(self, control: str, given: float) -> tuple[float, float, float]:
+        """The other quantity, its condition number with respect to the prescribed one, and c."""
         other = {
             "tangential_force": "tangential_displacement",
             "tangential_displacement": "tangential_force",
@@ -65,36 +65,39 @@ class Virgin:
             return float(found.values[other]), rate, float(found.c)
 
     def displacement(self, force: float) -> float:
-        return self._ask("tangential_force", force)[0]
+        return self._solve("tangential_force", force)[0]
 
     def load(self, displacement: float) -> float:
-        return self._ask("tangential_displacement", displacement)[0]
+        return self._solve("tangential_displacement", displacement)[0]
 
     def allowed(self, force: float) -> float:
-        """Relative error of u that a rounding of the given forces makes."""
-        return BOUND + INPUT * self._ask("tangential_force", force)[1]
+        """Relative error of u due to the rounding error of the prescribed forces."""
+        return BOUND + INPUT * self._solve("tangential_force", force)[1]
 
     def radius(self, force: float) -> float:
-        return self._ask("tangential_force", force)[2]
+        return self._solve("tangential_force", force)[2]
 
 
-@everywhere
-@both_ways
+@every_shape
+@both_directions
 @pytest.mark.parametrize("rho", [1e-6, 0.9])
-def test_raised_normal_force_leaves_the_displacement(name: str, sign: int, rho: float) -> None:
-    """Then dF_x <= mu dF_N is borne by an annulus of the new contact, beyond it by the virgin."""
+def test_increased_normal_force_keeps_the_displacement(name: str, sign: int, rho: float) -> None:
+    """The annulus of new contact carries dF_x <= mu dF_N; beyond that, first loading follows."""
     before, after = FORCES[name] / 2, FORCES[name]
     first = sign * rho * MU * before
     steps = [0.6, 0.999]
     extra = [sign * part * MU * (after - before) for part in steps]
-    # Half way from where the virgin curve begins to where all slides.
+    # Half-way between the start of first loading and full slip.
     beyond = sign * (abs(first) + MU * (after - before) + MU * after) / 2
     found = solve(
         name,
         normal_force=[before, before, after, after, after, after],
         tangential_force=[0.0, first, first, *(first + step for step in extra), beyond],
     )
-    low, high = Virgin(name, "normal_force", before), Virgin(name, "normal_force", after)
+    low, high = (
+        FirstLoading(name, "normal_force", before),
+        FirstLoading(name, "normal_force", after),
+    )
     u = found.tangential_displacement
     start = low.displacement(first)
     assert u[1] == near(start, rel=low.allowed(first))
@@ -103,32 +106,32 @@ def test_raised_normal_force_leaves_the_displacement(name: str, sign: int, rho: 
     assert found.regime[2] == "stick"
     for index, step in enumerate(extra):
         move = high.displacement(step)
-        # The step of the force is a difference of two given ones.
+        # The force increment is a difference of two prescribed forces.
         rounding = 4 * 2.0**-52 * abs(first / step)
         assert u[3 + index] == near(start + move, abs(move) * (high.allowed(step) + rounding))
     assert u[5] == near(high.displacement(beyond), rel=high.allowed(beyond))
 
 
-@everywhere
-@both_ways
-def test_lowered_normal_force_ends_on_the_curve_of_the_lower(name: str, sign: int) -> None:
+@every_shape
+@both_directions
+def test_reduced_normal_force_ends_on_the_curve_of_the_reduced_force(name: str, sign: int) -> None:
     before, after = FORCES[name], FORCES[name] / 2
     force = sign * 0.8 * MU * after
     found = solve(name, normal_force=[before, before, after], tangential_force=[0.0, force, force])
-    low = Virgin(name, "normal_force", after)
+    low = FirstLoading(name, "normal_force", after)
     assert found.tangential_displacement[2] == near(low.displacement(force), rel=low.allowed(force))
-    depth = Virgin(name, "normal_force", after).depth
+    depth = FirstLoading(name, "normal_force", after).depth
     assert found.indentation_depth[2] == near(depth)
     on = solve(name, normal_force=[after, after], tangential_force=[0.0, force])
     assert found.state.depth == near(on.state.depth, rel=1e-11)
     assert found.state.load == near(on.state.load, rel=1e-11)
 
 
-@everywhere
-@both_ways
+@every_shape
+@both_directions
 @pytest.mark.parametrize("share", [0.3, 0.99])
 def test_oblique_loading_sticks(name: str, sign: int, share: float) -> None:
-    """Eq. (5.71), and then Cattaneo and Mindlin with what of mu is left."""
+    """Eq. (5.71), followed by Cattaneo and Mindlin with the remaining friction."""
     force, slope = FORCES[name], share * MU
     first = sign * slope * force
     step = 0.3 * MU * (1 - share) * force
@@ -144,18 +147,18 @@ def test_oblique_loading_sticks(name: str, sign: int, share: float) -> None:
     assert not ahead.dissipated_energy[:5].any()
     exact = mpf(first) / mpf(force) * sign
     for found, direction in ((ahead, 1), (back, -1)):
-        left = Virgin(name, "normal_force", force, MU - direction * exact)
+        left = FirstLoading(name, "normal_force", force, MU - direction * exact)
         move = left.displacement(step)
-        # The slope is known to the rounding of the given force.
+        # The slope carries the rounding error of the prescribed force.
         rounding = (left.allowed(step) + 8 * 2.0**-52 * abs(first) / step) * abs(move)
         expected = u[-1] + sign * direction * move
         assert found.tangential_displacement[-1] == near(expected, rounding + 2e-15 * abs(u[-1]))
 
 
-@everywhere
-@both_ways
-def test_oblique_loading_on_the_edge_of_the_cone(name: str, sign: int) -> None:
-    """At tan(alpha) = mu every spring is at its limit, and none slips."""
+@every_shape
+@both_directions
+def test_oblique_loading_at_the_friction_limit(name: str, sign: int) -> None:
+    """At tan(alpha) = mu every spring is at the friction limit, and none slips."""
     force = FORCES[name]
     found = solve(name, normal_force=[force], tangential_force=[sign * MU * force])
     assert found.tangential_displacement[0] == near(sign * MU * SHIFT * found.indentation_depth[0])
@@ -163,11 +166,11 @@ def test_oblique_loading_on_the_edge_of_the_cone(name: str, sign: int) -> None:
     assert float(found.dissipated_energy[0]) == near(0.0, 1e-14 * MU * force * DEPTH)
 
 
-@everywhere
-@both_ways
+@every_shape
+@both_directions
 @pytest.mark.parametrize("part", [1 / 3, 1 / 4, 0.7])
-def test_the_edge_of_the_cone_after_a_preload(name: str, sign: int, part: float) -> None:
-    """The springs that touch are at their limit from the start; the slip of a rounding is none."""
+def test_friction_limit_after_a_preload(name: str, sign: int, part: float) -> None:
+    """New springs are at the friction limit from the start; slip of rounding-error size is zero."""
     for ulps in range(-4, 5):
         found = solve(
             name,
@@ -181,21 +184,21 @@ def test_the_edge_of_the_cone_after_a_preload(name: str, sign: int, part: float)
         assert found.tangential_force[-1] == near(sign * MU * gained)
 
 
-@everywhere
-@both_ways
-def test_oblique_displacement_slides_from_the_first_touch(name: str, sign: int) -> None:
-    """Steeper than the cone: tan of the displacement above mu E*/G*."""
+@every_shape
+@both_directions
+def test_oblique_displacement_slides_from_first_contact(name: str, sign: int) -> None:
+    """Steeper than the friction limit: displacement ratio above mu E*/G*."""
     u = sign * 1.7 * MOST
     found = solve(name, indentation_depth=[DEPTH], tangential_displacement=[u], samples_per_step=4)
     assert found.tangential_force == near(sign * MU * found.normal_force)
     assert list(found.regime) == ["full_slip"] * 4
-    curve = Virgin(name, "indentation_depth", DEPTH)
+    curve = FirstLoading(name, "indentation_depth", DEPTH)
     with mp.workdps(50):
         at = curve.at
-        # Each spring slips by (u - shift d) of the way that its load grows along.
+        # Each spring slips by (u - u_max) of the load step on which its load grows.
         squares = at.depth**2 * at.a if at.flat_punch else _squares(at)
         excess = (abs(mpf(u)) / at.depth - at.shift) * at.mu * at.e_star
-        # A table's energies are sums over its knots.
+        # Energies of a table are sums over its knots.
         bound = 1e-11 if "table" in name else BOUND
         assert float(found.dissipated_energy[-1]) == near(float(excess * squares), rel=bound)
 
@@ -206,11 +209,14 @@ def _squares(at: slip.Setting) -> mpf:
     return at.depth * at.n / 2 - overlap(at, edge)
 
 
-@everywhere
-@both_ways
-def test_slope_after_a_preload(name: str, sign: int) -> None:
+@every_shape
+@both_directions
+def test_oblique_loading_after_a_preload(name: str, sign: int) -> None:
     before, after = FORCES[name] / 3, FORCES[name]
-    low, high = Virgin(name, "normal_force", before), Virgin(name, "normal_force", after)
+    low, high = (
+        FirstLoading(name, "normal_force", before),
+        FirstLoading(name, "normal_force", after),
+    )
     gentle = sign * 0.7 * MU * (after - before)
     found = solve(name, normal_force=[before, after], tangential_force=[0.0, gentle])
     expected = SHIFT * 0.7 * MU * sign * (high.depth - low.depth)
@@ -226,16 +232,16 @@ def test_slope_after_a_preload(name: str, sign: int) -> None:
     )
 
 
-@everywhere
-@both_ways
+@every_shape
+@both_directions
 @pytest.mark.parametrize("rho", [1e-3, 0.97])
 def test_unloading_and_reloading(name: str, sign: int, rho: float) -> None:
-    """Masing: each branch is the first curve twice as large, from where it turned."""
+    """Masing's rule: each branch is the curve of first loading, doubled, from the reversal."""
     force = FORCES[name]
     top = rho * MU * force
     points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
     found = solve(name, normal_force=force, tangential_force=[sign * f for f in points])
-    curve = Virgin(name, "normal_force", force)
+    curve = FirstLoading(name, "normal_force", force)
     u = sign * found.tangential_displacement
     high = curve.displacement(top)
     size = high * curve.allowed(top) * 3
@@ -247,15 +253,15 @@ def test_unloading_and_reloading(name: str, sign: int, rho: float) -> None:
     assert u[5] == near(-high + 2 * curve.displacement(0.4 * top), size)
     assert u[6] == near(high, size)
     if name != "flat-punch":
-        # What is left at no force.
+        # Residual displacement at zero force.
         assert u[3] > 0
 
 
-@everywhere
-@both_ways
+@every_shape
+@both_directions
 @pytest.mark.parametrize("rho", [1e-3, 0.97])
 def test_unloading_and_reloading_by_displacement(name: str, sign: int, rho: float) -> None:
-    curve = Virgin(name, "indentation_depth", DEPTH)
+    curve = FirstLoading(name, "indentation_depth", DEPTH)
     top = rho * curve.most
     points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
     found = solve(name, indentation_depth=DEPTH, tangential_displacement=[sign * u for u in points])
@@ -273,10 +279,10 @@ def test_unloading_and_reloading_by_displacement(name: str, sign: int, rho: floa
 
 
 @shapes
-def test_slip_fronts_are_where_the_branches_meet(name: str) -> None:
+def test_slip_fronts_separate_the_traction_branches(name: str) -> None:
     force = FORCES[name]
     top, back = 0.9 * MU * force, 0.5 * MU * force
-    curve = Virgin(name, "normal_force", force)
+    curve = FirstLoading(name, "normal_force", force)
     c, c2 = curve.radius(top), curve.radius((top - back) / 2)
     path: dict[str, Any] = {"normal_force": force}
     start = solve(name, **path, tangential_force=[0.0])
@@ -291,8 +297,8 @@ def test_slip_fronts_are_where_the_branches_meet(name: str) -> None:
     assert reversed_.slip_fronts == near([c], rel=1e-11)
 
 
-@everywhere
-def test_an_inner_loop_leaves_no_trace(name: str) -> None:
+@every_shape
+def test_closed_inner_loop_erases_its_memory(name: str) -> None:
     force = FORCES[name]
     outer = [0.0, 0.8, -0.3]
     inner = [0.5, 0.1, 0.4, 0.0, 0.5]
@@ -313,10 +319,10 @@ def test_an_inner_loop_leaves_no_trace(name: str) -> None:
     assert long.state.load == near(short.state.load, 1e-13 * np.max(np.abs(short.state.load)))
 
 
-@everywhere
-@both_ways
-def test_contact_lost_and_found_again(name: str, sign: int) -> None:
-    """It touches at the displacement of that moment: here after a fifth of the leg."""
+@every_shape
+@both_directions
+def test_separation_and_renewed_contact(name: str, sign: int) -> None:
+    """Contact is re-established at the current displacement, here after a fifth of the step."""
     u = sign * 0.4 * MOST
     found = solve(
         name,
@@ -329,7 +335,7 @@ def test_contact_lost_and_found_again(name: str, sign: int) -> None:
     for column in ("normal_force", "tangential_force", "tangential_energy", "contact_radius"):
         if column != "contact_radius" or name in SHAPES[:3]:
             assert not getattr(found, column)[gone].any(), column
-    # From 2 u at the touch, -3 u in all: a fifth of it before the touch.
+    # From 2 u at first contact by -3 u in total, a fifth of it before contact.
     fresh = solve(name, indentation_depth=[DEPTH], tangential_displacement=[0.8 * -3 * u])
     assert found.tangential_force[-1] == near(fresh.tangential_force[-1])
     lost = found.dissipated_energy
@@ -337,9 +343,9 @@ def test_contact_lost_and_found_again(name: str, sign: int) -> None:
     assert not found.dissipation[gone][1:].any()
 
 
-@everywhere
-def test_force_returns_to_nothing_and_grows_again(name: str) -> None:
-    """The last touch is forgotten: oblique loading starts anew, from where it stands."""
+@every_shape
+def test_force_vanishes_and_grows_again(name: str) -> None:
+    """The slip memory is erased; oblique loading restarts from the current displacement."""
     force, slope = FORCES[name], 0.5 * MU
     found = solve(
         name,
@@ -352,8 +358,8 @@ def test_force_returns_to_nothing_and_grows_again(name: str) -> None:
     assert found.dissipation[2] == near(0.0, 1e-14 * MU * force * DEPTH)
 
 
-@both_ways
-def test_flat_punch_sticks_and_then_slides_at_once(sign: int) -> None:
+@both_directions
+def test_flat_punch_passes_from_full_stick_to_full_slip(sign: int) -> None:
     radius = PROFILES["flat-punch"]["radius"]
     stiffness, bound = 2 * G_STAR * radius, MU * 2 * E_STAR * radius * DEPTH
     most = bound / stiffness
@@ -363,7 +369,7 @@ def test_flat_punch_sticks_and_then_slides_at_once(sign: int) -> None:
         indentation_depth=DEPTH,
         tangential_displacement=sign * most * points,
     )
-    # It slides from 1 to 1.5, sticks down to -0.5, and slides on.
+    # Full slip from 1 to 1.5, full stick down to -0.5, then full slip again.
     expected = np.array([0.0, 0.9, 1.0, 0.5, -0.9, -1.0, -1.0])
     assert found.tangential_force == near(sign * bound * expected)
     lost = np.array([0.0, 0.0, 0.5, 0.5, 0.5, 0.9, 2.0]) * most * bound
@@ -374,9 +380,9 @@ def test_flat_punch_sticks_and_then_slides_at_once(sign: int) -> None:
 
 
 @shapes
-@both_ways
-def test_sliding_far_keeps_the_force(name: str, sign: int) -> None:
-    """A long way is no depth: neither the friction nor what it leaves may lose digits to it."""
+@both_directions
+def test_long_sliding_distance_keeps_the_force(name: str, sign: int) -> None:
+    """Sliding over a distance much larger than the depth must not cause cancellation."""
     far = sign * 2.0**40 * MOST
     found = solve(
         name, indentation_depth=[DEPTH, DEPTH, DEPTH / 2], tangential_displacement=[0.0, far, far]
@@ -388,7 +394,7 @@ def test_sliding_far_keeps_the_force(name: str, sign: int) -> None:
 
 
 @shapes
-def test_cycles_leave_their_loop_in_force(name: str) -> None:
+def test_cycles_retain_their_loop_under_force_control(name: str) -> None:
     force = FORCES[name]
     found = history.cycles(
         profile_from(PROFILES[name]),
@@ -406,12 +412,13 @@ def test_cycles_leave_their_loop_in_force(name: str) -> None:
     assert found.history.dissipated_energy[-1] == near(float(total))
 
 
-def test_forces_beyond_friction_are_refused_by_their_point() -> None:
+def test_force_beyond_friction_is_rejected_with_its_index() -> None:
     options = {"normal_force": [1.0, 2.0, 0.5], "tangential_force": [0.1, 0.3, 0.5 * MU * 1.001]}
     with pytest.raises(InputError) as caught:
         solve("paraboloid", **options)
     assert caught.value.path == ("history", "tangential", "tangential_force", 2)
-    # Both points are within friction, the way between them is not: N falls faster than F_N bears.
+    # Both points are within the friction limit; the path between them is not, since F_N falls
+    # faster than the contact can follow.
     with pytest.raises(InputError) as caught:
         solve("paraboloid", indentation_depth=[0.2, -0.2], tangential_force=[0.0, 0.01])
     assert caught.value.path[:3] == ("history", "tangential", "tangential_force")
@@ -439,7 +446,7 @@ def test_forces_beyond_friction_are_refused_by_their_point() -> None:
         {"indentation_depth": [0.1], "tangential_displacement": [0.0], "samples_per_step": 0},
     ],
 )
-def test_what_is_no_path_is_refused(controls: dict[str, Any]) -> None:
+def test_invalid_path_is_rejected(controls: dict[str, Any]) -> None:
     with pytest.raises(InputError):
         solve("paraboloid", **controls)
 
@@ -465,9 +472,9 @@ def test_what_is_no_path_is_refused(controls: dict[str, Any]) -> None:
     ids=["three", "five"],
 )
 def test_loss_of_a_cycle_on_a_rough_table(radii: list[float], heights: list[float]) -> None:
-    """g is constant on parts of both tables; where they end, rounding reverses intervals.
+    """g is constant on parts of both tables; at their ends, rounding can reverse intervals.
 
-    The loss is continuous over the loads: it is the mean of those beside.
+    The loss is continuous in the load, so it equals the mean of neighbouring losses.
     """
     last = 0.00251443580181325, 3.85203450924955e-05
     profile = Tabulated([0.0, *radii, last[0]], [0.0, *heights, last[1]])

@@ -31,15 +31,15 @@ PROFILES = (
     RoundedCone(0.3, 1.0),
     TruncatedCone(0.3, 0.4),
 )
-SWING = {"normal_force": [1.0, 1.0, 1.5, 0.8], "tangential_force": [0.0, 0.3, -0.2, 0.1]}
+CYCLE = {"normal_force": [1.0, 1.0, 1.5, 0.8], "tangential_force": [0.0, 0.3, -0.2, 0.1]}
 
 
 def by_kind(profile: Profile) -> str:
     return profile.kind
 
 
-def shaken(profile: Profile) -> ContactState:
-    return history.solve(profile, E, G, MU, **SWING).state
+def load_history_end(profile: Profile) -> ContactState:
+    return history.solve(profile, E, G, MU, **CYCLE).state
 
 
 def hertz(a: float, r: np.ndarray) -> np.ndarray:
@@ -47,8 +47,8 @@ def hertz(a: float, r: np.ndarray) -> np.ndarray:
     return 2 / np.pi * np.sqrt(np.maximum(a * a - r * r, 0.0))
 
 
-def test_reversal_superposes_two_of_cattaneo_and_mindlin() -> None:
-    # physics of Eq. (5.18) with the Masing rule: tau = tau(c) - 2 tau(c2).
+def test_reversal_superposes_two_cattaneo_mindlin_fields() -> None:
+    # Eq. (5.18) with Masing's rule: tau = tau(c) - 2 tau(c2).
     first, back = 0.3, 0.05
     state = history.solve(
         Paraboloid(1.0), E, G, MU, normal_force=1.0, tangential_force=[0.0, first, back]
@@ -64,8 +64,8 @@ def test_reversal_superposes_two_of_cattaneo_and_mindlin() -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
-def test_shear_stress_carries_the_tangential_force(profile: Profile) -> None:
-    state = shaken(profile)
+def test_shear_stress_balances_the_tangential_force(profile: Profile) -> None:
+    state = load_history_end(profile)
     nodes, weights = np.polynomial.legendre.leggauss(60)
     stops = [0.0, *map(float, profile.breaks), *state.slip_fronts, state.contact_radius]
     stops = sorted({stop for stop in stops if stop <= state.contact_radius})
@@ -75,13 +75,14 @@ def test_shear_stress_carries_the_tangential_force(profile: Profile) -> None:
         r = (low + high) / 2 - (high - low) / 2 * np.cos(angle)
         ring = 2 * np.pi * r * np.pi / 2 * (high - low) / 2 * np.sin(angle)
         total += float((weights * ring * fields.shear_stress(state, r)).sum())
-    assert total == pytest.approx(SWING["tangential_force"][-1], rel=1e-12, abs=0)
+    assert total == pytest.approx(CYCLE["tangential_force"][-1], rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
-def test_slip_is_the_transform_of_the_foundation(profile: Profile) -> None:
-    # Eq. (5.40): s = (2/pi) int_0^r s_1D/sqrt(r^2 - x^2) dx, s_1D = q_x/G* less that of the axis.
-    state = shaken(profile)
+def test_slip_is_the_transform_of_the_foundation_slip(profile: Profile) -> None:
+    # Eq. (5.40): s = (2/pi) int_0^r s_1D/sqrt(r^2 - x^2) dx, s_1D = q_x/G* minus its value on the
+    # axis.
+    state = load_history_end(profile)
     carried = float(fields.foundation_shear(state, [0.0])[0])
     breaks = [*map(float, profile.breaks), *state.slip_fronts]
     for share in (0.35, 0.9, 1.0):
@@ -99,7 +100,7 @@ def test_slip_is_the_transform_of_the_foundation(profile: Profile) -> None:
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
 @pytest.mark.parametrize("ratio", [1e-9, 0.01, 0.6])
-def test_one_load_is_the_shortest_history(profile: Profile, ratio: float) -> None:
+def test_single_load_equals_the_tangential_query(profile: Profile, ratio: float) -> None:
     contact = normal.solve(profile, E, normal_force=1.0)
     once = tangential.solve(contact, G, MU, tangential_force=ratio * MU)
     way = history.solve(profile, E, G, MU, normal_force=1.0, tangential_force=[0.0, ratio * MU])
@@ -111,8 +112,8 @@ def test_one_load_is_the_shortest_history(profile: Profile, ratio: float) -> Non
     np.testing.assert_allclose(fields.slip(way.state, r), slip, rtol=1e-10, atol=1e-300)
 
 
-def test_a_flat_punch_carries_one_traction() -> None:
-    state = shaken(FlatPunch(0.5))
+def test_traction_of_a_flat_punch() -> None:
+    state = load_history_end(FlatPunch(0.5))
     r = np.array([0.0, 0.3, 0.49])
     expected = 0.1 / (2 * np.pi * 0.5 * np.sqrt(0.25 - r * r))
     np.testing.assert_allclose(fields.shear_stress(state, r), expected, rtol=1e-13)
@@ -122,7 +123,7 @@ def test_a_flat_punch_carries_one_traction() -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
-def test_a_lost_contact_carries_nothing(profile: Profile) -> None:
+def test_separated_contact_has_zero_traction(profile: Profile) -> None:
     state = history.solve(
         profile, E, G, MU, indentation_depth=[0.1, -0.1], tangential_displacement=[0.0, 0.05]
     ).state
@@ -131,13 +132,13 @@ def test_a_lost_contact_carries_nothing(profile: Profile) -> None:
         assert np.all(field(state, r) == 0)
 
 
-def test_grid_has_every_front() -> None:
-    state = shaken(RoundedPunch(0.4, 1.0))
+def test_grid_includes_every_slip_front() -> None:
+    state = load_history_end(RoundedPunch(0.4, 1.0))
     grid = fields.grid(state, 60)
     assert grid.size == 60
     assert {0.0, 0.4} <= set(grid)
     for edge in (state.contact_radius, *state.slip_fronts):
-        # Just inside, where the rounding of the edge is not felt.
+        # Just inside, where the rounding error of the edge is negligible.
         assert 0 < np.min(np.abs(grid - edge)) < 1e-3 * edge
 
 

@@ -1,4 +1,4 @@
-"""Laws of every history, on profiles and paths drawn at random (the same every time)."""
+"""General laws of histories, on pseudorandom profiles and paths (fixed seed)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 G_STAR = 2.9
 MU = 0.37
 SHIFT = MU * E_STAR / G_STAR
-#: Lobatto's rule: with the ends of a panel among its nodes, no kink hides between two panels.
+#: Gauss-Lobatto rule: it includes the panel ends, so that no kink hides between two panels.
 NODES = np.concatenate([[-1.0], Legendre.basis(6).deriv().roots(), [1.0]])
 WEIGHTS = 2 / (42 * Legendre.basis(6)(NODES) ** 2)
 LAST = np.stack([Legendre.basis(n)(NODES) * WEIGHTS for n in (4, 5)], axis=1)
@@ -34,8 +34,8 @@ LAST = np.stack([Legendre.basis(n)(NODES) * WEIGHTS for n in (4, 5)], axis=1)
 repeatable = settings(derandomize=True, deadline=None, max_examples=50)
 few = settings(derandomize=True, deadline=None, max_examples=8)
 
-#: Parts of the largest depth, gaps among them, and of the displacement that slides all of it. In
-#: steps, so that depths and displacements are often the same again.
+#: Fractions of the largest depth, separations included, and of the full-slip displacement. They are
+#: multiples of a step, so that depths and displacements often repeat.
 push = st.integers(-26, 26).map(lambda n: n / 20)
 point = st.tuples(st.integers(-5, 32).map(lambda n: n / 32), push)
 contact = st.tuples(st.integers(2, 32).map(lambda n: n / 32), push)
@@ -48,7 +48,7 @@ def near(value: Any, absolute: float = 0.0, rel: float = 1e-12) -> Any:
 
 
 def controls(scene: Scene, path: list[tuple[float, float]]) -> tuple[Array, Array, float]:
-    """Depths, displacements, and the depth that both are parts of."""
+    """Depths, displacements, and the depth that both are fractions of."""
     depth = float(at_radius(*scene).indentation_depth)
     d, u = np.array(path).T
     return d * depth, u * SHIFT * depth, depth
@@ -68,9 +68,7 @@ def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.LoadHisto
 
 @repeatable
 @given(scenes(), paths)
-def test_friction_bounds_the_force_and_names_the_regime(
-    scene: Scene, path: list[tuple[float, float]]
-) -> None:
+def test_friction_limit_and_slip_regime(scene: Scene, path: list[tuple[float, float]]) -> None:
     d, u, _ = controls(scene, path)
     found = solve(scene, d, u, samples_per_step=5)
     limit = MU * found.normal_force
@@ -85,7 +83,7 @@ def test_friction_bounds_the_force_and_names_the_regime(
 
 @repeatable
 @given(scenes(), paths)
-def test_the_normal_problem_knows_nothing_of_the_other(
+def test_normal_problem_is_independent_of_tangential_loading(
     scene: Scene, path: list[tuple[float, float]]
 ) -> None:
     d, u, _ = controls(scene, path)
@@ -98,7 +96,7 @@ def test_the_normal_problem_knows_nothing_of_the_other(
 
 @repeatable
 @given(scenes(), paths)
-def test_nothing_is_won_from_friction(scene: Scene, path: list[tuple[float, float]]) -> None:
+def test_dissipated_energy_never_decreases(scene: Scene, path: list[tuple[float, float]]) -> None:
     found = solve(scene, *controls(scene, path)[:2], samples_per_step=5)
     assert np.all(found.dissipation >= 0)
     assert np.all(np.diff(found.dissipated_energy) >= 0)
@@ -109,10 +107,10 @@ def test_nothing_is_won_from_friction(scene: Scene, path: list[tuple[float, floa
 
 @repeatable
 @given(scenes(), loops)
-def test_a_loop_closes_the_second_time_and_costs_work(
-    scene: Scene, loop: list[tuple[float, float]]
-) -> None:
-    """Each spring's leg is a clip, and a clip of a clip is one: what the first round made stays."""
+def test_repeated_loop_closes_and_dissipates(scene: Scene, loop: list[tuple[float, float]]) -> None:
+    """Each load step clips the springs' loads, and clipping is idempotent: the second round
+    repeats.
+    """
     d, u, depth = controls(scene, loop * 3)
     found = solve(scene, d, u)
     count = len(loop)
@@ -123,14 +121,14 @@ def test_a_loop_closes_the_second_time_and_costs_work(
     assert stored[count : 2 * count] == near(stored[2 * count :], 1e-12 * energy)
     lost = found.dissipation
     assert lost[count : 2 * count] == near(lost[2 * count :], 1e-12 * energy)
-    # All of the work is lost, for what is stored is the same again.
+    # All work is dissipated, since the stored energy returns to its value.
     assert np.sum(lost[count : 2 * count]) >= 0
 
 
 def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
-    """int F_x du to each point, by Lobatto's rule on panels that close in on kinks of F_x.
+    """int F_x du up to each point, by Gauss-Lobatto on panels that cluster at kinks of F_x.
 
-    More points on a straight leg change nothing, so that the rule's nodes are points of the path.
+    Additional points on a straight load step change nothing, so the rule's nodes are path points.
     """
     panels = [np.linspace(leg, leg + 1, 65) for leg in range(len(d))]
     edges = np.unique(np.concatenate(panels))
@@ -147,7 +145,7 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
         if last:
             total = np.append(0.0, np.cumsum(part))
             return total[np.searchsorted(edges, knots[1:])], found
-        # A smooth function leaves its last coefficients small; a kink does not, or only one.
+        # The last coefficients of a smooth function are small; a kink leaves several large ones.
         rough = np.sum(np.abs(force @ LAST), axis=1) * width
         chosen = np.flatnonzero(rough > 1e-13 * np.max(np.abs(force)))
         inner = low[chosen, None] + width[chosen, None] * np.arange(1, 64) / 64
@@ -157,7 +155,7 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
 
 @few
 @given(scenes(), st.lists(point, min_size=2, max_size=4))
-def test_work_is_stored_or_lost(scene: Scene, path: list[tuple[float, float]]) -> None:
+def test_work_is_stored_or_dissipated(scene: Scene, path: list[tuple[float, float]]) -> None:
     d, u, _ = controls(scene, path)
     done, _ = work(scene, d, u)
     found = solve(scene, d, u)
@@ -167,7 +165,7 @@ def test_work_is_stored_or_lost(scene: Scene, path: list[tuple[float, float]]) -
 
 @repeatable
 @given(scenes(), paths, st.integers(2, 9))
-def test_samples_change_nothing_at_the_points(
+def test_samples_do_not_change_the_points(
     scene: Scene, path: list[tuple[float, float]], count: int
 ) -> None:
     d, u, depth = controls(scene, path)
@@ -184,7 +182,7 @@ def test_samples_change_nothing_at_the_points(
     if d[-1] <= 0:
         assert many.state.depth.size == one.state.depth.size == 0
         return
-    # Rounding may leave a corner that turns by nothing.
+    # Rounding can leave a corner with an angle of zero.
     for first, second in ((one.state, many.state), (many.state, one.state)):
         load = np.interp(first.depth, second.depth, second.load)
         assert load == near(first.load, 1e-13 * MU * E_STAR * depth)
@@ -192,7 +190,7 @@ def test_samples_change_nothing_at_the_points(
 
 @repeatable
 @given(scenes(), paths)
-def test_states_follow_each_other_and_stay(scene: Scene, path: list[tuple[float, float]]) -> None:
+def test_states_are_resumable_and_immutable(scene: Scene, path: list[tuple[float, float]]) -> None:
     d, u, depth = controls(scene, path)
     states = [history.unloaded(profile_from(scene[0]), E_STAR, G_STAR, MU)]
     kept = []
@@ -202,7 +200,7 @@ def test_states_follow_each_other_and_stay(scene: Scene, path: list[tuple[float,
     whole = solve(scene, d, u).state
     assert states[-1].depth == near(whole.depth, 1e-14 * depth)
     assert states[-1].load == near(whole.load, 1e-13 * MU * E_STAR * depth)
-    # Another way from an old state leaves the states that came of it alone.
+    # A second continuation from an earlier state does not affect the first one.
     for state in states:
         history.advance(state, 0.7 * depth, 0.3 * SHIFT * depth)
     for state, (old_depth, old_load) in zip(states[1:], kept, strict=True):
@@ -210,7 +208,7 @@ def test_states_follow_each_other_and_stay(scene: Scene, path: list[tuple[float,
         assert np.array_equal(state.load, old_load)
 
 
-def test_a_state_cannot_be_changed() -> None:
+def test_state_is_immutable() -> None:
     state = history.unloaded(profile_from(PROFILES["sphere"]), E_STAR, G_STAR, MU)
     assert state.indentation_depth == state.tangential_displacement == 0
     state = history.advance(history.advance(state, 0.2, 0.0), 0.2, 0.05)
@@ -220,13 +218,13 @@ def test_a_state_cannot_be_changed() -> None:
         kept, array = getattr(state, name).copy(), getattr(state, name)
         with contextlib.suppress(ValueError):
             array[:] = 1.0
-        # Either the array cannot be written to, or it is the caller's own.
+        # The array is either read-only or a copy.
         assert np.array_equal(getattr(state, name), kept)
 
 
 @repeatable
 @given(scenes(), paths, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
-def test_a_change_of_units_rescales_the_answers(
+def test_results_scale_with_units(
     scene: Scene, path: list[tuple[float, float]], length_power: float, modulus_power: float
 ) -> None:
     fields, radius = scene
@@ -251,14 +249,14 @@ def test_a_change_of_units_rescales_the_answers(
         ("dissipated_energy", force * unit, size * SHIFT * depth),
     ):
         expected = getattr(old, name) * factor
-        # A power's coefficient is rounded, and that counts by its exponent.
+        # The rounding error of a power's coefficient is amplified by its exponent.
         assert getattr(new, name) == near(expected, 1e-12 * scale * factor, rel=1e-11), name
     assert np.array_equal(new.step, old.step)
 
 
 @repeatable
 @given(scenes(), paths)
-def test_the_other_direction_is_the_mirror_image(
+def test_reversed_direction_is_the_mirror_image(
     scene: Scene, path: list[tuple[float, float]]
 ) -> None:
     d, u, _ = controls(scene, path)

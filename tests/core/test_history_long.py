@@ -1,4 +1,4 @@
-"""A hundred thousand steps: nothing drifts, and nothing is remembered that was wiped out."""
+"""100,000 steps: errors do not accumulate, and erased slip memory has no effect."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 STEPS = 100_000
-#: Steps between two wipings.
+#: Number of steps between two erasing steps.
 BATCH = 1000
-#: Displacement of the wiping point, as a part of the one that slides all.
+#: Displacement of the erasing step, as a fraction of full slip.
 TOP = 0.8
 SIZE = MATERIAL.mu * MATERIAL.e_star * DEPTH
 chosen = pytest.mark.parametrize("name", ["paraboloid", "truncated-cone"])
 
 
-def wandering(seed: int, steps: int = STEPS) -> tuple[Array, Array]:
+def random_path(seed: int, steps: int = STEPS) -> tuple[Array, Array]:
     """Pure normal loading, random points, and (DEPTH, TOP) after each batch of them.
 
-    At that point the springs with g > (1 - TOP) DEPTH slip forward, whatever befell them, if the
-    others were left alone in between; and they are if no point asks more of them than it does:
-    d - |u|, in its units, stays larger.
+    At (DEPTH, TOP) the springs with g > (1 - TOP) DEPTH slip forward whatever their history,
+    provided that the others have stuck since the last batch. They have, if d - |u| in the path's
+    units stays above its value there.
     """
     random = np.random.default_rng(seed)
     spare = 1.001 * (1 - TOP)
@@ -44,12 +44,12 @@ def wandering(seed: int, steps: int = STEPS) -> tuple[Array, Array]:
 
 
 @chosen
-def test_a_wiping_step_ends_on_the_curve_of_first_loading(name: str) -> None:
-    d, u = wandering(3)
+def test_erasing_step_ends_on_the_curve_of_first_loading(name: str) -> None:
+    d, u = random_path(3)
     found = solve(name, indentation_depth=d, tangential_displacement=u)
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
-    # The double of the path itself.
+    # The path's own rounded double.
     exact = slip.solve(at, "tangential_displacement", float(u[BATCH - 1]), energy=False)
     expected = float(exact.values["tangential_force"])
     returned = found.tangential_force[BATCH - 1 :: BATCH]
@@ -58,8 +58,8 @@ def test_a_wiping_step_ends_on_the_curve_of_first_loading(name: str) -> None:
 
 
 @chosen
-def test_what_follows_a_wiping_step_needs_nothing_before_it(name: str) -> None:
-    d, u = wandering(4, STEPS // 5)
+def test_results_after_an_erasing_step_are_independent_of_the_past(name: str) -> None:
+    d, u = random_path(4, STEPS // 5)
     found = solve(name, indentation_depth=d, tangential_displacement=u)
     for batch in (1, 10, 19):
         part = slice(batch * BATCH, (batch + 1) * BATCH)
@@ -76,7 +76,7 @@ def test_what_follows_a_wiping_step_needs_nothing_before_it(name: str) -> None:
 
 
 def anchors(d: Array, u: Array, touch: Array) -> Array:
-    """q_x of springs that remember where they hang, not how far they moved: no sum, no drift."""
+    """q_x of springs stored by zero-force displacement, without accumulation and without drift."""
     compliance = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star
     hung = np.zeros_like(touch)
     last_d = last_u = 0.0
@@ -92,8 +92,8 @@ def anchors(d: Array, u: Array, touch: Array) -> Array:
 
 
 @pytest.mark.parametrize("name", ["paraboloid", "flat-punch"])
-def test_the_state_after_all_steps_is_that_of_springs_that_cannot_drift(name: str) -> None:
-    """Without any wiping point; the contact is lost now and then."""
+def test_final_state_equals_that_of_drift_free_springs(name: str) -> None:
+    """Without erasing steps; the contact separates occasionally."""
     random = np.random.default_rng(5)
     d = random.uniform(-0.002, 1.0, STEPS // 4) * DEPTH
     u = random.uniform(-0.3, 0.3, STEPS // 4) * MOST
@@ -105,8 +105,8 @@ def test_the_state_after_all_steps_is_that_of_springs_that_cannot_drift(name: st
     assert state.depth.size <= 64
 
 
-def test_the_memory_stays_short() -> None:
-    d, u = wandering(6, 3000)
+def test_slip_memory_stays_short() -> None:
+    d, u = random_path(6, 3000)
     fields = PROFILES["paraboloid"]
     state = history.unloaded(profile_from(fields), MATERIAL.e_star, MATERIAL.g_star, MATERIAL.mu)
     longest = 0

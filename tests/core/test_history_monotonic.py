@@ -1,4 +1,6 @@
-"""Histories of one tangential load against the tangential query, and cycles against a quarter."""
+"""Histories of a single tangential load against the tangential query, and cycles against a
+quarter.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,7 @@ TABLES = [
 
 
 def table(count: int, interpolation: str, shape: str) -> Profile:
-    """Points of a shape: smooth, kinked, flat at its tip, ever steeper, irregular, or rough."""
+    """Points of a shape: smooth, kinked, flat-tipped, steepening, irregular, or rough."""
     r = np.linspace(0.0, 1.5, count)
     f = r * r / 2
     if shape == "kinks":
@@ -51,19 +53,21 @@ def table(count: int, interpolation: str, shape: str) -> Profile:
     elif shape == "steep":
         f = f / 100 + 2 * np.maximum(r - 0.52, 0.0)
     elif shape == "irregular":
-        # Convex, with jumps of the slope and gaps between the points over some decades.
+        # Convex, with slope jumps and with point spacings over several decades.
         random = np.random.default_rng(count)
         gaps, jumps = (np.exp(random.uniform(-3, 0, count - 1)) for _ in range(2))
         r = 1.5 * np.append(0.0, np.cumsum(gaps) / gaps.sum())
         f = np.append(0.0, np.cumsum(np.cumsum(jumps) / jumps.sum() * np.diff(r)))
     elif shape == "rough":
-        # Noisy heights: g is constant where it would fall.
+        # Noisy heights: g is constant where it would otherwise decrease.
         f = f + np.random.default_rng(count).uniform(0.0, 0.4, count) * np.diff(f, append=1.2)
     return Tabulated(r, f - f[0], interpolation=interpolation)
 
 
-def misses(profile: Profile, depth: float, ratios: tuple[float, ...], controls: int) -> list[str]:
-    """Return what differs from the tangential query, for the loads of some pairs of controls."""
+def disagreements(
+    profile: Profile, depth: float, ratios: tuple[float, ...], controls: int
+) -> list[str]:
+    """Return the disagreements with the tangential query for some pairs of controls."""
     contact = normal.solve(profile, E_STAR, indentation_depth=depth)
     loads = {"indentation_depth": depth, "normal_force": float(contact.normal_force)}
     full = {
@@ -71,47 +75,48 @@ def misses(profile: Profile, depth: float, ratios: tuple[float, ...], controls: 
         "tangential_force": MU * loads["normal_force"],
     }
     pairs = [(by, along) for by in loads for along in full]
-    # The pairs in which displacements, or forces, are prescribed come first.
+    # Pairs of prescribed displacements, or forces, come first.
     pairs = [pairs[i] for i in (0, 3, 1, 2)][:controls]
     found = []
     for by, along in pairs:
         pressed = normal.solve(profile, E_STAR, **{by: loads[by]})
         for ratio in ratios:
             if ratio <= 1 or along == "tangential_displacement":
-                once = tangential.solve(pressed, G_STAR, MU, **{along: ratio * full[along]})
-                found += one_load(profile, once, by, along, ratio)
+                monotonic = tangential.solve(pressed, G_STAR, MU, **{along: ratio * full[along]})
+                found += single_load_disagreements(profile, monotonic, by, along, ratio)
     return found
 
 
-def one_load(
-    profile: Profile, once: tangential.TangentialContact, by: str, along: str, ratio: float
+def single_load_disagreements(
+    profile: Profile, monotonic: tangential.TangentialContact, by: str, along: str, ratio: float
 ) -> list[str]:
-    """Return what differs for one load, and for a cycle of this amplitude."""
-    pressed = float(getattr(once.normal, by))
-    pushed = float(getattr(once, along))
+    """Return the disagreements for one load, and for a cycle of this amplitude."""
+    pressed = float(getattr(monotonic.normal, by))
+    pushed = float(getattr(monotonic, along))
     points: Any = {by: [pressed, pressed], along: [0.0, pushed]}
-    material = once.normal.e_star, once.g_star, once.friction_coefficient
+    material = monotonic.normal.e_star, monotonic.g_star, monotonic.friction_coefficient
     way = history.solve(profile, *material, **points)
     case = f"{by} {pressed:.3g}, {along} {ratio:g} of full slip"
     found = []
     for name in ("tangential_force", "tangential_displacement", "dissipated_energy"):
-        expected, result = float(getattr(once, name)), float(getattr(way, name)[1])
+        expected, result = float(getattr(monotonic, name)), float(getattr(way, name)[1])
         error = abs(result - expected) / abs(expected) if expected else abs(result)
-        # Rounding of the load itself is in neither estimate where a displacement is the result.
-        if not error <= min(1e-9, max(way.error_estimate, once.error_estimate)):
+        # Neither estimate includes the rounding error of the load where a displacement is the
+        # result.
+        if not error <= min(1e-9, max(way.error_estimate, monotonic.error_estimate)):
             found.append(f"{case}: {name} {error:.1e}")
-    if way.regime[1] != str(once.regime):
-        found.append(f"{case}: {way.regime[1]}, not {once.regime}")
-    # Without a front the annulus is too narrow for doubles; at full slip the last bit decides.
-    fronts = [*way.slip_fronts.tolist(), float(once.normal.contact_radius)]
-    if ratio < 1 and not np.isclose(fronts[0], float(once.stick_radius), rtol=1e-9, atol=0.0):
-        found.append(f"{case}: stick radius {fronts[0]}, not {once.stick_radius}")
+    if way.regime[1] != str(monotonic.regime):
+        found.append(f"{case}: {way.regime[1]}, not {monotonic.regime}")
+    # Without a front the annulus is too narrow to resolve; at full slip the last bit decides.
+    fronts = [*way.slip_fronts.tolist(), float(monotonic.normal.contact_radius)]
+    if ratio < 1 and not np.isclose(fronts[0], float(monotonic.stick_radius), rtol=1e-9, atol=0.0):
+        found.append(f"{case}: stick radius {fronts[0]}, not {monotonic.stick_radius}")
     if not (way.tangential_energy[0] == 0 and way.tangential_energy[1] > 0):
         found.append(f"{case}: tangential energies {way.tangential_energy}")
     if ratio <= 1:
         given: Any = {by: pressed, along: pushed}
         loops = history.cycles(profile, *material, **given, count=2).energy_per_cycle
-        quarter = float(once.dissipated_energy)
+        quarter = float(monotonic.dissipated_energy)
         if not np.allclose(loops, 4 * quarter, rtol=1e-9, atol=0.0):
             found.append(f"{case}: cycles {loops}, not {4 * quarter}")
     return found
@@ -120,43 +125,45 @@ def one_load(
 @pytest.mark.every(2)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("depth", [0.028, 0.2])
-def test_one_load_on_every_kind_agrees_with_the_tangential_query(kind: str, depth: float) -> None:
-    assert not misses(KINDS[kind], depth, RATIOS, 4)
+def test_single_load_agrees_with_tangential_query(kind: str, depth: float) -> None:
+    assert not disagreements(KINDS[kind], depth, RATIOS, 4)
 
 
 @pytest.mark.every(6)
 @pytest.mark.parametrize(("count", "interpolation", "shape"), TABLES)
-def test_one_load_on_tables_agrees_with_the_tangential_query(
+def test_single_load_on_tables_agrees_with_tangential_query(
     count: int, interpolation: str, shape: str
 ) -> None:
     ratios = RATIOS if count < 100 else (1e-9, 1e-3, 0.2, 0.9, 1.0, 1.5)
     profile = table(count, interpolation, shape)
     controls = 4 if count < 100 else 2
-    found = [misses(profile, depth, ratios, controls) for depth in (0.028, 0.2)]
+    found = [disagreements(profile, depth, ratios, controls) for depth in (0.028, 0.2)]
     assert not found[0] + found[1]
 
 
 @pytest.mark.parametrize(("count", "ratio"), [(41, 0.24), (101, 0.12)])
-def test_forces_on_a_coarse_table_of_straight_lines(count: int, ratio: float) -> None:
-    """The contact ends on a point of the table, and many kinks lie in the slip annulus."""
+def test_forces_on_a_coarse_linear_table(count: int, ratio: float) -> None:
+    """The contact ends on a table point, and many slope discontinuities lie in the slip annulus."""
     r = np.linspace(0.0, 1.0, count)
     profile = Tabulated(r, r * r / 2, interpolation="linear")
     pressed = normal.solve(profile, 1.0, contact_radius=0.95)
     force = ratio * 0.3 * float(pressed.normal_force)
-    once = tangential.solve(pressed, 0.8, 0.3, tangential_force=force)
-    assert not one_load(profile, once, "normal_force", "tangential_force", ratio)
+    monotonic = tangential.solve(pressed, 0.8, 0.3, tangential_force=force)
+    assert not single_load_disagreements(
+        profile, monotonic, "normal_force", "tangential_force", ratio
+    )
 
 
 @pytest.mark.parametrize("kind", ["cone", "power-6", "truncated-cone", "flat-punch"])
 @pytest.mark.parametrize("along", ["tangential_force", "tangential_displacement"])
-def test_regimes_agree_to_the_last_bit_of_full_slip(kind: str, along: str) -> None:
+def test_regimes_agree_next_to_full_slip(kind: str, along: str) -> None:
     for by, load in (("indentation_depth", 0.0333), ("normal_force", 0.02)):
         pressed = normal.solve(KINDS[kind], E_STAR, **{by: load})
         depth, force = float(pressed.indentation_depth), float(pressed.normal_force)
         full = MU * force if along == "tangential_force" else MU * E_STAR / G_STAR * depth
         for units in (0, 1, 2, 4, 8, 12, 20):
             pushed = full * (1 - units * np.finfo(float).eps)
-            once = tangential.solve(pressed, G_STAR, MU, **{along: pushed})
+            monotonic = tangential.solve(pressed, G_STAR, MU, **{along: pushed})
             points: Any = {by: [load, load], along: [0.0, pushed]}
             way = history.solve(KINDS[kind], E_STAR, G_STAR, MU, **points)
-            assert way.regime[1] == str(once.regime), (by, units)
+            assert way.regime[1] == str(monotonic.regime), (by, units)

@@ -1,4 +1,4 @@
-"""Random paths of fifty legs against a hundred thousand springs, in every control."""
+"""Random paths of fifty load steps against 100,000 springs, under every control."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ MATERIAL = Material(3.7, 2.9, 0.37)
 DEPTH = 0.25
 MOST = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * DEPTH
 SPRINGS = 100_000
-#: What so many springs are held to; fewer by ten are at most a hundred times as wrong.
-OWN = 1e-9
+#: Error limit with `SPRINGS` springs; ten times fewer have at most a hundred times the error.
+SPRING_ERROR = 1e-9
 TABLE = {"kind": "tabulated", "r": [0.0, 0.3, 0.7, 1.1, 2.0], "breaks": []}
 PROFILES: dict[str, dict[str, Any]] = {
     "paraboloid": {"kind": "paraboloid", "radius": 1.3},
@@ -47,7 +47,7 @@ PROFILES: dict[str, dict[str, Any]] = {
     "cubic-table": {**TABLE, "f": [0.0, 0.02, 0.1, 0.25, 0.8], "interpolation": "cubic"},
     "flat-punch": {"kind": "flat_punch", "radius": 0.5},
 }
-everywhere = pytest.mark.parametrize("name", PROFILES)
+every_profile = pytest.mark.parametrize("name", PROFILES)
 NAMES = ("normal_force", "tangential_force", "tangential_energy", "dissipated_energy")
 
 
@@ -56,11 +56,11 @@ def solve(name: str, **controls: Any) -> history.LoadHistory:
     return history.solve(profile, MATERIAL.e_star, MATERIAL.g_star, MATERIAL.mu, **controls)
 
 
-def random_path(seed: int, legs: int = 50) -> tuple[Array, Array]:
-    """The contact is lost now and then; some legs are purely normal, some purely tangential."""
+def random_path(seed: int, steps: int = 50) -> tuple[Array, Array]:
+    """Includes separations and some purely normal or purely tangential load steps."""
     random = np.random.default_rng(seed)
-    d, u = random.uniform(-0.15, 1.0, legs) * DEPTH, random.uniform(-1.2, 1.2, legs) * MOST
-    for leg, kind in enumerate(random.integers(0, 6, legs)):
+    d, u = random.uniform(-0.15, 1.0, steps) * DEPTH, random.uniform(-1.2, 1.2, steps) * MOST
+    for leg, kind in enumerate(random.integers(0, 6, steps)):
         if leg and kind == 0:
             d[leg] = d[leg - 1]
         elif leg and kind == 1:
@@ -68,35 +68,35 @@ def random_path(seed: int, legs: int = 50) -> tuple[Array, Array]:
     return d, u
 
 
-def apart(found: Any, summed: Any) -> float:
-    """The largest difference, each in units of the largest value of its kind."""
+def largest_difference(found: Any, reference: Any) -> float:
+    """Largest difference, each relative to the largest value of its kind."""
     return max(
         float(
-            np.max(np.abs(getattr(found, name) - getattr(summed, name)))
-            / np.max(np.abs(getattr(summed, name)))
+            np.max(np.abs(getattr(found, name) - getattr(reference, name)))
+            / np.max(np.abs(getattr(reference, name)))
         )
         for name in NAMES
     )
 
 
-@everywhere
-def test_fifty_legs_are_those_of_the_springs(name: str) -> None:
+@every_profile
+def test_fifty_load_steps_match_the_springs(name: str) -> None:
     d, u = random_path(1)
     assert np.any(d[5:-5] <= 0)
     found = solve(name, indentation_depth=d, tangential_displacement=u)
     errors = []
     for count in (SPRINGS // 100, SPRINGS // 10, SPRINGS):
         foundation = springs.foundation(PROFILES[name], float(np.max(d)), count)
-        errors.append(apart(found, springs.simulate(foundation, MATERIAL, d, u)))
-    assert errors[-1] <= OWN, errors
+        errors.append(largest_difference(found, springs.simulate(foundation, MATERIAL, d, u)))
+    assert errors[-1] <= SPRING_ERROR, errors
     if name != "flat-punch":
-        # The difference is the springs': it falls as theirs must, by a hundred in the limit.
+        # The difference is the error of the springs and converges accordingly, by up to a hundred.
         assert errors[1] < errors[0] / 25, errors
         assert errors[2] < errors[1] / 25, errors
 
 
 @pytest.mark.parametrize("name", ["paraboloid", "truncated-cone"])
-def test_samples_within_a_leg_are_those_of_the_springs(name: str) -> None:
+def test_samples_within_a_load_step_match_the_springs(name: str) -> None:
     d, u = random_path(3, 20)
     found = solve(name, indentation_depth=d, tangential_displacement=u, samples_per_step=4)
     at = np.arange(1, 81) / 4
@@ -105,14 +105,17 @@ def test_samples_within_a_leg_are_those_of_the_springs(name: str) -> None:
     assert found.indentation_depth == pytest.approx(fine_d, rel=1e-13, abs=1e-15)
     assert found.tangential_displacement == pytest.approx(fine_u, rel=1e-13, abs=1e-15)
     foundation = springs.foundation(PROFILES[name], float(np.max(d)), SPRINGS)
-    assert apart(found, springs.simulate(foundation, MATERIAL, fine_d, fine_u)) <= OWN
+    assert (
+        largest_difference(found, springs.simulate(foundation, MATERIAL, fine_d, fine_u))
+        <= SPRING_ERROR
+    )
 
 
-@everywhere
-def test_the_state_is_that_of_each_spring(name: str) -> None:
-    """q_x spring by spring, through corners and all."""
-    for legs in (1, 2, 7, 50):
-        d, u = random_path(4, legs)
+@every_profile
+def test_state_matches_each_spring(name: str) -> None:
+    """q_x spring by spring, including corners."""
+    for steps in (1, 2, 7, 50):
+        d, u = random_path(4, steps)
         d[-1] = abs(d[-1])
         state = solve(name, indentation_depth=d, tangential_displacement=u).state
         foundation = springs.foundation(PROFILES[name], float(np.max(d)), 2000)
@@ -127,21 +130,22 @@ def test_the_state_is_that_of_each_spring(name: str) -> None:
         assert np.all(np.diff(state.depth) > 0)
 
 
-def force_path(name: str, legs: int, normal: str, tangential: str) -> dict[str, Array]:
-    """A path in the given controls; forces stay within friction at every point of every leg."""
+def force_path(name: str, steps: int, normal: str, tangential: str) -> dict[str, Array]:
+    """A path under given controls; forces stay within the friction limit on every load step."""
     random = np.random.default_rng(8)
-    d = random.uniform(0.05, 1.0, legs) * DEPTH
+    d = random.uniform(0.05, 1.0, steps) * DEPTH
     foundation = springs.foundation(PROFILES[name], DEPTH, 20_000)
-    force = springs.simulate(foundation, MATERIAL, d, np.zeros(legs)).normal_force
-    # With the depth held straight, the force lags behind a straight line of forces.
+    force = springs.simulate(foundation, MATERIAL, d, np.zeros(steps)).normal_force
+    # With linear depth, the force stays below its linear interpolation.
     part = 0.95 if normal == "normal_force" else 0.3
     least = force if normal == "normal_force" else np.minimum(force, np.append(0, force[:-1]))
     sideways = {
-        "tangential_force": random.uniform(-part, part, legs) * MATERIAL.mu * least,
-        "tangential_displacement": random.uniform(-1.0, 1.0, legs) * MOST,
+        "tangential_force": random.uniform(-part, part, steps) * MATERIAL.mu * least,
+        "tangential_displacement": random.uniform(-1.0, 1.0, steps) * MOST,
     }
     for pushed in sideways.values():
-        # Pure normal loading first: a depth grows from no force like a root, and chords hate roots.
+        # Pure normal loading first: depth grows like a root of the force, which chords resolve
+        # poorly.
         pushed[0] = 0.0
     forward = {"normal_force": force, "indentation_depth": d}
     return {normal: forward[normal], tangential: sideways[tangential]}
@@ -158,10 +162,8 @@ def force_path(name: str, legs: int, normal: str, tangential: str) -> dict[str, 
         ("sphere", "normal_force", "tangential_force"),
     ],
 )
-def test_springs_that_follow_the_found_motion_bear_the_given_forces(
-    name: str, normal: str, tangential: str
-) -> None:
-    """Curved ways in (d, u) are handed to the springs as ever shorter chords."""
+def test_springs_reproduce_the_prescribed_forces(name: str, normal: str, tangential: str) -> None:
+    """The springs follow curved paths in (d, u) as ever shorter chords."""
     controls = force_path(name, 4, normal, tangential)
     foundation = springs.foundation(PROFILES[name], DEPTH, 20_000)
     errors = []
@@ -170,17 +172,17 @@ def test_springs_that_follow_the_found_motion_bear_the_given_forces(
         ends = slice(samples - 1, None, samples)
         for control, given in controls.items():
             assert getattr(found, control)[ends] == pytest.approx(given, rel=1e-12, abs=0), control
-        summed = springs.simulate(
+        reference = springs.simulate(
             foundation, MATERIAL, found.indentation_depth, found.tangential_displacement
         )
-        errors.append(apart(found, summed))
+        errors.append(largest_difference(found, reference))
         line = np.arange(1, 4 * samples + 1) / samples
         for control, given in controls.items():
             straight = np.interp(line, np.arange(5), np.append(0.0, given))
             size = np.max(np.abs(straight))
             assert getattr(found, control) == pytest.approx(straight, rel=1e-11, abs=1e-12 * size)
-            borne = getattr(summed, control, straight)
+            borne = getattr(reference, control, straight)
             assert borne == pytest.approx(straight, rel=0, abs=size / samples)
-    # A chord misses its arc by the square of its length, if nothing else is wrong.
+    # The error of a chord is of second order in its length.
     assert errors[1] < errors[0] / 6 or errors[1] < 1e-7, errors
     assert errors[1] < 1e-3, errors

@@ -1,4 +1,4 @@
-"""The inverse of increasing functions that Newton's method alone does not find."""
+"""Inversion of increasing functions for which Newton's method alone fails."""
 
 from collections.abc import Callable
 
@@ -10,8 +10,8 @@ from mdr_core.inversion import invert
 from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
-# Value, derivative and closed inverse. The first step from 1 leaves the bracket, or the slope of
-# one side misleads on the other.
+# Value, derivative and closed-form inverse. The first step from 1 leaves the bracket, or the slope
+# on one side of a kink misleads on the other.
 CASES: dict[str, tuple[Function, Function, Function]] = {
     "steep beyond a kink": (
         lambda s: s + 1e6 * np.maximum(s - 2.0, 0.0),
@@ -23,15 +23,15 @@ CASES: dict[str, tuple[Function, Function, Function]] = {
         lambda s: np.where(s > 2.0, 1e-6, 1.0),
         lambda y: np.where(y > 2.0, 2.0 + (y - 2.0) / 1e-6, y),
     ),
-    "a jump of the slope to infinity": (
+    "slope jumps to infinity": (
         lambda s: s + np.sqrt(np.maximum(s - 2.0, 0.0)),
         lambda s: np.where(s > 2.0, 1 + 0.5 / np.sqrt(np.maximum(s - 2.0, 0.0)), 1.0),
         lambda y: np.where(
             y > 2.0, 2.0 + np.square((y - 2.0) / (0.5 + np.sqrt(0.25 + np.maximum(y - 2.0, 0)))), y
         ),
     ),
-    "no slope known": (lambda s: s * s * s, lambda s: s * np.nan, np.cbrt),
-    "of power 100": (lambda s: s**100, lambda s: 100 * s**99, lambda y: y**0.01),
+    "unknown slope": (lambda s: s * s * s, lambda s: s * np.nan, np.cbrt),
+    "power 100": (lambda s: s**100, lambda s: 100 * s**99, lambda y: y**0.01),
 }
 TARGETS = np.array([0.0, 1e-12, 0.3, 1.9999999, 2.0000001, 2.01, 7.0, 3e4])
 
@@ -40,7 +40,7 @@ TARGETS = np.array([0.0, 1e-12, 0.3, 1.9999999, 2.0000001, 2.01, 7.0, 3e4])
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("start", [1e-9, 1.0, 2.0, 1e9])
 @pytest.mark.parametrize("end", [np.inf, 1e13])
-def test_closed_inverse_is_met_from_any_start(name: str, start: float, end: float) -> None:
+def test_inverse_from_any_start(name: str, start: float, end: float) -> None:
     function, slope, inverse = CASES[name]
     low, high = np.zeros(TARGETS.size), np.full(TARGETS.size, end)
     found = invert(
@@ -58,8 +58,8 @@ def test_closed_inverse_is_met_from_any_start(name: str, start: float, end: floa
     assert found[0] == 0
 
 
-def test_bracket_encloses_the_root_whatever_the_slope() -> None:
-    """Wrong slopes send every step out of the bracket, of which the middle then is taken."""
+def test_bracket_encloses_the_root_for_wrong_slopes() -> None:
+    """Wrong slopes send every step out of the bracket, which is then bisected."""
     seen: list[Array] = []
 
     def cube(s: Array) -> Array:
@@ -70,7 +70,7 @@ def test_bracket_encloses_the_root_whatever_the_slope() -> None:
     found = invert(
         cube, lambda _s, _value: np.full(1, 1e-3), 8 * one, 3 * one, one / 8, 64 * one, "cube"
     )
-    # The last step, of at most 1e-10, is Newton's, and here as wrong as the slope.
+    # The last step, at most 1e-10, is a Newton step and is as wrong as the slope.
     assert found[0] == pytest.approx(2.0, rel=1e-10, abs=0)
     low, high = 1 / 8, 64.0
     for (s,) in seen:
@@ -78,7 +78,7 @@ def test_bracket_encloses_the_root_whatever_the_slope() -> None:
         low, high = (max(low, s), high) if s <= 2 else (low, min(high, s))
 
 
-def test_a_function_that_never_reaches_its_target_is_an_error() -> None:
+def test_unreachable_target_raises() -> None:
     one = np.ones(1)
     with pytest.raises(DefectError, match="a step did not converge"):
         invert(

@@ -1,4 +1,4 @@
-"""Laws that hold for every profile, on profiles drawn at random (the same ones every time)."""
+"""General laws of the normal problem, on pseudorandom profiles (fixed seed)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 E_STAR = 3.7
 LOADS = ("indentation_depth", "normal_force", "contact_radius")
-#: Fields that are lengths; slopes and exponents are numbers.
+#: Fields with the dimension of a length; slopes and exponents are dimensionless.
 LENGTHS = frozenset(
     {"radius", "height", "flat_radius", "rounding_radius", "tip_radius", "cap_radius"}
 )
@@ -59,7 +59,7 @@ PROFILES: dict[str, dict[str, Any]] = {
 
 
 def break_radius(fields_: dict[str, Any]) -> float:
-    """Radius where the profile's slope or curvature jumps, 0 where there is none."""
+    """Radius where the profile's slope or curvature jumps; 0 if there is none."""
     kind = fields_["kind"]
     if kind == "rounded_cone":
         return float(fields_["slope"] * fields_["tip_radius"])
@@ -69,7 +69,7 @@ def break_radius(fields_: dict[str, Any]) -> float:
 
 
 def edge(fields_: dict[str, Any], ratio: float) -> float:
-    """A contact radius: inside a sphere, beyond a flat, else on either side of the break."""
+    """A contact radius: inside a sphere, beyond a flat, otherwise on either side of the break."""
     if fields_["kind"] in {"sphere", "ellipsoid"}:
         return float(fields_["radius"] * 0.95 * ratio / 3)
     if fields_["kind"] in {"rounded_punch", "truncated_cone", "truncated_paraboloid"}:
@@ -92,13 +92,13 @@ def at_radius(fields_: dict[str, Any], radius: float) -> NormalContact:
 
 
 def graded(low: float, high: float) -> tuple[Array, Array]:
-    """Nodes and weights that crowd at both ends, where the integrands have roots and logarithms."""
+    """Nodes and weights that cluster at both ends, where integrands have roots and logarithms."""
     nodes, weights = leggauss(120)
     u, w = (nodes + 1) / 2, weights / 2
     for _ in range(2):
         w = w * 30 * u**2 * (1 - u) ** 2
         u = u**3 * (10 - 15 * u + 6 * u**2)
-    # Strictly inside, since a value at the end itself may be infinite.
+    # Strictly inside, since the value at the end can be infinite.
     inside = np.clip(low + (high - low) * u, np.nextafter(low, high), np.nextafter(high, low))
     return inside, (high - low) * w
 
@@ -127,7 +127,7 @@ def test_stiffness_is_the_derivative_of_the_force(scene: tuple[dict[str, Any], f
     at_break = float(profile.g(np.array([b]))[0]) if b > 0 else 0.0
     if depth < at_break < 1.3 * depth:
         knots.insert(1, at_break)
-    # The bound is the rule's: behind a break a(d) starts like a root.
+    # The error is that of the rule: beyond a break, a(d) starts like a square root.
     assert ends[1] - ends[0] == pytest.approx(integral(stiffness, knots), rel=1e-5, abs=0)
 
 
@@ -151,7 +151,7 @@ def test_energy_is_the_work_of_the_force(scene: tuple[dict[str, Any], float]) ->
 
 @repeatable
 @given(scenes())
-def test_pressure_carries_the_force(scene: tuple[dict[str, Any], float]) -> None:
+def test_pressure_integrates_to_the_force(scene: tuple[dict[str, Any], float]) -> None:
     fields_, radius = scene
     contact = at_radius(fields_, radius)
 
@@ -165,7 +165,7 @@ def test_pressure_carries_the_force(scene: tuple[dict[str, Any], float]) -> None
 
 @repeatable
 @given(scenes())
-def test_image_transforms_back_to_the_shape(scene: tuple[dict[str, Any], float]) -> None:
+def test_inverse_transform_returns_the_shape(scene: tuple[dict[str, Any], float]) -> None:
     fields_, radius = scene
     profile = profile_from(fields_)
     b = break_radius(fields_)
@@ -176,7 +176,9 @@ def test_image_transforms_back_to_the_shape(scene: tuple[dict[str, Any], float])
 
 @repeatable
 @given(scenes())
-def test_shape_and_image_rise_with_their_slopes(scene: tuple[dict[str, Any], float]) -> None:
+def test_shape_and_equivalent_profile_match_their_slopes(
+    scene: tuple[dict[str, Any], float],
+) -> None:
     fields_, radius = scene
     profile = profile_from(fields_)
     b = break_radius(fields_)
@@ -184,13 +186,13 @@ def test_shape_and_image_rise_with_their_slopes(scene: tuple[dict[str, Any], flo
     knots = [start, b, radius] if start < b < radius else [start, radius]
     for value, rate in ((profile.f, profile.df), (profile.g, profile.dg)):
         rise = float(np.diff(value(np.array([start, radius])))[0])
-        # Where g' has a root in its denominator, the nodes' own rounding next to it shows.
+        # Where g' has a root in its denominator, the rounding error of nodes next to it dominates.
         assert integral(rate, knots) == pytest.approx(rise, rel=1e-7, abs=1e-300)
 
 
 @repeatable
 @given(scenes())
-def test_each_answer_given_back_returns_the_others(scene: tuple[dict[str, Any], float]) -> None:
+def test_each_result_as_load_reproduces_the_others(scene: tuple[dict[str, Any], float]) -> None:
     fields_, radius = scene
     first = at_radius(fields_, radius)
     profile = profile_from(fields_)
@@ -203,7 +205,7 @@ def test_each_answer_given_back_returns_the_others(scene: tuple[dict[str, Any], 
 
 
 def rescaled(fields_: dict[str, Any], unit: float) -> dict[str, Any]:
-    """The same body in a unit of length 1/`unit` of the old one."""
+    """The same body in a unit of length 1/`unit` times the old one."""
     out = dict(fields_)
     for name in LENGTHS & out.keys():
         out[name] = out[name] * unit
@@ -216,7 +218,7 @@ def rescaled(fields_: dict[str, Any], unit: float) -> dict[str, Any]:
 
 @repeatable
 @given(scenes(), st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
-def test_a_change_of_units_rescales_the_answers(
+def test_results_scale_with_units(
     scene: tuple[dict[str, Any], float], length_power: float, modulus_power: float
 ) -> None:
     fields_, radius = scene
@@ -224,7 +226,7 @@ def test_a_change_of_units_rescales_the_answers(
     old = at_radius(fields_, radius)
     force = float(old.normal_force) * modulus * unit**2
     new = solve(profile_from(rescaled(fields_, unit)), E_STAR * modulus, normal_force=force)
-    # The power's coefficient takes a large power of the unit: its rounding is the bound's.
+    # The power's coefficient takes a high power of the unit; its rounding error sets the limit.
     assert float(new.contact_radius) == pytest.approx(radius * unit, rel=1e-12, abs=0)
     depth = float(old.indentation_depth) * unit
     assert float(new.indentation_depth) == pytest.approx(depth, rel=1e-12, abs=0)

@@ -1,4 +1,4 @@
-"""Measured-like tables: noise, rounded heights, flats and kinks between the points."""
+"""Tables like measured ones: noise, rounded heights, flats and kinks between the points."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
     Array = np.ndarray
 
-#: End of the tables, a contact radius, and the radius of flats and kinks: none is a point.
+#: End of the tables, contact radius, and radius of flats and kinks; none is a table point.
 END, A, B = 0.7, 0.531, 0.2137
 S, PHI = np.sqrt((A - B) * (A + B)), np.arctan2(np.sqrt((A - B) * (A + B)), B)
 
 
 class Body(NamedTuple):
-    """Profile, and the depth and force / E* at the contact radius A in closed form."""
+    """Profile, with depth and force / E* at contact radius A in closed form."""
 
     f: Callable[[Array], Array]
     depth: float
@@ -53,13 +53,13 @@ BODIES = {
         np.pi / 2 * 0.05 * A * A + 0.1 * (A * A * PHI + B * S),
     ),
 }
-#: Size of the noise over the last height. It is the standard deviation of random errors, or that
-#: of a rounding to 3.5 times as much.
+#: Noise relative to the last height: standard deviation of random errors, or of a rounding to 3.5
+#: times as much.
 NOISE = [0.0, 1e-6, 1e-5, 1e-4, 3e-4]
 
 
 def measured(f: Array, noise: float, *, rounded: bool) -> Array:
-    """Heights as an instrument returns them, made to rise as a user would."""
+    """Heights as returned by an instrument, made monotonic as a user would."""
     size = noise * f[-1]
     if not size:
         return f
@@ -73,29 +73,29 @@ def measured(f: Array, noise: float, *, rounded: bool) -> Array:
 @pytest.mark.parametrize("noise", NOISE)
 @pytest.mark.parametrize("intervals", [50, 200])
 @pytest.mark.parametrize("name", BODIES)
-def test_a_measured_table_is_answered(name: str, intervals: int, noise: float, errors: str) -> None:
+def test_measured_table_is_accepted(name: str, intervals: int, noise: float, errors: str) -> None:
     body, r = BODIES[name], np.linspace(0, END, intervals + 1)
     f = measured(body.f(r), noise, rounded=errors == "rounding")
     contact = solve(Tabulated(r, f), 1.0, contact_radius=A)
-    # A kink is known to a step, of which depth and force feel the square; errors of the heights
-    # next to the edge have the weight of a root's end, sqrt(A/step).
+    # A kink is located to one step, of which depth and force depend quadratically; height errors
+    # next to the edge have the weight of an endpoint singularity, sqrt(A/step).
     step = END / intervals / A
     bound = step**2 / 4 + 4 * noise / np.sqrt(step)
     assert contact.indentation_depth == pytest.approx(body.depth, rel=bound, abs=0)
     assert contact.normal_force == pytest.approx(body.force, rel=bound, abs=0)
-    # What the table does to the shape is in the warnings.
+    # The warnings report the changes that the table makes to the shape.
     codes = {notice.code for notice in contact.warnings}
     smooth = noise == 0 and name in {"ball", "cone", "rounded punch"}
     assert smooth == (not codes & {"interpolation", "rough_table"}) or noise > 0
-    # The inverse finds this depth again, and no pressure is negative.
+    # The inverse recovers this depth, and no pressure is negative.
     again = solve(Tabulated(r, f), 1.0, normal_force=contact.normal_force)
     assert again.indentation_depth == pytest.approx(contact.indentation_depth, rel=1e-12, abs=0)
     pressure = fields.pressure(contact, np.linspace(0.01, 0.99, 197) * A)
     assert pressure.min() >= 0
 
 
-def test_a_partial_slip_on_a_noisy_table() -> None:
-    """The law of Cattaneo and Mindlin for a ball, within the noise."""
+def test_partial_slip_on_a_noisy_table() -> None:
+    """Cattaneo-Mindlin for a sphere, within the noise."""
     r = np.linspace(0, END, 201)
     f = measured(r * r / 2, 1e-5, rounded=False)
     contact = solve(Tabulated(r, f), 1.0, normal_force=0.1)
@@ -104,8 +104,8 @@ def test_a_partial_slip_on_a_noisy_table() -> None:
     assert ratio == pytest.approx(0.5 ** (1 / 3), rel=1e-3, abs=0)
 
 
-def test_a_spline_that_falls_is_named() -> None:
-    """Through four points goes one cubic, whose slope is lowest where f'' is zero."""
+def test_decreasing_spline_is_rejected_with_its_radius() -> None:
+    """A single cubic through four points, whose slope is lowest where f'' is zero."""
     r = np.array([0.0, 0.1, 0.8, 1.0])
     f = np.array([0.0, 0.063, 0.076, 0.3])
     cubic = np.polynomial.Polynomial.fit(r, f, 3).convert()
@@ -123,14 +123,14 @@ def test_a_spline_that_falls_is_named() -> None:
 
 
 @pytest.mark.parametrize("rise", [1e-3, 1e-9])
-def test_a_spline_that_does_not_fall_is_kept(rise: float) -> None:
-    """f = (u - 1/2)^3 + rise u has its lowest slope, `rise`, in the middle between two points."""
+def test_monotonic_spline_is_accepted(rise: float) -> None:
+    """f = (u - 1/2)^3 + rise u has its lowest slope, `rise`, midway between two points."""
     r = np.linspace(0, 1, 6)
     profile = Tabulated(r, (r - 0.5) ** 3 + 0.125 + rise * r, "cubic")
     assert float(profile.df(np.array(0.5))) == pytest.approx(rise, rel=1e-6, abs=1e-12)
 
 
-def test_a_contact_smaller_than_the_flat_is_refused() -> None:
+def test_contact_smaller_than_the_flat_is_rejected() -> None:
     r = np.array([0.0, 0.2, 0.4, 0.6, 0.8])
     profile = Tabulated(r, np.maximum(r - 0.4, 0.0))
     with pytest.raises(InputError, match="smaller than the flat") as refused:
@@ -139,11 +139,13 @@ def test_a_contact_smaller_than_the_flat_is_refused() -> None:
     assert solve(profile, 1.0, contact_radius=0.4).normal_force == 0
 
 
-def test_the_domain_ends_where_a_contact_would_not_be_one_disc() -> None:
-    """f = 1 - exp(-r^2) has g = 2 x D(x) by Dawson's integral, largest at x = 1.50197526668."""
+def test_domain_ends_where_the_contact_is_not_a_disc() -> None:
+    """f = 1 - exp(-r^2) has g = 2 x D(x) with Dawson's integral; its maximum is at x =
+    1.50197526668.
+    """
     r = np.linspace(0, 2.0, 401)
     profile = Tabulated(r, -np.expm1(-r * r))
-    # g(2) is reached first at this radius [mpmath, findroot].
+    # The radius at which g(2) is first reached [mpmath, findroot].
     assert profile.domain == pytest.approx(1.17659837048667, rel=1e-8, abs=0)
     for load in ({"contact_radius": 1.18}, {"indentation_depth": 1.21}, {"normal_force": 2.0}):
         with pytest.raises(InputError, match=r"beyond radius 1\.17659"):
@@ -154,8 +156,8 @@ def test_the_domain_ends_where_a_contact_would_not_be_one_disc() -> None:
     assert not contact.warnings or "rough_table" not in {one.code for one in contact.warnings}
 
 
-def test_a_capped_paraboloid_with_a_blunter_flank_is_refused_beyond_the_cap() -> None:
-    """The slope drops at b = 0.5: g(b) = b^2, and g falls to 0.2183 behind it."""
+def test_capped_paraboloid_with_blunter_flank_is_rejected_beyond_the_cap() -> None:
+    """The slope drops at b = 0.5: g(b) = b^2, and g decreases to 0.2183 beyond it."""
     r = np.linspace(0, 2.0, 41)
     f = np.where(r < 0.5, r * r / 2, 0.125 + (r * r - 0.25) / 6)
     profile = Tabulated(r, f, "cubic", (0.5,))
@@ -167,7 +169,7 @@ def test_a_capped_paraboloid_with_a_blunter_flank_is_refused_beyond_the_cap() ->
 
 @pytest.mark.parametrize("flat", [0.0, 0.3])
 def test_two_and_five_points(flat: float) -> None:
-    """Straight lines through few points: a cone, a truncated cone, and steep beyond a flat."""
+    """Linear tables with few points: a cone, a truncated cone, and a steep flank beyond a flat."""
     r = np.array([0.0, flat, 1.0]) if flat else np.array([0.0, 1.0])
     f = np.maximum(r - flat, 0.0)
     for loads in ({"contact_radius": [flat, 0.5, 1.0]}, {"normal_force": [0.0, 1e-3, 0.5]}):
@@ -181,7 +183,7 @@ def test_two_and_five_points(flat: float) -> None:
             assert not np.isnan(fields.pressure(contact, [x])).any()
 
 
-def test_a_resolved_table_has_a_known_size_and_can_be_pickled() -> None:
+def test_resolved_table_has_a_known_size_and_can_be_pickled() -> None:
     r = np.linspace(0, END, 201)
     profile = Tabulated(r, r * r / 2)
     with pytest.raises(ValueError, match="read-only"):

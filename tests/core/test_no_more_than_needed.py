@@ -1,7 +1,7 @@
-"""No more is computed than a scene needs: counted, not timed.
+"""No unnecessary computation, by counting evaluations.
 
-A looser tolerance never costs more, closed forms are taken wherever there are any, and what was not
-asked for is not computed.
+A looser tolerance never costs more, closed forms are used wherever they exist, and results that are
+not requested are not computed.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from mdr_core.profiles import KINDS, Profile
 from mdr_core.profiles import base as profiles
 from mdr_service.queries.fields import solve_stress, stress_result
 from mdr_service.schemas.fields import StressQuery
-from tests.core.evaluations import FIELDS, PROFILES, cost, counted, field, made, solved
+from tests.core.evaluations import FIELDS, PROFILES, cost, counted, field, profile_of, solved
 
 TOLERANCES = [10.0**-decade for decade in range(3, 14)]
-#: Fields of which a kind may say that they are closed form.
+#: Fields that can be closed-form for some kinds.
 CLOSED_FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement")
-#: A table is resolved once, not for each radius; nothing slips under a flat punch.
+#: A table is resolved only once; nothing slips under a flat punch.
 RESOLVED = ("tabulated", "flat_punch")
 QUERY: dict[str, Any] = {
     "profile": {"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 2.0},
@@ -33,20 +33,20 @@ QUERY: dict[str, Any] = {
     "load": {"normal_force": 0.3},
     "radius": [0.0, 0.3, 0.6],
 }
-PUSHED = {"friction_coefficient": 0.3, "tangential": {"tangential_force": 0.05}}
+LOADED = {"friction_coefficient": 0.3, "tangential": {"tangential_force": 0.05}}
 
 
 def never(*_: Any, **__: Any) -> Any:
-    raise AssertionError("nobody asked for this")
+    raise AssertionError("not requested")
 
 
-def test_every_kind_is_here() -> None:
+def test_every_kind_is_covered() -> None:
     assert set(PROFILES) == set(KINDS)
 
 
 @pytest.mark.parametrize("name", FIELDS)
 @pytest.mark.parametrize("kind", PROFILES)
-def test_a_looser_tolerance_never_costs_more(kind: str, name: str) -> None:
+def test_looser_tolerance_never_costs_more(kind: str, name: str) -> None:
     costs = [cost(kind, name, rtol) for rtol in TOLERANCES]
     assert all(loose <= tight for loose, tight in pairwise(costs)), costs
 
@@ -60,7 +60,7 @@ def test_a_looser_tolerance_never_costs_more(kind: str, name: str) -> None:
         if kind not in RESOLVED and name not in KINDS[kind].closed_forms
     ],
 )
-def test_a_coarse_stress_costs_less_than_a_fine_one(kind: str, name: str) -> None:
+def test_stress_costs_less_at_a_loose_tolerance(kind: str, name: str) -> None:
     assert cost(kind, name, 1e-3) < cost(kind, name, 1e-13)
 
 
@@ -73,13 +73,13 @@ def test_a_coarse_stress_costs_less_than_a_fine_one(kind: str, name: str) -> Non
         if name in KINDS[kind].closed_forms
     ],
 )
-def test_closed_fields_take_no_quadrature(kind: str, name: str) -> None:
+def test_closed_form_fields_need_no_quadrature(kind: str, name: str) -> None:
     assert cost(kind, name, 1e-13) == 0
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_closed_answers_take_no_quadrature_and_no_iteration(kind: str) -> None:
-    profile = made(kind)
+def test_closed_form_results_need_no_quadrature_or_iteration(kind: str) -> None:
+    profile = profile_of(kind)
     otherwise = {
         "contact_radius": (equivalent_1d, "_inverse"),
         "elastic_energy": (profiles, "energy_integral"),
@@ -90,29 +90,31 @@ def test_closed_answers_take_no_quadrature_and_no_iteration(kind: str) -> None:
                 stack.enter_context(patch.object(*place, never))
         count = stack.enter_context(counted())
         contact = normal.solve(profile, 1.0, normal_force=0.1)
-        # A table is resolved before its pressure is searched.
-        wanted = set(profiles.NORMAL_QUANTITIES) - {"maximum_pressure"}
-        for name in wanted | (wanted & set(profile.closed_forms)):
+        # A table is resolved before its pressure maximum is searched.
+        quantities = set(profiles.NORMAL_QUANTITIES) - {"maximum_pressure"}
+        for name in quantities | (quantities & set(profile.closed_forms)):
             getattr(contact, name)
     assert count.integrand == 0
 
 
 @pytest.mark.parametrize("given", ["indentation_depth", "contact_radius"])
 @pytest.mark.parametrize("kind", ["paraboloid", "cone", "power"])
-def test_a_power_law_is_never_iterated(kind: str, given: str) -> None:
+def test_power_law_needs_no_iteration(kind: str, given: str) -> None:
     with (
         patch.object(equivalent_1d, "_inverse", never),
         patch.object(equivalent_1d, "invert", never),
     ):
-        contact = normal.solve(made(kind), 1.0, **{given: 0.1})
-        pushed = tangential.solve(contact, 0.8, 0.3, tangential_force=0.1 * contact.normal_force)
-        assert pushed.stick_radius > 0
-        assert pushed.tangential_displacement > 0
+        contact = normal.solve(profile_of(kind), 1.0, **{given: 0.1})
+        tangential_contact = tangential.solve(
+            contact, 0.8, 0.3, tangential_force=0.1 * contact.normal_force
+        )
+        assert tangential_contact.stick_radius > 0
+        assert tangential_contact.tangential_displacement > 0
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_answers_of_a_normal_contact_wait_until_they_are_asked_for(kind: str) -> None:
-    contact = normal.solve(made(kind), 1.0, normal_force=0.1)
+def test_normal_results_are_lazy(kind: str) -> None:
+    contact = normal.solve(profile_of(kind), 1.0, normal_force=0.1)
     assert set(vars(contact)) & set(profiles.NORMAL_QUANTITIES) == {"normal_force"}
     with patch.object(type(contact.profile), "reduced_energy", never):
         assert contact.contact_radius > 0
@@ -121,63 +123,63 @@ def test_answers_of_a_normal_contact_wait_until_they_are_asked_for(kind: str) ->
 
 
 @pytest.mark.parametrize("kind", [kind for kind in PROFILES if kind != "flat_punch"])
-def test_a_stick_radius_does_not_wait_for_what_is_dissipated(kind: str) -> None:
-    pushed = solved(made(kind), 1e-10)
+def test_stick_radius_needs_no_dissipated_energy(kind: str) -> None:
+    tangential_contact = solved(profile_of(kind), 1e-10)
     with patch.object(tangential, "slip_moment", never):
-        assert pushed.stick_radius > 0
-        assert pushed.slip_width > 0
-    assert "dissipated_energy" not in vars(pushed)
+        assert tangential_contact.stick_radius > 0
+        assert tangential_contact.slip_width > 0
+    assert "dissipated_energy" not in vars(tangential_contact)
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_a_field_computes_no_other_field(kind: str) -> None:
-    pushed = solved(made(kind), 1e-10)
+def test_field_computes_no_other_field(kind: str) -> None:
+    tangential_contact = solved(profile_of(kind), 1e-10)
     with (
         patch.object(contact_fields, "slip_kernel", never),
-        patch.object(type(pushed.normal.profile), "outer_displacement", never),
-        patch.object(type(pushed.normal.profile), "reduced_energy", never),
+        patch.object(type(tangential_contact.normal.profile), "outer_displacement", never),
+        patch.object(type(tangential_contact.normal.profile), "reduced_energy", never),
     ):
-        field("pressure", pushed, 1e-10)
-        field("shear_stress", pushed, 1e-10)
+        field("pressure", tangential_contact, 1e-10)
+        field("shear_stress", tangential_contact, 1e-10)
     with (
         patch.object(contact_fields, "stress", never),
-        patch.object(type(pushed.normal.profile), "reduced_energy", never),
+        patch.object(type(tangential_contact.normal.profile), "reduced_energy", never),
     ):
-        field("slip", pushed, 1e-10)
-        field("normal_displacement", pushed, 1e-10)
+        field("slip", tangential_contact, 1e-10)
+        field("normal_displacement", tangential_contact, 1e-10)
 
 
-def asked(**more: Any) -> dict[str, Any]:
-    """What the service answers to a query of stress."""
+def run_stress(**more: Any) -> dict[str, Any]:
+    """Run the stress query of the service."""
     query = StressQuery.model_validate(QUERY | more)
     return stress_result(query, solve_stress(query))
 
 
-def test_pressure_alone_needs_no_friction_no_slip_and_no_energy() -> None:
+def test_pressure_needs_no_friction_slip_or_energy() -> None:
     with (
         patch.object(tangential, "solve", never),
         patch.object(contact_fields, "slip_kernel", never),
         patch.object(Profile, "outer_displacement", never),
         patch.object(Profile, "reduced_energy", never),
     ):
-        answer = asked(quantities=["pressure"])
+        answer = run_stress(quantities=["pressure"])
     assert "slip" not in answer
     assert "shear_stress" not in answer
     assert np.all(np.asarray(answer["pressure"]) > 0)
 
 
-@pytest.mark.parametrize("wanted", [["pressure"], ["pressure", "shear_stress"]])
-def test_stresses_under_friction_need_no_slip(wanted: list[str]) -> None:
+@pytest.mark.parametrize("quantities", [["pressure"], ["pressure", "shear_stress"]])
+def test_shear_stress_needs_no_slip(quantities: list[str]) -> None:
     with (
         patch.object(contact_fields, "slip_kernel", never),
         patch.object(tangential, "slip_moment", never),
     ):
-        answer = asked(quantities=wanted, **PUSHED)
-    assert set(wanted) <= set(answer)
+        answer = run_stress(quantities=quantities, **LOADED)
+    assert set(quantities) <= set(answer)
     assert "slip" not in answer
 
 
-def test_slip_alone_needs_no_stress() -> None:
+def test_slip_needs_no_stress() -> None:
     with patch.object(contact_fields, "stress", never):
-        answer = asked(quantities=["slip"], **PUSHED)
+        answer = run_stress(quantities=["slip"], **LOADED)
     assert "pressure" not in answer

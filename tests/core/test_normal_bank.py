@@ -1,4 +1,4 @@
-"""Depth, force and radius of every stored case, by every control."""
+"""Depth, force and radius of every stored case, under every control."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tests.core.comparison import allowance, assert_each, batched, overstated, p
 from tests.oracles import bank
 
 BOUND = 1e-13
-#: How far the estimate may exceed the largest error that is allowed.
+#: Largest ratio of estimate to largest admissible error.
 OVERSTATED = 5.0
 
 
@@ -27,5 +27,5 @@ def failures_of(case: dict[str, Any]) -> list[str]:
 
 
 @batched(bank.load("normal"))
-def test_answers_and_their_error_estimate(cases: list[dict[str, Any]]) -> None:
+def test_results_and_error_estimates(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of)

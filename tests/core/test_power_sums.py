@@ -1,4 +1,4 @@
-"""Sums of powers at the ends of what may be given: exponents, coefficients, and how they cancel."""
+"""Power series at the limits of exponents and coefficients, and their cancellation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mdr_core.profiles.power_sums import cancellation, first_negative_radius, lo
 from tests.core.evaluations import counted
 
 NEXT = float(np.nextafter(200.0, 0.0))
-#: Gentle, sharp and steep at once.
+#: Small, fractional and large exponents together.
 MIXED = ((1.0, 0.05), (0.5, 2.0), (0.25, NEXT), (0.25, 200.0))
 DIGITS = 60
 
@@ -31,8 +31,8 @@ def series(*terms: tuple[float, float]) -> Series:
         ((1e300, 200.0), (-1e300, 201.0)),
     ],
 )
-def test_where_a_sum_ends_whatever_its_terms(terms: tuple[tuple[float, float], ...]) -> None:
-    """Equal exponents, once one was taken from both, and coefficients below all doubles failed."""
+def test_domain_of_a_series(terms: tuple[tuple[float, float], ...]) -> None:
+    """Regression: equal exponents after subtracting one, and coefficients that underflow."""
     end = mpmath.log(series(*terms).domain)
     with mpmath.workdps(DIGITS):
         nearest = mpmath.mpf(10) ** -9
@@ -56,7 +56,7 @@ def kappa(n: float) -> mpmath.mpf:
     return mpmath.sqrt(mpmath.pi) / 2 * n * mpmath.gamma(half) / mpmath.gamma(half + 0.5)
 
 
-def test_terms_that_leave_nothing_are_refused() -> None:
+def test_cancelling_terms_are_rejected() -> None:
     with pytest.raises(InputError, match="cancel to zero"):
         series((1.0, 2.0), (-1.0, 2.0))
 
@@ -69,10 +69,10 @@ def test_terms_that_leave_nothing_are_refused() -> None:
         ((0.34, 1 - 1e-15), (-4.2, 1.0)),
     ],
 )
-def test_nearly_equal_exponents_that_cancel_are_refused(
+def test_nearly_equal_exponents_that_cancel_are_rejected(
     terms: tuple[tuple[float, float], ...],
 ) -> None:
-    """The inverse of such a sum is dominated by rounding error: it once did not converge."""
+    """The inverse of such a series is dominated by rounding error and once did not converge."""
     with pytest.raises(InputError, match=r"cancel|falls"):
         series(*terms)
 
@@ -81,7 +81,7 @@ def test_nearly_equal_exponents_that_cancel_are_refused(
 def test_slip_moment_of_a_narrow_and_of_a_wide_annulus(
     terms: tuple[tuple[float, float], ...],
 ) -> None:
-    """int_c^a (g(a) - g)(g - g(c)) dx, term by term at 60 digits; notes, section 6."""
+    """int_c^a (g(a) - g)(g - g(c)) dx, term by term with 60 digits; notes, §6."""
     a = 0.9
     for ratio in (0.0, 1e-9, 1e-3, 0.5, 0.99, 1 - 1e-5, 1 - 2.0**-40):
         c = a * ratio
@@ -110,11 +110,11 @@ def slip_moment(terms: tuple[tuple[float, float], ...], a: mpmath.mpf, c: mpmath
 @pytest.mark.parametrize(
     "exponents", [(2, 4, 6), (10, 11, 12), (100, 101, 102), (200, 200.1, 200.2)]
 )
-def test_how_much_terms_cancel_at_most(exponents: tuple[float, float, float]) -> None:
-    """The flattest cubic that still rises: its slope touches zero at r = 1."""
+def test_largest_admissible_cancellation(exponents: tuple[float, float, float]) -> None:
+    """The flattest increasing cubic: its slope is zero at r = 1."""
     n, m, k = map(mpmath.mpf, exponents)
     with mpmath.workdps(DIGITS):
-        # n + m p + k q = 0 and n^2 + m^2 p + k^2 q = 0, a little less of the middle term.
+        # n + m p + k q = 0 and n^2 + m^2 p + k^2 q = 0, with slightly less of the middle term.
         p = -n * (k - n) / (m * (k - m)) * (1 - mpmath.mpf(10) ** -9)
         q = n * (m - n) / (k * (k - m))
         u = mpmath.linspace(-3 / (k - n), mpmath.mpf(0), 2001)
@@ -131,8 +131,10 @@ def test_how_much_terms_cancel_at_most(exponents: tuple[float, float, float]) ->
 
 @pytest.mark.every(3)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-10])
-def test_the_surface_beside_a_sum_of_gentle_and_steep_powers(rtol: float) -> None:
-    """As exact as asked, and no dearer than some of its terms: pieces follow each power's reach."""
+def test_displacement_outside_a_series_of_small_and_large_powers(rtol: float) -> None:
+    """Meets the tolerance at no more than the cost of its terms: subpanels follow each power's
+    scale.
+    """
     a, radii = 1.0, np.array([1.0, 1.001, 1.5, 4.0])
     contact = normal.solve(series(*MIXED), 1.0, contact_radius=a)
     with counted() as count:

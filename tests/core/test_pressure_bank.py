@@ -1,4 +1,4 @@
-"""Pressure at stored radii: the axis, the edge and both sides of each break."""
+"""Pressure at stored radii: on the axis, at the edge and on both sides of each break."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BOUND = 1e-12
 
 
 def allowed(case: dict[str, Any], index: int) -> float:
-    """Return the error by the rounding of a computed contact radius or break; others are exact."""
+    """Return the error due to rounding of a computed contact radius or break; others are exact."""
     names = []
     if case["control"] != "contact_radius":
         names += ["condition_load", "condition_edge"]

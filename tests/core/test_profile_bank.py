@@ -1,4 +1,4 @@
-"""f, f', g and g' of every kind at stored radii, both sides of each break."""
+"""f, f', g and g' of every kind at stored radii, on both sides of each break."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rules' a-priori bound against the truth, and what a tolerance costs."""
+"""A-priori error bound of the quadrature rules, and their cost at each tolerance."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 LENGTHS = (0.05, 0.2, 0.7, 1.5, 3.0, 6.0, 11.0, 20.0)
 POINTS = (8, 12, 24, 48)
 DECADES = tuple(10.0**-k for k in range(3, 14))
-#: Rounding of a sum of some fifty positive terms.
+#: Rounding error of a sum of about fifty positive terms.
 ROUNDING = 1e-14
 
-# Integrands with poles or branch points exactly at the strip's edge, and their growth. Each is
-# written once for arrays and for mpmath.
+# Integrands with poles or branch points on the boundary of the strip, and their growth. Each is
+# written once for arrays and mpmath.
 FAMILY = {
     "sech": (lambda m, y: 1 / m.cosh(y), 2.0, True),
     "sech at 1": (lambda m, y: 1 / m.cosh(y - 1), 2.0, False),
@@ -48,32 +48,32 @@ FAMILY = {
 def exact(name: str, low: float, high: float) -> mpf:
     fn = FAMILY[name][0]
     with mp.workdps(30):
-        # Pieces a tenth of the strip wide leave nothing to chance.
+        # Subpanels a tenth of the strip's width are resolved safely.
         count = max(int((high - low) / 0.8), 1)
         ends = [mpf(low) + (mpf(high) - mpf(low)) * i / count for i in range(count + 1)]
         return mp.quad(lambda y: fn(mp, y), ends, method="gauss-legendre")
 
 
-def off(value: float, truth: mpf) -> float:
+def relative_error(value: float, truth: mpf) -> float:
     return float(abs(mpf(value) / truth - 1))
 
 
 @pytest.mark.parametrize("name", FAMILY)
 @pytest.mark.parametrize("points", POINTS)
-def test_the_bound_is_never_below_the_error(name: str, points: int) -> None:
+def test_error_within_bound(name: str, points: int) -> None:
     fn, growth, _ = FAMILY[name]
     nodes, weights = gauss_legendre(points)
     for length in LENGTHS:
         value = length / 2 * float(weights @ fn(np, length / 2 * nodes))
         truth = exact(name, -length / 2, length / 2)
-        # The bound is relative to the largest |h| times the length, which is never less.
+        # The bound is relative to the largest |h| times the length, which is never smaller.
         size = max(abs(fn(np, y)) for y in np.linspace(-length / 2, length / 2, 201)) * length
         error = float(abs(mpf(value) - truth)) / size
         bound = error_bound(points, length / 2, Analytic(growth=growth))
         assert error <= bound + ROUNDING, (length, error, bound)
 
 
-def test_the_bound_falls_with_points_and_rises_with_length() -> None:
+def test_bound_decreases_with_points_and_increases_with_length() -> None:
     for length in LENGTHS:
         bounds = [error_bound(points, length, quadrature.DEFAULT) for points in POINTS]
         assert bounds == sorted(bounds, reverse=True)
@@ -85,17 +85,17 @@ def test_the_bound_falls_with_points_and_rises_with_length() -> None:
 
 @pytest.mark.parametrize("rtol", DECADES)
 @pytest.mark.parametrize("name", [name for name, (_, _, even) in FAMILY.items() if even])
-def test_even_integrals_reach_what_is_asked(name: str, rtol: float) -> None:
+def test_even_integrals_meet_the_tolerance(name: str, rtol: float) -> None:
     fn, growth, _ = FAMILY[name]
     upper = np.array(LENGTHS)
     found = integrate_even(lambda y, _: fn(np, y), upper, rtol, Analytic(growth=growth))
-    errors = [off(v, exact(name, 0.0, u)) for v, u in zip(found, LENGTHS, strict=True)]
+    errors = [relative_error(v, exact(name, 0.0, u)) for v, u in zip(found, LENGTHS, strict=True)]
     assert max(errors) <= rtol + ROUNDING
 
 
 @pytest.mark.parametrize("rtol", DECADES)
 @pytest.mark.parametrize("name", FAMILY)
-def test_plain_integrals_reach_what_is_asked(name: str, rtol: float) -> None:
+def test_plain_integrals_meet_the_tolerance(name: str, rtol: float) -> None:
     fn, growth, _ = FAMILY[name]
     ends = [(low, low + length) for low in (0.0, 0.3, 2.0) for length in (1e-9, *LENGTHS)]
     lower, length = np.array(ends).T[0], np.array([high - low for low, high in ends])
@@ -103,12 +103,12 @@ def test_plain_integrals_reach_what_is_asked(name: str, rtol: float) -> None:
         lambda y, _: fn(np, y), lower, length, rtol, Analytic(growth=growth)
     )
     for value, (low, high) in zip(found, ends, strict=True):
-        assert off(value, exact(name, low, high)) <= rtol + ROUNDING, (low, high)
+        assert relative_error(value, exact(name, low, high)) <= rtol + ROUNDING, (low, high)
 
 
 @pytest.mark.parametrize("rtol", DECADES)
-def test_a_double_zero_at_or_next_to_the_interval_keeps_the_tolerance(rtol: float) -> None:
-    """sinh^2 y/cosh y, whose integral is sinh y - arctan(sinh y): small all over, not beside it."""
+def test_double_zero_at_or_next_to_the_interval(rtol: float) -> None:
+    """sinh^2 y/cosh y, whose integral is sinh y - arctan(sinh y): small throughout the interval."""
 
     def h(y: Array, _: object) -> Array:
         return np.sinh(y) ** 2 / np.cosh(y)
@@ -123,14 +123,14 @@ def test_a_double_zero_at_or_next_to_the_interval_keeps_the_tolerance(rtol: floa
             found = quadrature.integrate_plain(h, np.full(40, low), lengths, rtol, analytic)
             for value, length in zip(found, lengths.tolist(), strict=True):
                 exact_ = truth(mpf(low) + mpf(length)) - truth(mpf(low))
-                assert off(value, exact_) <= rtol + ROUNDING, (low, length)
+                assert relative_error(value, exact_) <= rtol + ROUNDING, (low, length)
         even = integrate_even(h, lengths, rtol, analytic)
         for value, length in zip(even, lengths.tolist(), strict=True):
-            assert off(value, truth(mpf(length))) <= rtol + ROUNDING, length
+            assert relative_error(value, truth(mpf(length))) <= rtol + ROUNDING, length
 
 
-def test_many_integrals_at_once_keep_their_places() -> None:
-    """Each is asked with its own number: a mixture of all rules, and of several blocks."""
+def test_vectorized_integrals_keep_their_order() -> None:
+    """Each integrand has its own parameter; all rules and several blocks are mixed."""
     upper = np.tile(np.array([0.0, 0.01, 0.5, 2.0, 7.0, 25.0]), 3000)
     scale = np.linspace(1.0, 2.0, upper.size)
 
@@ -146,7 +146,7 @@ def test_many_integrals_at_once_keep_their_places() -> None:
 
 
 def evaluations(run: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> int:
-    """Values of integrands that a call needs."""
+    """Number of integrand values used by a call."""
     count = 0
     original = quadrature._apply
 
@@ -173,7 +173,7 @@ KERNELS = {
 
 
 @pytest.mark.parametrize("name", KERNELS)
-def test_a_looser_tolerance_never_costs_more(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_looser_tolerance_never_costs_more(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     profile, a = KERNELS[name]
     contact = solve(profile, 1.0, contact_radius=a)
     r = np.linspace(0, a, 300, endpoint=False)
@@ -186,7 +186,7 @@ def test_a_looser_tolerance_never_costs_more(name: str, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("name", KERNELS)
-def test_a_normal_query_needs_no_kernel(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_normal_query_needs_no_kernel(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     profile, a = KERNELS[name]
 
     def query() -> None:

@@ -1,4 +1,4 @@
-"""What once went wrong in the core, each by its smallest example."""
+"""Regressions of the core, each reduced to its smallest example."""
 
 from typing import Any
 
@@ -14,8 +14,8 @@ from tests.oracles import reference, slip_reference
 from tests.oracles.shapes import shape_of
 
 
-def test_an_inverse_goes_on_past_a_near_jump() -> None:
-    """A cap a trillion times flatter than what is behind it: the force all but jumps at b."""
+def test_inverse_near_a_jump() -> None:
+    """A cap 1e12 times flatter than its flank: the force nearly jumps at b."""
     profile = profiles.CappedParaboloid(1e-5, 1e8, 1e-5)
     bare = profiles.TruncatedParaboloid(1e-5, 1e-5)
     contact = normal.solve(profile, 1.0, normal_force=0.1)
@@ -25,14 +25,14 @@ def test_an_inverse_goes_on_past_a_near_jump() -> None:
 
 
 @pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
-def test_an_inverse_ends_where_no_double_is_left(control: str) -> None:
-    """The contact is wider than the flat of the table by less than a double can say."""
+def test_inverse_at_the_resolution_of_doubles(control: str) -> None:
+    """The contact exceeds the flat of the table by less than the resolution of a double."""
     table = profiles.Tabulated([0.0, 1.0, 2.0], [0.0, 0.0, 1.0], "linear")
     contact = normal.solve(table, 1.0, **{control: [1e-70, 0.0, 1e-40]})
     np.testing.assert_allclose(contact.contact_radius, 1.0, rtol=1e-15)
 
 
-def test_one_load_on_many_scenes_is_answered_for_each() -> None:
+def test_single_load_broadcasts_over_many_cases() -> None:
     radii = np.array([1.0, 2.0, 4.0])
     contact = normal.solve(profiles.Paraboloid(radii), 1.0, contact_radius=0.5)
     np.testing.assert_array_equal(contact.indentation_depth, 0.25 / radii)
@@ -49,7 +49,7 @@ def test_one_load_on_many_scenes_is_answered_for_each() -> None:
         (profiles.Ellipsoid(np.ones(2), np.ones(3)), 1.0),
     ],
 )
-def test_shapes_that_do_not_agree_are_refused(
+def test_incompatible_shapes_are_rejected(
     profile: profiles.Profile, e_star: float | np.ndarray
 ) -> None:
     with pytest.raises(InputError, match="does not agree") as refused:
@@ -57,14 +57,14 @@ def test_shapes_that_do_not_agree_are_refused(
     assert refused.value.path == ("load", "normal_force")
 
 
-def test_a_refusal_names_one_radius_not_those_of_the_whole_sweep() -> None:
+def test_error_of_a_sweep_names_a_single_radius() -> None:
     spheres = profiles.Sphere(np.array([3.0, 1.0, 2.0]))
     with pytest.raises(InputError, match=r"beyond radius 1\.0, ") as refused:
         normal.solve(spheres, 1.0, contact_radius=[0.5, 1.5, 0.5])
     assert refused.value.path == ("load", "contact_radius", 1)
 
 
-def test_a_flat_just_touched_is_a_contact_without_load() -> None:
+def test_flat_in_contact_without_load() -> None:
     contact = normal.solve(profiles.RoundedPunch(1.0, 2.0), 1.0, contact_radius=[1.0, 1.5])
     assert contact.normal_force[0] == contact.indentation_depth[0] == contact.mean_pressure[0] == 0
     assert contact.normal_force[1] > 0
@@ -82,7 +82,7 @@ def test_a_flat_just_touched_is_a_contact_without_load() -> None:
         (profiles.Paraboloid(1e-50), 1e50, {"contact_radius": 1e50}),
     ],
 )
-def test_results_beyond_double_precision_are_refused(
+def test_overflowing_results_are_rejected(
     profile: profiles.Profile, e_star: float, load: dict[str, float]
 ) -> None:
     ((name, value),) = load.items()
@@ -94,7 +94,7 @@ def test_results_beyond_double_precision_are_refused(
     assert refused.value.path == ("load", name)
 
 
-def test_a_term_that_vanishes_is_infinite_on_the_axis_all_the_same() -> None:
+def test_vanishing_term_is_infinite_on_the_axis() -> None:
     terms = (25.5, 45.9), (956.4, 45.9), (1e-50, 0.05)
     steep = profiles.Series(tuple(profiles.PowerTerm(*term) for term in terms))
     contact = normal.solve(steep, 1e-30, normal_force=956.38)
@@ -117,21 +117,21 @@ def test_a_term_that_vanishes_is_infinite_on_the_axis_all_the_same() -> None:
         ),
     ],
 )
-def test_a_smooth_tip_of_a_table_bears_no_negative_load(r: list[float], f: list[float]) -> None:
+def test_smooth_tip_of_a_table_has_no_negative_load(r: list[float], f: list[float]) -> None:
     contact = normal.solve(profiles.Tabulated(r, f), 1.0, contact_radius=[1e-50, 1e-40, 1e-20])
     assert np.all(contact.indentation_depth > 0)
     assert np.all(contact.normal_force > 0)
 
 
-def test_the_energy_of_a_steep_spherical_tip() -> None:
-    """From U = int F dd, summed by mpmath at 80 digits."""
+def test_energy_of_a_steep_spherical_tip() -> None:
+    """Reference: U = int F dd, evaluated by mpmath with 80 digits."""
     profile = profiles.SphericalTipCone(36.851049199772795, 1.2186817316243246)
     contact = normal.solve(profile, 1.0, contact_radius=1.3934346624194924)
     np.testing.assert_allclose(contact.elastic_energy, 923.66399577036218, rtol=1e-13)
 
 
-def test_a_cap_far_flatter_than_its_flank_keeps_its_digits() -> None:
-    """From the closed forms at 80 digits."""
+def test_cap_much_flatter_than_its_flank() -> None:
+    """Reference: closed forms with 80 digits."""
     profile = profiles.CappedParaboloid(
         0.016127794746985693, 141.23123085463746, 4.859735417524895e-07
     )
@@ -140,20 +140,22 @@ def test_a_cap_far_flatter_than_its_flank_keeps_its_digits() -> None:
     np.testing.assert_allclose(contact.normal_force, 30398.095686797696, rtol=1e-14)
 
 
-def test_a_contact_wider_than_the_cap_by_less_than_its_rounding_slips_back_inside() -> None:
-    """The radius is the cap's own to the last digit, the contact coordinate is not."""
+def test_contact_radius_that_rounds_to_the_cap_radius() -> None:
+    """The contact radius rounds to the cap radius, the contact coordinate does not."""
     profile = profiles.CappedParaboloid(
         2.1010641645242467e-09, 1.7830536818613786e-06, 3.8937973377132814e-13
     )
     contact = normal.solve(profile, 1.0, indentation_depth=2.475995259375248e-12)
     assert contact.contact_radius == profile.cap_radius
     stick = 2.101064151496657e-09
-    sideways = tangential.solve(contact, 0.8, 0.3, stick_radius=stick)
-    np.testing.assert_allclose(sideways.slip_width, profile.cap_radius - stick, rtol=1e-6)
+    tangential_load = tangential.solve(contact, 0.8, 0.3, stick_radius=stick)
+    np.testing.assert_allclose(tangential_load.slip_width, profile.cap_radius - stick, rtol=1e-6)
 
 
-def test_a_force_that_just_reaches_the_cap_s_rim() -> None:
-    """Where the kink is small the force hardly grows behind it, but the radius is there."""
+def test_force_at_the_cap_radius() -> None:
+    """For a small slope discontinuity the force hardly grows beyond the cap radius, but reaches
+    it.
+    """
     profile = profiles.CappedParaboloid(
         0.25083630309819094, 0.07425340857930318, 0.0742534051155459
     )
@@ -161,14 +163,14 @@ def test_a_force_that_just_reaches_the_cap_s_rim() -> None:
     np.testing.assert_allclose(contact.contact_radius, profile.cap_radius, rtol=1e-15)
 
 
-def test_the_end_of_a_series_is_still_named_as_such() -> None:
+def test_error_at_the_end_of_a_series() -> None:
     falling = profiles.Series((profiles.PowerTerm(1.0, 2.0), profiles.PowerTerm(-0.1, 3.0)))
     with pytest.raises(InputError, match="would extend beyond radius"):
         normal.solve(falling, 1.0, indentation_depth=1e3)
 
 
-def test_a_series_whose_terms_cancel_admits_it() -> None:
-    """From the closed forms at 80 digits: of a thousand parts one is left."""
+def test_error_estimate_of_a_cancelling_series() -> None:
+    """Reference: closed forms with 80 digits. The terms cancel to a thousandth."""
     terms = profiles.PowerTerm(1.0, 2.0), profiles.PowerTerm(-0.999, 2.001)
     contact = normal.solve(profiles.Series(terms), 1.0, contact_radius=0.5)
     miss = abs(contact.indentation_depth / 7.4970565808317638242e-4 - 1)
@@ -177,12 +179,12 @@ def test_a_series_whose_terms_cancel_admits_it() -> None:
 
 
 @pytest.mark.parametrize("force", [1e-16, 1e-11, 1e-9, 1e-4])
-def test_a_table_with_a_sharp_flat_keeps_the_smallest_loads(force: float) -> None:
-    # The contact's edge then differs from the flat's by less than the rounding of either.
+def test_small_loads_on_a_table_with_a_sharp_flat(force: float) -> None:
+    # The contact edge then differs from the flat's edge by less than the rounding error of either.
     r, f = np.array([0.0, 0.5, 0.7, 1.0, 1.4]), np.array([0.0, 0.0, 0.06, 0.15, 0.27])
     table = profiles.Tabulated(r, f, breaks=(0.5,))
     found = normal.solve(table, 1.0, normal_force=force)
-    # A truncated cone: g = t x arccos(b/x) and F_N/E* = t (a^2 arccos(b/a) + b s) behind b.
+    # A truncated cone: g = t x arccos(b/x) and F_N/E* = t (a^2 arccos(b/a) + b s) beyond b.
     s = float(found.coordinate)
     phi = np.arctan2(s, 0.5)
     a = np.hypot(0.5, s)
@@ -190,11 +192,11 @@ def test_a_table_with_a_sharp_flat_keeps_the_smallest_loads(force: float) -> Non
     assert float(found.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13, abs=0)
 
 
-def test_the_traction_of_a_power_near_its_axis_is_that_on_it() -> None:
-    """So near the axis the kernel no longer changes."""
+def test_traction_of_a_power_near_the_axis() -> None:
+    """Near the axis the kernel becomes constant."""
     contact = normal.solve(profiles.Power(1.0, 1.7), 1.0, contact_radius=1.0)
-    sideways = tangential.solve(contact, 1.0, 0.3, stick_radius=0.5)
-    found = fields.shear_stress(sideways, [0.0, 1e-50, 1e-40, 1e-30])
+    tangential_load = tangential.solve(contact, 1.0, 0.3, stick_radius=0.5)
+    found = fields.shear_stress(tangential_load, [0.0, 1e-50, 1e-40, 1e-30])
     # Eq. (5.70) at r = 0: (mu E* n kappa C/pi) (1 - c^(n - 1))/(n - 1).
     n, kappa = 1.7, float(np.sqrt(np.pi) * gamma(1.85) / gamma(1.35))
     expected = 0.3 * n * kappa / np.pi * (1 - 0.5 ** (n - 1)) / (n - 1)
@@ -202,15 +204,15 @@ def test_the_traction_of_a_power_near_its_axis_is_that_on_it() -> None:
 
 
 @pytest.mark.parametrize("ratio", [2e8, 1e18])
-def test_a_surface_far_away_feels_a_point_force(ratio: float) -> None:
-    """F_N/(pi E* r): the next term is (a/r)^2; rounding once carried nodes past the equator."""
+def test_far_field_is_that_of_a_point_force(ratio: float) -> None:
+    """F_N/(pi E* r); the next term is (a/r)^2. Rounding once moved nodes past the equator."""
     contact = normal.solve(profiles.Ellipsoid(1e-10, 2.6), 3.0, indentation_depth=1e-9)
     r = ratio * float(contact.contact_radius)
     found = float(fields.normal_displacement(contact, [r])[0])
     assert found == pytest.approx(float(contact.normal_force) / (3.0 * np.pi * r), rel=1e-13, abs=0)
 
 
-def test_the_loss_keeps_its_digits_where_a_steep_flank_carries_most_of_the_rise() -> None:
+def test_loss_with_a_steep_flank() -> None:
     """int_c^a (g(a) - g)(g - g(c)) dx of a cap 1e10 times flatter than its flank, by mpmath."""
     b, flat, steep = 0.01, 1e8, 0.01
     contact = normal.solve(profiles.CappedParaboloid(b, flat, steep), 1.0, contact_radius=0.02)
@@ -237,10 +239,10 @@ def test_the_loss_keeps_its_digits_where_a_steep_flank_carries_most_of_the_rise(
         profiles.CappedParaboloid(0.7, 2.0, 0.3),
     ],
 )
-def test_first_slip_of_a_contact_that_ends_on_a_break(profile: profiles.Profile) -> None:
+def test_incipient_slip_of_a_contact_that_ends_at_a_break(profile: profiles.Profile) -> None:
     """A ring of force F_x at the edge: tau(0) = F_x/(2 pi a^2), and F_x = 2 mu E* a g'(a) width.
 
-    g'(a) is the slope below the break: what slips lies there.
+    The slip annulus lies below the break, so g'(a) is the slope below it.
     """
     a = float(profile.breaks[0])
     contact = normal.solve(profile, 1.0, contact_radius=a)
@@ -253,10 +255,10 @@ def test_first_slip_of_a_contact_that_ends_on_a_break(profile: profiles.Profile)
 
 
 @pytest.mark.parametrize("shape", [profiles.RoundedCone, profiles.SphericalTipCone])
-def test_a_tip_far_smaller_than_the_contact_is_felt_at_the_axis(
+def test_pressure_on_the_axis_of_a_small_tip(
     shape: type[profiles.RoundedCone | profiles.SphericalTipCone],
 ) -> None:
-    """p(0) = (E*/pi) int_0^a g'(x)/x dx, where tips of small slope t are alike: b = R t."""
+    """p(0) = (E*/pi) int_0^a g'(x)/x dx; tips of small slope t are equivalent: b = R t."""
     slope = 1e-15
     contact = normal.solve(shape(slope, 1.0), 1.0, indentation_depth=1e-6)
     with mpmath.workdps(40):
@@ -273,8 +275,8 @@ def test_a_tip_far_smaller_than_the_contact_is_felt_at_the_axis(
     assert float(fields.pressure(contact, [0.0])[0]) == pytest.approx(expected, rel=1e-9, abs=0)
 
 
-def test_the_slip_next_to_the_axis_of_a_body_of_another_size_is_the_lag_of_all() -> None:
-    """Beyond full slip all lags by u_x - mu (E*/G*) d; the pole at R is infinitely far there."""
+def test_slip_near_the_axis_in_full_slip() -> None:
+    """In full slip everything slips by u_x - mu (E*/G*) d; the pole at R is far away."""
     contact = normal.solve(profiles.SphericalTipCone(1e5, 1e16), 1.0, indentation_depth=1.1)
     found = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
     lag = 3.0 - 0.5 / 0.8 * 1.1
@@ -282,12 +284,12 @@ def test_the_slip_next_to_the_axis_of_a_body_of_another_size_is_the_lag_of_all()
 
 
 @pytest.mark.parametrize("slope", [3.0, 30.0, 300.0])
-def test_the_surface_about_a_steep_cone_with_a_round_tip(slope: float) -> None:
-    """Its sphere ends next to its equator, and goes on behind the cone as a near singularity."""
+def test_displacement_outside_a_steep_spherical_tip_cone(slope: float) -> None:
+    """The sphere ends next to its equator and causes a near singularity beyond the cone's tip."""
     b = 0.3
     given = {"kind": "spherical_tip_cone", "slope": slope, "tip_radius": b * np.hypot(1, 1 / slope)}
     contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0)
-    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=0.05)
+    tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=0.05)
     inside, outside = [0.2, 0.301, 0.7, 0.99999], [1 + 1e-9, 1.1, 2.5, 40.0]
     at = slip_reference.setting(
         given, "contact_radius", 1.0, slip_reference.Material(1.0, 1.0, 1.0)
@@ -295,7 +297,7 @@ def test_the_surface_about_a_steep_cone_with_a_round_tip(slope: float) -> None:
     with mpmath.workdps(40):
         slips = [float(slip_reference.slip(at, mpmath.mpf(0.05), mpmath.mpf(r))) for r in inside]
         beside = [float(slip_reference.displacement(at, mpmath.mpf(r))) for r in outside]
-    found = fields.slip(pushed, inside, rtol=1e-12)
+    found = fields.slip(tangential_contact, inside, rtol=1e-12)
     np.testing.assert_allclose(found, slips, rtol=1e-11)
     found = fields.normal_displacement(contact, outside, rtol=1e-12)
     np.testing.assert_allclose(found, beside, rtol=1e-11)
@@ -303,21 +305,21 @@ def test_the_surface_about_a_steep_cone_with_a_round_tip(slope: float) -> None:
 
 @pytest.mark.parametrize("rtol", [1e-7, 1e-9, 1e-10, 1e-11, 1e-12])
 @pytest.mark.parametrize("gap", [1e-2, 3e-4, 1e-6])
-def test_a_narrow_rim_has_the_shear_stress_that_was_asked(gap: float, rtol: float) -> None:
-    """g' begins like s there: next to its double zero a rule was taken that was too coarse."""
+def test_shear_stress_of_a_narrow_annulus_meets_the_tolerance(gap: float, rtol: float) -> None:
+    """g' grows linearly in s; next to its double zero, the selected rule was once too coarse."""
     b, c = 1 - gap, 1 - 0.4 * gap
     given = {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": 2.0}
     contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0, rtol=rtol)
-    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+    tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
     places = [0.0, 0.34, 0.9, b - 0.1 * gap, 1 - 0.7 * gap, 1 - 0.2 * gap]
-    # One by one: next to each other some would be given the rule of others.
-    found = [fields.shear_stress(pushed, [r], rtol=rtol).item() for r in places]
+    # One by one, since neighbouring radii would share a rule.
+    found = [fields.shear_stress(tangential_contact, [r], rtol=rtol).item() for r in places]
     shape, ends = shape_of(given), (mpmath.mpf(1), mpmath.mpf(c))
     with mpmath.workdps(reference.QUAD_DIGITS):
         for r, tau in zip(map(mpmath.mpf, places), found, strict=True):
             parts = [reference.pressure(shape, r, end) for end in ends if r < end]
             exact = parts[0] - sum(parts[1:])
-            # The rim's width is known to its own rounding.
+            # The width of the annulus carries its own rounding error.
             assert abs(mpmath.mpf(tau) / exact - 1) <= rtol + 4e-16 / gap, r
 
 
@@ -332,8 +334,8 @@ def test_a_narrow_rim_has_the_shear_stress_that_was_asked(gap: float, rtol: floa
         ({"kind": "truncated_cone", "flat_radius": 1e-4, "slope": 0.1}, 1e-4),
     ],
 )
-def test_the_traction_where_slip_ends_next_to_a_break(given: dict[str, Any], b: float) -> None:
-    """The stick edge's distance from the break was lost where the annulus is wide."""
+def test_traction_with_stick_edge_next_to_a_break(given: dict[str, Any], b: float) -> None:
+    """The distance of the stick edge from the break once suffered cancellation for wide annuli."""
     profile = profile_from(given)
     at = slip_reference.setting(
         given, "contact_radius", 1.0, slip_reference.Material(1.0, 1.0, 1.0)
@@ -342,28 +344,28 @@ def test_the_traction_where_slip_ends_next_to_a_break(given: dict[str, Any], b: 
         c = b * (1 + gap)
         radii = [c * (1 + part * gap) for part in (-3.0, -1.5, -0.3, -0.001, 0.001, 1.0)]
         contact = normal.solve(profile, 1.0, contact_radius=1.0)
-        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
-        found = fields.shear_stress(pushed, radii, rtol=1e-12)
+        tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        found = fields.shear_stress(tangential_contact, radii, rtol=1e-12)
         with mpmath.workdps(40):
             exact = [slip_reference.traction(at, mpmath.mpf(c), mpmath.mpf(r)) for r in radii]
         np.testing.assert_allclose(found, [float(tau) for tau in exact], rtol=1e-11)
 
 
 @pytest.mark.parametrize("part", [0.1, 1.4])
-def test_stresses_of_a_contact_that_ends_next_to_its_tip(part: float) -> None:
-    """The tip ended where the flank did not begin, by a unit in the last place."""
+def test_stresses_of_a_contact_edge_next_to_its_tip(part: float) -> None:
+    """The end of the tip and the start of the flank once differed in the last digit."""
     given = {"kind": "spherical_tip_cone", "slope": 0.75, "tip_radius": 0.5}
     at = slip_reference.Material(1.0, 1.0, 1.0)
     for gap in (1e-6, 1e-8, 1e-10):
         a = 0.3 * (1 + gap)
         c = a - part * (a - 0.3)
         contact = normal.solve(profile_from(given), 1.0, contact_radius=a)
-        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
         radii = [0.0, 0.1, 0.3 * (1 - 20 * gap), 0.3 * (1 - gap), 0.3 * (1 + gap / 3)]
         setting = slip_reference.setting(given, "contact_radius", a, at)
         for stick, found in (
             (0.0, fields.pressure(contact, radii, rtol=1e-12)),
-            (c, fields.shear_stress(pushed, radii, rtol=1e-12)),
+            (c, fields.shear_stress(tangential_contact, radii, rtol=1e-12)),
         ):
             with mpmath.workdps(40):
                 edge = mpmath.mpf(stick)
@@ -371,8 +373,10 @@ def test_stresses_of_a_contact_that_ends_next_to_its_tip(part: float) -> None:
             np.testing.assert_allclose(found, [float(value) for value in exact], rtol=1e-11)
 
 
-def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
-    """The polyline began at a rounded anchor, and its last piece had a negative length."""
+def test_polyline_after_arcs_has_no_negative_segment() -> None:
+    """The polyline once began at a rounded tangential coordinate, with a last segment of negative
+    length.
+    """
     way = history.solve(
         profiles.Paraboloid(5e16),
         3e16,
@@ -385,17 +389,17 @@ def test_what_is_left_of_arcs_has_the_digits_of_its_vertices() -> None:
     assert state.tangential_displacement == pytest.approx(-6e-230, rel=1e-14, abs=0)
     assert np.all(np.abs(state.slope) <= 1)
     radii = [0.0, 0.5 * state.contact_radius, 0.9 * state.contact_radius]
-    # All slid, at last backwards, by far more than springs can be bent: full slip is left.
+    # Full slip, backwards at last and far beyond the elastic range: full slip remains.
     traction = fields.shear_stress(state, radii)
     pressed = normal.solve(profiles.Paraboloid(5e16), 3e16, normal_force=6.5e29)
     np.testing.assert_allclose(traction, -8e5 * fields.pressure(pressed, radii), rtol=1e-9)
 
 
-def test_an_arc_whose_ends_are_one_double() -> None:
-    """Depths that swing by their rounding gave steps of no length, and corners without digits."""
+def test_arc_of_zero_length() -> None:
+    """Depths that differ by rounding error once caused zero-length steps and inaccurate corners."""
     material = 1.0, 10.0, 0.5
     depth = 1 + np.array([0.0, 4.0, 0.0, 4.0]) * 2.0**-52
-    # Far less than friction carries: what slips is not felt.
+    # The force is far below the friction limit, so slip is negligible.
     push = 1e-18 * np.array([0.0, 1.0, -1.0, 0.5])
     body = profiles.Paraboloid(1.0)
     way = history.solve(body, *material, indentation_depth=depth, tangential_force=push)

@@ -1,4 +1,4 @@
-"""Inputs that the core rejects: the path, the index and the reason of each error."""
+"""Rejected inputs: path, index and reason of each error."""
 
 from collections.abc import Callable
 from typing import Any
@@ -26,39 +26,63 @@ STEEL = Body(2.1e11, 0.3)
 HERTZ = normal.solve(Paraboloid(1.0), 1.0, contact_radius=[0.1, 0.2])
 
 
-def loaded(profile: Any, **load: Any) -> Callable[[], Any]:
+def normal_contact(profile: Any, **load: Any) -> Callable[[], Any]:
     return lambda: normal.solve(profile, 1.0, **load)
 
 
-def pushed(contact: normal.NormalContact = HERTZ, **load: Any) -> Callable[[], Any]:
+def tangential_contact(contact: normal.NormalContact = HERTZ, **load: Any) -> Callable[[], Any]:
     return lambda: tangential.solve(contact, 1.0, 0.5, **load)
 
 
 REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
-    (loaded(Cone(1.0)), ("load",), "exactly one of"),
-    (loaded(Cone(1.0), indentation_depth=1.0, normal_force=1.0), ("load",), "exactly one of"),
+    (normal_contact(Cone(1.0)), ("load",), "exactly one of"),
     (
-        loaded(Cone(1.0), indentation_depth=1.0, normal_force=1.0, contact_radius=1.0),
+        normal_contact(Cone(1.0), indentation_depth=1.0, normal_force=1.0),
         ("load",),
         "exactly one of",
     ),
-    (loaded(Cone(1.0), normal_force=[]), ("load", "normal_force"), "at least one load"),
-    (loaded(Cone(1.0), normal_force=[1.0, -1.0]), ("load", "normal_force", 1), "not negative"),
-    (loaded(Cone(1.0), normal_force=[1.0, np.inf]), ("load", "normal_force", 1), "finite"),
     (
-        loaded(Cone(np.ones(3)), normal_force=[1.0, 2.0]),
+        normal_contact(Cone(1.0), indentation_depth=1.0, normal_force=1.0, contact_radius=1.0),
+        ("load",),
+        "exactly one of",
+    ),
+    (normal_contact(Cone(1.0), normal_force=[]), ("load", "normal_force"), "at least one load"),
+    (
+        normal_contact(Cone(1.0), normal_force=[1.0, -1.0]),
+        ("load", "normal_force", 1),
+        "not negative",
+    ),
+    (normal_contact(Cone(1.0), normal_force=[1.0, np.inf]), ("load", "normal_force", 1), "finite"),
+    (
+        normal_contact(Cone(np.ones(3)), normal_force=[1.0, 2.0]),
         ("load", "normal_force"),
         "does not agree",
     ),
     (lambda: normal.solve(Cone(1.0), 0.0, normal_force=1.0), ("material", "e_star"), "positive"),
     (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
-    (pushed(), ("tangential",), "exactly one of"),
-    (pushed(tangential_force=0.0, stick_radius=0.1), ("tangential",), "exactly one of"),
-    (pushed(tangential_force=np.nan), ("tangential", "tangential_force"), "finite"),
-    (pushed(tangential_force=[0.0, 1.0]), ("tangential", "tangential_force", 1), "no equilibrium"),
-    (pushed(tangential_force=[0.0, -1.0]), ("tangential", "tangential_force", 1), "no equilibrium"),
-    (pushed(stick_radius=[0.05, 0.21]), ("tangential", "stick_radius", 1), "must lie between"),
-    (pushed(stick_radius=[-0.05, 0.1]), ("tangential", "stick_radius", 0), "must lie between"),
+    (tangential_contact(), ("tangential",), "exactly one of"),
+    (tangential_contact(tangential_force=0.0, stick_radius=0.1), ("tangential",), "exactly one of"),
+    (tangential_contact(tangential_force=np.nan), ("tangential", "tangential_force"), "finite"),
+    (
+        tangential_contact(tangential_force=[0.0, 1.0]),
+        ("tangential", "tangential_force", 1),
+        "no equilibrium",
+    ),
+    (
+        tangential_contact(tangential_force=[0.0, -1.0]),
+        ("tangential", "tangential_force", 1),
+        "no equilibrium",
+    ),
+    (
+        tangential_contact(stick_radius=[0.05, 0.21]),
+        ("tangential", "stick_radius", 1),
+        "must lie between",
+    ),
+    (
+        tangential_contact(stick_radius=[-0.05, 0.1]),
+        ("tangential", "stick_radius", 0),
+        "must lie between",
+    ),
     (
         lambda: tangential.solve(HERTZ, 1.0, 0.0, stick_radius=0.1),
         ("friction_coefficient",),
@@ -93,12 +117,12 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (lambda: fields.pressure(HERTZ, [0.1, np.nan]), ("radius", 1), "finite"),
     (lambda: fields.grid(HERTZ, 3), ("points",), "at least 4"),
     (
-        loaded(FlatPunch(1.0), contact_radius=1.0),
+        normal_contact(FlatPunch(1.0), contact_radius=1.0),
         ("load", "contact_radius"),
         "prescribe indentation_depth",
     ),
     (
-        pushed(normal.solve(FlatPunch(1.0), 1.0, normal_force=1.0), stick_radius=0.5),
+        tangential_contact(normal.solve(FlatPunch(1.0), 1.0, normal_force=1.0), stick_radius=0.5),
         ("tangential", "stick_radius"),
         "no slip annulus",
     ),
@@ -136,7 +160,7 @@ def test_contact_smaller_than_its_flat_is_rejected(profile: Any) -> None:
         normal.solve(profile, 1.0, contact_radius=[0.6, 0.5, np.nextafter(0.5, 0.0), 0.4])
     assert raised.value.path == ("load", "contact_radius", 2)
     assert raised.value.cases.tolist() == [False, False, True, True]
-    # The flat itself touches without a load.
+    # The flat itself is in contact without a load.
     assert normal.solve(profile, 1.0, contact_radius=0.5).normal_force == 0
 
 
@@ -149,7 +173,7 @@ def test_contact_as_wide_as_its_body_is_rejected(profile: Any) -> None:
 
 
 def test_contact_beyond_the_end_of_a_series_is_rejected_under_each_control() -> None:
-    # f' = 2 r - 4 r^3 and g' ~ x - (8/3) x^3: the second falls first, at sqrt(3/8).
+    # f' = 2 r - 4 r^3 and g' ~ x - (8/3) x^3: g' vanishes first, at sqrt(3/8).
     profile = Series((PowerTerm(1.0, 2.0), PowerTerm(-1.0, 4.0)))
     end = np.sqrt(3 / 8)
     assert profile.domain == pytest.approx(end, rel=1e-14, abs=0)

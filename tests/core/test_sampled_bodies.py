@@ -1,4 +1,4 @@
-"""Tables of known bodies: answered by default, with the error of the interpolation's order."""
+"""Tables of known bodies: accepted by default, with the error order of their interpolation."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
     Array = np.ndarray
 
-#: End of the tables, a contact radius that is no point of any, and a radius inside it.
+#: End of the tables, a contact radius that is not a table point, and a radius inside it.
 END, A, R = 0.7, 0.531, 0.317
-#: Orders of the error in depth and force, and in the pressure: a spline's slope errs by O(h^3), of
-#: which an integral averages half an order. The error of the slope is h^3 f""/6 times Bernoulli's
-#: polynomial B_3, and that of the depth sqrt(a/2) h^3.5 f""/6 times 0.039: relative to (h/a)^3.5,
-#: 0.5 for r^6 and less for the other bodies.
+#: Orders of the error in depth and force, and in the pressure: a spline's slope has an error of
+#: O(h^3), which an integral averages by half an order. The error of the slope is h^3 f""/6 times
+#: the Bernoulli polynomial B_3, and that of the depth sqrt(a/2) h^3.5 f""/6 times 0.039: relative
+#: to (h/a)^3.5, 0.5 for r^6 and less for the other bodies.
 OF_LOAD, OF_PRESSURE = 3.5, 3.0
 
 
 class Body(NamedTuple):
-    """f as a function of double radii, f' and (r f')' as functions of mpmath's."""
+    """f as a function of double radii, f' and (r f')' as functions of mpmath radii."""
 
     f: Callable[[Array], Array]
     df: Callable[[mpf], mpf]
@@ -73,7 +73,7 @@ BODIES = {
 @pytest.mark.every(5)
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
 @pytest.mark.parametrize("intervals", [10, 20, 50, 100, 400])
-def test_a_smooth_table_errs_by_the_order_of_its_interpolation(body: Body, intervals: int) -> None:
+def test_error_order_of_a_smooth_table(body: Body, intervals: int) -> None:
     r = np.linspace(0, END, intervals + 1)
     contact = solve(Tabulated(r, body.f(r)), 1.0, contact_radius=A)
     assert not {notice.code for notice in contact.warnings} & {"interpolation", "rough_table"}

@@ -1,4 +1,4 @@
-"""The compiled loop of load histories is in use, and gives the bits of the Python text."""
+"""The compiled loop of load histories is in use and bit-identical to its Python source."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_the_loop_is_compiled() -> None:
 
 
 @pytest.mark.parametrize("control", ["random", "constant", "separated"])
-def test_compiled_and_plain_python_give_the_same_bits(
+def test_compiled_kernel_is_bit_identical_to_python(
     monkeypatch: pytest.MonkeyPatch, control: str
 ) -> None:
     rng, count = np.random.default_rng(20), 3000
@@ -45,6 +45,6 @@ def test_compiled_and_plain_python_give_the_same_bits(
     tree, path, line = slip_memory.apply_steps(start, points)
     for name in ("parent", "normal", "growth", "top"):
         np.testing.assert_array_equal(getattr(compiled[0], name), getattr(tree, name), name)
-    for ours, theirs in ((compiled[1], path), (compiled[2], line)):
-        for name, one, other in zip(ours._fields, ours, theirs, strict=True):
+    for ours, python in ((compiled[1], path), (compiled[2], line)):
+        for name, one, other in zip(ours._fields, ours, python, strict=True):
             np.testing.assert_array_equal(one, other, name)

@@ -1,4 +1,4 @@
-"""Stresses at every tolerance against the reference: relative errors, next to every singularity."""
+"""Relative error of stresses at every tolerance, next to every singularity."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def power(n: float) -> Profile:
     return {"kind": "power", "coefficient": 0.3, "exponent": n}
 
 
-#: Of a contact of radius 1.
+#: For a contact of radius 1.
 PROFILES: dict[str, Profile] = {
     "rounded 0.33": rounded(0.33),
     "rounded 0.95": rounded(0.95),
@@ -37,44 +37,43 @@ PROFILES: dict[str, Profile] = {
     "ellipsoid": {"kind": "ellipsoid", "radius": 3.0, "height": 0.7},
     "hyperboloid 0.6": {"kind": "hyperboloid", "slope": 0.4, "tip_radius": 1.5},
 }
-#: Over an annulus only: the whole contact is in the pressure bank.
+#: For annuli only; full contacts are in the pressure bank.
 POWERS = {f"power {n}": power(n) for n in (0.4, 1.5, 6.0)}
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-8, 1e-10, 1e-12)
 
 
-def checked(name: str, c: float) -> np.ndarray:
-    """Places next to the axis, the break, the stick edge and the edge, and in between."""
+def check_radii(name: str, c: float) -> np.ndarray:
+    """Radii next to the axis, the break, the stick edge and the contact edge, and in between."""
     b = (PROFILES | POWERS)[name].get("flat_radius", 0.0)
     near = [x * (1 + side) for x in (b, c) if x for side in (-1e-3, -1e-9, 1e-9, 1e-3)]
-    # The reference is a difference, of two that are infinite on the axis of a power.
+    # The reference is a difference of two values that are infinite on the axis of a power.
     axis = [] if name in POWERS else [0.0]
     r = np.array([*axis, 1e-6, 0.2, 0.45, 0.8, 0.97, 1 - 1e-6, 1 - 1e-12, *near])
     return np.unique(r[(r >= 0) & (r < 1)])
 
 
 @cache
-def truth(name: str, stick: float | None) -> tuple[mpf, ...]:
+def reference_kernel(name: str, stick: float | None) -> tuple[mpf, ...]:
     """(1/pi) int g'/sqrt(x^2 - r^2) dx over max(r, c) < x < 1 at the checked radii."""
     shape, c = shape_of((PROFILES | POWERS)[name]), mpf(stick or 0.0)
     with mp.workdps(reference.QUAD_DIGITS):
         found = []
-        for r in checked(name, stick or 0.0).tolist():
+        for r in check_radii(name, stick or 0.0).tolist():
             whole = reference.pressure(shape, mpf(r), mpf(1))
             found.append(whole - reference.pressure(shape, mpf(r), c) if r < c else whole)
         return tuple(found)
 
 
-def worst(name: str, stick: float | None, rtol: float) -> float:
-    """Largest relative error at the checked radii."""
+def largest_error(name: str, stick: float | None, rtol: float) -> float:
     given = (PROFILES | POWERS)[name]
     contact = normal.solve(profile_from(given), 1.0, contact_radius=1.0, rtol=rtol)
-    r = checked(name, stick or 0.0)
+    r = check_radii(name, stick or 0.0)
     if stick is None:
         values = fields.pressure(contact, r, rtol=rtol)
     else:
         pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=stick)
         values = fields.shear_stress(pushed, r, rtol=rtol)
-    pairs = zip(values.tolist(), truth(name, stick), strict=True)
+    pairs = zip(values.tolist(), reference_kernel(name, stick), strict=True)
     return max(float(abs(mpf(value) / exact - 1)) for value, exact in pairs)
 
 
@@ -82,15 +81,15 @@ def worst(name: str, stick: float | None, rtol: float) -> float:
 @pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize("name", PROFILES)
 def test_pressure_meets_the_tolerance(name: str, rtol: float) -> None:
-    assert worst(name, None, rtol) <= rtol
+    assert largest_error(name, None, rtol) <= rtol
 
 
 @pytest.mark.every(4)
-@pytest.mark.parametrize("part", [0.02, 0.5, 1 - 1e-9])
+@pytest.mark.parametrize("fraction", [0.02, 0.5, 1 - 1e-9])
 @pytest.mark.parametrize("name", [*PROFILES, *POWERS])
-def test_shear_stress_meets_the_tolerance(name: str, part: float) -> None:
-    """Over annuli from wide to so narrow that a difference of pressures has no digits."""
+def test_shear_stress_meets_the_tolerance(name: str, fraction: float) -> None:
+    """Annuli from wide ones to ones for which a difference of pressures is rounding error."""
     low = max((PROFILES | POWERS)[name].get("flat_radius", 0.0), 0.19 if name in POWERS else 0.0)
-    stick = low + part * (1 - low)
+    stick = low + fraction * (1 - low)
     for rtol in TOLERANCES:
-        assert worst(name, stick, rtol) <= rtol, rtol
+        assert largest_error(name, stick, rtol) <= rtol, rtol

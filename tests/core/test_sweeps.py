@@ -1,4 +1,4 @@
-"""Sweeps over many scenes: block by block they say what one scene after the other does."""
+"""Sweeps over many cases: blockwise results equal those of single cases."""
 
 from typing import Any
 
@@ -34,7 +34,7 @@ MANY = 2 * BLOCK + 7
 E_STAR = 1.1e11
 
 
-def test_answers_of_blocks_are_those_of_the_whole() -> None:
+def test_blockwise_results_equal_the_whole() -> None:
     R, moduli = np.linspace(1.0, 2.0, MANY), np.linspace(3.0, 4.0, MANY)
 
     def solve(profile: Any, e_star: Array, load: float) -> tuple[Array, Array]:
@@ -46,7 +46,7 @@ def test_answers_of_blocks_are_those_of_the_whole() -> None:
     assert load == 5.0
 
 
-def test_a_number_that_changes_from_block_to_block_becomes_an_array() -> None:
+def test_varying_scalar_becomes_an_array() -> None:
     values = np.arange(float(MANY))
 
     def least(_profile: Profile, part: Array) -> tuple[Array]:
@@ -56,7 +56,7 @@ def test_a_number_that_changes_from_block_to_block_becomes_an_array() -> None:
     assert np.array_equal(found, values // BLOCK)
 
 
-def test_a_grid_of_parameters_is_swept_like_its_flat_copy() -> None:
+def test_parameter_grid_equals_its_flattened_copy() -> None:
     R, force = np.linspace(0.01, 0.02, 300)[:, None], np.linspace(1.0, 2.0, 400)[None, :]
     grid = normal.solve(Paraboloid(R), E_STAR, normal_force=force)
     flat_R, flat_force = (part.ravel() for part in np.broadcast_arrays(R, force))
@@ -68,7 +68,7 @@ def test_a_grid_of_parameters_is_swept_like_its_flat_copy() -> None:
 
 @pytest.mark.parametrize("wrong", [-1.0, np.nan, np.inf])
 @pytest.mark.parametrize("control", ["normal_force", "indentation_depth", "contact_radius"])
-def test_a_wrong_load_is_named_by_its_place_in_the_sweep(control: str, wrong: float) -> None:
+def test_invalid_load_is_rejected_with_its_index(control: str, wrong: float) -> None:
     loads = np.full(MANY, 1e-3)
     loads[BLOCK + 5] = wrong
     given: dict[str, Any] = {control: loads}
@@ -80,7 +80,7 @@ def test_a_wrong_load_is_named_by_its_place_in_the_sweep(control: str, wrong: fl
 @pytest.mark.parametrize("load", [0.0, 1.0])
 @pytest.mark.parametrize("wrong", [-1.0, 0.0, np.nan, np.inf])
 @pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
-def test_a_wrong_modulus_is_refused_in_a_sweep(control: str, wrong: float, load: float) -> None:
+def test_invalid_modulus_is_rejected(control: str, wrong: float, load: float) -> None:
     moduli, loads = np.full(MANY, E_STAR), np.full(MANY, load)
     moduli[BLOCK + 5] = wrong
     given: dict[str, Any] = {control: loads}
@@ -89,7 +89,7 @@ def test_a_wrong_modulus_is_refused_in_a_sweep(control: str, wrong: float, load:
     assert refused.value.path == ("material", "e_star")
 
 
-# Parameters of a few scenes for every kind that takes arrays.
+# Parameters of a few cases for every kind that accepts arrays.
 RANDOM = np.random.default_rng(7)
 FEW = 40
 
@@ -114,7 +114,7 @@ KINDS: dict[str, tuple[type[Profile], dict[str, Array]]] = {
         TruncatedParaboloid,
         {"flat_radius": spread(-4, -2), "radius": spread(-3, 0)},
     ),
-    # The exponents that NumPy does not raise by its power are among them.
+    # Includes exponents for which NumPy does not use its power function.
     "power": (
         Power,
         {
@@ -133,7 +133,7 @@ KINDS: dict[str, tuple[type[Profile], dict[str, Array]]] = {
     ),
 }
 MODULI, SHEAR_MODULI, FRICTION = spread(9, 12), spread(9, 12), spread(-1, 0)
-# Zero, a limit reached and one exceeded are among the loads.
+# Loads include zero, one at its limit and one beyond it.
 LOADS = {
     "normal_force": np.append(0.0, spread(-3, 1)[1:]),
     "indentation_depth": np.append(0.0, spread(-9, -5)[1:]),
@@ -155,11 +155,11 @@ TANGENTIAL = (
     "tangential_stiffness",
 )
 
-# Elsewhere the energy that is lost takes a fraction of a millisecond for each scene.
+# For other kinds the dissipated energy takes a fraction of a millisecond per case.
 CLOSED_LOSSES = {"cone", "paraboloid", "flat_punch"}
 
 
-def many(values: Array) -> Array:
+def repeated(values: Array) -> Array:
     """The few scenes over and over, for more than one block."""
     return np.resize(values, BLOCK + FEW + 7)
 
@@ -167,12 +167,12 @@ def many(values: Array) -> Array:
 @pytest.mark.every(3)
 @pytest.mark.parametrize("control", LOADS)
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, control: str) -> None:
+def test_sweep_is_bit_identical_to_single_cases(kind: str, control: str) -> None:
     profile, named = KINDS[kind]
     sweep = normal.solve(
-        profile(**{name: many(values) for name, values in named.items()}),
-        many(MODULI),
-        **{control: many(LOADS[control])},  # type: ignore[arg-type]
+        profile(**{name: repeated(values) for name, values in named.items()}),
+        repeated(MODULI),
+        **{control: repeated(LOADS[control])},  # type: ignore[arg-type]
     )
     singles = [
         normal.solve(
@@ -184,7 +184,7 @@ def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, co
     ]
     for name in NORMAL:
         alone = np.array([getattr(single, name) for single in singles])
-        assert np.array_equal(getattr(sweep, name), many(alone)), name
+        assert np.array_equal(getattr(sweep, name), repeated(alone)), name
     for tangential_control, limit in (
         ("tangential_force", FRICTION * [one.normal_force for one in singles]),
         (
@@ -193,11 +193,11 @@ def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, co
         ),
     ):
         loads = PART * limit
-        sideways = tangential.solve(
+        tangential_load = tangential.solve(
             sweep,
-            many(SHEAR_MODULI),
-            many(FRICTION),
-            **{tangential_control: many(loads)},  # type: ignore[arg-type]
+            repeated(SHEAR_MODULI),
+            repeated(FRICTION),
+            **{tangential_control: repeated(loads)},  # type: ignore[arg-type]
         )
         alone_sideways = [
             tangential.solve(
@@ -210,23 +210,23 @@ def test_a_sweep_says_what_each_of_its_scenes_says_to_the_last_bit(kind: str, co
         ]
         for name in (*TANGENTIAL, *(["dissipated_energy"] if kind in CLOSED_LOSSES else [])):
             alone = np.array([getattr(one, name) for one in alone_sideways])
-            assert np.array_equal(getattr(sideways, name), many(alone)), name
+            assert np.array_equal(getattr(tangential_load, name), repeated(alone)), name
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS.keys() - CLOSED_LOSSES))
-def test_a_sweep_loses_what_each_of_its_scenes_loses_to_the_last_bit(kind: str) -> None:
+def test_dissipated_energy_of_a_sweep_is_bit_identical_to_single_cases(kind: str) -> None:
     profile, named = KINDS[kind]
     force = LOADS["normal_force"]
     sweep = normal.solve(profile(**named), MODULI, normal_force=force)
-    pushed = FRICTION * force * np.abs(PART)
-    found = tangential.solve(sweep, SHEAR_MODULI, FRICTION, tangential_force=pushed)
+    tangential_contact = FRICTION * force * np.abs(PART)
+    found = tangential.solve(sweep, SHEAR_MODULI, FRICTION, tangential_force=tangential_contact)
     for i in range(FEW):
         own = profile(**{name: float(values[i]) for name, values in named.items()})
         alone = tangential.solve(
             normal.solve(own, float(MODULI[i]), normal_force=float(force[i])),
             float(SHEAR_MODULI[i]),
             float(FRICTION[i]),
-            tangential_force=float(pushed[i]),
+            tangential_force=float(tangential_contact[i]),
         )
         assert found.dissipated_energy[i] == alone.dissipated_energy, i
 
@@ -247,13 +247,13 @@ EVERY = {
 
 @pytest.mark.parametrize("amount", [-1.0, -1e-200, -0.0, 0.0, np.nan])
 @pytest.mark.parametrize("kind", EVERY)
-def test_no_ordinary_contact_answers_a_force_that_is_not_positive(kind: str, amount: float) -> None:
-    # On that a sweep relies when it lets the contact vouch for the modulus.
+def test_nonpositive_force_is_rejected_for_scalars(kind: str, amount: float) -> None:
+    # A sweep relies on this when it leaves the check of the modulus to the contact.
     with np.errstate(invalid="ignore"):
         assert not coordinate_from_force(EVERY[kind], np.array([amount]))[0] > 0
 
 
-def test_a_sweep_with_loads_of_all_regimes_is_answered_like_its_scenes() -> None:
+def test_sweep_over_all_regimes_equals_single_cases() -> None:
     contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
     loads = np.linspace(-2.0, 2.0, MANY)
     found = tangential.solve(contact, 0.9e11, 0.3, tangential_displacement=loads * 1e-6)
@@ -287,7 +287,7 @@ def test_each_power_has_its_own_error_estimate() -> None:
 
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e3])
-def test_a_wrong_tangential_force_is_named_by_its_place_in_the_sweep(wrong: float) -> None:
+def test_invalid_tangential_force_is_rejected_with_its_index(wrong: float) -> None:
     contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
     loads = np.full(MANY, 1.0)
     loads[BLOCK + 5] = wrong
@@ -306,7 +306,7 @@ def test_a_wrong_tangential_force_is_named_by_its_place_in_the_sweep(wrong: floa
     ],
     ids=lambda sweep: sweep[0].kind,
 )
-def test_the_loss_of_a_sweep_is_that_of_its_scenes(
+def test_dissipated_energy_of_a_sweep_equals_that_of_single_cases(
     sweep: tuple[type[profiles.Profile], tuple[Any, ...]],
 ) -> None:
     kind, parameters = sweep
@@ -314,8 +314,8 @@ def test_the_loss_of_a_sweep_is_that_of_its_scenes(
 
     def lost(body: profiles.Profile, *numbers: Any) -> Any:
         contact = normal.solve(body, numbers[0], normal_force=numbers[1])
-        sideways = tangential.solve(contact, 0.9, 0.3, tangential_force=0.1 * numbers[1])
-        return sideways.dissipated_energy
+        tangential_load = tangential.solve(contact, 0.9, 0.3, tangential_force=0.1 * numbers[1])
+        return tangential_load.dissipated_energy
 
     found = lost(kind(*parameters), e_star, force)
     columns = np.broadcast_arrays(*parameters, e_star, force)
@@ -324,8 +324,8 @@ def test_the_loss_of_a_sweep_is_that_of_its_scenes(
         assert found[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14, abs=0)
 
 
-def test_prescribed_stick_radius_below_a_computed_edge_is_the_same_in_blocks() -> None:
-    """The width follows from the contact coordinate there, which the radius does not resolve."""
+def test_prescribed_stick_radius_below_a_computed_edge_in_blocks() -> None:
+    """There the width follows from the contact coordinate, which the radius does not resolve."""
     force = np.full(MANY, 2.2 * E_STAR)
     contact = normal.solve(Sphere(1.0), E_STAR, normal_force=force)
     few = normal.solve(Sphere(1.0), E_STAR, normal_force=force[:5])

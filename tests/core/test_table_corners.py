@@ -1,4 +1,4 @@
-"""Tables where they are hard: next to a node, at nearly equal radii, with kinks, and long ones."""
+"""Difficult tables: radii next to a node, nearly equal radii, kinks, and long tables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.oracles.tables import TABLE_DIGITS, Table
 INTERPOLANT = 1e-12
 INTERPOLATIONS = ("cubic", "pchip", "linear")
 END, EDGE = 0.6, 0.5
-#: A step of h = 1e-4 leaves h^3, h^2 and h of the slope, and half an order less of its transforms.
+#: A step of h = 1e-4 leaves h^3, h^2 and h in the slope, and half an order less in its transforms.
 SAMPLED = {"cubic": 1e-9, "pchip": 1e-6, "linear": 1e-4}
 
 
@@ -28,7 +28,7 @@ def sphere(r: np.ndarray) -> np.ndarray:
 
 
 def worst_pressure(r: np.ndarray, kind: Any, a: float, radii: list[float]) -> float:
-    """Largest error of p relative to the transform of the interpolant, radius by radius."""
+    """Largest error of p relative to the transform of the interpolant, at each radius."""
     f = sphere(r)
     contact = solve(Tabulated(r, f, kind), 1.0, contact_radius=a, rtol=1e-11)
     found = fields.pressure(contact, radii, rtol=1e-11)
@@ -45,7 +45,7 @@ def worst_pressure(r: np.ndarray, kind: Any, a: float, radii: list[float]) -> fl
 @pytest.mark.parametrize("a", [EDGE, 0.0301])
 def test_pressure_next_to_nodes_and_edge(kind: Any, grading: int, a: float) -> None:
     r = END * np.linspace(0, 1, 22) ** grading
-    # Of a cubic the slope on the axis is rounding, and with it the pressure close to it.
+    # A cubic's slope on the axis is rounding error, and so is the pressure close to it.
     inner = r[(r > 0.02) & (r < a)][[0, -1]] if a == EDGE else np.array([])
     radii = [float(np.nextafter(x, side)) for x in inner for side in (0.0, 1.0)]
     radii += [x * (1 + step) for x in inner.tolist() for step in (-1e-6, 1e-6, 1e-9)]
@@ -55,7 +55,7 @@ def test_pressure_next_to_nodes_and_edge(kind: Any, grading: int, a: float) -> N
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
 def test_pressure_on_either_side_of_a_node_next_to_the_edge(kind: Any) -> None:
-    """What lies between radius and node is as short as what lies between node and edge."""
+    """The interval between radius and node is as short as that between node and edge."""
     r = END * np.linspace(0, 1, 4) ** 1.5
     node = float(r[2])
     radii = [node * (1 - part * 1e-9) for part in (1.0, 10.0, 100.0)] + [node * (1 + 1e-8)]
@@ -78,7 +78,7 @@ def long_contact(points: int, kind: Any) -> NormalContact:
 
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
-def test_a_long_table_is_the_body_that_it_samples(kind: Any) -> None:
+def test_long_table_converges_to_its_body(kind: Any) -> None:
     contact = long_contact(6001, kind)
     # The exact sphere: g = x artanh(x).
     assert contact.indentation_depth == pytest.approx(
@@ -96,11 +96,11 @@ def test_a_long_table_is_the_body_that_it_samples(kind: Any) -> None:
             for r in map(mpf, radii.tolist())
         ]
     error = np.abs(pressure / np.array([float(p) for p in truth]) - 1)
-    # On the first points a table's pressure has the weak infinity of a slope that is not zero.
+    # At the first points the pressure has the logarithmic singularity of a nonzero slope.
     assert error[1:].max() <= SAMPLED[kind]
 
 
-def test_far_panels_are_not_looked_at_one_by_one() -> None:
+def test_distant_panels_are_merged() -> None:
     """Pairs of a block and a radius grow with the logarithm of the number of points."""
     counts = []
     for points in (201, 3201):
@@ -113,7 +113,7 @@ def test_far_panels_are_not_looked_at_one_by_one() -> None:
 
 
 def test_displacements_of_a_table() -> None:
-    """What slips wholly lags by the shape itself; beside the contact: johnson, Eq. (3.42)."""
+    """In full slip the slip is the shape itself; outside the contact: [johnson] Eq. (3.42)."""
     r = np.linspace(0, END, 200)
     profile = Tabulated(r, sphere(r))
     inside = np.linspace(0.01, EDGE, 50)
@@ -129,8 +129,8 @@ def test_displacements_of_a_table() -> None:
 
 @pytest.mark.parametrize("points", [3, 4, 5, 40])
 @pytest.mark.parametrize("tip", [1e-3, -1e-12])
-def test_the_cubic_is_that_of_scipy(points: int, tip: float) -> None:
-    """To the last bit, but clamped where the interpolation alone makes the tip fall."""
+def test_cubic_interpolant_is_that_of_scipy(points: int, tip: float) -> None:
+    """Bit-identical, but clamped where the interpolant alone would decrease at the tip."""
     r = END * np.linspace(0, 1, points) ** 1.3
     f = sphere(r)
     f += (tip - CubicSpline(r, f).c[2, 0]) * r
@@ -143,7 +143,7 @@ def test_the_cubic_is_that_of_scipy(points: int, tip: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("r", "f", "path", "said"),
+    ("r", "f", "path", "message"),
     [
         ([0, 1, np.nan, 3], [0, 1, 2, 3], ("r", 2), "finite"),
         ([0, 1, 2, np.inf], [0, 1, 2, 3], ("r", 3), "finite"),
@@ -158,31 +158,31 @@ def test_the_cubic_is_that_of_scipy(points: int, tip: float) -> None:
         ([0], [0], ("r",), "two points"),
     ],
 )
-def test_a_bad_point_is_named(r: Any, f: Any, path: Any, said: str) -> None:
-    with pytest.raises(InputError, match=said) as refused:
+def test_invalid_point_is_rejected_with_its_index(r: Any, f: Any, path: Any, message: str) -> None:
+    with pytest.raises(InputError, match=message) as refused:
         Tabulated(r, f)
     assert refused.value.path == ("profile", *path)
 
 
 @pytest.mark.parametrize("c", [1e-12, 1e-6, 1e-3, 0.05, 0.3])
-def test_the_axis_sticks_under_a_tip(c: float) -> None:
-    """Slip that does not reach a tip leaves a finite stress there: of a cone, (1/2) ln(a/c)."""
+def test_traction_on_the_axis_of_a_sticking_tip(c: float) -> None:
+    """The stress is finite if slip does not reach a tip: for a cone, (1/2) ln(a/c)."""
     contact = solve(Tabulated([0, 0.5, 1.5], [0, 0.5, 1.5], "linear"), 1.0, contact_radius=1.0)
-    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
-    found = fields.shear_stress(pushed, [0.0])
+    tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+    found = fields.shear_stress(tangential_contact, [0.0])
     assert found[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT, abs=0)
 
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
 @pytest.mark.parametrize("place", [-1e-3, -1e-13, 0, 1e-13, 1e-6, 1e-3])
-def test_slip_that_ends_next_to_a_node(kind: Any, place: float) -> None:
-    """The panel that holds c is taken from c on, in powers, where they are good enough."""
+def test_stick_edge_next_to_a_node(kind: Any, place: float) -> None:
+    """The panel with c is integrated from c on, in powers where these are accurate enough."""
     r = END * np.linspace(0, 1, 14)
     c = r[5] * (1 + place)
     contact = solve(Tabulated(r, sphere(r), kind), 1.0, contact_radius=EDGE, rtol=1e-11)
-    pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=float(c))
+    tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=float(c))
     radii = [0.3 * c, c * (1 - 1e-2), c * (1 - 1e-6), c * (1 + 1e-6), 0.47]
-    found = fields.shear_stress(pushed, radii, rtol=1e-11)
+    found = fields.shear_stress(tangential_contact, radii, rtol=1e-11)
     with mp.workdps(TABLE_DIGITS):
         exact = Table({"r": r.tolist(), "f": sphere(r).tolist(), "interpolation": kind})
         for x, value in zip(map(mpf, radii), found, strict=True):
@@ -193,8 +193,8 @@ def test_slip_that_ends_next_to_a_node(kind: Any, place: float) -> None:
 
 @pytest.mark.parametrize("flat", [0.0, 0.1])
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
-def test_the_first_slip_next_to_a_kink(flat: float, gap: float) -> None:
-    """The slope's root behind a kink is that of the distance from it, which a radius has lost."""
+def test_incipient_slip_next_to_a_kink(flat: float, gap: float) -> None:
+    """Beyond a kink the slope depends on the root of the distance, which r cannot resolve."""
     r = END * np.linspace(0, 1, 13)
     f = np.maximum(r - flat, 0.0) ** 2
     profile = Tabulated(r, f, "linear")
@@ -202,12 +202,16 @@ def test_the_first_slip_next_to_a_kink(flat: float, gap: float) -> None:
     for above, below in ((1.0, 1.0), (1.0, 0.01), (0.01, 1.0), (1.0, -0.3)):
         a, c = node * (1 + above * gap), node * (1 - below * gap)
         contact = solve(profile, 1.0, contact_radius=a)
-        pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
         with mp.workdps(TABLE_DIGITS):
             exact = Table({"r": r.tolist(), "f": f.tolist(), "interpolation": "linear"})
             depth = exact.g(mpf(a)) - exact.g(mpf(c))
             force = exact.force(mpf(a)) - exact.force(mpf(c))
-        # With a flat the distance from the kink loses digits, and the estimate covers the loss.
-        rel = 1e-11 if flat == 0.0 else pushed.error_estimate
-        assert float(pushed.tangential_displacement) == pytest.approx(float(depth), rel=rel, abs=0)
-        assert float(pushed.tangential_force) == pytest.approx(float(force), rel=rel, abs=0)
+        # With a flat the distance from the kink suffers cancellation, and the estimate covers it.
+        rel = 1e-11 if flat == 0.0 else tangential_contact.error_estimate
+        assert float(tangential_contact.tangential_displacement) == pytest.approx(
+            float(depth), rel=rel, abs=0
+        )
+        assert float(tangential_contact.tangential_force) == pytest.approx(
+            float(force), rel=rel, abs=0
+        )

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 INTERPOLANT = 1e-12
-#: Relative to the answer, and for a pressure to the largest one away from the breaks.
+#: Relative to the result; for a pressure, to the largest one away from the breaks.
 SMOOTH = 1e-7
 
 CASES = bank.load("tabulated")
 WITH_FIELDS = [case for case in CASES if "radius" in case]
-#: Contacts of many panels: smaller ones see the interpolant alone.
+#: Contacts over many panels; smaller ones depend on the interpolant only.
 LARGE = [case for case in CASES if "truth" in case and "radius" in case]
 
 
@@ -37,7 +37,7 @@ def solved(case: dict[str, Any]) -> Any:
     return solve(profile_from(case["profile"]), case["e_star"], rtol=1e-12, **load)
 
 
-def answer_failures(case: dict[str, Any]) -> list[str]:
+def result_failures(case: dict[str, Any]) -> list[str]:
     contact = solved(case)
     allowances = {name: INPUT * condition for name, condition in case["condition"].items()}
     failures = overstated(
@@ -50,8 +50,8 @@ def answer_failures(case: dict[str, Any]) -> list[str]:
 
 
 @batched(CASES)
-def test_answers_are_those_of_the_interpolant(cases: list[dict[str, Any]]) -> None:
-    assert_each(cases, answer_failures)
+def test_results_are_those_of_the_interpolant(cases: list[dict[str, Any]]) -> None:
+    assert_each(cases, result_failures)
 
 
 def field_failures(case: dict[str, Any]) -> Iterator[str]:
@@ -59,7 +59,7 @@ def field_failures(case: dict[str, Any]) -> Iterator[str]:
     found = {name: getattr(profile, name)(radii) for name in ("f", "df", "g", "dg")}
     found["pressure"] = fields.pressure(solved(case), radii, rtol=1e-12)
     for name, values in found.items():
-        # Near the axis a table has no relative accuracy: its slope there is rounding.
+        # Near the axis a table has no relative accuracy, since its slope there is rounding error.
         largest = max(abs(float(value)) for value in case[name])
         for r, value, expected in zip(radii, values, case[name], strict=True):
             error = abs(float(value) - float(expected)) / largest
@@ -81,7 +81,7 @@ def smooth_failures(case: dict[str, Any]) -> Iterator[str]:
                 yield f"{name}: {error:.2e}"
     found = fields.pressure(contact, radii, rtol=1e-12)
     truth = np.array([float(p) for p in case["truth_pressure"]])
-    # Inside the first panel the interpolant's tip has a slope, and p a weak logarithm.
+    # Inside the first panel the interpolant's tip has a nonzero slope, and p a weak logarithm.
     seen = radii > case["profile"]["r"][1]
     error = np.max(np.abs(found - truth)[seen]) / np.max(truth)
     if not error <= SMOOTH:
@@ -89,5 +89,5 @@ def smooth_failures(case: dict[str, Any]) -> Iterator[str]:
 
 
 @batched(LARGE)
-def test_answers_are_close_to_the_smooth_body(cases: list[dict[str, Any]]) -> None:
+def test_results_are_close_to_the_smooth_body(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, smooth_failures)

@@ -1,4 +1,4 @@
-"""Force, displacement, stick radius and slip width of every stored case, by every control."""
+"""Force, displacement, stick radius and slip width of every stored case, under every control."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from tests.core.comparison import allowance, assert_each, batched, overstated, p
 from tests.oracles import bank
 
 BOUND = 1e-12
-#: A table is a sum over its knots, and has the normal query's own bound.
+#: Tables are sums over knots; their bound is that of the normal problem.
 TABLE = 1e-11
-#: How far the estimate may exceed the largest error that is allowed: powers up to 60, and tables.
+#: Largest ratio of estimate to largest admissible error: for powers up to 60, and tables.
 OVERSTATED, OVERSTATED_TABLE = 150.0, 3000.0
 
 
@@ -56,18 +56,18 @@ def failures_of(case: dict[str, Any]) -> list[str]:
 
 
 @batched(bank.load("tangential"))
-def test_answers_and_their_error_estimate(cases: list[dict[str, Any]]) -> None:
+def test_results_and_error_estimates(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of)
 
 
 @batched(bank.load("tangential")[::7])
-def test_a_single_load_is_answered_like_one_of_many(cases: list[dict[str, Any]]) -> None:
+def test_single_load_equals_one_of_many(cases: list[dict[str, Any]]) -> None:
     for case in cases:
         found = solved(case)
         alone = solved({**case, "given": case["given"][0]})
         for name in case["expected"]:
             value = getattr(alone, name)
             assert value.shape == ()
-            # The same steps, perhaps summed in another order.
+            # The same steps, possibly summed in a different order.
             expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-14, abs=0)
             assert float(value) == expected, (case["id"], name)

@@ -1,4 +1,4 @@
-"""Laws of partial slip on profiles drawn at random (the same every time), and exact corners."""
+"""General laws of partial slip on pseudorandom profiles (fixed seed), and limiting cases."""
 
 from __future__ import annotations
 
@@ -48,18 +48,18 @@ ratio = st.floats(0.01, 0.97)
 
 
 def near(value: Any, rel: float = 1e-12, absolute: float = 0.0) -> Any:
-    """Relative alone: the answers of a whisper are far below pytest's own absolute bound."""
+    """Relative comparison only: small loads give results far below pytest's absolute tolerance."""
     return pytest.approx(value, rel=rel, abs=absolute)
 
 
-def pushed(contact: NormalContact, **load: Any) -> TangentialContact:
+def solve_tangential(contact: NormalContact, **load: Any) -> TangentialContact:
     return tangential.solve(contact, G_STAR, MU, **load)
 
 
 def at_ratio(fields_: dict[str, Any], radius: float, rho: float) -> TangentialContact:
-    """F_x as a part of mu F_N."""
+    """F_x as a fraction of mu F_N."""
     contact = at_radius(fields_, radius)
-    return pushed(contact, tangential_force=rho * MU * float(contact.normal_force))
+    return solve_tangential(contact, tangential_force=rho * MU * float(contact.normal_force))
 
 
 def knots(low: float, high: float, *between: float) -> list[float]:
@@ -72,7 +72,7 @@ def values(found: TangentialContact) -> list[float]:
 
 @repeatable
 @given(scenes(), ratio)
-def test_traction_carries_the_force(scene: Scene, rho: float) -> None:
+def test_traction_integrates_to_the_force(scene: Scene, rho: float) -> None:
     found = at_ratio(*scene, rho)
 
     def ring(r: Array) -> Array:
@@ -85,7 +85,7 @@ def test_traction_carries_the_force(scene: Scene, rho: float) -> None:
 
 @repeatable
 @given(scenes(), ratio)
-def test_foundation_carries_the_force(scene: Scene, rho: float) -> None:
+def test_foundation_integrates_to_the_force(scene: Scene, rho: float) -> None:
     found = at_ratio(*scene, rho)
     c = float(found.stick_radius)
     carried = 2 * integral(
@@ -100,7 +100,7 @@ def test_foundation_carries_the_force(scene: Scene, rho: float) -> None:
 def test_slip_grows_with_the_force(scene: Scene, ratios: list[float]) -> None:
     contact = at_radius(*scene)
     force = np.sort(ratios) * (MU * contact.normal_force)
-    found = pushed(contact, tangential_force=force)
+    found = solve_tangential(contact, tangential_force=force)
     assert np.all(found.stick_radius >= 0)
     assert np.all(found.stick_radius <= contact.contact_radius)
     rounding = 1e-13
@@ -114,8 +114,8 @@ def test_slip_grows_with_the_force(scene: Scene, ratios: list[float]) -> None:
 @pytest.mark.parametrize("rho", [1e-100, 1e-200, 1e-300])
 @repeatable
 @given(scenes())
-def test_the_smallest_whisper_has_its_answers(rho: float, scene: Scene) -> None:
-    """Small enough for the product of two of its lengths to leave the doubles."""
+def test_smallest_tangential_loads(rho: float, scene: Scene) -> None:
+    """The product of two lengths underflows at such loads."""
     found = at_ratio(*scene, rho)
     assert str(found.regime) == "partial_slip"
     slope = float(found.normal.profile.dg(np.array([scene[1]]))[0])
@@ -134,13 +134,13 @@ def test_the_smallest_whisper_has_its_answers(rho: float, scene: Scene) -> None:
 @repeatable
 @given(scenes(), st.floats(0.2, 0.95), st.just(0.0) | st.floats(1e-50, 0.999))
 def test_traction_is_a_superposition_of_pressures(scene: Scene, stick: float, place: float) -> None:
-    """Jaeger: tau = mu [p(a) - p(c)], where the difference costs few digits."""
+    """Ciavarella-Jaeger: tau = mu [p(a) - p(c)], where the difference is well-conditioned."""
     fields_, a = scene
     b = break_radius(fields_)
     blunt = fields_["kind"] in {"rounded_punch", "truncated_cone", "truncated_paraboloid"}
     c = b + (a - b) * stick if blunt else a * stick
     contact = at_radius(fields_, a)
-    found = pushed(contact, stick_radius=c)
+    found = solve_tangential(contact, stick_radius=c)
     r = np.array([a * place])
     outer = fields.pressure(contact, r, rtol=1e-12)
     inner = fields.pressure(at_radius(fields_, c), r, rtol=1e-12)
@@ -156,29 +156,29 @@ def test_stiffness_is_the_derivative_of_the_force(scene: Scene, rho: float) -> N
     u = float(found.tangential_displacement)
 
     def stiffness(at: Array) -> Array:
-        return pushed(found.normal, tangential_displacement=at).tangential_stiffness
+        return solve_tangential(found.normal, tangential_displacement=at).tangential_stiffness
 
-    ends = pushed(found.normal, tangential_displacement=[u, 1.1 * u]).tangential_force
+    ends = solve_tangential(found.normal, tangential_displacement=[u, 1.1 * u]).tangential_force
     work = integral(stiffness, [u, 1.1 * u])
-    # Where the step crosses a break, c(u) has a kink inside: the bound is the rule's.
+    # Where the step crosses a break, c(u) has a kink; the error is that of the rule.
     assert ends[1] - ends[0] == near(work, rel=1e-5)
 
 
 @repeatable
 @given(scenes(), ratio)
-def test_each_control_finds_the_same_slip(scene: Scene, rho: float) -> None:
+def test_controls_are_equivalent(scene: Scene, rho: float) -> None:
     first = at_ratio(*scene, rho)
     for name in ANSWERS[:3]:
-        again = pushed(first.normal, **{name: getattr(first, name)})
+        again = solve_tangential(first.normal, **{name: getattr(first, name)})
         for other, value in zip(ANSWERS, values(first), strict=True):
             found = float(getattr(again, other))
-            # At c near b, and near a, c stands for a neighbourhood: one part in a hundred here.
+            # At c near b or near a, c is ill-conditioned: one part in a hundred here.
             assert found == near(value, rel=1e-9), (name, other)
 
 
 @repeatable
 @given(scenes(), ratio)
-def test_the_other_direction_is_the_mirror_image(scene: Scene, rho: float) -> None:
+def test_reversed_direction_is_the_mirror_image(scene: Scene, rho: float) -> None:
     right = at_ratio(*scene, rho)
     left = at_ratio(*scene, -rho)
     for name, there, here in zip(ANSWERS, values(left), values(right), strict=True):
@@ -193,7 +193,7 @@ def test_the_other_direction_is_the_mirror_image(scene: Scene, rho: float) -> No
 
 
 def stored(found: TangentialContact, b: float) -> float:
-    """Energy of the tangential springs, q_x^2/(2 G*) each."""
+    """Energy q_x^2/(2 G*) of the tangential springs."""
     c, a = float(found.stick_radius), float(found.normal.contact_radius)
     outer = integral(
         lambda x: fields.foundation_shear(found, x) ** 2,
@@ -205,18 +205,18 @@ def stored(found: TangentialContact, b: float) -> float:
 
 @repeatable
 @given(scenes(), st.floats(0.2, 0.97))
-def test_energy_is_work_less_what_the_springs_store(scene: Scene, rho: float) -> None:
+def test_dissipated_energy_is_work_minus_stored_energy(scene: Scene, rho: float) -> None:
     fields_, radius = scene
     found = at_ratio(fields_, radius, rho)
     u = float(found.tangential_displacement)
 
     def force(at: Array) -> Array:
-        return pushed(found.normal, tangential_displacement=at).tangential_force
+        return solve_tangential(found.normal, tangential_displacement=at).tangential_force
 
     middle = []
     b = break_radius(fields_)
     if float(found.stick_radius) < b < radius:
-        middle = [float(pushed(found.normal, stick_radius=b).tangential_displacement)]
+        middle = [float(solve_tangential(found.normal, stick_radius=b).tangential_displacement)]
     work = integral(force, knots(0.0, u, *middle))
     lost = float(found.dissipated_energy)
     assert lost == near(work - stored(found, b), 0.0, 1e-8 * work)
@@ -224,7 +224,7 @@ def test_energy_is_work_less_what_the_springs_store(scene: Scene, rho: float) ->
 
 @repeatable
 @given(scenes(), ratio, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
-def test_a_change_of_units_rescales_the_answers(
+def test_results_scale_with_units(
     scene: Scene, rho: float, length_power: float, modulus_power: float
 ) -> None:
     fields_, radius = scene
@@ -240,19 +240,20 @@ def test_a_change_of_units_rescales_the_answers(
     new = tangential.solve(contact, G_STAR * modulus, MU, tangential_force=load)
     factors = (force, unit, unit, unit, modulus * unit, force * unit)
     for name, value, factor in zip(ANSWERS, values(old), factors, strict=True):
-        # rho's rounding counts up to 1/(1 - rho), a power's coefficient by its exponent.
+        # The rounding error of rho is amplified by up to 1/(1 - rho), a power's coefficient by its
+        # exponent.
         assert float(getattr(new, name)) == near(value * factor, rel=2e-11), name
 
 
 @repeatable
 @given(scenes())
-def test_no_force_sticks_everywhere(scene: Scene) -> None:
+def test_zero_force_gives_full_stick(scene: Scene) -> None:
     contact = at_radius(*scene)
     for name in ANSWERS[:2]:
-        found = pushed(contact, **{name: 0.0})
+        found = solve_tangential(contact, **{name: 0.0})
         assert str(found.regime) == "stick"
         assert values(found) == [0.0, 0.0, scene[1], 0.0, 2 * G_STAR * scene[1], 0.0]
-    found = pushed(contact, stick_radius=scene[1])
+    found = solve_tangential(contact, stick_radius=scene[1])
     assert str(found.regime) == "stick"
     assert values(found)[:4] == [0.0, 0.0, scene[1], 0.0]
     assert not fields.shear_stress(found, [0.0, scene[1] / 2]).any()
@@ -261,12 +262,12 @@ def test_no_force_sticks_everywhere(scene: Scene) -> None:
 
 @repeatable
 @given(scenes())
-def test_the_whole_force_slides_the_whole_contact(scene: Scene) -> None:
+def test_limiting_force_gives_full_slip(scene: Scene) -> None:
     contact = at_radius(*scene)
     bound = MU * contact.normal_force
     most = MU * E_STAR / G_STAR * float(contact.indentation_depth)
-    found = pushed(contact, tangential_force=bound)
-    sliding = pushed(contact, tangential_displacement=2.5 * most)
+    found = solve_tangential(contact, tangential_force=bound)
+    sliding = solve_tangential(contact, tangential_displacement=2.5 * most)
     for one, u in ((found, most), (sliding, 2.5 * most)):
         assert str(one.regime) == "full_slip"
         assert float(one.tangential_force) == near(float(bound), rel=1e-15)
@@ -283,10 +284,10 @@ def test_the_whole_force_slides_the_whole_contact(scene: Scene) -> None:
 
 @repeatable
 @given(scenes())
-def test_slip_of_the_whole_contact_is_the_shape(scene: Scene) -> None:
+def test_slip_with_zero_stick_radius_is_the_shape(scene: Scene) -> None:
     """With c = 0, Eq. (5.40) transforms g back to f."""
     contact = at_radius(*scene)
-    found = pushed(contact, tangential_force=MU * contact.normal_force)
+    found = solve_tangential(contact, tangential_force=MU * contact.normal_force)
     r = np.array([0.2, 0.7, 0.98]) * scene[1]
     shape = contact.profile.f(r)
     moved = fields.slip(found, r, rtol=1e-12)
@@ -295,7 +296,7 @@ def test_slip_of_the_whole_contact_is_the_shape(scene: Scene) -> None:
 
 @repeatable
 @given(scenes())
-def test_displacement_is_continuous_at_the_edge_and_a_point_load_afar(scene: Scene) -> None:
+def test_displacement_at_the_edge_and_in_the_far_field(scene: Scene) -> None:
     contact, a = at_radius(*scene), scene[1]
     r = np.array([a, np.nextafter(a, np.inf), 1e7 * a])
     up = fields.normal_displacement(contact, r, rtol=1e-12)
@@ -304,34 +305,34 @@ def test_displacement_is_continuous_at_the_edge_and_a_point_load_afar(scene: Sce
     assert up[2] == near(afar, rel=1e-11)
 
 
-def test_a_force_beyond_friction_is_refused_by_its_element() -> None:
+def test_force_beyond_friction_is_rejected_with_its_index() -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, normal_force=[1.0, 2.0, 3.0])
     with pytest.raises(InputError) as caught:
-        pushed(contact, tangential_force=[0.1, -0.75, 0.1])
+        solve_tangential(contact, tangential_force=[0.1, -0.75, 0.1])
     assert caught.value.path == ("tangential", "tangential_force", 1)
     with pytest.raises(InputError) as caught:
-        pushed(contact, tangential_force=0.5)
+        solve_tangential(contact, tangential_force=0.5)
     assert caught.value.path[:2] == ("tangential", "tangential_force")
     alone = normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0)
     with pytest.raises(InputError) as caught:
-        pushed(alone, tangential_force=[0.1, 0.2, MU * 1.001])
+        solve_tangential(alone, tangential_force=[0.1, 0.2, MU * 1.001])
     assert caught.value.path == ("tangential", "tangential_force", 2)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("name", ANSWERS[:3])
-def test_a_load_that_is_no_number_is_refused(name: str, bad: float) -> None:
+def test_nonfinite_load_is_rejected(name: str, bad: float) -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0)
     with pytest.raises(InputError) as caught:
-        pushed(contact, **{name: [0.01, bad]})
+        solve_tangential(contact, **{name: [0.01, bad]})
     assert caught.value.path == ("tangential", name, 1)
 
 
 @pytest.mark.parametrize("bad", [-0.1, 0.50001])
-def test_a_stick_radius_outside_the_contact_is_refused(bad: float) -> None:
+def test_stick_radius_outside_the_contact_is_rejected(bad: float) -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, contact_radius=0.5)
     with pytest.raises(InputError) as caught:
-        pushed(contact, stick_radius=bad)
+        solve_tangential(contact, stick_radius=bad)
     assert caught.value.path == ("tangential", "stick_radius")
 
 
@@ -346,32 +347,32 @@ def test_parameters_must_be_positive(bad: float) -> None:
     assert caught.value.path == ("friction_coefficient",)
 
 
-def test_exactly_one_load_is_needed() -> None:
+def test_exactly_one_load_is_required() -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, contact_radius=0.5)
     with pytest.raises(InputError):
-        pushed(contact)
+        solve_tangential(contact)
     with pytest.raises(InputError):
-        pushed(contact, tangential_force=0.0, stick_radius=0.1)
+        solve_tangential(contact, tangential_force=0.0, stick_radius=0.1)
 
 
 def test_slip_does_not_enter_a_flat() -> None:
     contact = normal.solve(RoundedPunch(0.6, 2.0), E_STAR, contact_radius=0.9)
     bound = MU * float(contact.normal_force)
-    found = pushed(contact, tangential_force=np.array([0.1, 0.999, 1 - 1e-12]) * bound)
+    found = solve_tangential(contact, tangential_force=np.array([0.1, 0.999, 1 - 1e-12]) * bound)
     assert np.all(found.stick_radius >= 0.6)
-    edge = pushed(contact, stick_radius=0.6)
+    edge = solve_tangential(contact, stick_radius=0.6)
     assert float(edge.tangential_force) == near(bound, rel=1e-15)
-    assert float(pushed(contact, stick_radius=0.0).tangential_force) == near(bound)
-    assert str(pushed(contact, stick_radius=0.0).regime) == "full_slip"
+    assert float(solve_tangential(contact, stick_radius=0.0).tangential_force) == near(bound)
+    assert str(solve_tangential(contact, stick_radius=0.0).regime) == "full_slip"
     with pytest.raises(InputError) as caught:
-        pushed(contact, stick_radius=[0.7, 0.59])
+        solve_tangential(contact, stick_radius=[0.7, 0.59])
     assert caught.value.path == ("tangential", "stick_radius", 1)
 
 
-def test_a_flat_punch_sticks_and_then_slides_at_once() -> None:
+def test_flat_punch_passes_from_full_stick_to_full_slip() -> None:
     contact = normal.solve(FlatPunch(0.5), E_STAR, normal_force=2.0)
     bound = MU * 2.0
-    found = pushed(contact, tangential_force=np.array([0.0, 0.5, 1 - 1e-9, -1.0]) * bound)
+    found = solve_tangential(contact, tangential_force=np.array([0.0, 0.5, 1 - 1e-9, -1.0]) * bound)
     assert list(found.regime) == ["stick", "stick", "stick", "full_slip"]
     assert list(found.stick_radius) == [0.5, 0.5, 0.5, 0.0]
     stiffness = 2 * G_STAR * 0.5
@@ -379,45 +380,49 @@ def test_a_flat_punch_sticks_and_then_slides_at_once() -> None:
     assert list(found.tangential_stiffness) == [stiffness] * 3 + [0.0]
     assert not found.dissipated_energy.any()
     most = bound / stiffness
-    sliding = pushed(contact, tangential_displacement=-3 * most)
+    sliding = solve_tangential(contact, tangential_displacement=-3 * most)
     assert float(sliding.tangential_force) == near(-bound, rel=1e-15)
     assert float(sliding.dissipated_energy) == near(2 * most * bound, rel=1e-14)
 
 
 @pytest.mark.parametrize("profile", [Paraboloid(1.0), RoundedPunch(0.6, 2.0), FlatPunch(0.5)])
-def test_without_a_normal_load_nothing_resists(profile: Any) -> None:
+def test_zero_normal_load_has_no_friction(profile: Any) -> None:
     contact = normal.solve(profile, E_STAR, normal_force=0.0)
-    still = pushed(contact, tangential_force=0.0)
+    still = solve_tangential(contact, tangential_force=0.0)
     assert str(still.regime) == "stick"
-    moving = pushed(contact, tangential_displacement=[0.0, 1e-3, -1e-3])
+    moving = solve_tangential(contact, tangential_displacement=[0.0, 1e-3, -1e-3])
     assert list(moving.regime) == ["stick", "full_slip", "full_slip"]
     for found in (still, moving):
         for name in ("tangential_force", "dissipated_energy"):
             assert not getattr(found, name).any(), name
     with pytest.raises(InputError):
-        pushed(contact, tangential_force=1e-300)
+        solve_tangential(contact, tangential_force=1e-300)
 
 
 def test_tangential_loads_broadcast_with_the_normal_ones() -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, normal_force=[1.0, 2.0])
-    found = pushed(contact, tangential_force=[0.1, 0.3])
+    found = solve_tangential(contact, tangential_force=[0.1, 0.3])
     for index, (n, f) in enumerate(((1.0, 0.1), (2.0, 0.3))):
-        one = pushed(normal.solve(Paraboloid(1.0), E_STAR, normal_force=n), tangential_force=f)
+        one = solve_tangential(
+            normal.solve(Paraboloid(1.0), E_STAR, normal_force=n), tangential_force=f
+        )
         for name in ANSWERS:
             assert getattr(found, name).shape == (2,)
             assert float(getattr(found, name)[index]) == float(getattr(one, name)), name
-    wide = pushed(normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0), stick_radius=[0.0, 0.1])
+    wide = solve_tangential(
+        normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0), stick_radius=[0.0, 0.1]
+    )
     assert wide.tangential_force.shape == wide.slip_width.shape == (2,)
     stress = fields.shear_stress(found, [0.0, 0.1, 0.2])
     assert stress.shape == (2, 3)
 
 
-def test_the_grid_is_graded_and_shared() -> None:
+def test_grid_is_graded_and_shared() -> None:
     contact = normal.solve(RoundedPunch(0.6, 2.0), E_STAR, contact_radius=[0.7, 0.9])
-    found = pushed(contact, stick_radius=[0.65, 0.7])
+    found = solve_tangential(contact, stick_radius=[0.65, 0.7])
     points = fields.grid(found, 200)
     assert points[0] == 0
     assert points[-1] == near(1.35)
     assert np.all(np.diff(points) > 0)
-    # All of them are given, and so exact.
+    # All edges are prescribed and therefore exact.
     assert {0.6, 0.65, 0.7, 0.9} <= set(points.tolist())

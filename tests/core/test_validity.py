@@ -1,4 +1,4 @@
-"""What is said where the model ends, against the literature's figures."""
+"""Validity warnings, against figures from the literature."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def codes(contact: normal.NormalContact | tangential.TangentialContact) -> list[
 
 
 def bodies(*poissons_ratios: float) -> Material:
-    """Elastic bodies of one Young's modulus; a single one lies on a rigid one."""
+    """Elastic bodies of equal Young's modulus; a single one is in contact with a rigid body."""
     elastic = [Body(1.0, nu) for nu in poissons_ratios]
     return from_bodies([*elastic, RIGID][:2])
 
@@ -58,23 +58,25 @@ def test_infinite_deviatoric_stress() -> None:
 
 
 def first_order_error(slope: Any, pressure: Any, k: float) -> float:
-    """Relative rise of the force at a depth, because points move inwards to a flatter profile.
+    """Relative increase of the force at prescribed depth, because points move inwards.
 
-    With M(r) = int_0^r p s ds, the surface moves by u_r = -(4 k/E*) M(r)/r, the profile seems lower
-    by f'(r) |u_r|, and the force, stationary in a, rises by 2 E* int_0^a dg dx, which is
-    2 E* int_0^a df r/sqrt(a^2 - r^2) dr.
+    With M(r) = int_0^r p s ds, the surface moves by u_r = -(4 k/E*) M(r)/r. The profile appears
+    lower by f'(r) |u_r|, and the force, stationary in a, increases by 2 E* int_0^a dg dx = 2 E*
+    int_0^a df r/sqrt(a^2 - r^2) dr.
     """
 
     def moment(r: float) -> float:
         return float(quad(lambda s: pressure(s) * s, 0, r)[0])
 
-    # E* = a = 1; r = sin(u) takes the root.
+    # E* = a = 1; r = sin(u) removes the singularity.
     rise = quad(lambda u: slope(np.sin(u)) * 4 * k * moment(np.sin(u)), 0, np.pi / 2)[0]
     return float(2 * rise / (2 * np.pi * moment(1.0)))
 
 
-def test_the_error_of_the_half_space() -> None:
-    """First order in the slope: Hay, Bolshakov and Pharr (1999), and by its own derivation."""
+def test_half_space_error() -> None:
+    """First order in the slope: Hay, Bolshakov and Pharr (1999), and the independent derivation
+    above.
+    """
     nu = 0.3
     k = (1 - 2 * nu) / (4 * (1 - nu))
     beta = bodies(nu).dundurs_beta
@@ -85,12 +87,12 @@ def test_the_error_of_the_half_space() -> None:
 
     radial = validity._RADIAL * beta
     assert radial == pytest.approx((hay(1e-6) - hay(-1e-6)) / 2e-6, rel=0.01, abs=0)
-    # Cone of slope 1 and a paraboloid of that slope at the edge, for E* = 1 and a = 1.
+    # A cone of slope 1 and a paraboloid of that slope at the edge, for E* = 1 and a = 1.
     cone = first_order_error(lambda r: 1.0, lambda r: np.arccosh(1 / r) / 2, k)
     assert radial == pytest.approx(cone, rel=0.01, abs=0)
     ball = first_order_error(lambda r: r, lambda r: 2 / np.pi * np.sqrt(1 - r * r), k)
     assert ball < radial < 1.6 * ball
-    # The figures of the paper: 5.6 % at t = 0.3, 1.8 % at 0.1.
+    # Figures of the paper: 5.6 % at t = 0.3, 1.8 % at 0.1.
     assert hay(0.3) == pytest.approx(0.056, abs=5e-4)
     assert radial * 0.3 == pytest.approx(0.056, rel=0.05, abs=0)
     assert radial * 0.1 == pytest.approx(0.018, rel=0.02, abs=0)
@@ -99,7 +101,7 @@ def test_the_error_of_the_half_space() -> None:
 @pytest.mark.parametrize(
     ("material", "slope"),
     [
-        # 0.18 t + t^2 = 0.01, also where the bodies are unknown; alike or incompressible, t = 0.1.
+        # 0.18 t + t^2 = 0.01, also for unknown bodies; similar or incompressible ones, t = 0.1.
         (bodies(0.3), 0.0445),
         (Material(1.0), 0.0445),
         (bodies(0.3, 0.3), 0.1),
@@ -107,7 +109,7 @@ def test_the_error_of_the_half_space() -> None:
     ],
     ids=["steel on rigid", "unknown", "steel on steel", "rubber on rigid"],
 )
-def test_steep_slopes_leave_the_half_space(material: Material, slope: float) -> None:
+def test_steep_slopes_exceed_the_half_space_limit(material: Material, slope: float) -> None:
     contact = normal.solve(Paraboloid(1.0), material.e_star, contact_radius=[slope * 0.98, slope])
     assert "half_space" not in found(replace(contact, coordinate=contact.coordinate[:1]), material)
     steep = normal.solve(Paraboloid(1.0), material.e_star, contact_radius=[0.01, slope * 1.02])
@@ -117,7 +119,7 @@ def test_steep_slopes_leave_the_half_space(material: Material, slope: float) -> 
     assert ("0.3 assumed" in said.message()) == (material.dundurs_beta is None)
 
 
-def test_a_contact_assumes_what_it_does_not_know() -> None:
+def test_contact_without_material_assumes_the_worst_case() -> None:
     steep = normal.solve(Sphere(1.0), 1.0, contact_radius=0.6)
     assert codes(steep) == ["half_space"]
     assert "0.3 assumed" in steep.warnings[0].message
@@ -126,25 +128,25 @@ def test_a_contact_assumes_what_it_does_not_know() -> None:
 
 @pytest.mark.parametrize("nu", [-0.999, -0.5, 0.0, 0.3, 0.5])
 @pytest.mark.parametrize("other", [-0.999, 0.2, 0.5, None])
-def test_the_moduli_of_real_bodies_are_possible(nu: float, other: float | None) -> None:
+def test_moduli_of_real_bodies_are_accepted(nu: float, other: float | None) -> None:
     real = bodies(nu) if other is None else bodies(nu, other)
     contact = normal.solve(Paraboloid(1.0), real.e_star, contact_radius=0.01)
     assert found(contact, Material(real.e_star, real.g_star), g_star=real.g_star) == {}
 
 
 @pytest.mark.parametrize(("ratio", "possible"), [(0.74, 0), (0.76, 1), (1.49, 1), (1.51, 0)])
-def test_moduli_of_no_bodies_are_named(ratio: float, possible: int) -> None:
+def test_impossible_moduli_are_rejected(ratio: float, possible: int) -> None:
     contact = normal.solve(Paraboloid(1.0), ratio, contact_radius=0.01)
     said = found(contact, Material(ratio, 1.0), g_star=1.0)
     assert list(said) == ([] if possible else ["impossible_moduli"])
 
 
-def test_elastic_similarity_of_bodies_alone() -> None:
+def test_elastic_similarity_warning() -> None:
     alike, unlike = bodies(0.3, 0.3), bodies(0.2)
     contact = normal.solve(Paraboloid(1.0), alike.e_star, contact_radius=0.01)
     assert found(contact, alike, g_star=alike.g_star) == {}
     assert list(found(contact, unlike, g_star=unlike.g_star)) == ["elastic_similarity"]
-    # Without friction nothing couples.
+    # Without friction there is no coupling.
     assert found(contact, unlike) == {}
 
 
@@ -159,7 +161,7 @@ def test_elastic_similarity_of_bodies_alone() -> None:
         (Tabulated(R, 0.01 * R), 0.5, "0"),
     ],
 )
-def test_infinite_pressure_is_said_with_its_radius(
+def test_infinite_pressure_warning_states_its_radius(
     profile: normal.Profile, radius: float | None, place: str
 ) -> None:
     load = {"normal_force": 1e-3} if radius is None else {"contact_radius": radius}
@@ -171,7 +173,7 @@ def test_infinite_pressure_is_said_with_its_radius(
     assert singular.message.endswith(f"radius {place}")
 
 
-def test_smooth_tips_and_unreached_kinks_say_nothing() -> None:
+def test_no_pressure_warning_for_smooth_tips_and_kinks_outside() -> None:
     for profile in (
         Hyperboloid(0.01, 1.0),
         RoundedPunch(0.5, 90.0),
@@ -182,7 +184,7 @@ def test_smooth_tips_and_unreached_kinks_say_nothing() -> None:
         assert codes(normal.solve(profile, 1.0, contact_radius=radius)) == []
 
 
-def test_the_end_of_a_table_is_announced() -> None:
+def test_warning_near_the_end_of_a_table() -> None:
     table = Tabulated(R, R**2 / 200)
     assert codes(normal.solve(table, 1.0, contact_radius=0.94)) == []
     assert codes(normal.solve(table, 1.0, contact_radius=0.96)) == ["table_end"]

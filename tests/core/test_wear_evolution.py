@@ -1,4 +1,4 @@
-"""Wear over the cycles: its laws, its limit, and an explicit scheme that shares no code with it."""
+"""Wear over the cycles: general laws, limiting state, and an independent explicit scheme."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ MIXED = "force and displacement"
 BY_FORCE = "depth and force"
 CONTROLS = ("depth and displacement", "forces", MIXED)
 ALL_CYCLES = (0.0, 1.0, 1e2, 1e3, 1e4, 1e6, 1e9, 1e12)
-# The other kinds take the same way under each control: one is enough.
+# The other kinds behave alike under each control, so one control suffices.
 PAIRS = [(kind, control) for kind in PROFILES for control in CONTROLS]
 PAIRS += zip(MORE, CONTROLS[::-1], strict=True)
 
@@ -64,7 +64,7 @@ def worn(
     cycles: tuple[float, ...] = ALL_CYCLES,
     **given: Any,
 ) -> evolution.WearEvolution:
-    """The profile at a = 1, its amplitude a part of full slip."""
+    """The profile at a = 1, with the amplitude as a fraction of full slip."""
     shape = (PROFILES | MORE)[kind]
     contact = normal.solve(shape, E_STAR, contact_radius=1.0)
     if control.startswith("depth"):
@@ -79,7 +79,7 @@ def worn(
 
 
 def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
-    """2 pi int h r dr by a rule of its own, split where h has its corners."""
+    """2 pi int h r dr by independent quadrature, split at the kinks of h."""
     ends = [
         float(found.stick_radius[0]),
         float(found.stick_radius[cycle]),
@@ -88,7 +88,7 @@ def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
     nodes, weights = leggauss(80)
     total = 0.0
     for low, high in pairwise(ends):
-        # Substituted for the roots at both ends.
+        # The substitution removes the roots at both ends.
         angle = pi / 4 * (1 + nodes)
         r = low + (high - low) * np.sin(angle) ** 2
         step = (high - low) * np.sin(2 * angle) * pi / 4
@@ -99,21 +99,19 @@ def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
 @pytest.mark.parametrize("resolution", [24, 64])
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", PROFILES)
-def test_first_cycles_wear_what_the_friction_work_takes(
-    kind: str, control: str, resolution: int
-) -> None:
-    """Against the work of a cycle from the closed forms of partial slip."""
+def test_initial_wear_follows_the_friction_work(kind: str, control: str, resolution: int) -> None:
+    """Reference: dissipated energy of a cycle from the closed forms of partial slip."""
     found = worn(kind, control, cycles=(0.0,))
     step = 1e-6 * found.initial.cycle_unit
     early = worn(kind, control, cycles=(step,), resolution=resolution)
-    work = 4 * float(found.initial.sideways.dissipated_energy)
+    work = 4 * float(found.initial.tangential_contact.dissipated_energy)
     expected = pytest.approx(WEAR * work * step, rel=1e-4 if resolution == 24 else 1e-6, abs=0)
     assert early.worn_volume[0] == expected
 
 
 @pytest.mark.every(2)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
-def test_volume_follows_the_work_to_the_end(kind: str, control: str) -> None:
+def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
     found = worn(kind, control)
     lost = WEAR * found.dissipated_energy
     assert found.worn_volume == pytest.approx(lost, rel=1e-4, abs=0)
@@ -125,14 +123,16 @@ def test_volume_follows_the_work_to_the_end(kind: str, control: str) -> None:
 
 
 def limiting(found: evolution.WearEvolution) -> limit.LimitingWear:
-    sideways = found.initial.sideways
+    tangential_contact = found.initial.tangential_contact
     held = found.initial.held.displacement
     name = "tangential_displacement" if held else "tangential_force"
-    return limit.solve(found.initial.contact, G_STAR, MU, **{name: float(getattr(sideways, name))})
+    return limit.solve(
+        found.initial.contact, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
+    )
 
 
 def distance(found: evolution.WearEvolution) -> float:
-    """Largest distance of the last profile from the limiting one, in units of the depth."""
+    """Largest distance of the last profile from the limiting one, relative to the depth."""
     r = np.linspace(0.0, 1.5 * float(found.contact_radius[-1]), 400)
     r = r[r < 0.99 * float(np.asarray(found.initial.contact.profile.domain))]
     exact = np.asarray(limiting(found).worn_depth(r))
@@ -144,7 +144,7 @@ def distance(found: evolution.WearEvolution) -> float:
 @pytest.mark.parametrize("part", [0.02, 0.45, 0.85])
 @pytest.mark.parametrize("control", CONTROLS[:2])
 @pytest.mark.parametrize("kind", PROFILES)
-def test_the_end_is_the_limiting_profile(kind: str, control: str, part: float) -> None:
+def test_final_profile_is_the_limiting_profile(kind: str, control: str, part: float) -> None:
     found = worn(kind, control, part)
     assert distance(found) <= 1e-4
     exact = limiting(found)
@@ -158,15 +158,15 @@ def test_the_end_is_the_limiting_profile(kind: str, control: str, part: float) -
 
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
-def test_the_distance_from_the_limit_falls_with_the_resolution(control: str) -> None:
+def test_distance_from_the_limit_decreases_with_resolution(control: str) -> None:
     found = [distance(worn("cone", control, 0.9, resolution=n, rtol=1e-8)) for n in (8, 16, 32)]
     for coarse, fine in pairwise(found):
         assert fine < max(coarse / 4, 2e-7)
 
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
-def test_the_limit_wears_no_more(control: str) -> None:
-    """Its pressure outside the stick zone is nothing, and so is the wear of every cycle beyond."""
+def test_limiting_state_is_stationary(control: str) -> None:
+    """The pressure outside the stick zone is zero, and so is the wear of further cycles."""
     found = worn("paraboloid", control)
     r = np.linspace(float(found.stick_radius[-1]), float(found.contact_radius[-1]), 50)[1:]
     pressure = found.pressure(r)
@@ -176,7 +176,7 @@ def test_the_limit_wears_no_more(control: str) -> None:
 
 @pytest.mark.every(2)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
-def test_wear_only_takes_away(kind: str, control: str) -> None:
+def test_wear_never_adds_material(kind: str, control: str) -> None:
     cycles = (0.0, *np.geomspace(1.0, 1e7, 22).tolist())
     found = worn(kind, control, cycles=cycles)
     c, a = float(found.stick_radius[0]), float(found.contact_radius[-1])
@@ -197,8 +197,10 @@ def test_wear_only_takes_away(kind: str, control: str) -> None:
 
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
-def test_nothing_ripples_at_the_stick_edge(control: str) -> None:
-    """The worn depth climbs from the stick edge to one summit and falls to the contact's edge."""
+def test_worn_depth_has_a_single_maximum(control: str) -> None:
+    """The worn depth increases from the stick edge to one maximum and decreases to the contact
+    edge.
+    """
     cycles = tuple(np.geomspace(10.0, 1e5, 25).tolist())
     found = worn("paraboloid", control, cycles=cycles)
     for row, c, a in zip(
@@ -215,7 +217,7 @@ def test_nothing_ripples_at_the_stick_edge(control: str) -> None:
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-def test_pressure_carries_the_force(control: str) -> None:
+def test_pressure_integrates_to_the_force(control: str) -> None:
     found = worn("paraboloid", control, resolution=48)
     nodes, weights = leggauss(120)
     for cycle in (0, 2, 3):
@@ -233,17 +235,17 @@ def test_pressure_carries_the_force(control: str) -> None:
 
 @pytest.mark.parametrize("part", [1e-6, 1e-2])
 @pytest.mark.parametrize("control", CONTROLS)
-def test_a_narrow_annulus_wears_half_as_wide_again(control: str, part: float) -> None:
-    """a - c grows by a half, and neither depth nor stick edge move by more than its square."""
+def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:
+    """a - c grows by a half; depth and stick edge change to second order only."""
     found = worn("paraboloid", control, part)
-    width = float(found.initial.sideways.slip_width)
+    width = float(found.initial.tangential_contact.slip_width)
     grown = (found.contact_radius - found.stick_radius)[-1] / width
     assert grown == pytest.approx(1.5, rel=max(1e-4, part), abs=0)
     assert found.stick_radius[-1] - found.stick_radius[0] <= 2 * width**2 + 1e-9 * width
     assert found.error_estimate <= 0.02
 
 
-def test_before_the_first_cycle_all_is_as_it_was() -> None:
+def test_zero_cycles_is_the_initial_state() -> None:
     found = worn("paraboloid", CONTROLS[0])
     r = np.array([0.0, 0.3, 0.74, 0.8, 0.95, 1.3])
     assert np.array_equal(found.pressure(r)[0], fields.pressure(found.initial.contact, r))
@@ -255,17 +257,17 @@ EXPLICIT_GRID = 360
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-def test_explicit_cycles_find_the_same(control: str) -> None:
-    """Against the plain scheme, whose own error is of its spacing, 1.8 a/360."""
+def test_agreement_with_the_explicit_scheme(control: str) -> None:
+    """The error of the explicit scheme is of the order of its spacing, 1.8 a/360."""
     found = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
     r = np.arange(EXPLICIT_GRID) * (1.8 / EXPLICIT_GRID)
     scene = Scene(r, r * r / 2, E_STAR, G_STAR, MU, WEAR)
-    sideways, contact = found.initial.sideways, found.initial.contact
-    force, moved = float(contact.normal_force), float(sideways.tangential_displacement)
+    tangential_contact, contact = found.initial.tangential_contact, found.initial.contact
+    force, moved = float(contact.normal_force), float(tangential_contact.tangential_displacement)
     held = {
         CONTROLS[0]: Controls(depth=float(contact.indentation_depth), displacement=moved),
         CONTROLS[1]: Controls(
-            normal_force=force, tangential_force=float(sideways.tangential_force)
+            normal_force=force, tangential_force=float(tangential_contact.tangential_force)
         ),
         CONTROLS[2]: Controls(normal_force=force, displacement=moved),
     }[control]
@@ -283,7 +285,7 @@ def test_explicit_cycles_find_the_same(control: str) -> None:
 @pytest.mark.every(2)
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", ["paraboloid", "cone"])
-def test_the_estimate_does_not_understate(kind: str, control: str) -> None:
+def test_error_within_estimate(kind: str, control: str) -> None:
     cycles = (10.0, 100.0, 1000.0, 3000.0, 1e4, 1e5)
     truth = worn(kind, control, 0.5, cycles=cycles, resolution=56, rtol=1e-7)
     c, a = float(truth.stick_radius[0]), float(truth.contact_radius[-1])
@@ -297,8 +299,8 @@ def test_the_estimate_does_not_understate(kind: str, control: str) -> None:
         assert max(errors.values()) <= found.error_estimate, (resolution, errors)
 
 
-def test_a_thousand_million_cycles_take_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
-    # Counted in what the integrator evaluates, which is what takes the time.
+def test_cost_is_independent_of_the_number_of_cycles(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Counts evaluations of the rate, which dominate the run time.
     called: list[int] = []
     rates = WearModel.rates
 
@@ -314,7 +316,7 @@ def test_a_thousand_million_cycles_take_no_longer(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-def test_a_change_of_units_rescales_the_answers(control: str) -> None:
+def test_results_scale_with_units(control: str) -> None:
     old = worn("paraboloid", control)
     length, modulus = 1e-6, 1e11
     force = modulus * length**2
@@ -324,12 +326,12 @@ def test_a_change_of_units_rescales_the_answers(control: str) -> None:
         if control == CONTROLS[0]
         else {"normal_force": float(contact.normal_force) * force}
     )
-    sideways = old.initial.sideways
+    tangential_contact = old.initial.tangential_contact
     moved: dict[str, float] = {
-        "tangential_displacement": float(sideways.tangential_displacement) * length
+        "tangential_displacement": float(tangential_contact.tangential_displacement) * length
     }
     if control == CONTROLS[1]:
-        moved = {"tangential_force": float(sideways.tangential_force) * force}
+        moved = {"tangential_force": float(tangential_contact.tangential_force) * force}
     new = evolution.solve(
         normal.solve(Paraboloid(length), E_STAR * modulus, **load),
         G_STAR * modulus,
@@ -346,11 +348,11 @@ def test_a_change_of_units_rescales_the_answers(control: str) -> None:
         ("normal_force", force),
         ("dissipated_energy", force * length),
     ):
-        # Rounding lets the integrator choose other steps.
+        # Rounding lets the integrator choose different steps.
         assert getattr(new, name) == pytest.approx(getattr(old, name) * unit, rel=1e-5, abs=0)
 
 
-def test_twice_the_wear_takes_half_the_cycles() -> None:
+def test_doubled_wear_coefficient_halves_the_cycles() -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
     slow, fast = (
         evolution.solve(
@@ -366,7 +368,7 @@ def test_twice_the_wear_takes_half_the_cycles() -> None:
     assert fast.worn_volume == pytest.approx(slow.worn_volume, rel=1e-9, abs=0)
 
 
-def test_what_does_not_slip_does_not_wear() -> None:
+def test_no_wear_without_slip() -> None:
     punch = normal.solve(FlatPunch(1.0), E_STAR, normal_force=1.0)
     ball = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
     for contact, amplitude in ((punch, 0.1), (ball, 0.0)):
@@ -400,7 +402,7 @@ def test_what_does_not_slip_does_not_wear() -> None:
         ({"g_star": [1.0, 2.0]}, ("g_star",)),
     ],
 )
-def test_what_has_no_answer_is_refused(
+def test_invalid_requests_are_rejected(
     changed: dict[str, Any], path: tuple[str | int, ...]
 ) -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
@@ -416,7 +418,7 @@ def test_what_has_no_answer_is_refused(
     assert caught.value.path == path
 
 
-def test_a_contact_that_outgrows_the_profile_is_refused_at_its_cycle() -> None:
+def test_contact_beyond_the_profile_is_rejected_with_its_cycle() -> None:
     table = Tabulated((0.0, 0.4, 0.8, 1.05), (0.0, 0.08, 0.32, 0.55125))
     contact = normal.solve(table, E_STAR, contact_radius=1.0)
     held = normal.solve(table, E_STAR, indentation_depth=float(contact.indentation_depth))
@@ -431,7 +433,7 @@ def test_a_contact_that_outgrows_the_profile_is_refused_at_its_cycle() -> None:
     assert caught.value.path == ("cycles", 2)
 
 
-def test_a_radius_beyond_the_profile_is_refused() -> None:
+def test_radius_beyond_the_profile_is_rejected() -> None:
     found = worn("sphere", CONTROLS[0])
     for field in (*map(partial(getattr, found), evolution.FIELDS), found.field_error_estimate):
         with pytest.raises(InputError) as caught:

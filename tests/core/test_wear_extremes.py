@@ -10,7 +10,7 @@ from mdr_core.wear import evolution, limit
 
 
 @pytest.mark.parametrize("cycles", [2e-309, 1e-250])
-def test_too_few_cycles_are_refused(cycles: float) -> None:
+def test_too_few_cycles_are_rejected(cycles: float) -> None:
     contact = normal.solve(Paraboloid(2.0), 2.3e9, normal_force=1e5)
     with pytest.raises(AccuracyError) as caught:
         _ = evolution.solve(
@@ -25,7 +25,7 @@ def test_too_few_cycles_are_refused(cycles: float) -> None:
     assert caught.value.path == ("cycles",)
 
 
-def test_an_annulus_that_is_not_resolved_is_refused() -> None:
+def test_unresolved_annulus_is_rejected() -> None:
     contact = normal.solve(Paraboloid(1.0), 1.0, indentation_depth=1.0)
     with pytest.raises(AccuracyError) as caught:
         evolution.solve(
@@ -40,7 +40,7 @@ def test_an_annulus_that_is_not_resolved_is_refused() -> None:
     assert caught.value.path == ("resolution",)
 
 
-def test_a_worn_annulus_without_an_outer_radius_in_doubles_is_refused() -> None:
+def test_overflowing_outer_radius_is_rejected() -> None:
     """Near full slip the depth grows without bound, and r^0.05 reaches it beyond 1e308."""
     contact = normal.solve(Power(0.0175, 0.05), 4e27, normal_force=[3.43e16])
     force = [0.9999999999 * 38.7 * 3.43e16]

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 BOUND = 1e-12
-#: A table is a sum over its knots, and has the normal query's own bound.
+#: Tables are sums over knots; their bound is that of the normal problem.
 TABLE = 1e-11
-#: What is promised of the fields.
+#: Relative error limit of the fields.
 FIELD = 1e-11
-#: Kinds whose radii carry the rounding of a real exponent, times a logarithm: their edges are
-#: known to the profile's own rounding alone.
+#: Kinds whose radii carry the rounding error of a real exponent times a logarithm; their edges are
+#: accurate to the rounding error of the profile only.
 EXPONENTS = frozenset({"power", "series"})
-#: How far the estimate may exceed the largest error that is allowed.
+#: Largest ratio of estimate to largest admissible error.
 OVERSTATED, OVERSTATED_TABLE = 45.0, 500.0
 CASES = bank.load("wear_limit")
 
@@ -75,7 +75,7 @@ def failures_of(case: dict[str, Any]) -> list[str]:
 
 
 @batched(CASES)
-def test_answers_and_their_error_estimate(cases: list[dict[str, Any]]) -> None:
+def test_results_and_error_estimates(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of)
 
 
@@ -101,12 +101,12 @@ def test_fields(cases: list[dict[str, Any]]) -> None:
 
 
 @batched(CASES[::5])
-def test_a_single_amplitude_is_answered_like_one_of_many(cases: list[dict[str, Any]]) -> None:
+def test_single_amplitude_equals_one_of_many(cases: list[dict[str, Any]]) -> None:
     for case in cases:
         found, alone = solved(case), solved(case, case["given"][0])
         for name in case["expected"]:
             value = getattr(alone, name)
             assert value.shape == ()
-            # The same steps, perhaps summed in another order.
+            # The same steps, possibly summed in a different order.
             expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-13, abs=0)
             assert float(value) == expected, (case["id"], name)

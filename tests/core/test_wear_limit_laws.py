@@ -1,4 +1,4 @@
-"""Laws of the wear limit: the book's closed forms, a fixed point, and what may never happen."""
+"""Laws of the wear limit: the book's closed forms, a fixed point, and inequalities."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from mdr_core.quadrature import gauss_legendre
 from mdr_core.wear import limit
 
 E_STAR, G_STAR, MU = 1.0, 0.8, 0.5
-#: Each with a contact radius of 1, and wear that ends well inside the profile.
+#: Each with contact radius 1 and a worn annulus well inside the profile.
 PROFILES: tuple[Profile, ...] = (
     Paraboloid(1.3),
     Cone(0.4),
@@ -64,8 +64,8 @@ def kind_of(profile: Profile) -> str:
     return profile.kind
 
 
-def held_depth(profile: Profile, displacement: Any, depth: float | None = None) -> Any:
-    """At a contact radius of 1, unless a depth is given; the amplitude in parts of u_max."""
+def constant_depth_limit(profile: Profile, displacement: Any, depth: float | None = None) -> Any:
+    """Contact radius 1 unless a depth is given; the amplitude is a fraction of u_max."""
     d = float(profile.g(np.array([1.0]))[0]) if depth is None else depth
     contact = normal.solve(profile, E_STAR, indentation_depth=d, rtol=1e-13)
     amplitude = np.asarray(displacement) * (MU * E_STAR / G_STAR * d)
@@ -79,7 +79,7 @@ def codes(wear: limit.LimitingWear) -> set[str]:
 @pytest.mark.parametrize("part", [0.999, 0.75, 0.3, 0.02])
 def test_equations_5_85_to_5_88_paraboloid(part: float) -> None:
     depth, big = 0.3, 1.3
-    wear = held_depth(Paraboloid(big), part, depth)
+    wear = constant_depth_limit(Paraboloid(big), part, depth)
     with mp.workdps(40):
         d, R = mpf(depth), mpf(big)
         c = mp.sqrt(R * d * (1 - mpf(part)))
@@ -93,7 +93,7 @@ def test_equations_5_85_to_5_88_paraboloid(part: float) -> None:
         phi, w = mp.acos(c / outer), mp.sqrt(outer**2 - c**2)
         volume = 2 * d * (outer**2 * phi - c * w)
         volume -= (outer**4 * phi + c * (outer**2 - 2 * c**2) * w) / (2 * R)
-        # Eq. (5.87) is the same in units of a and d.
+        # Eq. (5.87) holds in units of a and d.
         scaled = shape(mpf(float(a))) / d
     assert float(wear.stick_radius) == pytest.approx(float(c), rel=1e-13, abs=0)
     assert float(wear.wear_radius) == pytest.approx(float(outer), rel=1e-14, abs=0)
@@ -106,18 +106,18 @@ def test_equations_5_85_to_5_88_paraboloid(part: float) -> None:
 
 
 def test_equation_5_89_the_wear_radius_without_a_stick_zone() -> None:
-    wear = held_depth(Paraboloid(1.3), [1 - 1e-12, 1.0, 2.0], 0.3)
+    wear = constant_depth_limit(Paraboloid(1.3), [1 - 1e-12, 1.0, 2.0], 0.3)
     ratio = wear.wear_radius / wear.first.normal.contact_radius
     assert ratio == pytest.approx([2**0.5] * 3, rel=1e-6, abs=0)
     assert ratio[1:] == pytest.approx([2**0.5] * 2, rel=1e-15, abs=0)
 
 
-def test_equation_5_90_and_its_notice() -> None:
+def test_equation_5_90_and_its_warning() -> None:
     contact = normal.solve(Paraboloid(1.0), 1.0, normal_force=4 / 3)
     wear = limit.solve(contact, 1.0, 1.0, tangential_displacement=0.75)
     d, w = float(wear.indentation_depth), 0.75
     assert 4 / 3 * (d - w) ** 0.5 * (d + w / 2) == pytest.approx(4 / 3, rel=1e-13, abs=0)
-    # Known numbers of the closed form: the path's own limit is another.
+    # Values of the closed form; the limit of the load path is a different one.
     assert (round(float(wear.stick_radius), 3), round(d, 3)) == (0.648, 1.169)
     assert "path_dependent" in codes(wear)
 
@@ -125,16 +125,16 @@ def test_equation_5_90_and_its_notice() -> None:
 @pytest.mark.parametrize("profile", PROFILES, ids=kind_of)
 @pytest.mark.parametrize("part", [0.9, 0.3])
 def test_the_limit_is_a_fixed_point(profile: Profile, part: float) -> None:
-    """Eq. (5.74) of the worn shape is g for x < c and d beyond: what is added to g is d - g.
+    """Eq. (5.74) of the worn shape is g for x < c and d beyond, so the wear adds d - g to g.
 
-    In s = sqrt(r^2 - c^2) the worn depth is smooth between breaks, and its transform is
-    x int (dW/ds)(X sin t) dt, X = sqrt(x^2 - c^2).
+    In s = sqrt(r^2 - c^2) the worn depth is smooth between breaks, and its transform is x int
+    (dW/ds)(X sin t) dt, X = sqrt(x^2 - c^2).
     """
-    wear = held_depth(profile, part)
+    wear = constant_depth_limit(profile, part)
     c, outer, d = (float(v) for v in (wear.stick_radius, wear.wear_radius, wear.indentation_depth))
     breaks = [float(b) for b in (*profile.breaks, *getattr(profile, "r", ()))]
     end = min([b for b in breaks if b > c * (1 + 1e-9)] + [outer])
-    # Polynomials in s resolve sqrt(c^2 + s^2) no further.
+    # Polynomials in s resolve sqrt(c^2 + s^2) only up to this.
     S = min(((end - c) * (end + c)) ** 0.5, 3 * c)
 
     def worn(s: Any) -> Any:
@@ -151,7 +151,7 @@ def test_the_limit_is_a_fixed_point(profile: Profile, part: float) -> None:
 
 @pytest.mark.parametrize("profile", PROFILES, ids=kind_of)
 def test_the_volume_is_the_integral_of_the_worn_depth(profile: Profile) -> None:
-    wear = held_depth(profile, [0.97, 0.5, 1e-2, 1e-4])
+    wear = constant_depth_limit(profile, [0.97, 0.5, 1e-2, 1e-4])
     breaks = [float(b) for b in (*profile.breaks, *getattr(profile, "r", ()))]
     nodes, weights = gauss_legendre(80)
     for index, volume in enumerate(wear.worn_volume):
@@ -159,20 +159,22 @@ def test_the_volume_is_the_integral_of_the_worn_depth(profile: Profile) -> None:
         stops = [c, *sorted(b for b in breaks if c < b < outer), outer]
         total = 0.0
         for low, high in pairwise(stops):
-            # r^2 = low^2 + v^2 takes out the root at c and at each break.
+            # The substitution r^2 = low^2 + v^2 removes the root at c and at each break.
             top = ((high - low) * (high + low)) ** 0.5
             v = top * (1 + nodes) / 2
             depth = wear.worn_depth(np.hypot(low, v))[index]
             total += float(np.pi * top * (weights @ (depth * v)))
-        # The rounding error of r is that of the width r - c of a narrow annulus.
+        # The rounding error of r affects the width r - c of a narrow annulus.
         lost = 1e-15 * c / (outer - c)
         assert total == pytest.approx(float(volume), rel=1e-8 + 10 * lost, abs=0)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=kind_of)
-def test_a_narrow_annulus_is_half_as_wide_again_as_the_slip_annulus(profile: Profile) -> None:
-    """g rises linearly over it: w = (3/2)(d - g(c))/g'(c), V = (16/15) sqrt(2c) w^(3/2) (d - g)."""
-    wear = held_depth(profile, [1e-6, 1e-12, 1e-100])
+def test_narrow_worn_annulus_is_half_wider_than_the_slip_annulus(profile: Profile) -> None:
+    """g is linear over the annulus: w = (3/2)(d - g(c))/g'(c), V = (16/15) sqrt(2c) w^(3/2) (d -
+    g).
+    """
+    wear = constant_depth_limit(profile, [1e-6, 1e-12, 1e-100])
     w, c, step = wear.wear_width, wear.stick_radius, wear.stuck.step
     assert w / wear.first.slip_width == pytest.approx(1.5, rel=1e-4, abs=0)
     volume = 16 / 15 * np.sqrt(2 * c) * w**1.5 * step
@@ -187,7 +189,7 @@ def test_a_narrow_annulus_is_half_as_wide_again_as_the_slip_annulus(profile: Pro
     places=st.lists(st.just(0.0) | st.floats(1e-100, 1.7), min_size=1, max_size=20),
 )
 def test_wear_never_adds_material(profile: Profile, part: float, places: list[float]) -> None:
-    wear = held_depth(profile, part)
+    wear = constant_depth_limit(profile, part)
     edge, outer = float(wear.stick_radius), float(wear.wear_radius)
     r = np.array([*places, edge, outer, *(edge + (outer - edge) * np.linspace(0, 1, 9))])
     worn = wear.worn_depth(r)
@@ -202,7 +204,7 @@ def test_wear_never_adds_material(profile: Profile, part: float, places: list[fl
 
 @pytest.mark.parametrize(("control", "amplitude"), PAIRS)
 @pytest.mark.parametrize("length", [2.0**-30, 2.0**10])
-def test_a_change_of_units_rescales(control: str, amplitude: str, length: float) -> None:
+def test_results_scale_with_units(control: str, amplitude: str, length: float) -> None:
     pressure = 2.0**20
 
     def limit_in(unit: float, modulus: float) -> limit.LimitingWear:
@@ -231,7 +233,7 @@ def test_a_change_of_units_rescales(control: str, amplitude: str, length: float)
 
 @pytest.mark.parametrize(("control", "amplitude"), PAIRS)
 def test_forces_are_those_of_the_stick_zone(control: str, amplitude: str) -> None:
-    """The pressure of the limit integrates to F_N, and F_x is carried by 2 G* c u_x."""
+    """The limiting pressure integrates to F_N, and the stick zone carries F_x = 2 G* c u_x."""
     load = {"indentation_depth": 0.2, "normal_force": 0.3}[control]
     size = {"tangential_displacement": 0.03, "tangential_force": 0.03}[amplitude]
     contact = normal.solve(Paraboloid(1.3), E_STAR, **{control: load})
@@ -246,6 +248,6 @@ def test_forces_are_those_of_the_stick_zone(control: str, amplitude: str) -> Non
     assert sideways == pytest.approx(float(wear.tangential_force), rel=1e-14, abs=0)
     assert float(getattr(wear, control)) == load
     assert float(getattr(wear, amplitude)) == size
-    # No point of the stick zone passes the limit of friction: mu p >= tau = F_x/(2 pi c s).
+    # No point of the stick zone exceeds the friction limit: mu p >= tau = F_x/(2 pi c s).
     tau = float(wear.tangential_force) / (2 * np.pi * c * c * np.cos(turn))
     assert (MU * p >= tau * (1 - 1e-12)).all()

@@ -1,4 +1,4 @@
-"""Where nothing wears, where everything does, and what has no limit: each answered as it is."""
+"""Limiting states without wear, with wear in full slip, and without a finite limit."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def codes(wear: limit.LimitingWear) -> set[str]:
     return {notice.code for notice in wear.warnings}
 
 
-ANSWERS = (
+RESULTS = (
     "stick_radius",
     "wear_width",
     "wear_radius",
@@ -49,7 +49,7 @@ ANSWERS = (
 
 
 def values(wear: limit.LimitingWear) -> dict[str, Any]:
-    found = {name: getattr(wear, name) for name in ANSWERS}
+    found = {name: getattr(wear, name) for name in RESULTS}
     assert not any(np.isnan(value).any() for value in found.values())
     return found
 
@@ -57,8 +57,8 @@ def values(wear: limit.LimitingWear) -> dict[str, Any]:
 @pytest.mark.parametrize("load", [{"indentation_depth": 0.3}, {"normal_force": 0.3}])
 @pytest.mark.parametrize("name", ["tangential_displacement", "tangential_force"])
 @pytest.mark.parametrize("profile", [Paraboloid(R), RoundedPunch(0.5, 1.7), FlatPunch(0.7)])
-def test_without_slip_nothing_wears(profile: Profile, load: dict[str, Any], name: str) -> None:
-    # A flat punch sticks wholly up to full slip.
+def test_no_wear_without_slip(profile: Profile, load: dict[str, Any], name: str) -> None:
+    # A flat punch is in full stick up to full slip.
     sizes = [0.0, 1e-3] if profile.kind == "flat_punch" else [0.0, 0.0]
     wear = worn(profile, load, {name: sizes})
     first, found = wear.first.normal, values(wear)
@@ -81,8 +81,10 @@ def codes_of(contact: normal.NormalContact) -> set[str]:
     return {notice.code for notice in contact.warnings}
 
 
-def test_a_held_depth_in_full_slip_wears_until_nothing_touches() -> None:
-    """f = d up to where the first shape has that height: r^2 = 2 R d, and V = pi R d^2."""
+def test_constant_depth_in_full_slip_wears_to_separation() -> None:
+    """f = d up to the radius at which the initial shape has that height: r^2 = 2 R d, V = pi R
+    d^2.
+    """
     d = 0.3
     wear = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_displacement": [0.1, 0.5]})
     found = values(wear)
@@ -135,7 +137,7 @@ def test_wear_under_a_constant_force_in_full_slip_is_unbounded(profile: Profile)
 
 @pytest.mark.parametrize("profile", [Paraboloid(R), Cone(0.4), RoundedPunch(0.5, 1.7)])
 @pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
-def test_without_a_load_nothing_wears(profile: Profile, control: str) -> None:
+def test_no_wear_without_load(profile: Profile, control: str) -> None:
     wear = worn(profile, {control: [0.0, 0.2]}, {"tangential_displacement": 0.01})
     found = values(wear)
     assert wear.regime[0] == "stick"
@@ -143,10 +145,10 @@ def test_without_a_load_nothing_wears(profile: Profile, control: str) -> None:
     assert found["worn_volume"][1] > 0
 
 
-def test_the_limit_of_a_held_depth_and_force_is_the_largest_stick_zone() -> None:
+def test_limit_at_constant_depth_and_force_is_the_largest_stick_zone() -> None:
     """c (d - g(c)) of a truncated cone rises, falls and rises again towards its flat.
 
-    Of three stick zones that carry the force, wear comes to the outermost first.
+    Of three stick zones that carry the force, wear reaches the outermost one first.
     """
     profile, d = TruncatedCone(0.2, 0.35), 1.0
     c = np.linspace(0.2000001, 1.9, 4001)
@@ -161,8 +163,8 @@ def test_the_limit_of_a_held_depth_and_force_is_the_largest_stick_zone() -> None
     assert share == pytest.approx(size, rel=1e-13, abs=0)
 
 
-def test_a_force_that_the_worn_contact_cannot_carry() -> None:
-    """Partial slip at first; but c (d - g(c)) is at most (2/3) d a/sqrt(3) for a paraboloid."""
+def test_force_beyond_the_capacity_of_the_worn_contact() -> None:
+    """Partial slip initially, but c (d - g(c)) is at most (2/3) d a/sqrt(3) for a paraboloid."""
     d, a = 0.3, (R * 0.3) ** 0.5
     most = 2 * 0.5 * 2 / 3 * d * a / 3**0.5
     good = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_force": most * (1 - 1e-9)})
@@ -179,7 +181,7 @@ TABLE = Tabulated([0.0, 0.5, 0.9, 1.3], [0.0, 0.1, 0.35, 0.8])
 @pytest.mark.parametrize(
     ("profile", "depth"), [(Sphere(1.0), 1.2), (Ellipsoid(1.0, 0.2), 0.3), (TABLE, 1.1)]
 )
-def test_an_annulus_beyond_the_profile_s_end_is_refused(profile: Profile, depth: float) -> None:
+def test_worn_annulus_beyond_the_profile_is_rejected(profile: Profile, depth: float) -> None:
     largest = 0.5 / 0.8 * depth
     amplitudes = {"tangential_displacement": [largest * 1e-3, largest * 0.99]}
     with pytest.raises(InputError) as failure:
@@ -220,7 +222,7 @@ def test_an_annulus_beyond_the_profile_s_end_is_refused(profile: Profile, depth:
         ),
     ],
 )
-def test_refusals_name_what_is_wrong(
+def test_errors_name_their_cause(
     load: dict[str, Any], amplitude: dict[str, Any], path: tuple[Any, ...]
 ) -> None:
     with pytest.raises(InputError) as failure:
@@ -228,7 +230,7 @@ def test_refusals_name_what_is_wrong(
     assert failure.value.path == path
 
 
-def test_arrays_of_profiles_and_bad_radii_are_refused() -> None:
+def test_profile_arrays_and_invalid_radii_are_rejected() -> None:
     with pytest.raises(InputError, match="profile"):
         worn(
             Paraboloid(np.array([1.0, 2.0])),
@@ -245,7 +247,7 @@ def test_arrays_of_profiles_and_bad_radii_are_refused() -> None:
         wear.limiting_profile([0.5, 1.5])
 
 
-def test_the_grid_holds_every_edge() -> None:
+def test_grid_includes_every_edge() -> None:
     wear = worn(
         RoundedPunch(0.5, 1.7),
         {"indentation_depth": 0.2},
@@ -261,7 +263,7 @@ def test_the_grid_holds_every_edge() -> None:
         wear.grid(5)
 
 
-def test_steep_and_needle_like_powers() -> None:
+def test_extreme_exponents() -> None:
     for exponent in (0.05, 0.2, 60.0, 200.0):
         profile = Power(1.0, exponent)
         depth = float(profile.g(np.array([0.7]))[0])
@@ -274,15 +276,15 @@ def test_steep_and_needle_like_powers() -> None:
 
 
 @pytest.mark.parametrize("slope", [1e-3, 1.0, 3.0])
-def test_an_annulus_may_pass_the_sphere_that_a_tip_is_cut_from(slope: float) -> None:
-    """g' of the tip has a pole at the sphere's equator, which the cone begins before."""
+def test_worn_annulus_beyond_the_sphere_of_a_tip(slope: float) -> None:
+    """g' of the tip has a pole at the sphere's equator; the cone begins before it."""
     profile = SphericalTipCone(slope, 1.0)
     depth = float(profile.g(np.array([2.5]))[0])
     sizes = 0.5 / 0.8 * depth * np.array([0.1, 0.5, 0.9])
     wear = worn(profile, {"indentation_depth": depth}, {"tangential_displacement": sizes})
     assert (wear.wear_radius > 2.5).all()
     assert (np.diff(wear.wear_radius) > 0).all()
-    # A stick edge on the tangent radius itself, or a rounding beside it.
+    # A stick edge on the tangent radius, or within rounding error of it.
     b = float(np.asarray(profile.tangent_radius))
     for c in (b, np.nextafter(b, 0.0), np.nextafter(b, 9.0)):
         size = 0.5 / 0.8 * (depth - float(profile.g(np.array([c]))[0]))

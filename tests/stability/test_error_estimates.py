@@ -14,7 +14,7 @@ import pytest
 
 from mdr_core import history, normal
 from tests.core.comparison import EPS, profile_from, relative_error
-from tests.core.test_history_bank import material, misses
+from tests.core.test_history_bank import material, scaled_errors
 from tests.core.test_tangential_bank import solved as pushed
 from tests.core.test_wear_limit_bank import solved as worn
 from tests.oracles import bank
@@ -72,7 +72,7 @@ def of_paths() -> list[Measured]:
     for case in bank.load("history_paths"):
         names = ("indentation_depth", "tangential_displacement")
         followed = history.solve(*material(case), **{name: case[name] for name in names})
-        errors = misses(case, followed)
+        errors = scaled_errors(case, followed)
         computed.append(Measured(str(case["id"]), followed.error_estimate, max(errors.values())))
     return computed
 
