@@ -108,9 +108,7 @@ def test_dissipated_energy_never_decreases(scene: Scene, path: list[tuple[float,
 @repeatable
 @given(scenes(), loops)
 def test_repeated_loop_closes_and_dissipates(scene: Scene, loop: list[tuple[float, float]]) -> None:
-    """Each load step clips the springs' loads, and clipping is idempotent: the second round
-    repeats.
-    """
+    """Each load step clips the springs' loads. Clipping is idempotent: the second round repeats."""
     d, u, depth = controls(scene, loop * 3)
     found = solve(scene, d, u)
     count = len(loop)

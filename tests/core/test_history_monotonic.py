@@ -1,6 +1,4 @@
-"""Histories of a single tangential load against the tangential query, and cycles against a
-quarter.
-"""
+"""Single tangential loads: histories against the tangential query, cycles against a quarter."""
 
 from __future__ import annotations
 

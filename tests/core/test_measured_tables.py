@@ -140,9 +140,7 @@ def test_contact_smaller_than_the_flat_is_rejected() -> None:
 
 
 def test_domain_ends_where_the_contact_is_not_a_disc() -> None:
-    """f = 1 - exp(-r^2) has g = 2 x D(x) with Dawson's integral; its maximum is at x =
-    1.50197526668.
-    """
+    """f = 1 - exp(-r^2): g = 2 x D(x) with Dawson's integral, largest at x = 1.50197526668."""
     r = np.linspace(0, 2.0, 401)
     profile = Tabulated(r, -np.expm1(-r * r))
     # The radius at which g(2) is first reached [mpmath, findroot].

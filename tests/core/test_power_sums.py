@@ -132,9 +132,7 @@ def test_largest_admissible_cancellation(exponents: tuple[float, float, float]) 
 @pytest.mark.every(3)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-10])
 def test_displacement_outside_a_series_of_small_and_large_powers(rtol: float) -> None:
-    """Meets the tolerance at no more than the cost of its terms: subpanels follow each power's
-    scale.
-    """
+    """Meets the tolerance at no more than the cost of its terms."""
     a, radii = 1.0, np.array([1.0, 1.001, 1.5, 4.0])
     contact = normal.solve(series(*MIXED), 1.0, contact_radius=a)
     with counted() as count:

@@ -153,9 +153,7 @@ def test_contact_radius_that_rounds_to_the_cap_radius() -> None:
 
 
 def test_force_at_the_cap_radius() -> None:
-    """For a small slope discontinuity the force hardly grows beyond the cap radius, but reaches
-    it.
-    """
+    """For a small slope discontinuity the force hardly grows beyond the cap radius."""
     profile = profiles.CappedParaboloid(
         0.25083630309819094, 0.07425340857930318, 0.0742534051155459
     )
@@ -374,9 +372,7 @@ def test_stresses_of_a_contact_edge_next_to_its_tip(part: float) -> None:
 
 
 def test_polyline_after_arcs_has_no_negative_segment() -> None:
-    """The polyline once began at a rounded tangential coordinate, with a last segment of negative
-    length.
-    """
+    """The last segment of the polyline once had a negative length, because its start was rounded."""
     way = history.solve(
         profiles.Paraboloid(5e16),
         3e16,

@@ -74,9 +74,7 @@ def first_order_error(slope: Any, pressure: Any, k: float) -> float:
 
 
 def test_half_space_error() -> None:
-    """First order in the slope: Hay, Bolshakov and Pharr (1999), and the independent derivation
-    above.
-    """
+    """First order in the slope: Hay, Bolshakov and Pharr (1999), and the derivation above."""
     nu = 0.3
     k = (1 - 2 * nu) / (4 * (1 - nu))
     beta = bodies(nu).dundurs_beta

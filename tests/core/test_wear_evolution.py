@@ -198,9 +198,7 @@ def test_wear_never_adds_material(kind: str, control: str) -> None:
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
 def test_worn_depth_has_a_single_maximum(control: str) -> None:
-    """The worn depth increases from the stick edge to one maximum and decreases to the contact
-    edge.
-    """
+    """From the stick edge it increases to one maximum, then decreases to the contact edge."""
     cycles = tuple(np.geomspace(10.0, 1e5, 25).tolist())
     found = worn("paraboloid", control, cycles=cycles)
     for row, c, a in zip(

@@ -171,9 +171,7 @@ def test_the_volume_is_the_integral_of_the_worn_depth(profile: Profile) -> None:
 
 @pytest.mark.parametrize("profile", PROFILES, ids=kind_of)
 def test_narrow_worn_annulus_is_half_wider_than_the_slip_annulus(profile: Profile) -> None:
-    """g is linear over the annulus: w = (3/2)(d - g(c))/g'(c), V = (16/15) sqrt(2c) w^(3/2) (d -
-    g).
-    """
+    """For linear g: w = (3/2)(d - g(c))/g'(c), V = (16/15) sqrt(2c) w^(3/2) (d - g)."""
     wear = constant_depth_limit(profile, [1e-6, 1e-12, 1e-100])
     w, c, step = wear.wear_width, wear.stick_radius, wear.stuck.step
     assert w / wear.first.slip_width == pytest.approx(1.5, rel=1e-4, abs=0)

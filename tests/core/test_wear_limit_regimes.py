@@ -82,9 +82,7 @@ def codes_of(contact: normal.NormalContact) -> set[str]:
 
 
 def test_constant_depth_in_full_slip_wears_to_separation() -> None:
-    """f = d up to the radius at which the initial shape has that height: r^2 = 2 R d, V = pi R
-    d^2.
-    """
+    """f = d at the outer radius: r^2 = 2 R d, V = pi R d^2."""
     d = 0.3
     wear = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_displacement": [0.1, 0.5]})
     found = values(wear)

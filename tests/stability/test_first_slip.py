@@ -97,9 +97,7 @@ def energy() -> Curve:
 
 
 def exact_loss(force: mpf) -> mpf:
-    """(4 mu^2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2): a quarter of the loss per cycle, E* = G* =
-    1.
-    """
+    """(4 mu^2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2): a quarter of the cycle's, E* = G* = 1."""
     a, c = exact_edges(force)
     return 4 * mpf(MU) ** 2 / (15 * mpf(BIG) ** 2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)
 

@@ -26,9 +26,7 @@ def cone_force(u: mpf) -> mpf:
 
 
 def springs(path: Array, dtype: type = np.float64) -> Array:
-    """F_x at every step of a discrete foundation under a cone, whose springs are clipped one by
-    one.
-    """
+    """F_x at every step of a discrete foundation under a cone, clipping each spring separately."""
     a = 2 * DEPTH / (np.pi * SLOPE)
     x = a * (np.arange(SPRINGS) + 0.5) / SPRINGS
     limit = (MU * (DEPTH - np.pi / 2 * SLOPE * x)).astype(dtype)

@@ -158,9 +158,7 @@ def pressure(fraction: float) -> Curve:
 
 
 def outside(fraction: float) -> Curve:
-    """Surface displacement outside the contact, r = fraction R: the pole of g' is next to the
-    edge.
-    """
+    """Displacement outside the contact, r = fraction R: the pole of g' is next to the edge."""
     r = fraction * BIG
 
     def ours(a: float) -> float:
