@@ -372,7 +372,7 @@ def test_stresses_of_a_contact_edge_next_to_its_tip(part: float) -> None:
 
 
 def test_polyline_after_arcs_has_no_negative_segment() -> None:
-    """The last segment of the polyline once had a negative length, because its start was rounded."""
+    """The last segment of the polyline once had a negative length, due to its rounded start."""
     way = history.solve(
         profiles.Paraboloid(5e16),
         3e16,
