@@ -4,6 +4,8 @@ import { download } from "./requests.js";
 import { format, unit } from "./units.js";
 
 const figures = new Map();
+// Plotly runs after the first requests have been sent, and before this event.
+const plotlyLoaded = new Promise((done) => addEventListener("DOMContentLoaded", done, { once: true }));
 let linking = false;
 
 function theme() {
@@ -206,6 +208,7 @@ export function redraw() {
  * `actions.showRequest` and `actions.saveCsv` are called with the name of a chart's request.
  */
 export async function draw(container, specs, scene, actions) {
+  await plotlyLoaded;
   for (const [id, figure] of figures) {
     if (specs.some((spec) => spec.id === id)) continue;
     Plotly.purge(figure.plot);
