@@ -1,8 +1,8 @@
-# Every target runs in .venv, made from the locks by the newest supported Python that is found (or
+# Every target runs in .venv, made from the locks by the first supported Python that is found (or
 # PYTHON=). Hashes are checked, so that results are the same on every machine.
 HOST ?= 127.0.0.1
 PORT ?= 8000
-PYTHONS := python3.14 python3.13 python3.12 python3.11
+PYTHONS := python3.11 python3.12 python3.13 python3.14
 # A name on the path may be a shim of a Python that is not selected, or lack the module venv: try it.
 PYTHON ?= $(shell for python in $(PYTHONS); do \
 	$$python -c 'import ensurepip, venv' 2>/dev/null && echo $$python && break; done)

@@ -20,6 +20,7 @@ router = APIRouter(include_in_schema=False)
 
 # The version in the name lets browsers keep the library until another one is installed.
 _PLOTLY: Final = f"plotly-{version('plotly')}.min.js"
+_OWN: Final = "mdr-contact"
 _MEDIA_TYPES: Final = {
     "css": "text/css",
     "html": "text/html",
@@ -99,10 +100,10 @@ async def file(name: str, request: Request) -> Response:
 @router.get("/readme")
 async def readme() -> Response:
     """Return the introduction to the service."""
-    return PlainTextResponse(distribution("mdr").metadata.json["description"])
+    return PlainTextResponse(distribution(_OWN).metadata.json["description"])
 
 
 @router.get("/license")
 async def license_() -> Response:
     """Return the licence of the service."""
-    return PlainTextResponse(distribution("mdr").read_text("licenses/LICENSE"))
+    return PlainTextResponse(distribution(_OWN).read_text("licenses/LICENSE"))
