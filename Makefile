@@ -15,7 +15,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi dist lock clean
+.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi verification dist lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -81,6 +81,10 @@ pages: .venv/development
 
 figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py
+
+# Published cases, each sent to the service; fails if one misses its bound.
+verification: .venv/development
+	$(BIN)/python -m verification docs/verification.md
 
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json

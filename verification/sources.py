@@ -1,0 +1,35 @@
+"""Sources of the cases, by their keys; "as in" names where the values or equations were read."""
+
+from typing import Final
+
+SOURCES: Final = {
+    "hertz": "H. Hertz, J. reine angew. Math. 92 (1882) 156-171; Johnson 1985, (4.22)-(4.24)",
+    "boussinesq": "J. Boussinesq, 1885; Johnson 1985, section 3.4",
+    "huber": "M. T. Huber, Ann. Phys. 319 (1904) 153-163, as in ContactMechanics",
+    "cattaneo": (
+        "C. Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342-348; R. D. Mindlin, J. Appl. Mech. 16 "
+        "(1949) 259-268"
+    ),
+    "love": "A. E. H. Love, Q. J. Math. 10 (1939) 161-175",
+    "mindlin-deresiewicz": "R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327-344",
+    "galin": "L. A. Galin, Contact Problems in the Theory of Elasticity, 1953",
+    "sneddon": "I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57",
+    "cremers": "C. J. Cremers, R. C. Birkebak, Appl. Opt. 5 (1966) 1057-1064, as in PyAbel",
+    "hamilton": "G. M. Hamilton, Proc. Inst. Mech. Eng. 197C (1983) 53-59, as in ContactMechanics",
+    "johnson": "K. L. Johnson, Contact Mechanics, Cambridge University Press 1985",
+    "briscoe": (
+        "B. J. Briscoe, K. S. Sebastian, M. J. Adams, J. Phys. D 27 (1994) 1156-1162, as in AtomicJ"
+    ),
+    "kalker": "J. J. Kalker 1990, section 5.2.1.1: example `cattaneo` of E. Vollebregt's CONTACT",
+    "buie": (
+        "M. J. Buie et al., J. Quant. Spectrosc. Radiat. Transf. 55 (1996) 231-243, as in PyAbel"
+    ),
+    "sun": "Y. Sun, B. Akhremitchev, G. C. Walker, Langmuir 20 (2004) 5837-5845, as in AtomicJ",
+    "chung-ooi": "Y. C. Chung, J. Y. Ooi, Granular Matter 13 (2011) 643-656, parameters as in YADE",
+    "mdr-5": (
+        "V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and "
+        "Friction, Springer 2015, chapter 5"
+    ),
+    "contactmechanics": "L. Pastewka et al., ContactMechanics, test_reference_solutions.py",
+    "ring-elements": "Numerical solution of its own, with bounds: verification/ring_elements.py",
+}
