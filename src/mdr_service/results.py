@@ -143,7 +143,7 @@ def singular(
             continue
         at = radius[flags & np.isinf(np.atleast_2d(values[name])).any(axis=0)]
         if at.size:
-            listed = ", ".join(map(repr, at[:_LISTED].tolist()))
+            listed = ", ".join(repr(r).removesuffix(".0") for r in at[:_LISTED].tolist())
             more = f" and {at.size - _LISTED} more" if at.size > _LISTED else ""
             found.append(Notice("singular", f"{name} is infinite at radius {listed}{more}"))
     return found
