@@ -1,14 +1,16 @@
 """Serve the least that a FastAPI service can do: `python bare_endpoint.py PORT`.
 
 It validates the body of `/v1/normal` or `/v1/stress` by the same model and returns constants,
-with the same event loop and parser as the service.
+with the same event loop and parser as the service; `/small` takes any body by a model of its own.
 """
 
 import sys
+from typing import Any
 
 import orjson
 import uvicorn
 from fastapi import FastAPI, Response
+from pydantic import BaseModel
 from stress_wire_ratio import QUERY
 
 from mdr_service.queries import QUERIES
@@ -20,6 +22,14 @@ CONSTANT = {"contact_radius": 1.0}
 _STRESS = StressQuery.model_validate(QUERY)
 _RESULT = QUERIES["stress"].result(_STRESS, QUERIES["stress"].solve(_STRESS))
 FIELDS = {name: _RESULT[name] for name in QUERY["quantities"]}
+
+
+class Small(BaseModel):
+    """Members that every query has."""
+
+    profile: dict[str, Any]
+    material: dict[str, Any]
+
 
 app = FastAPI(openapi_url=None)
 
@@ -35,10 +45,16 @@ async def declared(query: NormalQuery) -> dict[str, float]:
     return CONSTANT
 
 
+@app.post("/small")
+async def small(query: Small) -> dict[str, float]:
+    return CONSTANT
+
+
 @app.post("/stress")
 async def stress(query: StressQuery) -> Response:
+    fields = {name: rows[:, : query.radii] for name, rows in FIELDS.items()}
     return Response(
-        orjson.dumps(FIELDS, option=orjson.OPT_SERIALIZE_NUMPY), media_type="application/json"
+        orjson.dumps(fields, option=orjson.OPT_SERIALIZE_NUMPY), media_type="application/json"
     )
 
 

@@ -14,6 +14,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import beneath_ratio
 import core_ratios
 import history_ratio
+import small_queries
 import stress_wire_ratio
 import wear_ratio
 import wire_ratio
@@ -28,6 +29,7 @@ def main() -> None:
         *wear_ratio.rows(),
         *wire_ratio.rows(),
         *stress_wire_ratio.rows(),
+        *small_queries.rows(),
     ]
     lines = [
         (

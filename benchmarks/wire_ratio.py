@@ -8,6 +8,7 @@ asked in turn, so that one is at work while the other waits.
 from __future__ import annotations
 
 import asyncio
+import itertools
 import json
 import shutil
 import socket
@@ -115,7 +116,7 @@ def load_generator(body: str) -> Iterator[Load]:
 
         def _asyncio_client(target: str) -> float:
             """By a client of one's own, which costs as much itself as a small server."""
-            return asyncio.run(_drive(target, body))
+            return rate(target, itertools.repeat(body), ROUND_SECONDS)
 
         yield _asyncio_client
         return
@@ -141,19 +142,24 @@ def load_generator(body: str) -> Iterator[Load]:
         yield _wrk
 
 
-async def _drive(target: str, body: str) -> float:
+def rate(target: str, bodies: Iterator[str], seconds: float) -> float:
+    """Requests/s by a client in this process that sends one body after the other."""
+    return asyncio.run(_drive(target, bodies, seconds))
+
+
+async def _drive(target: str, bodies: Iterator[str], seconds: float) -> float:
     start = time.perf_counter()
-    end = start + ROUND_SECONDS
-    counts = await asyncio.gather(*(_ask(target, body, end) for _ in range(CONNECTIONS)))
+    end = start + seconds
+    counts = await asyncio.gather(*(_ask(target, bodies, end) for _ in range(CONNECTIONS)))
     return sum(counts) / (time.perf_counter() - start)
 
 
-async def _ask(target: str, body: str, end: float) -> int:
-    port, request = _request(target, body)
-    reader, writer = await asyncio.open_connection(HOST, port)
+async def _ask(target: str, bodies: Iterator[str], end: float) -> int:
+    port, _ = target.split("/", 1)
+    reader, writer = await asyncio.open_connection(HOST, int(port))
     count = 0
     while time.perf_counter() < end:
-        writer.write(request)
+        writer.write(_request(target, next(bodies))[1])
         head = await reader.readuntil(b"\r\n\r\n")
         length = head.lower().split(b"content-length:", 1)[1].split(b"\r\n", 1)[0]
         await reader.readexactly(int(length))

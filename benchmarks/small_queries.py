@@ -1,0 +1,151 @@
+"""Requests per second of small queries of every kind of profile, against a bare endpoint.
+
+The bare endpoint takes the same body by a model of its own, which looks no further than the names
+of its members, and returns a constant; for `/v1/stress` it validates the body as the service does
+and writes arrays of the answer's size. Both are asked in turn, as in `wire_ratio`. A table is
+asked for the first time in every request, or again and again.
+
+`python small_queries.py [KIND ...]` prints the rows of some kinds; `ratios.py` has all of them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING, Any
+
+import measure
+import numpy as np
+import wire_ratio
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.core.evaluations import PROFILES
+
+from mdr_service.dispatch import parse
+from mdr_service.queries import QUERIES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+RADII, LEGS, POINTS, END = 1000, 10, 200, 1.25
+SECONDS, ROUNDS = 0.15, 5
+FRICTION, SHARE = 0.3, 0.6
+CLOSED = ("paraboloid", "cone", "flat_punch")
+AGAIN, FIRST = "the same table", "a new table"
+# Lower bounds of the ratio: of closed kinds, of the others, of the same table.
+TARGETS = {
+    "stress": (0.6, 0.4, 0.3),
+    "tangential": (0.6, 0.3, 0.2),
+    "normal": (0.7, 0.45, 0.35),
+    "wear": (0.25, 0.1, 0.1),
+    "tangential/history": (0.25, 0.1, 0.1),
+    "cycle": (0.25, 0.1, 0.1),
+}
+
+
+def kinds() -> list[str]:
+    """Every kind of profile; a table as the same one and as new ones."""
+    return [*(kind for kind in PROFILES if kind != "tabulated"), AGAIN, FIRST]
+
+
+def profile(kind: str) -> dict[str, Any]:
+    """The profile in a request."""
+    if kind not in {AGAIN, FIRST}:
+        return {"kind": kind, **PROFILES[kind]}
+    r = np.linspace(0.0, END, POINTS)
+    return {"kind": "tabulated", "r": r.tolist(), "f": (r * r / 4).tolist()}
+
+
+def bodies(kind: str, query: str) -> Iterator[str]:
+    """Bodies of one request after the other; of new tables each ends at a radius of its own."""
+    body = json.dumps(requests(kind)[query])
+    if kind != FIRST:
+        yield from itertools.repeat(body)
+    head, tail = body.split(f", {END}]", 1)
+    for number in itertools.count(1):
+        yield f"{head}, {END + number * 1e-9!r}]{tail}"
+
+
+def requests(kind: str) -> dict[str, dict[str, Any]]:
+    """A small request of each query, at a contact radius of 1 under 0.6 of the limiting force."""
+    part = {"profile": profile(kind), "material": {"e_star": 1.0, "g_star": 0.9}}
+    load = {"indentation_depth": 0.05} if kind == "flat_punch" else {"contact_radius": 1.0}
+    normal = QUERIES["normal"]
+    found = normal.solve(parse(normal.model, json.dumps({**part, "load": load}).encode()))
+    force = float(found.normal_force)
+    limit, held = FRICTION * force, {**part, "load": {"normal_force": force}}
+    rubbed = {**held, "friction_coefficient": FRICTION}
+    # Steps of the golden ratio: turning points of all sizes.
+    steps = [limit * (0.1 + 0.618 * i % 1 * 0.8) * (-1) ** i for i in range(LEGS)]
+
+    def path(forces: list[float]) -> dict[str, Any]:
+        history = {
+            "normal": {"normal_force": [force] * len(forces)},
+            "tangential": {"tangential_force": forces},
+        }
+        return {**part, "friction_coefficient": FRICTION, "history": history}
+
+    return {
+        "stress": {
+            **rubbed,
+            "tangential": {"tangential_force": SHARE * limit},
+            "radius": (np.arange(RADII) / RADII).tolist(),
+            "quantities": ["pressure", "shear_stress"],
+        },
+        "tangential": {**rubbed, "tangential": {"tangential_force": SHARE * limit}},
+        "normal": held,
+        "wear": {**rubbed, "oscillation": {"tangential_force": SHARE * limit}},
+        "tangential/history": path(steps),
+        "cycle": path([SHARE * limit, -SHARE * limit, SHARE * limit]),
+    }
+
+
+def rows(chosen: list[str] | None = None) -> list[measure.Row]:
+    """The ratios of every query and kind."""
+    found = []
+    with ExitStack() as stack:
+        service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
+        bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
+        ours, theirs = (
+            stack.enter_context(wire_ratio.server(command)) for command in (service, bare)
+        )
+        for kind in chosen or kinds():
+            for query in TARGETS:
+                path = query.replace("cycle", "tangential/history")
+                other = "stress" if query == "stress" else "small"
+                targets = f"{ours}/v1/{path}", f"{theirs}/{other}"
+                found.append(_row(kind, query, list(_rounds(kind, query, targets))))
+    return found
+
+
+def _rounds(kind: str, query: str, targets: tuple[str, str]) -> Iterator[tuple[float, float]]:
+    texts = bodies(kind, query)
+    for target in targets:
+        wire_ratio.check(target, next(texts))
+        wire_ratio.rate(target, texts, SECONDS)
+    for _ in range(ROUNDS):
+        ours, theirs = (wire_ratio.rate(target, texts, SECONDS) for target in targets)
+        yield ours, theirs
+
+
+def _row(kind: str, query: str, rounds: list[tuple[float, float]]) -> measure.Row:
+    target = TARGETS[query][2 if kind == AGAIN else 0 if kind in CLOSED else 1]
+    rates = " / ".join(f"{median(column):.0f}" for column in zip(*rounds, strict=True))
+    other = "the wire alone" if query == "stress" else "bare FastAPI endpoint"
+    return measure.Row(
+        f"/v1/{query}, {kind} / {other}",
+        "asyncio client",
+        *measure.spread(rounds),
+        "" if kind == FIRST else f">= {target}",
+        f"{rates} requests/s",
+    )
+
+
+if __name__ == "__main__":
+    for one in rows(sys.argv[1:]):
+        print(f"{one.name:60s} {one.ratio:7.3f} {one.target:8s} {one.detail}")
