@@ -8,11 +8,13 @@ Source: notes, §1 and §4.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 from math import inf
 from typing import Final
 
 import numpy as np
 
+from mdr_core.elementwise import broadcast, full, is_number, number, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
@@ -28,7 +30,10 @@ _NODES: Final = 16
 # A gap between breaks longer than twice this many times the one before is divided in such ratios.
 _GROWTH: Final = 4.0
 # Part of full slip up to which the width is the unknown; beyond it the stick edge is.
-_EARLY: Final = 0.5
+_EARLY: Final = 0.05
+# Logarithms of the contact coordinate over the scale between which the curve of a kind is bent,
+# their spacing, for linear interpolation to 1e-4, and the ends of its straight tails.
+_CURVED, _SPACING, _FARTHEST = 14.0, 0.05, 150.0
 
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
@@ -139,7 +144,8 @@ def stick_from_force(
     if closed is not None:
         return closed
     functions = profile.reduced_force, force_slope(profile)
-    return _stick(profile, (coordinate, ratio, rest), functions, force_step, coordinate_from_force)
+    inverse = type(profile).coordinate_from_reduced_force
+    return _stick(profile, (coordinate, ratio, rest), functions, force_step, inverse)
 
 
 def stick_from_depth(
@@ -162,12 +168,13 @@ def stick_from_depth(
     if closed is not None:
         return closed
     functions = profile.depth, profile.depth_slope
-    return _stick(profile, (coordinate, ratio, rest), functions, depth_step, coordinate_from_depth)
+    inverse = type(profile).coordinate_from_depth
+    return _stick(profile, (coordinate, ratio, rest), functions, depth_step, inverse)
 
 
 def _reject(outside: Flags, profile: Profile, name: str) -> None:
     if outside.any():
-        domain = np.broadcast_to(profile.domain, outside.shape)[outside][0]
+        domain = np.broadcast_to(profile.domain, outside.shape)[outside].flat[0]
         raise InputError(
             ("load", name, *first_index(outside)),
             f"the contact would extend beyond radius {domain}, where the profile ends "
@@ -179,18 +186,45 @@ def _reject(outside: Flags, profile: Profile, name: str) -> None:
 def _inverse(
     profile: Profile, function: Function, slope: Function, target: Array, name: str
 ) -> Array:
-    """Solve function(s) = target for a contact coordinate s, from the scale of the profile."""
-    end, shape = profile.last_coordinate, np.broadcast_shapes(target.shape, np.shape(profile.scale))
+    """Solve function(s) = target for a contact coordinate s."""
+    end = profile.last_coordinate
     if end is not None:
-        _reject(np.asarray(target > function(np.asarray(end))), profile, name)
-    low = np.full(shape, profile.first_coordinate)
-    high = np.full(shape, np.inf if end is None else end)
-    start = np.minimum(np.broadcast_to(profile.scale, shape), high)
+        _reject(target > function(number(end)), profile, name)
+    return _root(profile, (function, slope), target, _start(profile, name, function, target))
+
+
+def _root(
+    profile: Profile, functions: tuple[Function, Function], target: Array, start: Array
+) -> Array:
+    """Solve function(s) = target within the domain, from a first approximation."""
+    (function, slope), end = functions, profile.last_coordinate
+    low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
 
     def log_slope(s: Array, value: Array) -> Array:
         return s * slope(s) / value
 
-    return invert(function, log_slope, target, start, low, high, profile.kind)
+    smooth = not profile.coordinate_breaks.size
+    start = np.minimum(start, high)
+    return invert(function, log_slope, target, start, low, high, profile.kind, smooth=smooth)
+
+
+def _start(profile: Profile, name: str, function: Function, target: Array) -> Array:
+    """First approximation of the contact coordinate: good to 1e-4 where one curve serves a kind."""
+    scale = profile.scale
+    if not profile.similar:
+        return broadcast(scale, np.broadcast_shapes(target.shape, np.shape(scale)))
+    with np.errstate(divide="ignore"):
+        height = np.log(target / function(number(1.0) * scale))
+    return scale * np.exp(np.interp(height, *_curve(type(profile), name)))
+
+
+@lru_cache(maxsize=32)
+def _curve(kind: type[Profile], name: str) -> tuple[Array, Array]:
+    """Logarithms of depth or force and of the contact coordinate, over those at the scale."""
+    unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
+    function = unit.depth if name == "indentation_depth" else unit.reduced_force
+    places = np.concatenate([[-_FARTHEST], np.arange(-_CURVED, _CURVED, _SPACING), [_FARTHEST]])
+    return np.log(function(np.exp(places)) / function(number(1.0))), places
 
 
 def _stick(
@@ -198,29 +232,38 @@ def _stick(
     load: tuple[Array, Array, Array],
     functions: tuple[Function, Function],
     step: Callable[[Profile, Array, Array, Array], Array],
-    inverse: Callable[[Profile, Array], Array],
+    inverse: Callable[[Profile, Array], Array | None],
 ) -> tuple[Array, Array]:
     """Solve function(a) - function(c) = ratio function(a) for c; `load` is a, ratio, 1 - ratio.
 
-    At small ratios the width is the unknown of the `step`, at large ones c by the `inverse`.
+    At small ratios the width is the unknown of the `step`, at large ones c, by the closed `inverse`
+    if there is one.
     """
     coordinate, ratio, rest = load
     function, slope = functions
     total = function(coordinate)
-    coordinate, total, ratio = np.broadcast_arrays(coordinate, total, ratio)
+    if not is_number(ratio * total):
+        coordinate, total, ratio, rest = np.broadcast_arrays(coordinate, total, ratio, rest)
     early = ratio < _EARLY
-    if not early.any():
-        late = inverse(profile, rest * total)
-        return late, coordinate - late
-    target = np.where(early, ratio * total, 0.0)
-    reach = coordinate - profile.first_coordinate
     with np.errstate(divide="ignore", invalid="ignore"):
         first = slope(coordinate)
+        late = coordinate
+        if not early.all():
+            goal = where(early, 0.0, rest * total)
+            # Else from the power that rises as the function does at the edge.
+            start = coordinate * np.power(rest, total / (coordinate * first))
+            closed = inverse(profile, goal)
+            start = where(start > 0, start, coordinate)
+            late = _root(profile, functions, goal, start) if closed is None else closed
+        if not early.any():
+            return late, coordinate - late
+        target = where(early, ratio * total, 0.0)
+        reach = coordinate - profile.first_coordinate
         # An infinite slope gives no first approximation of the width.
         known = (target > 0) & (first < inf)
-        start = np.where(known, np.minimum(target / first, reach / 2), reach / 2)
+        start = where(known, np.minimum(target / first, reach / 2), reach / 2)
     # A width that underflows is zero.
-    target = np.where(start > 0, target, 0.0)
+    target = where(start > 0, target, 0.0)
 
     def log_slope(width: Array, value: Array) -> Array:
         return width * slope(coordinate - width) / value
@@ -229,22 +272,19 @@ def _stick(
         lambda width: step(profile, coordinate, width, coordinate - width),
         log_slope,
         target,
-        np.where(start > 0, start, 1.0),
-        np.zeros(target.shape),
-        np.where(reach > 0, reach, 2.0),
+        where(start > 0, start, 1.0),
+        full(0.0, target),
+        where(reach > 0, reach, 2.0),
         f"{profile.kind}'s slip annulus",
     )
-    if early.all():
-        return coordinate - width, width
-    late = inverse(profile, np.where(early, 0.0, rest * total))
-    return np.where(early, coordinate - width, late), np.where(early, width, coordinate - late)
+    return where(early, coordinate - width, late), where(early, width, coordinate - late)
 
 
 def _step(
     profile: Profile, function: Function, slope: _Slope, ends: tuple[Array, Array, Array]
 ) -> Array:
     """Difference function(a) - function(c), by the integral of the slope in a narrow annulus."""
-    high, width, low = np.broadcast_arrays(*ends)
+    high, width, low = ends if is_number(sum(ends)) else np.broadcast_arrays(*ends)
     below, before = break_below(profile, high)
     limit = (high - before) / 2 if has_many_breaks(profile) else _NARROW * high
     narrow = width <= limit
@@ -255,8 +295,8 @@ def _step(
     if profile.swept:
         # The functions use the parameters of all cases, so that no case can be left out.
         wide = function(high) - function(np.maximum(low, 0.0))
-        part = _narrow_step(slope, high, np.where(narrow, width, 0.0), below)
-        return np.where(narrow, part, wide)
+        part = _narrow_step(slope, high, where(narrow, width, 0.0), below)
+        return where(narrow, part, wide)
     result = np.zeros(narrow.shape)
     result[~narrow] = function(high[~narrow]) - function(np.maximum(low[~narrow], 0.0))
     result[narrow] = _narrow_step(slope, high[narrow], width[narrow], below[narrow])
@@ -270,12 +310,12 @@ def break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
         padded = np.concatenate([[0.0, 0.0], breaks])
         index = np.maximum(np.searchsorted(padded, high, side="left") - 1, 1)
         return padded[index], padded[index - 1]
-    nothing = np.zeros_like(high)
+    nothing = full(0.0, high)
     if not breaks.size:
         return nothing, nothing
     # Every case of a sweep has its own break.
     own = breaks if profile.swept else breaks[0]
-    return np.where(high > own, own, 0.0), nothing
+    return where(high > own, own, 0.0), nothing
 
 
 def divided_breaks(profile: Profile) -> Array:
@@ -308,23 +348,24 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
     inner = np.minimum(width, high - below)
     nodes, weights = gauss_legendre(_NODES)
     with np.errstate(invalid="ignore"):
-        half = np.where(inner > 0, inner / (top + bottom), 0.0) / 2
-    v = bottom + np.multiply.outer(1 + nodes, half)
-    past = v * v
-    # Rounding must not carry a node beyond the edge, where a break may lie.
-    at = np.minimum(below + past, high)
-    with np.errstate(invalid="ignore"):
+        half = where(inner > 0, inner / (top + bottom), 0.0) / 2
+        v = bottom + np.multiply.outer(1 + nodes, half)
+        past = v * v
+        # Rounding must not carry a node beyond the edge, where a break may lie.
+        at = np.minimum(below + past, high)
         total = half * in_order(weights, 2 * v * slope(at, below, past))
     outer = width - inner
     if np.any(outer > 0):
         s = low + np.multiply.outer(1 + nodes, outer / 2)
         values = np.where(outer > 0, slope(s, s, np.zeros_like(s)), 0.0)
         total = total + outer / 2 * in_order(weights, values)
-    return np.asarray(total)
+    return total
 
 
 def in_order(weights: Array, values: Array) -> Array:
     """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
+    if values.ndim == 1:
+        return np.add.accumulate(weights * values)[-1]
     total = np.zeros(values.shape[1:])
     for weight, value in zip(weights, values, strict=True):
         total = total + weight * value

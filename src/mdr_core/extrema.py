@@ -69,7 +69,7 @@ def largest_stress(
     """
     if isinstance(profile, Paraboloid):
         root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
-        return np.asarray(2 * root / (np.pi * profile.radius))
+        return 2 * root / (np.pi * profile.radius)
     shape = loaded.shape
     parts = [np.broadcast_to(part, shape) for part in (edge, *(slip or ()))]
     a, c = profile.contact_radius(edge), profile.contact_radius(slip[1]) if slip else 0.0

@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.elementwise import where
 from mdr_core.errors import DefectError
 from mdr_core.typing import Array
 
@@ -12,10 +13,13 @@ Function = Callable[[Array], Array]
 
 # Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
 _MOST_STEPS: Final = 200
-# Newton's step at which the next error is rounding error, because convergence is quadratic.
-_LAST_STEP: Final = 1e-10
-# Last step where no slope is known: residual steps converge linearly.
-_LAST_STEP_WITHOUT_SLOPE: Final = 1e-14
+# Newton's step at which the next error is rounding error, because convergence is quadratic;
+_LAST_STEP: Final = 1e-8
+# where the slope may be that of the other side of a kink, one more step follows.
+_LAST_BUT_ONE: Final = 1e-10
+# Step that is rounding error itself, as it has to be where no slope is known: residual steps
+# converge linearly.
+_SMALLEST_STEP: Final = 1e-14
 # Distance from the target, in log, below which the step has converged on a steep rise as well:
 # just above a kink it is short long before.
 _CLOSE: Final = 1e-8
@@ -37,6 +41,8 @@ def invert(
     low: Array,
     high: Array,
     name: str,
+    *,
+    smooth: bool = False,
 ) -> Array:
     """Return s with function(s) = target for an increasing function.
 
@@ -52,6 +58,7 @@ def invert(
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
     name : name of the function, for the error message.
+    smooth : True if the function has no kink, so that a short step is the last one.
 
     Returns
     -------
@@ -63,44 +70,44 @@ def invert(
     DefectError : the iteration does not converge.
     """
     positive = target > 0
-    goal = np.where(positive, target, 1.0)
+    goal = where(positive, target, 1.0)
     s, root_at_zero = start, low
-    done, settling = ~positive, np.zeros_like(positive)
-    for _ in range(_MOST_STEPS):
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+    done = ~positive
+    settling, longest = ~(done | positive), _LAST_STEP if smooth else _LAST_BUT_ONE
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+        for _ in range(_MOST_STEPS):
             value = function(s)
             residual = np.log(goal / value)
             slope = log_slope(s, value)
             # Without a finite slope, as at a kink, the residual gives the direction alone.
             known = (slope > 0) & (slope < np.inf)
-            step = np.where(known, residual / slope, residual)
-            proposed = s * np.exp(np.clip(step, -_LONGEST_STEP, _LONGEST_STEP))
-        low = np.where(value < goal, s, low)
-        high = np.where(value > goal, s, high)
-        # A short step alone may only mean that the function is steep here.
-        short = np.abs(step) <= np.where(known, _LAST_STEP, _LAST_STEP_WITHOUT_SLOPE)
-        short &= np.abs(residual) <= _CLOSE
-        last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-        usable = ((proposed > low) & (proposed < high)) | last
-        moved = proposed if usable.all() else np.where(usable, proposed, _middle(low, high))
-        moved = np.where(moved < _LARGEST, np.where(moved > 1 / _LARGEST, moved, 0.0), np.inf)
-        # A converged root stays: it does not depend on how long the others take.
-        s = np.where(done, s, moved)
-        # One more step than the criterion requires: at a kink the slope may be the other side's.
-        done = done | settling
-        if done.all():
-            break
-        settling = last | (high - low <= np.where(high < np.inf, _ADJACENT * high, 0.0))
-    root = np.where(positive, np.maximum(s, root_at_zero), root_at_zero)
+            step = where(known, residual / slope, residual)
+            size = np.abs(step)
+            proposed = s * np.exp(np.copysign(np.minimum(size, _LONGEST_STEP), step))
+            low = where(value < goal, s, low)
+            high = where(value > goal, s, high)
+            # A short step alone may only mean that the function is steep here.
+            close = np.abs(residual) <= _CLOSE
+            short = close & (size <= where(known, longest, _SMALLEST_STEP))
+            last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
+            usable = ((proposed > low) & (proposed < high)) | last
+            moved = proposed if usable.all() else where(usable, proposed, _middle(low, high))
+            moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), np.inf)
+            # A converged root stays: it does not depend on how long the others take.
+            s = where(done, s, moved)
+            done = done | settling | (short & known & (smooth | (size <= _SMALLEST_STEP)))
+            if done.all():
+                break
+            settling = last | (high - low <= where(high < np.inf, _ADJACENT * high, 0.0))
+    root = where(positive, np.maximum(s, root_at_zero), root_at_zero)
     if done.all():
         return root
-    if known[~done].any():
+    if np.any(known & ~done):
         raise DefectError(f"the inverse of a {name} did not converge")
-    return np.where(done, root, np.nan)
+    return where(done, root, np.nan)
 
 
 def _middle(low: Array, high: Array) -> Array:
     """Geometric middle of the bracket, or a stride where it is still open."""
-    with np.errstate(invalid="ignore"):
-        middle = np.sqrt(low) * np.sqrt(high)
-    return np.where(low == 0, high / _STRIDE, np.where(np.isinf(high), low * _STRIDE, middle))
+    middle = np.sqrt(low) * np.sqrt(high)
+    return where(low == 0, high / _STRIDE, where(np.isinf(high), low * _STRIDE, middle))

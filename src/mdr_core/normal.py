@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import validity
 from mdr_core.broadcasting import BLOCK, solve_cases
+from mdr_core.elementwise import where
 from mdr_core.equivalent_1d import (
     coordinate_from_depth,
     coordinate_from_force,
@@ -77,7 +78,7 @@ class NormalContact(Results):
         if extremes(area)[0] > 0:
             return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
-        return np.where(area > 0, self.normal_force / np.where(area > 0, area, 1.0), limit)
+        return where(area > 0, self.normal_force / where(area > 0, area, 1.0), limit)
 
     @cached_property
     def maximum_pressure(self) -> Array:
@@ -90,7 +91,7 @@ class NormalContact(Results):
     @property
     def loaded(self) -> Flags:
         """True where the load is not zero."""
-        return np.asarray(self.coordinate > self.profile.first_coordinate)
+        return self.coordinate > self.profile.first_coordinate
 
     @cached_property
     def normal_stiffness(self) -> Array:
@@ -108,9 +109,9 @@ class NormalContact(Results):
         return self.profile.normal_method
 
     @property
-    def error_estimates(self) -> Array:
+    def error_estimates(self) -> Parameter:
         """Upper bound of the relative error of each case, a single number if all have the same."""
-        return np.asarray(self.profile.rounding)
+        return self.profile.rounding
 
     @property
     def error_estimate(self) -> float:
@@ -189,7 +190,7 @@ def solve(
     ]
     if len(named) != 1:
         raise InputError(("load",), f"exactly one of {', '.join(_COORDINATE_FROM)} is needed")
-    name, load = named[0][0], np.asarray(named[0][1], dtype=float)
+    name, load = named[0][0], np.asarray(named[0][1], dtype=float)[()]
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)

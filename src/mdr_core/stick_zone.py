@@ -8,6 +8,7 @@ import numpy as np
 
 from mdr_core import equivalent_1d
 from mdr_core.broadcasting import solve_cases
+from mdr_core.elementwise import full, number, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -39,8 +40,9 @@ CONTROLS: Final = {
 # Edge, width, full and excess.
 _Slipped = tuple[Array, Array, Flags, Array]
 _Inverse = Callable[[Profile, Array, Array, Array], tuple[Array, Array]]
-_NO_EXCESS: Final = np.asarray(0.0)
-_NO_FULL_SLIP: Final = np.zeros((), dtype=bool)
+_NO_EXCESS: Final = number(0.0)
+_POSITIVE: Final = number(1.0)
+_NO_FULL_SLIP: Final = _NO_EXCESS > 0
 
 
 def solve(
@@ -79,19 +81,19 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
     low, high = extremes(given)
     if not (low > -inf and high < inf):
         detail = "must be finite" if given.size else "at least one load is needed"
-        bad = np.asarray(~np.isfinite(given))
+        bad = ~np.isfinite(given)
         index = first_index(bad) if given.size else ()
         raise InputError(("tangential", name, *index), detail, bad)
     if low >= 0 or name == "stick_radius":
-        return np.asarray(1.0), given
+        return _POSITIVE, given
     return np.sign(given), np.abs(given)
 
 
 def _by_force(
     contact: NormalContact, _g_star: Parameter, friction: Parameter, size: Array
 ) -> _Slipped:
-    limit = np.asarray(friction * contact.normal_force)
-    left = np.asarray(limit - size)
+    limit = friction * contact.normal_force
+    left = limit - size
     if left.min() < 0:
         raise InputError(
             ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
@@ -104,8 +106,8 @@ def _by_force(
 def _by_displacement(
     contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
 ) -> _Slipped:
-    limit = np.asarray(friction * contact.e_star / g_star * contact.indentation_depth)
-    left = np.asarray(limit - size)
+    limit = friction * contact.e_star / g_star * contact.indentation_depth
+    left = limit - size
     return _within_limit(equivalent_1d.stick_from_depth, contact, size, left, limit)
 
 
@@ -113,29 +115,28 @@ def _within_limit(
     inverse: _Inverse, contact: NormalContact, size: Array, left: Array, limit: Array
 ) -> _Slipped:
     """Stick edge and annulus under size = limit - left, both accurate; full slip if left <= 0."""
-    full, excess = _NO_FULL_SLIP, _NO_EXCESS
+    full_slip, excess = _NO_FULL_SLIP, _NO_EXCESS
     if left.min() <= 0:
         some = limit > 0
         # Without loads there is no slip; without a normal load any displacement is full slip.
-        full = np.asarray(np.where(some, left <= 0, size > 0))
+        full_slip = where(some, left <= 0, size > 0)
         excess = np.maximum(-left, 0.0)
         size = np.minimum(size, limit)
-        left, limit = np.where(some, np.maximum(left, 0.0), 1.0), np.where(some, limit, 1.0)
-    # Both arrays are temporary: writing to other memory would displace the block from the cache.
+        left, limit = where(some, np.maximum(left, 0.0), 1.0), where(some, limit, 1.0)
+    ratio = size / limit
     left /= limit
-    ratio = np.divide(size, limit, out=limit if limit.shape == left.shape else None)
     if contact.profile.slips_at_once:
-        return contact.coordinate, ratio, full, excess
-    return *inverse(contact.profile, contact.coordinate, ratio, left), full, excess
+        return contact.coordinate, ratio, full_slip, excess
+    return *inverse(contact.profile, contact.coordinate, ratio, left), full_slip, excess
 
 
 def _by_stick_radius(
     contact: NormalContact, _g_star: Parameter, _friction: Parameter, radius: Array
 ) -> _Slipped:
-    profile, a = contact.profile, np.asarray(contact.contact_radius)
-    innermost = profile.contact_radius(np.asarray(profile.first_coordinate))
-    all_slips = np.asarray((radius == 0) & (a > 0))
-    bad = np.asarray((radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost)))
+    profile, a = contact.profile, contact.contact_radius
+    innermost = profile.contact_radius(number(profile.first_coordinate))
+    all_slips = (radius == 0) & (a > 0)
+    bad = (radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost))
     detail = "must lie between the flat's radius, or 0, and the contact radius"
     if profile.slips_at_once:
         bad = bad | (radius > 0)
@@ -144,15 +145,14 @@ def _by_stick_radius(
         index = first_index(bad) if radius.ndim else ()
         raise InputError(("tangential", "stick_radius", *index), detail, bad)
     if profile.slips_at_once:
-        shape = np.broadcast_shapes(radius.shape, a.shape)
-        return contact.coordinate, np.ones(shape), all_slips, _NO_EXCESS
+        return contact.coordinate, full(1.0, radius + a), all_slips, _NO_EXCESS
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":
         width = profile.coordinate_width(a, c, contact.coordinate, edge)
     else:
         # The coordinate of an edge that follows from a load is accurate, its radius may not be.
-        width = np.where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
+        width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
     return edge, width, all_slips, _NO_EXCESS
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone
 from mdr_core.broadcasting import solve_cases
+from mdr_core.elementwise import broadcast, is_number, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.normal import NormalContact, not_reached
@@ -69,21 +70,21 @@ class TangentialContact(Results):
 
     @cached_property
     def _coordinate(self) -> Array:
-        return np.broadcast_to(self.normal.coordinate, self.width.shape)
+        return broadcast(self.normal.coordinate, self.width.shape)
 
     @cached_property
     def _stick(self) -> Array:
-        return np.broadcast_to(self.stick_coordinate, self.width.shape)
+        return broadcast(self.stick_coordinate, self.width.shape)
 
     @cached_property
     def limiting_force(self) -> Array:
         """mu F_N [force]."""
-        return np.asarray(self.friction_coefficient * self.normal.normal_force)
+        return self.friction_coefficient * self.normal.normal_force
 
     @cached_property
-    def compliance(self) -> Array:
+    def compliance(self) -> Parameter:
         """mu E*/G* [1], displacement over depth step. Source: mdr-5, Eq. (5.20)."""
-        return np.asarray(self.friction_coefficient * self.normal.e_star / self.g_star)
+        return self.friction_coefficient * self.normal.e_star / self.g_star
 
     @cached_property
     def tangential_force(self) -> Array:
@@ -95,7 +96,7 @@ class TangentialContact(Results):
             factor = self.friction_coefficient * self.normal.e_star
             partial = self._over_annulus(equivalent_1d.force_step, factor)
         if self.full_slip.any():
-            partial = np.where(self.full_slip, self.limiting_force, partial)
+            partial = where(self.full_slip, self.limiting_force, partial)
         return self._signed(partial)
 
     @cached_property
@@ -108,49 +109,49 @@ class TangentialContact(Results):
         else:
             partial = self._over_annulus(equivalent_1d.depth_step, self.compliance)
         if self.full_slip.any():
-            partial = np.where(self.full_slip, self._largest_stick, partial) + self.excess
+            partial = where(self.full_slip, self._largest_stick, partial) + self.excess
         return self._signed(partial)
 
     def _over_annulus(self, step: _Step, factor: Parameter) -> Array:
         """Step of depth or force over the annulus, times a factor."""
 
         def product(profile: Profile, factor: Array, *ends: Array) -> tuple[Array]:
-            return (np.asarray(factor * step(profile, *ends)),)
+            return (factor * step(profile, *ends),)
 
         values = factor, self._coordinate, self.width, self._stick
         (result,) = solve_cases(product, self.normal.profile, values)
         return result
 
     def _signed(self, size: Array) -> Array:
-        return size if self.sign.ndim == 0 and self.sign > 0 else self.sign * size
+        return size if is_number(self.sign) and self.sign > 0 else self.sign * size
 
     @cached_property
     def _largest_stick(self) -> Array:
         """mu (E*/G*) d [length], at the onset of full slip. Source: mdr-5, Eq. (5.17)."""
-        return np.asarray(self.compliance * self.normal.indentation_depth)
+        return self.compliance * self.normal.indentation_depth
 
     @cached_property
     def slip_width(self) -> Array:
         """a - c [length]."""
         a = self.normal.contact_radius
         if self.normal.profile.slips_at_once:
-            return np.where(self.full_slip, a, np.zeros_like(self.width))
+            return where(self.full_slip, a, 0 * self.width)
         width = self.normal.profile.radius_width(self._coordinate, self.width)
-        return np.where(self.full_slip, a, width) if self.full_slip.any() else width
+        return where(self.full_slip, a, width) if self.full_slip.any() else width
 
     @cached_property
     def stick_radius(self) -> Array:
         """c [length]: zero in full slip. Source: mdr-5, Eqs. (5.11), (5.16), (5.31), (5.49)."""
         profile = self.normal.profile
         if profile.slips_at_once:
-            a = np.broadcast_to(self.normal.contact_radius, self.width.shape)
-            return np.where(self.full_slip, 0.0, a)
+            a = broadcast(self.normal.contact_radius, self.width.shape)
+            return where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self._stick)
         if c is not self._stick:
             # By rounding error c may exceed a. Without slip both are bit-identical.
             a = self.normal.contact_radius
-            c = np.where(self.width > 0, np.minimum(c, a), a)
-        return np.where(self.full_slip, 0.0, c) if self.full_slip.any() else c
+            c = where(self.width > 0, np.minimum(c, a), a)
+        return where(self.full_slip, 0.0, c) if self.full_slip.any() else c
 
     @cached_property
     def tangential_stiffness(self) -> Array:
@@ -163,16 +164,16 @@ class TangentialContact(Results):
 
         Infinite where the slip annulus, both ends included, contains a radius of infinite pressure.
         """
-        loaded = np.asarray(self.tangential_force != 0)
+        loaded = self.tangential_force != 0
         stress = largest_stress(self.normal.profile, self._coordinate, loaded, self._slipping)
-        return np.asarray(self.friction_coefficient * self.normal.e_star * stress)
+        return self.friction_coefficient * self.normal.e_star * stress
 
     @property
     def _slipping(self) -> tuple[Array, Array]:
         """Width of the slip annulus and stick radius in the contact coordinate."""
         first = self.normal.profile.first_coordinate
-        width = np.where(self.full_slip, self._coordinate - first, self.width)
-        return width, np.where(self.full_slip, first, self._stick)
+        width = where(self.full_slip, self._coordinate - first, self.width)
+        return width, where(self.full_slip, first, self._stick)
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
@@ -191,7 +192,7 @@ class TangentialContact(Results):
         """
         profile, e_star = self.normal.profile, self.normal.e_star
         if profile.slips_at_once:
-            slipping = np.zeros_like(self.width)
+            slipping = 0 * self.width
         else:
             moment = slip_moment(profile, self._coordinate, *self._slipping)
             slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
@@ -232,7 +233,7 @@ class TangentialContact(Results):
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         if profile.slips_at_once:
             return 1.0 if by_force else conditioning.of_excess_displacement(size, self.excess)
-        ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
+        ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self._stick
         return conditioning.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
 
@@ -295,7 +296,7 @@ def solve(
     named = [(name, load) for name, load in zip(CONTROLS, loads, strict=True) if load is not None]
     if len(named) != 1:
         raise InputError(("tangential",), f"exactly one of {', '.join(CONTROLS)} is needed")
-    name, given = named[0][0], np.asarray(named[0][1], dtype=float)
+    name, given = named[0][0], np.asarray(named[0][1], dtype=float)[()]
     parameters = (g_star, friction_coefficient)
     shape = np.broadcast_shapes(
         given.shape, contact.coordinate.shape, *(np.shape(one) for one in parameters)
@@ -305,7 +306,7 @@ def solve(
         contact,
         *parameters,
         zone.edge,
-        np.broadcast_to(zone.width, shape),
+        broadcast(zone.width, shape),
         zone.sign,
         zone.full,
         zone.excess,

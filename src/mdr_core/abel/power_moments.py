@@ -33,7 +33,7 @@ def root_step(annulus: Annulus, r: Array) -> Array:
     root_c = np.maximum(c - r, 0.0)
     root_c *= c + r
     np.sqrt(root_c, out=root_c)
-    return np.asarray(np.where(c > r, width * (a + c) / (root_a + root_c), root_a))
+    return np.where(c > r, width * (a + c) / (root_a + root_c), root_a)
 
 
 def log_ratio(annulus: Annulus, r: Array) -> Array:
@@ -46,7 +46,7 @@ def log_ratio(annulus: Annulus, r: Array) -> Array:
         root_low = np.sqrt((low - r) * (low + r))
         step = np.minimum(a - r, inner.width) + root_step(annulus, r)
     with np.errstate(divide="ignore"):
-        return np.asarray(np.log1p(step / (low + root_low)))
+        return np.log1p(step / (low + root_low))
 
 
 def power_moment(m: float, annulus: Annulus, r: Array, rtol: float) -> Array:
@@ -109,4 +109,4 @@ def _axis_moment(m: float, annulus: Annulus) -> Array:
     if inner is None:
         return np.full_like(a, 1 / m if m > 0 else np.inf)
     with np.errstate(divide="ignore"):
-        return np.asarray(-np.expm1(m * np.log1p(-inner.width / a)) / m)
+        return -np.expm1(m * np.log1p(-inner.width / a)) / m

@@ -32,7 +32,7 @@ def inverse_hypot(x: Array, b: Parameter) -> Array:
     >>> inverse_hypot(np.array([0.5, 5.0]), 3.0).tolist()
     [0.0, 4.0]
     """
-    return np.asarray(np.sqrt(np.maximum(x - b, 0.0) * (x + b)))
+    return np.sqrt(np.maximum(x - b, 0.0) * (x + b))
 
 
 def root_difference(upper: Array, square: Array, lower: Array) -> Array:
@@ -42,7 +42,7 @@ def root_difference(upper: Array, square: Array, lower: Array) -> Array:
     """
     upper2 = upper * upper
     follows = np.sqrt(np.maximum(upper2 - square, 0.0))
-    return np.asarray(square / (upper + np.where(square < upper2 / 2, follows, lower)))
+    return square / (upper + np.where(square < upper2 / 2, follows, lower))
 
 
 def arcsinh_difference(
@@ -61,7 +61,7 @@ def arcsinh_difference(
     gap2 = np.minimum(square_difference, top * top)
     # Both ends vanish only together.
     denominator = np.maximum(top * cosh_bottom + bottom * cosh_top, _TINY)
-    return np.asarray(np.arcsinh(np.divide(gap2, denominator, out=denominator)))
+    return np.arcsinh(np.divide(gap2, denominator, out=denominator))
 
 
 def two_root_integral(
@@ -202,7 +202,7 @@ def _from_break(problem: _Problem, index: Indices, r: Array, upper: Array) -> Ar
     def integrand(y: Array, chosen: Chosen) -> Array:
         at = r[chosen]
         x, s = at * np.cosh(y), at * np.sinh(y)
-        return np.asarray(problem.weight(x, s, index[chosen]) * x / s)
+        return problem.weight(x, s, index[chosen]) * x / s
 
     nothing = np.zeros(r.size)
     length = np.arcsinh(upper / r)

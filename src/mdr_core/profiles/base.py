@@ -13,6 +13,7 @@ from mdr_core import validation
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integral
 from mdr_core.abel.stress import StressPanels
+from mdr_core.elementwise import full
 from mdr_core.errors import Notice
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.typing import Array, Parameter
@@ -52,6 +53,8 @@ class Profile(ABC):
     formula: ClassVar[str]
     # Quantities in closed form; the others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]]
+    # True if the profiles of the kind are one curve at different scales.
+    similar: ClassVar[bool] = False
     # Bound on the relative rounding error of the closed forms.
     rounding: Parameter = 3e-14
 
@@ -178,7 +181,7 @@ class Profile(ABC):
 
     def radius_slope(self, coordinate: Array) -> Array:
         """Derivative of the contact radius with respect to the contact coordinate."""
-        return np.ones_like(coordinate)
+        return full(1.0, coordinate)
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Difference s_a - s_c of two contact coordinates, as accurate as a - c.

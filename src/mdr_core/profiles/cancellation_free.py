@@ -3,11 +3,12 @@
 Source: notes, §4.
 """
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.elementwise import is_number, piecewise
 from mdr_core.typing import Array, Parameter
 
 # Below it a series replaces the difference, which would lose more than two bits above it.
@@ -31,9 +32,13 @@ _ATAN: Final = _economised(-1.0)
 _ATANH: Final = _economised(1.0)
 
 
-def _horner(coefficients: tuple[float, ...], u: Array) -> Array:
-    value = np.full_like(u, coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
+def _horner(coefficients: tuple[float, ...], u: Any) -> Any:
+    if is_number(u):
+        # Python's own numbers have the same digits in a third of the time.
+        u = u.item()
+    value = coefficients[-1] * u
+    value += coefficients[-2]
+    for coefficient in coefficients[-3::-1]:
         value *= u
         value += coefficient
     return value
@@ -41,24 +46,25 @@ def _horner(coefficients: tuple[float, ...], u: Array) -> Array:
 
 def atan_gap(s: Array, b: Parameter) -> Array:
     """Return s - b arctan(s/b) for s >= 0, b > 0 [length]: s^3/(3 b^2) for small s."""
-    s = np.asarray(s, dtype=float)
+
+    def series(z: Array) -> Array:
+        u = z * z
+        return s * u * _horner(_ATAN, u)
+
     z = s / b
-    small = z < _THRESHOLD
-    u = np.square(np.minimum(z, _THRESHOLD))
-    return np.asarray(np.where(small, s * u * _horner(_ATAN, u), s - b * np.arctan(z)))
+    return piecewise(z, _THRESHOLD, series, lambda _: s - b * np.arctan(z))
 
 
 def atanh_gap(t: Array) -> Array:
     """Return artanh(t) - t for 0 <= t < 1 [1]: t^3/3 for small t."""
-    t = np.asarray(t, dtype=float)
-    small = t < _THRESHOLD
-    u = np.square(np.minimum(t, _THRESHOLD))
-    return np.asarray(np.where(small, t * u * _horner(_ATANH, u), np.arctanh(t) - t))
+
+    def series(t: Array) -> Array:
+        u = t * t
+        return t * u * _horner(_ATANH, u)
+
+    return piecewise(t, _THRESHOLD, series, lambda t: np.arctanh(t) - t)
 
 
 def tanh_gap(v: Array) -> Array:
     """Return v - tanh(v) for v >= 0 [1]: v^3/3 for small v, v - 1 for large."""
-    t = np.tanh(v)
-    with np.errstate(divide="ignore"):
-        small = atanh_gap(np.where(v < 1.0, t, 0.0))
-    return np.asarray(np.where(v < 1.0, small, v - t))
+    return piecewise(v, 1.0, lambda v: atanh_gap(np.tanh(v)), lambda v: v - np.tanh(v))

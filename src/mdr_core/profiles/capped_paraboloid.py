@@ -1,6 +1,7 @@
 """Paraboloid with a flatter parabolic cap, as worn at the tip."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi
 from typing import ClassVar, Final
 
@@ -10,6 +11,7 @@ from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.power_moments import root_step
 from mdr_core.abel.two_root import inverse_hypot, two_root_integral
+from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile, require_positive
 from mdr_core.profiles.energy import energy_integral
@@ -52,29 +54,29 @@ class CappedParaboloid(Profile):
         require_positive("cap_radius", self.cap_radius)
         require_positive("tip_radius", self.tip_radius)
         require_positive("radius", self.radius)
-        if np.any(np.asarray(self.radius) > np.asarray(self.tip_radius)):
+        if np.any(self.radius > self.tip_radius):
             raise InputError(
                 ("profile", "radius"),
                 "must not exceed tip_radius: the slope would drop at radius "
                 f"{self.cap_radius}, where the pressure would be negative",
             )
 
-    @property
+    @cached_property
     def _curvature_step(self) -> Parameter:
         """k = 1/R2 - 1/R1 [1/length]."""
         return (self.tip_radius - self.radius) / (self.tip_radius * self.radius)
 
-    @property
+    @cached_property
     def _relative_step(self) -> Parameter:
         """K = k R1 [1]."""
         return (self.tip_radius - self.radius) / self.radius
 
-    @property
+    @cached_property
     def _break(self) -> Parameter:
         """b, or an unreachable radius if K = 0 and there is no break [length]."""
-        return np.where(np.asarray(self._relative_step) > 0, self.cap_radius, _UNREACHABLE)[()]
+        return where(self._relative_step > 0, self.cap_radius, _UNREACHABLE)
 
-    @property
+    @cached_property
     def _ratio(self) -> Parameter:
         """m [1], for which the slope of the depth is equal on both sides of b where K > 2."""
         return np.maximum(self._relative_step / 2, 1.0)
@@ -108,7 +110,7 @@ class CappedParaboloid(Profile):
         return radius * radius / (2 * self.tip_radius) + self._curvature_step * outer * outer / 2
 
     def df(self, radius: Array) -> Array:
-        return np.where(radius < self._break, radius / self.tip_radius, radius / self.radius)
+        return where(radius < self._break, radius / self.tip_radius, radius / self.radius)
 
     def g(self, x: Array) -> Array:
         return x * x / self.tip_radius + self._curvature_step * x * inverse_hypot(x, self._break)
@@ -117,7 +119,7 @@ class CappedParaboloid(Profile):
         s = inverse_hypot(x, self._break)
         with np.errstate(divide="ignore", invalid="ignore"):
             outer = self._curvature_step * (s + x * x / s)
-        return 2 * x / self.tip_radius + np.where(x < self._break, 0.0, outer)
+        return 2 * x / self.tip_radius + where(x < self._break, 0.0, outer)
 
     def _weight(self, x: Array, s: Array) -> Array:
         """dg/ds = g'(x) s/x beyond b [1]."""
@@ -127,7 +129,7 @@ class CappedParaboloid(Profile):
 
     def _outer(self, coordinate: Array) -> Array:
         """s = sqrt(a^2 - b^2), zero within the cap [length]."""
-        return np.asarray(np.maximum(coordinate - self._break, 0.0) / self._ratio)
+        return np.maximum(coordinate - self._break, 0.0) / self._ratio
 
     def contact_radius(self, coordinate: Array) -> Array:
         return np.hypot(np.minimum(coordinate, self._break), self._outer(coordinate))
@@ -140,22 +142,22 @@ class CappedParaboloid(Profile):
 
     def radius_slope(self, coordinate: Array) -> Array:
         beyond = self._outer(coordinate) / (self.contact_radius(coordinate) * self._ratio)
-        return np.where(coordinate <= self._break, 1.0, beyond)
+        return where(coordinate <= self._break, 1.0, beyond)
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Parameters: see `Profile`."""
         b, roots = self._break, self._outer(s_a) + self._outer(s_c)
-        beyond = self._ratio * ((a - c) * (a + c) / np.where(roots > 0, roots, 1.0))
+        beyond = self._ratio * ((a - c) * (a + c) / where(roots > 0, roots, 1.0))
         across = (s_a - b) + (b - np.minimum(s_c, b))
-        return np.where(s_a <= b, a - c, np.where(s_c >= b, beyond, across))
+        return where(s_a <= b, a - c, where(s_c >= b, beyond, across))
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         b, s_c = self._break, s_a - width
         a, s = self.contact_radius(s_a), self._outer(s_a)
         total = a + self.contact_radius(s_c)
-        beyond = width / self._ratio * (s + self._outer(s_c)) / np.where(total > 0, total, 1.0)
+        beyond = width / self._ratio * (s + self._outer(s_c)) / where(total > 0, total, 1.0)
         across = s * s / (a + b) + (width - (s_a - b))
-        return np.where(s_a <= b, width, np.where(s_c >= b, beyond, across))
+        return where(s_a <= b, width, where(s_c >= b, beyond, across))
 
     # The normal contact.
 
@@ -166,7 +168,7 @@ class CappedParaboloid(Profile):
     def depth_slope(self, coordinate: Array) -> Array:
         beyond = self._weight(self.contact_radius(coordinate), self._outer(coordinate))
         within = 2 * coordinate / self.tip_radius
-        return np.where(coordinate <= self._break, within, beyond / self._ratio)
+        return where(coordinate <= self._break, within, beyond / self._ratio)
 
     def reduced_force(self, coordinate: Array) -> Array:
         return self._force(self.contact_radius(coordinate), self._outer(coordinate))
@@ -174,7 +176,7 @@ class CappedParaboloid(Profile):
     def _force(self, a: Array, s: Array) -> Array:
         cap = 4 * a * a * a / (3 * self.tip_radius)
         b = self._break
-        return np.asarray(cap + (2 / 3) * self._curvature_step * s * (2 * a * a + b * b))
+        return cap + (2 / 3) * self._curvature_step * s * (2 * a * a + b * b)
 
     def coordinate_from_depth(self, depth: Array) -> Array:
         """With u = s^2/b^2 and D = R1 d/b^2 - 1 it is (D - u)^2 = K^2 u (1 + u)."""
@@ -183,8 +185,8 @@ class CappedParaboloid(Profile):
         step = self._relative_step
         outer = np.hypot(step, 2 * np.sqrt(rest) * np.sqrt(1 + rest))
         scale = np.hypot(np.sqrt(step) * np.sqrt(step + outer), np.sqrt(2 * rest))
-        s = np.sqrt(2) * b * rest / np.where(scale > 0, scale, 1.0)
-        return self._coordinate(root, np.asarray(s))
+        s = np.sqrt(2) * b * rest / where(scale > 0, scale, 1.0)
+        return self._coordinate(root, s)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         b = self._break
@@ -195,7 +197,7 @@ class CappedParaboloid(Profile):
 
         inner = np.minimum(coordinate, b)
         cap = 8 / 15 * (np.square(inner * inner) * inner) / np.square(self.tip_radius)
-        return np.asarray(cap + energy_integral(density, self._outer(coordinate), b))
+        return cap + energy_integral(density, self._outer(coordinate), b)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Stress integral of the cap plus k times that of a truncated paraboloid.

@@ -46,4 +46,4 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
         values *= weights[part].reshape(-1, *[1] * top.ndim)
         values[0] += total
         total = np.cumsum(values, axis=0)[-1] if len(values) > 1 else values[0]
-    return np.asarray(total * scale * length / (2 * count))
+    return total * scale * length / (2 * count)

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
+from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
 from mdr_core.typing import Array, Parameter
@@ -36,7 +37,7 @@ class FlatPunch(Profile):
         return (self.radius,)
 
     def f(self, radius: Array) -> Array:
-        return np.asarray(np.where(radius <= self.radius, 0.0, np.inf))
+        return where(radius <= self.radius, 0.0, np.inf)
 
     def df(self, radius: Array) -> Array:
         return self.f(radius)
@@ -56,7 +57,7 @@ class FlatPunch(Profile):
         return True
 
     def contact_radius(self, coordinate: Array) -> Array:
-        return self.radius + np.zeros_like(coordinate)
+        return self.radius + 0 * coordinate
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         raise InputError(
@@ -66,10 +67,10 @@ class FlatPunch(Profile):
         )
 
     def depth(self, coordinate: Array) -> Array:
-        return np.asarray(coordinate + np.zeros_like(self.radius))
+        return coordinate + 0 * self.radius
 
     def depth_slope(self, coordinate: Array) -> Array:
-        return np.ones_like(coordinate)
+        return full(1.0, coordinate)
 
     def reduced_force(self, coordinate: Array) -> Array:
         return 2 * self.radius * coordinate
@@ -96,4 +97,4 @@ class FlatPunch(Profile):
 
         Parameters: see `Profile`.
         """
-        return np.asarray(2 / np.pi * coordinate * np.arctan2(a, np.sqrt((r - a) * (r + a))))
+        return 2 / np.pi * coordinate * np.arctan2(a, np.sqrt((r - a) * (r + a)))

@@ -33,6 +33,7 @@ class Hyperboloid(Profile):
     kind: ClassVar[str] = "hyperboloid"
     formula: ClassVar[str] = "tip_radius·slope²·(√(1 + r²/(tip_radius·slope)²) − 1)"
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
+    similar: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         require_positive("slope", self.slope)
@@ -45,10 +46,10 @@ class Hyperboloid(Profile):
 
     def f(self, radius: Array) -> Array:
         q = radius / self.scale
-        return np.asarray(self.slope * radius * q / (1 + np.hypot(1.0, q)))
+        return self.slope * radius * q / (1 + np.hypot(1.0, q))
 
     def df(self, radius: Array) -> Array:
-        return np.asarray(self.slope * radius / np.hypot(self.scale, radius))
+        return self.slope * radius / np.hypot(self.scale, radius)
 
     def g(self, x: Array) -> Array:
         return self.slope * x * np.arctan(x / self.scale)
@@ -66,7 +67,7 @@ class Hyperboloid(Profile):
 
         Source: notes, §2. Parameters: see `Profile`.
         """
-        (a, inner, _), r, h = annulus, radius, np.asarray(self.scale)
+        (a, inner, _), r, h = annulus, radius, self.scale
         rho = np.hypot(h, r)
         root = root_step(Annulus(a), r)
         top = root / rho

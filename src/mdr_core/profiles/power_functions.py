@@ -5,11 +5,12 @@ Source: notes, §4.
 
 from collections.abc import Sequence
 from math import ceil, log2
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from scipy.special import beta
 
+from mdr_core.elementwise import where
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Parameter
 
@@ -36,7 +37,7 @@ def raised(base: Parameter, exponent: Parameter) -> Array:
     NumPy squares, or takes a root, if a single exponent is given. The same functions are applied
     here to arrays of exponents, so that a sweep is bit-identical to its cases.
     """
-    result = np.asarray(np.power(base, exponent))
+    result = np.power(base, exponent)
     if np.ndim(exponent):
         for special, exact in _EXACT:
             there = exponent == special
@@ -49,14 +50,14 @@ def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """Return C r^n."""
     factor, scale = _scaled(coefficient, exponent)
     with np.errstate(over="ignore", under="ignore"):
-        return np.asarray(factor * raised(r * scale, exponent))
+        return factor * raised(r * scale, exponent)
 
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """Return C n r^(n-1), infinite at r = 0 for n < 1."""
     factor, scale = _scaled(coefficient, exponent)
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
-        return np.asarray((factor * scale * exponent) * raised(r * scale, exponent - 1))
+        return (factor * scale * exponent) * raised(r * scale, exponent - 1)
 
 
 def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Parameter]:
@@ -66,8 +67,8 @@ def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Par
     """
     if isinstance(exponent, float) and exponent <= _DIRECT:
         return coefficient, 1.0
-    n = np.asarray(exponent, dtype=float)
-    octaves = np.where(n > _DIRECT, np.rint(np.log2(np.abs(coefficient)) / n), 0.0)
+    n = exponent
+    octaves = where(n > _DIRECT, np.rint(np.log2(np.abs(coefficient)) / n), 0.0)
     # Both products are exact, where octaves x n would be rounded.
     coarse = np.rint(n * _COARSE) / _COARSE
     factor = coefficient * np.exp2(-octaves * coarse) * np.exp2(-octaves * (n - coarse))
@@ -79,12 +80,12 @@ def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Arr
 
     The rounding error of 1/n costs eps log(value/C)/n; one step of Newton's method removes it.
     """
-    n = np.asarray(exponent, dtype=float)
+    n = exponent
     with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
         root = raised(value / coefficient, 1 / n)
-        miss = (value - power(coefficient, root, n)) / np.where(value > 0, value, 1.0)
+        miss = (value - power(coefficient, root, n)) / where(value > 0, value, 1.0)
         polished = root * (1 + miss / n)
-    return np.asarray(np.where((value > 0) & np.isfinite(root), polished, root))
+    return where((value > 0) & np.isfinite(root), polished, root)
 
 
 def kappa(exponent: Parameter) -> Array:
@@ -92,10 +93,11 @@ def kappa(exponent: Parameter) -> Array:
 
     Source: mdr-5, Eq. (5.25), as pi/B((n + 1)/2, 1/2).
     """
-    return np.asarray(np.pi / beta((np.asarray(exponent, dtype=float) + 1) / 2, 0.5))
+    inverse: Any = beta((exponent + 1) / 2, 0.5)
+    return np.pi / inverse
 
 
-def power_stick(a: Array, ratio: Array, rest: Array, exponent: Array) -> tuple[Array, Array]:
+def power_stick(a: Array, ratio: Array, rest: Array, exponent: Parameter) -> tuple[Array, Array]:
     """Return c and a - c where 1 - (c/a)^m = ratio = 1 - rest, both accurate [length].
 
     Source: mdr-5, Eqs. (5.29), (5.31); notes, §4.
@@ -107,21 +109,21 @@ def power_stick(a: Array, ratio: Array, rest: Array, exponent: Array) -> tuple[A
     exponent : m > 0 [1].
     """
     with np.errstate(divide="ignore"):
-        exact = np.where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
+        exact = where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
     e = exact / exponent
-    return np.asarray(a * np.exp(e)), np.asarray(-a * np.expm1(e))
+    return a * np.exp(e), -a * np.expm1(e)
 
 
 def log_annulus(a: Array, width: Array, c: Array) -> Array:
     """Return log(a/c) [1], from the width while the annulus is narrow; infinite for c = 0."""
-    safe = np.where(a > 0, a, 1.0)
+    safe = where(a > 0, a, 1.0)
     part = np.minimum(width / safe, 0.5)
     with np.errstate(divide="ignore"):
         wide = np.log(np.maximum(c, 0.0) / safe)
-    return -np.where(width < safe / 2, np.log1p(-part), wide)
+    return -where(width < safe / 2, np.log1p(-part), wide)
 
 
-def power_step(a: Array, width: Array, c: Array, exponent: Array) -> Array:
+def power_step(a: Array, width: Array, c: Array, exponent: Parameter) -> Array:
     """Return 1 - (c/a)^m [1].
 
     Parameters
@@ -129,7 +131,7 @@ def power_step(a: Array, width: Array, c: Array, exponent: Array) -> Array:
     a, width, c : outer radius, a - c and inner radius [length].
     exponent : m > 0 [1].
     """
-    return np.asarray(-np.expm1(-exponent * log_annulus(a, width, c)))
+    return -np.expm1(-exponent * log_annulus(a, width, c))
 
 
 def slip_moment(
@@ -164,7 +166,7 @@ def slip_moment(
         ends = np.minimum(np.append(0.0, doubled)[:, None] / rate[part], length[part])
         sizes = d[:, None, None, part], n[:, None, None, part], length[part]
         result[part] = _moment_of_exponentials(ends, *sizes)
-    return np.asarray((result * a).reshape(shape))
+    return (result * a).reshape(shape)
 
 
 def _moment_of_exponentials(ends: Array, d: Array, n: Array, length: Array) -> Array:
@@ -176,4 +178,4 @@ def _moment_of_exponentials(ends: Array, d: Array, n: Array, length: Array) -> A
     below = (d * (np.exp(-n * u) * -np.expm1(-n * (length - u)))).sum(axis=0)
     # Summed in one order, whatever the number of loads: a sweep is bit-identical to its cases.
     of_pieces = np.cumsum(weights * above * below * np.exp(-u), axis=0)[-1]
-    return np.asarray(np.cumsum(half * of_pieces, axis=0)[-1])
+    return np.cumsum(half * of_pieces, axis=0)[-1]

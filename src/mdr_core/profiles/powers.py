@@ -8,6 +8,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import log_ratio, power_moment, root_step
+from mdr_core.elementwise import full, where
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
@@ -62,13 +63,13 @@ class Cone(Profile):
         return self.slope * radius
 
     def df(self, radius: Array) -> Array:
-        return self.slope * np.ones_like(radius)
+        return self.slope * full(1.0, radius)
 
     def g(self, x: Array) -> Array:
         return (pi / 2) * self.slope * x
 
     def dg(self, x: Array) -> Array:
-        return (pi / 2) * self.slope * np.ones_like(x)
+        return (pi / 2) * self.slope * full(1.0, x)
 
     def reduced_force(self, coordinate: Array) -> Array:
         return (pi / 2) * self.slope * coordinate * coordinate
@@ -77,7 +78,7 @@ class Cone(Profile):
         return depth / ((pi / 2) * self.slope)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        return np.asarray(np.sqrt(reduced_force / ((pi / 2) * self.slope)))
+        return np.sqrt(reduced_force / ((pi / 2) * self.slope))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         return np.square(self.g(coordinate)) * coordinate / 3
@@ -101,17 +102,17 @@ class Cone(Profile):
 
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.47). Parameters: see `Profile`."""
-        return self.g(width + np.zeros_like(coordinate))
+        return self.g(width + 0 * coordinate)
 
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """(pi^2 t^2/24) (a - c)^3. Source: notes, §6. Parameters: see `Profile`."""
-        rise = np.square((pi / 2) * self.slope) + np.zeros_like(coordinate)
+        rise = np.square((pi / 2) * self.slope) + 0 * coordinate
         return rise * np.square(width) * width / 6
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """t [sqrt(r^2 - c^2) - c arccos(c/r)]. Source: notes, §4. Parameters: see `Profile`."""
         root = np.sqrt((r - c) * (r + c))
-        return np.asarray(self.slope * np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), r))
+        return self.slope * np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), r)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))].
@@ -119,7 +120,7 @@ class Cone(Profile):
         Source: notes, §7. Parameters: see `Profile`.
         """
         half = a / (r + np.sqrt((r - a) * (r + a)))
-        return np.asarray(self.slope * a * (2 * np.arctan(half) - half))
+        return self.slope * a * (2 * np.arctan(half) - half)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """(t/2) [arccosh(a/r) - arccosh(c/r)].
@@ -216,7 +217,7 @@ class Paraboloid(Profile):
         square = (r - c) * (r + c)
         root = np.sqrt(square)
         gap = atan_gap(root, np.where(c > 0, c, 1.0))
-        return np.asarray((c * gap + square * np.arctan2(root, c)) / (pi * self.radius))
+        return (c * gap + square * np.arctan2(root, c)) / (pi * self.radius)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).
@@ -225,7 +226,7 @@ class Paraboloid(Profile):
         """
         root = np.sqrt((r - a) * (r + a))
         gap = atan_gap(a, np.where(root > 0, root, 1.0))
-        return np.asarray((a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius))
+        return (a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)].
@@ -267,14 +268,13 @@ class Power(Profile):
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        sharp = np.asarray(self.exponent) <= 1
-        return (np.where(sharp, 0.0, np.inf)[()],) if sharp.any() else ()
+        sharp = where(self.exponent <= 1, 0.0, np.inf)
+        return (sharp,) if np.any(sharp == 0) else ()
 
     @property
     def tip_pressure(self) -> Parameter:
-        n = np.asarray(self.exponent)
-        cone = np.asarray(self.coefficient) / 2
-        return np.where(n < 1, np.inf, np.where(n == 1, cone, 0.0))
+        n = self.exponent
+        return where(n < 1, np.inf, where(n == 1, self.coefficient / 2, 0.0))
 
     @property
     def steepness(self) -> float:
@@ -306,7 +306,7 @@ class Power(Profile):
         return power_root(depth / kappa(n), self.coefficient, n)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        n = np.asarray(self.exponent)
+        n = self.exponent
         part = reduced_force * ((n + 1) / (2 * n * kappa(self.exponent)))
         return power_root(part, self.coefficient, n + 1)
 
@@ -320,22 +320,22 @@ class Power(Profile):
         self, coordinate: Array, ratio: Array, rest: Array
     ) -> tuple[Array, Array]:
         """c/a = (1 - rho)^(1/(n+1)). Source: mdr-5, Eq. (5.31). Parameters: see `Profile`."""
-        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent) + 1)
+        return power_stick(coordinate, ratio, rest, self.exponent + 1)
 
     def stick_from_depth_ratio(
         self, coordinate: Array, ratio: Array, rest: Array
     ) -> tuple[Array, Array]:
         """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
-        return power_stick(coordinate, ratio, rest, np.asarray(self.exponent))
+        return power_stick(coordinate, ratio, rest, self.exponent)
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.30). Parameters: see `Profile`."""
-        step = power_step(coordinate, width, stick, np.asarray(self.exponent) + 1)
+        step = power_step(coordinate, width, stick, self.exponent + 1)
         return self.reduced_force(coordinate) * step
 
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
-        return self.g(coordinate) * power_step(coordinate, width, stick, np.asarray(self.exponent))
+        return self.g(coordinate) * power_step(coordinate, width, stick, self.exponent)
 
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: notes, §6. Parameters: see `Profile`."""

@@ -4,12 +4,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, inf, isfinite, log, pi
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import power_moment
+from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_functions import (
@@ -194,7 +195,7 @@ class Series(Profile):
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.30), superposed. Parameters: see `Profile`."""
         parts = (
-            2 * n / (n + 1) * depth * power_step(coordinate, width, stick, np.asarray(n + 1))
+            2 * n / (n + 1) * depth * power_step(coordinate, width, stick, (n + 1))
             for depth, n in self._depths(coordinate)
         )
         return _total(parts) * coordinate
@@ -202,8 +203,7 @@ class Series(Profile):
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.29), superposed. Parameters: see `Profile`."""
         return _total(
-            depth * power_step(coordinate, width, stick, np.asarray(n))
-            for depth, n in self._depths(coordinate)
+            depth * power_step(coordinate, width, stick, n) for depth, n in self._depths(coordinate)
         )
 
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
@@ -229,5 +229,5 @@ class Series(Profile):
 def _total(parts: Iterable[Array]) -> Array:
     """Sum of the terms of a positive total; infinity where terms of either sign overflow."""
     with np.errstate(over="ignore", invalid="ignore"):
-        total = np.asarray(sum(parts))
-    return np.where(np.isnan(total), inf, total)
+        total: Any = sum(parts)
+    return where(np.isnan(total), inf, total)

@@ -1,11 +1,13 @@
 """Spherical-tip cone: a cone whose tip is a sphere."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.elementwise import piecewise, where
 from mdr_core.profiles.base import require_positive
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroids import Sphere, artanh_ratio, artanh_ratio_difference, sphere_kernel
@@ -42,41 +44,45 @@ class SphericalTipCone(TippedCone):
         require_positive("slope", self.slope)
         require_positive("tip_radius", self.tip_radius)
 
-    @property
+    @cached_property
     def tangent_radius(self) -> Parameter:
         return self.tip_radius * self.slope / np.hypot(1.0, self.slope)
 
-    @property
+    @cached_property
     def scale(self) -> Parameter:
         """v_b = artanh(b/R) [1]."""
         return np.arcsinh(self.slope)
 
-    @property
+    @cached_property
     def _tip(self) -> Sphere:
         return Sphere(self.tip_radius)
 
-    @property
+    @cached_property
     def _flank_rate(self) -> Parameter:
         """h^2/R, the derivative of R tanh(v) at b [length]."""
         return self._behind / np.hypot(1.0, self.slope)
 
     def contact_radius(self, coordinate: Array) -> Array:
-        within = self._tip.contact_radius(np.minimum(coordinate, self.scale))
-        past = np.maximum(coordinate - self.scale, 0.0)
-        beyond = self.tangent_radius + past * self._flank_rate
-        return np.where(past > 0, beyond, np.minimum(within, self.tangent_radius))
+        b, start = self.tangent_radius, self.scale
+        return piecewise(
+            coordinate,
+            start,
+            lambda within: np.minimum(self._tip.contact_radius(within), b),
+            lambda beyond: b + (beyond - start) * self._flank_rate,
+        )
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        b = self.tangent_radius
-        within = np.minimum(
-            artanh_ratio(np.minimum(contact_radius, b), self.tip_radius), self.scale
+        b, start = self.tangent_radius, self.scale
+        return piecewise(
+            contact_radius,
+            b,
+            lambda within: np.minimum(artanh_ratio(within, self.tip_radius), start),
+            lambda beyond: start + (beyond - b) / self._flank_rate,
         )
-        beyond = self.scale + (contact_radius - b) / self._flank_rate
-        return np.where(contact_radius > b, beyond, within)
 
     def radius_slope(self, coordinate: Array) -> Array:
-        within = self._tip.radius_slope(np.minimum(coordinate, self.scale))
-        return np.where(coordinate > self.scale, self._flank_rate, within)
+        rate = self._flank_rate
+        return piecewise(coordinate, self.scale, self._tip.radius_slope, lambda _: rate)
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Sum of the tip's part and the flank's. Parameters: see `Profile`."""
@@ -85,7 +91,7 @@ class SphericalTipCone(TippedCone):
             np.minimum(a, b), np.minimum(c, b), np.minimum(s_a, start), np.minimum(s_c, start)
         )
         beyond = (np.maximum(a, b) - np.maximum(c, b)) / self._flank_rate
-        return np.where(s_a <= start, tip, np.where(s_c >= start, beyond, beyond + tip))
+        return where(s_a <= start, tip, where(s_c >= start, beyond, beyond + tip))
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         past = np.maximum(s_a - self.scale, 0.0)
@@ -97,7 +103,7 @@ class SphericalTipCone(TippedCone):
     def _pole(self) -> float:
         return float(np.asarray(self.tip_radius))
 
-    @property
+    @cached_property
     def _behind(self) -> Parameter:
         """Distance h of the tangent point below the centre: the sphere continues to s = -h."""
         return self.tip_radius / np.hypot(1.0, self.slope)
@@ -105,23 +111,23 @@ class SphericalTipCone(TippedCone):
     def _log_term(self, x: Array, s: Array) -> Array:
         """L, by 1 + b^2 [1/(R + h) + 1/(x + s)]/(h + s) = (R + x)/(h + s)."""
         b, big, h = self.tangent_radius, self.tip_radius, self._behind
-        return np.asarray(np.log1p(b / (h + s) * (b / (big + h) + b / (x + s))))
+        return np.log1p(b / (h + s) * (b / (big + h) + b / (x + s)))
 
     def _flank_depth(self, x: Array, s: Array) -> Array:
         phi = np.arctan(s / self.tangent_radius)
-        return np.asarray(x * (self._log_term(x, s) + self.slope * phi))
+        return x * (self._log_term(x, s) + self.slope * phi)
 
     def _flank_slope(self, x: Array, s: Array) -> Array:
         """L + t phi + t b R/(x h + s R)."""
         b, big, h, t = self.tangent_radius, self.tip_radius, self._behind, self.slope
         log_term = self._log_term(x, s) + t * np.arctan(s / b)
-        return np.asarray(log_term + t * b * big / (x * h + s * big))
+        return log_term + t * b * big / (x * h + s * big)
 
     def _flank_force(self, x: Array, s: Array) -> Array:
         b, big, h = self.tangent_radius, self.tip_radius, self._behind
         sphere = np.square(b * b) / (big * x + h * s)
         sphere = sphere + (big * big + x * x) * tanh_gap(self._log_term(x, s))
-        return np.asarray(sphere + self.slope * (x * x * np.arctan(s / b) + b * s))
+        return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)
 
     def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
         v = artanh_ratio(a, self.tip_radius)

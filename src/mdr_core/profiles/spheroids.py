@@ -9,6 +9,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import arcsinh_difference
+from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile, require_positive
 from mdr_core.profiles.cancellation_free import tanh_gap
@@ -38,6 +39,7 @@ class Spheroid(Profile):
     height: Parameter
 
     closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
+    similar: ClassVar[bool] = True
 
     @property
     def domain(self) -> Parameter:
@@ -58,21 +60,21 @@ class Spheroid(Profile):
 
     def f(self, radius: Array) -> Array:
         q = np.square(radius / self.radius)
-        return np.asarray(self.height * q / (1 + np.sqrt(1 - q)))
+        return self.height * q / (1 + np.sqrt(1 - q))
 
     def df(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
-        return np.asarray(self.height / self.radius * radius / root)
+        return self.height / self.radius * radius / root
 
     def g(self, x: Array) -> Array:
         return self.depth(artanh_ratio(x, self.radius))
 
     def dg(self, x: Array) -> Array:
         pole = x * self.radius / ((self.radius - x) * (self.radius + x))
-        return np.asarray(self.height / self.radius * (artanh_ratio(x, self.radius) + pole))
+        return self.height / self.radius * (artanh_ratio(x, self.radius) + pole)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        outside = np.asarray(contact_radius >= self.radius)
+        outside = contact_radius >= self.radius
         if outside.any():
             raise InputError(
                 ("load", "contact_radius", *first_index(outside)),
@@ -85,7 +87,7 @@ class Spheroid(Profile):
         return self.radius * np.tanh(coordinate)
 
     def radius_slope(self, coordinate: Array) -> Array:
-        return np.asarray(self.radius / np.square(np.cosh(coordinate)))
+        return self.radius / np.square(np.cosh(coordinate))
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Parameters: see `Profile`."""
@@ -93,7 +95,7 @@ class Spheroid(Profile):
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         cosh = np.cosh(s_a) * np.cosh(s_a - width)
-        return np.asarray(self.radius * np.sinh(width) / cosh)
+        return self.radius * np.sinh(width) / cosh
 
     def depth(self, coordinate: Array) -> Array:
         return self.height * coordinate * np.tanh(coordinate)
@@ -136,7 +138,7 @@ class Spheroid(Profile):
 
 def artanh_ratio(x: Array, equator: Parameter) -> Array:
     """Return artanh(x/R) [1], as accurate as R - x."""
-    return np.asarray(0.5 * np.log1p(2 * x / (equator - x)))
+    return 0.5 * np.log1p(2 * x / (equator - x))
 
 
 def artanh_ratio_difference(
@@ -150,10 +152,9 @@ def artanh_ratio_difference(
     equator : R [length].
     wide : the plain difference, for a wide annulus [1].
     """
-    big = np.asarray(equator)
-    difference = big * width / (big * (big - a) + a * (big - c))
+    difference = equator * width / (equator * (equator - a) + a * (equator - c))
     narrow = np.arctanh(np.minimum(difference, 0.5))
-    return np.asarray(np.where(difference < 0.5, narrow, wide))
+    return where(difference < 0.5, narrow, wide)
 
 
 def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -> Array:

@@ -10,6 +10,7 @@ from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.stress import StressPanels
 from mdr_core.abel.two_root import inverse_hypot
+from mdr_core.elementwise import full, number
 from mdr_core.errors import InputError, Notice
 from mdr_core.profiles.resolved_table import resolve_table
 from mdr_core.profiles.table_interpolation import Interpolation, checked_heights
@@ -86,7 +87,7 @@ class Tabulated(FlatEnded):
 
     @property
     def last_coordinate(self) -> float:
-        return float(inverse_hypot(np.asarray(self.domain), self.flat_radius))
+        return float(inverse_hypot(number(self.domain), self.flat_radius))
 
     @property
     def scale(self) -> float:
@@ -127,18 +128,18 @@ class Tabulated(FlatEnded):
 
     def radius_slope(self, coordinate: Array) -> Array:
         if self.flat_radius == 0:
-            return np.ones_like(coordinate)
+            return full(1.0, coordinate)
         return super().radius_slope(coordinate)
 
     # The shape, by its polynomials between the points.
 
     def f(self, radius: Array) -> Array:
         u, (c0, c1, c2, c3) = self._polynomial(radius)
-        return np.asarray(c0 + u * (c1 + u * (c2 + u * c3)))
+        return c0 + u * (c1 + u * (c2 + u * c3))
 
     def df(self, radius: Array) -> Array:
         u, (_, c1, c2, c3) = self._polynomial(radius)
-        return np.asarray(c1 + u * (2 * c2 + u * (3 * c3)))
+        return c1 + u * (2 * c2 + u * (3 * c3))
 
     def _polynomial(self, radius: Array) -> tuple[Array, Array]:
         """Distance from the point below, and the coefficients (4, ...) of f."""
@@ -147,7 +148,7 @@ class Tabulated(FlatEnded):
         return radius - self.r[panel], self.resolved.rows[:, panel]
 
     def _require_inside(self, radius: Array) -> None:
-        if np.any(np.asarray(radius) > self.r[-1]):
+        if np.any(radius > self.r[-1]):
             raise InputError(("profile", "r"), f"the table ends at radius {self.r[-1]:.12g}")
 
     # The equivalent profile, by its polynomials in s = sqrt(x^2 - b^2), b the radius below.
@@ -174,7 +175,7 @@ class Tabulated(FlatEnded):
     def reduced_force(self, coordinate: Array) -> Array:
         place = _located(self._edges, coordinate)
         half = self.resolved.panels.half_force_at(*place)
-        return np.asarray(2 * half.reshape(np.shape(coordinate)))
+        return 2 * half.reshape(np.shape(coordinate))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         place = _located(self._edges, coordinate)
@@ -198,7 +199,7 @@ class Tabulated(FlatEnded):
         jump, rest = self.resolved.panels.slope_at(panel, s)
         # In the first subpanel s is the coordinate itself.
         ratio = np.where(panel == 0, 1.0, coordinate / np.where(s > 0, s, np.inf))
-        return np.asarray(jump * ratio + coordinate * rest)
+        return jump * ratio + coordinate * rest
 
     @cached_property
     def _edges(self) -> Array:

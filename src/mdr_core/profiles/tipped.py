@@ -1,7 +1,9 @@
 """Cones with a rounded tip, and the rounded cone as the one with a parabolic tip."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, pi
 from typing import ClassVar, Final
 
@@ -10,12 +12,17 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
+from mdr_core.elementwise import piecewise
 from mdr_core.profiles.base import Profile, require_positive
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.powers import Paraboloid
 from mdr_core.profiles.spheroids import Sphere
 from mdr_core.quadrature import DEFAULT, Analytic
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Parameter
+
+_OnTip = Callable[[Array], Array]
+# Of x and s on the flank.
+_OnFlank = Callable[[Array, Array], Array]
 
 # Width of the strip of analyticity over the distance of the singularity.
 _INSIDE: Final = 0.9
@@ -99,47 +106,43 @@ class TippedCone(Profile):
         return self._flank_slope(x, s) * s / x
 
     def _outer(self, past: Array) -> tuple[Array, Array]:
-        """x and s on the flank from past = x - b; b and 0 within the tip."""
-        b, past = self.tangent_radius, np.maximum(past, 0.0)
+        """x and s on the flank from past = x - b >= 0."""
+        b = self.tangent_radius
         return b + past, np.sqrt(past * (2 * b + past))
 
-    def _split(self, coordinate: Array) -> tuple[Flags, Array, tuple[Array, Array]]:
-        """Contacts that end on the tip, their coordinate in it, and x and s on the flank."""
-        past = (coordinate - self.scale) * self._flank_rate
-        return past < 0, np.minimum(coordinate, self.scale), self._outer(past)
+    def _split(self, coordinate: Array, tip: _OnTip, flank: _OnFlank) -> Array:
+        """Return tip(coordinate) of contacts that end on the tip, and flank(x, s) of others."""
+        start, rate = self.scale, self._flank_rate
+        return piecewise(
+            coordinate, start, tip, lambda beyond: flank(*self._outer((beyond - start) * rate))
+        )
 
     def f(self, radius: Array) -> Array:
         b = self.tangent_radius
         return self._tip.f(np.minimum(radius, b)) + self.slope * np.maximum(radius - b, 0.0)
 
     def df(self, radius: Array) -> Array:
-        b = self.tangent_radius
-        return np.where(radius < b, self._tip.df(np.minimum(radius, b)), self.slope)
+        return piecewise(radius, self.tangent_radius, self._tip.df, lambda _: self.slope)
 
     def g(self, x: Array) -> Array:
         b = self.tangent_radius
-        return np.where(
-            x < b, self._tip.g(np.minimum(x, b)), self._flank_depth(*self._outer(x - b))
-        )
+        return piecewise(x, b, self._tip.g, lambda x: self._flank_depth(*self._outer(x - b)))
 
     def dg(self, x: Array) -> Array:
         b = self.tangent_radius
-        return np.where(
-            x < b, self._tip.dg(np.minimum(x, b)), self._flank_slope(*self._outer(x - b))
-        )
+        return piecewise(x, b, self._tip.dg, lambda x: self._flank_slope(*self._outer(x - b)))
 
     def depth(self, coordinate: Array) -> Array:
-        on_tip, within, outer = self._split(coordinate)
-        return np.where(on_tip, self._tip.depth(within), self._flank_depth(*outer))
+        return self._split(coordinate, self._tip.depth, self._flank_depth)
 
     def depth_slope(self, coordinate: Array) -> Array:
-        on_tip, within, outer = self._split(coordinate)
-        flank = self._flank_slope(*outer) * self._flank_rate
-        return np.where(on_tip, self._tip.depth_slope(within), flank)
+        rate = self._flank_rate
+        return self._split(
+            coordinate, self._tip.depth_slope, lambda x, s: self._flank_slope(x, s) * rate
+        )
 
     def reduced_force(self, coordinate: Array) -> Array:
-        on_tip, within, outer = self._split(coordinate)
-        return np.where(on_tip, self._tip.reduced_force(within), self._flank_force(*outer))
+        return self._split(coordinate, self._tip.reduced_force, self._flank_force)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         b = self.tangent_radius
@@ -148,9 +151,9 @@ class TippedCone(Profile):
             x = np.hypot(b, s)
             return self._flank_force(x, s) * self._flank_weight(x, s)
 
-        _, within, (_, s) = self._split(coordinate)
-        flank = energy_integral(density, s, np.minimum(b, self._behind))
-        return self._tip.reduced_energy(within) + flank
+        tip = self._tip.reduced_energy(np.minimum(coordinate, self.scale))
+        _, s = self._outer(np.maximum(coordinate - self.scale, 0.0) * self._flank_rate)
+        return tip + energy_integral(density, s, np.minimum(b, self._behind))
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""
@@ -218,30 +221,32 @@ class RoundedCone(TippedCone):
     kind: ClassVar[str] = "rounded_cone"
     formula: ClassVar[str] = "r²/(2·tip_radius) for r ≤ b = tip_radius·slope, then slope·(r − b/2)"
 
+    similar: ClassVar[bool] = True
+
     def __post_init__(self) -> None:
         require_positive("slope", self.slope)
         require_positive("tip_radius", self.tip_radius)
 
-    @property
+    @cached_property
     def tangent_radius(self) -> Parameter:
         return self.tip_radius * self.slope
 
-    @property
+    @cached_property
     def _tip(self) -> Paraboloid:
         return Paraboloid(self.tip_radius)
 
     def _flank_depth(self, x: Array, s: Array) -> Array:
         b = self.tangent_radius
-        return np.asarray(self.slope * x * (b / (x + s) + np.arctan(s / b)))
+        return self.slope * x * (b / (x + s) + np.arctan(s / b))
 
     def _flank_slope(self, x: Array, s: Array) -> Array:
         b = self.tangent_radius
-        return np.asarray(self.slope * (np.arctan(s / b) + 2 * b / (x + s)))
+        return self.slope * (np.arctan(s / b) + 2 * b / (x + s))
 
     def _flank_force(self, x: Array, s: Array) -> Array:
         b = self.tangent_radius
         square = x * x * (np.arctan(s / b) + (4 / 3) * b / (x + s))
-        return np.asarray(self.slope * (square + b * s / 3))
+        return self.slope * (square + b * s / 3)
 
     def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
         return self._tip.pressure_kernel(Annulus(a, inner), r, rtol)

@@ -10,6 +10,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, two_root_integral
+from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
 from mdr_core.profiles.cancellation_free import atan_gap
@@ -30,10 +31,10 @@ class FlatEnded(Profile):
     flat_radius: Parameter
 
     def contact_radius(self, coordinate: Array) -> Array:
-        return np.asarray(np.hypot(self.flat_radius, coordinate))
+        return np.hypot(self.flat_radius, coordinate)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        inside = np.asarray(contact_radius < self.flat_radius)
+        inside = contact_radius < self.flat_radius
         if inside.any():
             raise InputError(
                 ("load", "contact_radius", *first_index(inside)),
@@ -47,7 +48,7 @@ class FlatEnded(Profile):
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """(a^2 - c^2)/(s_a + s_c). Parameters: see `Profile`."""
-        return (a - c) * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0)
+        return (a - c) * (a + c) / where(s_a > 0, s_a + s_c, 1.0)
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
@@ -59,6 +60,7 @@ class Truncated(FlatEnded):
 
     # Zeros of dg/ds at the break.
     zeros: ClassVar[Analytic] = DEFAULT
+    similar: ClassVar[bool] = True
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -82,7 +84,7 @@ class Truncated(FlatEnded):
     def dg(self, x: Array) -> Array:
         s = inverse_hypot(x, self.flat_radius)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(x < self.flat_radius, 0.0, self.weight(x, s) * x / s)
+            return where(x < self.flat_radius, 0.0, self.weight(x, s) * x / s)
 
     def depth_slope(self, coordinate: Array) -> Array:
         return self.weight(self.contact_radius(coordinate), coordinate)
@@ -148,7 +150,7 @@ class RoundedPunch(Truncated):
 
     def weight(self, x: Array, s: Array) -> Array:
         """(b/R) (2 s/b - arctan(s/b)) s/x."""
-        value = np.asarray(s / self.flat_radius)
+        value = s / self.flat_radius
         angle = np.arctan(value)
         value += value
         value -= angle
@@ -190,7 +192,7 @@ class TruncatedCone(Truncated):
         return self.slope * np.maximum(radius - self.flat_radius, 0.0)
 
     def df(self, radius: Array) -> Array:
-        return np.asarray(np.where(radius < self.flat_radius, 0.0, self.slope))
+        return where(radius < self.flat_radius, 0.0, self.slope)
 
     def depth(self, coordinate: Array) -> Array:
         phi = np.arctan(coordinate / self.flat_radius)
@@ -237,7 +239,7 @@ class TruncatedParaboloid(Truncated):
         return np.square(inverse_hypot(radius, self.flat_radius)) / (2 * self.radius)
 
     def df(self, radius: Array) -> Array:
-        return np.where(radius < self.flat_radius, 0.0, radius / self.radius)
+        return where(radius < self.flat_radius, 0.0, radius / self.radius)
 
     def depth(self, coordinate: Array) -> Array:
         return self.contact_radius(coordinate) * coordinate / self.radius
@@ -260,7 +262,7 @@ class TruncatedParaboloid(Truncated):
         goal = 0.75 * (reduced_force * self.radius / (b * np.square(b)))
         z = np.sqrt(2) * np.sinh(np.arcsinh(np.sqrt(2) * goal) / 3)
         z2 = z * z
-        return np.asarray(b * (z - (z * (z2 + 1.5) - goal) / (3 * z2 + 1.5)))
+        return b * (z - (z * (z2 + 1.5) - goal) / (3 * z2 + 1.5))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """(1/R^2) [a s^2 (b^2 + s^2/3) + s^4 (3a^3 + 6a^2 b + 4a b^2 + 2b^3)/(15 (a + b)^2)]."""
@@ -268,7 +270,7 @@ class TruncatedParaboloid(Truncated):
         a = self.contact_radius(coordinate)
         cubic = ((3 * a + 6 * b) * a + 4 * (b * b)) * a + 2 * (b * b * b)
         outer = s2 * s2 * cubic / (15 * np.square(a + b))
-        return np.asarray((a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius))
+        return (a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius)
 
     def weight(self, x: Array, s: Array) -> Array:
         """(x^2 + s^2)/(x R)."""

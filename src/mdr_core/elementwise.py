@@ -1,0 +1,52 @@
+"""Choices between formulas, element by element.
+
+A single load is carried as `np.float64`, not as an array without dimension, on which every
+operation takes ten times as long. The same formulas serve both; these functions evaluate only the
+formula that a single number needs, and return a number.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+
+def number(value: float) -> Any:
+    """Return a value as the single number that the formulas take."""
+    return np.float64(value)
+
+
+def is_number(value: Any) -> bool:
+    """True for a single number, false for an array."""
+    return isinstance(value, float | int)
+
+
+def where(condition: Any, this: Any, other: Any) -> Any:
+    """Return `this` where the condition holds, else `other`."""
+    if isinstance(condition, np.bool_ | bool):
+        return this if condition else other
+    return np.where(condition, this, other)
+
+
+def piecewise(
+    place: Any, start: Any, below: Callable[[Any], Any], beyond: Callable[[Any], Any]
+) -> Any:
+    """Return below(place) up to `start` and beyond(place) from there on.
+
+    Each formula sees only places on its own side.
+    """
+    if is_number(place) and is_number(start):
+        return below(place) if place < start else beyond(place)
+    return np.where(
+        place < start, below(np.minimum(place, start)), beyond(np.maximum(place, start))
+    )
+
+
+def broadcast(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return a value in a shape; a number where the shape has no dimension."""
+    return value if np.shape(value) == shape else np.broadcast_to(value, shape)
+
+
+def full(value: float, like: Any) -> Any:
+    """Return a value in the shape of an array, or as a number."""
+    return np.float64(value) if is_number(like) else np.full_like(like, value, dtype=float)
