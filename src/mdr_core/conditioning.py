@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.elementwise import full, number, where
 from mdr_core.equivalent_1d import force_slope, stick_from_force
 from mdr_core.inversion import Function
 from mdr_core.normal import NormalContact
@@ -54,7 +55,7 @@ def near_full_slip(
     """
     late = partial & (ratio > _LATE)
     if profile.slips_at_once or not late.any():
-        return np.zeros(late.shape)
+        return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
     load, slope = _load(profile, by_force=by_force)
     other, other_slope = _load(profile, by_force=not by_force)
@@ -66,7 +67,7 @@ def near_full_slip(
             c, a = profile.contact_radius(low), profile.contact_radius(high)
             condition = np.stack(np.broadcast_arrays(radial / c, radial / (a - c), condition))
             condition = np.where(np.isfinite(condition), condition, 0.0).max(axis=0)
-    return np.where(late & np.isfinite(condition), condition, 0.0)
+    return where(late & np.isfinite(condition), condition, 0.0)
 
 
 def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
@@ -83,8 +84,8 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     if contact.profile.slips_at_once or not ratio[worst] > _LATE:
         return 0.0
     given = contact.coordinate[worst], ratio[worst], 1 - ratio[worst]
-    edge, _ = stick_from_force(contact.profile, *map(np.asarray, given))
-    ends = np.asarray(given[0]), edge
+    edge, _ = stick_from_force(contact.profile, *map(number, given))
+    ends = number(given[0]), edge
     part = ratio[worst], partial[worst]
     return float(near_full_slip(contact.profile, ends, *part, by_force=True, edges=False))
 
@@ -110,13 +111,13 @@ def of_sliding(
 def narrow_annulus(coordinate: Array, width: Array) -> Array:
     """Return the condition number 3 a/(a - c) of each annulus between two edges [1]."""
     some = width > 0
-    return np.where(some, _CUBE * coordinate / np.where(some, width, 1.0), 0.0)
+    return where(some, _CUBE * coordinate / where(some, width, 1.0), 0.0)
 
 
 def of_excess_displacement(displacement: Array, excess: Array) -> Array:
     """Return the condition number u/(u - u_max) of each displacement beyond full slip [1]."""
     slides = excess > 0
-    return np.where(slides, np.abs(displacement) / np.where(slides, excess, 1.0), 0.0)
+    return where(slides, np.abs(displacement) / where(slides, excess, 1.0), 0.0)
 
 
 def beyond_break(contact: NormalContact) -> Array:
@@ -127,18 +128,18 @@ def beyond_break(contact: NormalContact) -> Array:
     distance from it.
     """
     profile = contact.profile
-    if not np.size(profile.coordinate_breaks):
-        return np.zeros(np.shape(contact.coordinate))
+    if not profile.coordinate_breaks.size:
+        return full(0.0, contact.coordinate)
     load, slope = _load(profile, by_force=contact.control == "normal_force")
     if contact.control == "contact_radius":
         load, slope = profile.contact_radius, profile.radius_slope
-    at = np.where(contact.coordinate > 0, contact.coordinate, np.nan)
+    at = where(contact.coordinate > 0, contact.coordinate, np.nan)
     with np.errstate(all="ignore"):
         rise = np.log(_radial_slope(profile, at * (1 + _STEP)))
         rise = rise - np.log(_radial_slope(profile, at * (1 - _STEP)))
         share = np.maximum(load(at) / (at * slope(at)), _COORDINATE)
         condition = np.abs(rise) * share / (2 * _STEP)
-    return np.where(np.isfinite(condition), condition, 0.0)
+    return where(np.isfinite(condition), condition, 0.0)
 
 
 def _radial_slope(profile: Profile, coordinate: Array) -> Array:

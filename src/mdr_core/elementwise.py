@@ -21,10 +21,15 @@ def is_number(value: Any) -> bool:
     return isinstance(value, float | int)
 
 
+def _number(value: Any) -> Any:
+    """Of Python's numbers neither comparisons nor results have NumPy's methods."""
+    return np.float64(value) if type(value) is float else value
+
+
 def where(condition: Any, this: Any, other: Any) -> Any:
     """Return `this` where the condition holds, else `other`."""
     if isinstance(condition, np.bool_ | bool):
-        return this if condition else other
+        return _number(this if condition else other)
     return np.where(condition, this, other)
 
 
@@ -36,7 +41,7 @@ def piecewise(
     Each formula sees only places on its own side.
     """
     if is_number(place) and is_number(start):
-        return below(place) if place < start else beyond(place)
+        return _number(below(place) if place < start else beyond(place))
     return np.where(
         place < start, below(np.minimum(place, start)), beyond(np.maximum(place, start))
     )

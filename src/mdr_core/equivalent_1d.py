@@ -27,6 +27,9 @@ from mdr_core.validation import first_index
 _NARROW: Final = 0.05
 # Gauss-Legendre nodes of that integral: they integrate powers up to 100 to rounding error.
 _NODES: Final = 16
+# Products of weights and cases that are summed faster in one call than term by term, by
+# measurement.
+_FEW: Final = 4096
 # A gap between breaks longer than twice this many times the one before is divided in such ratios.
 _GROWTH: Final = 4.0
 # Part of full slip up to which the width is the unknown; beyond it the stick edge is.
@@ -364,8 +367,10 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
 
 def in_order(weights: Array, values: Array) -> Array:
     """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
-    if values.ndim == 1:
-        return np.add.accumulate(weights * values)[-1]
+    if weights.size * values.shape[-1] <= _FEW:
+        added = (1,) * (values.ndim - weights.ndim)
+        spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
+        return np.add.accumulate(spread * values)[-1]
     total = np.zeros(values.shape[1:])
     for weight, value in zip(weights, values, strict=True):
         total = total + weight * value

@@ -223,13 +223,15 @@ class IntervalMoments:
         limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
         wide = (ends[1] > limit * ends[0]) | ((base == 0) & (low + span > _WIDE * low))
         closed, by_rule = wide & ~shallow & (span > 0), (~wide | shallow) & (span > 0)
+        beyond = shallow | (base > 0)
+        if by_rule.all():
+            return Moments(span, self.over_narrow(span, ends, base, beyond))
         if closed.any():
             found = self._part(closed).over_wide(span[closed], ends[:, closed], base[closed])
             weights[:, closed] = found
         if by_rule.any():
-            beyond = (shallow | (base > 0))[by_rule]
-            at = span[by_rule], ends[:, by_rule], base[by_rule]
-            weights[:, by_rule] = self._part(by_rule).over_narrow(*at, beyond)
+            at = span[by_rule], ends[:, by_rule], base[by_rule], beyond[by_rule]
+            weights[:, by_rule] = self._part(by_rule).over_narrow(*at)
         return Moments(span, weights)
 
     def _part(self, chosen: Flags) -> "IntervalMoments":

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.broadcasting import in_blocks
+from mdr_core.elementwise import is_number
 from mdr_core.equivalent_1d import depth_step
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import Profile
@@ -43,6 +44,8 @@ def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array)
         return (np.square(span) * found.weights[1] / 4,)
 
     ends = coordinate, width, stick
+    if is_number(sum(ends)) and not profile.swept:
+        return moment(profile, *map(np.atleast_1d, ends))[0][0]
     swept = [profile.parameters[name] for name in profile.swept]
     shape = np.broadcast_shapes(*map(np.shape, (*ends, *swept)))
     (result,) = in_blocks(moment, profile, [np.atleast_1d(end) for end in ends], _BLOCK)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import conditioning, equivalent_1d, stick_zone
+from mdr_core import conditioning, equivalent_1d, stick_zone, validity
 from mdr_core.broadcasting import solve_cases
 from mdr_core.elementwise import broadcast, is_number, where
 from mdr_core.errors import InputError, Notice
@@ -19,7 +19,7 @@ from mdr_core.results import Results
 from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import require_positive
+from mdr_core.validation import extremes, require_positive
 
 # Rounding error of steps over the annulus, relative to that of the profile's closed forms.
 _STEP_ERROR: Final = 40.0
@@ -214,7 +214,7 @@ class TangentialContact(Results):
             error = error + _EDGE_ERROR * conditioning.narrow_annulus(self._coordinate, self.width)
         return error
 
-    @property
+    @cached_property
     def error_estimates(self) -> Array:
         """Upper bound of the relative error of each case, rounding of its loads included [1]."""
         return _STEP_ERROR * self.normal.error_estimates + self.load_rounding
@@ -222,7 +222,7 @@ class TangentialContact(Results):
     @property
     def error_estimate(self) -> float:
         """Largest of `error_estimates` [1]."""
-        return float(np.max(self.error_estimates))
+        return extremes(self.error_estimates)[1]
 
     @property
     def _load_condition(self) -> Parameter:
@@ -240,7 +240,12 @@ class TangentialContact(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the normal contact, and `accuracy` if rtol is not reached."""
-        found = [notice for notice in self.normal.warnings if notice.code != "accuracy"]
+        return (*validity.notices(validity.of_normal_contact(self.normal)), *self.bodiless_warnings)
+
+    @property
+    def bodiless_warnings(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        found = [each for each in self.normal.bodiless_warnings if each.code != "accuracy"]
         if self.error_estimate > self.normal.rtol:
             found.append(not_reached(self.normal.rtol))
         return tuple(found)
@@ -298,9 +303,7 @@ def solve(
         raise InputError(("tangential",), f"exactly one of {', '.join(CONTROLS)} is needed")
     name, given = named[0][0], np.asarray(named[0][1], dtype=float)[()]
     parameters = (g_star, friction_coefficient)
-    shape = np.broadcast_shapes(
-        given.shape, contact.coordinate.shape, *(np.shape(one) for one in parameters)
-    )
+    shape = np.broadcast_shapes(given.shape, contact.coordinate.shape, *map(np.shape, parameters))
     zone = stick_zone.solve(contact, *parameters, name, given)
     result = TangentialContact(
         contact,

@@ -11,6 +11,7 @@ from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
+from mdr_core.elementwise import full, number, where
 from mdr_core.errors import Notice
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
@@ -96,7 +97,7 @@ def findings(
 def table_end(contact: LoadedContact) -> Finding:
     """Return `table_end`: contacts that come near the last radius of a table."""
     a, end = contact.contact_radius, contact.profile.domain
-    near = a > _NEAR_END * np.asarray(end if contact.profile.kind == "tabulated" else np.inf)
+    near = a > _NEAR_END * (end if contact.profile.kind == "tabulated" else np.inf)
 
     def message() -> str:
         part = float(np.max(a) / np.max(end))
@@ -105,7 +106,7 @@ def table_end(contact: LoadedContact) -> Finding:
             "extend the table beyond the contact edge"
         )
 
-    return Finding("table_end", np.asarray(near), message)
+    return Finding("table_end", near, message)
 
 
 def of_normal_contact(
@@ -150,7 +151,7 @@ def of_normal_contact(
     plastic = _infinite(
         contact, lambda b: infinite_deviator(contact.profile, b, ratios, slips_from)
     )
-    steep = Finding("half_space", np.asarray(error > _HALF_SPACE_ERROR), size)
+    steep = Finding("half_space", error > _HALF_SPACE_ERROR, size)
     return [steep, Finding("plastic", plastic, places)]
 
 
@@ -171,7 +172,7 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> list[
         return [
             Finding(
                 "elastic_similarity",
-                np.asarray(abs(beta) > _SIMILARITY),
+                number(abs(beta)) > _SIMILARITY,
                 lambda: (
                     f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): normal "
                     "and tangential contact are coupled, which the model neglects, by a relative "
@@ -179,16 +180,16 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> list[
                 ),
             )
         ]
-    ratio = np.asarray(e_star / np.asarray(g_star))
-    impossible = np.asarray((ratio < _MODULI[0]) | (ratio > _MODULI[1]))
+    ratio = number(1.0) * e_star / g_star
+    impossible = (ratio < _MODULI[0]) | (ratio > _MODULI[1])
     return [
         Finding(
             "impossible_moduli",
             impossible,
             lambda: (
-                f"e_star/g_star = {float(ratio[impossible][0]):.4g} is impossible for isotropic "
-                "bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's ratio "
-                "is negative"
+                f"e_star/g_star = {np.extract(impossible, ratio)[0]:.4g} is impossible for "
+                "isotropic bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's "
+                "ratio is negative"
             ),
         )
     ]
@@ -218,15 +219,15 @@ def infinite_deviator(
     slips_from : least radius with slip [length]; infinite without.
     """
     if profile.slips_at_once or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
-        return np.asarray(True)  # noqa: FBT003 -- a flag
-    return np.isinf(profile.tip_pressure) | (np.asarray(radius) >= slips_from)
+        return number(1.0) > 0
+    return np.isinf(profile.tip_pressure) | (radius >= slips_from)
 
 
 def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> Flags:
-    found = np.zeros(contact.contact_radius.shape, dtype=bool)
+    found = contact.contact_radius < 0
     for b in contact.profile.infinite_pressure_radii:
         found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
-    return np.asarray(found)
+    return found
 
 
 def infinite_radii(contact: LoadedContact) -> str:
@@ -240,12 +241,10 @@ def _edge_slope(contact: LoadedContact) -> Array:
     """f'(a) of loaded contacts, else zero [1]."""
     a, loaded = contact.contact_radius, contact.loaded
     if contact.profile.slips_at_once or not holds(loaded):
-        return np.zeros(a.shape)
-    if not a.ndim:
-        return np.asarray(contact.profile.df(a))
+        return full(0.0, a)
     # The slope at the tip, where nothing is loaded, may be infinite.
     inside = a if loaded.all() else np.where(loaded, a, np.max(a))
-    return np.where(loaded, contact.profile.df(inside), 0.0)
+    return where(loaded, contact.profile.df(inside), 0.0)
 
 
 def _per_cent(part: float) -> str:

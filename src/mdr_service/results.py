@@ -97,11 +97,11 @@ def written(warnings: Iterable[Notice]) -> list[dict[str, str]]:
 
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
-    if isinstance(source, LimitingWear | WearEvolution):
-        return [*_notices(query, unworn(source)), *_own(source)]
-    if isinstance(source, NormalContact):
+    if isinstance(source, NormalContact | TangentialContact):
         return [*_notices(query, source), *source.bodiless_warnings]
-    return [*_notices(query, source), *_own(source)]
+    contact = source if isinstance(source, LoadHistory) else unworn(source)
+    own = [each for each in source.warnings if each.code not in validity.OF_BODIES]
+    return [*_notices(query, contact), *own]
 
 
 def _notices(query: Query, contact: Contact) -> list[Notice]:
@@ -117,10 +117,6 @@ def _notices(query: Query, contact: Contact) -> list[Notice]:
         ratios = material.poissons_ratios
         found.append(subsurface.yielding(contact, ratios, query.material.yield_strength))
     return validity.notices(found)
-
-
-def _own(source: Contact | Wear) -> list[Notice]:
-    return [each for each in source.warnings if each.code not in validity.OF_BODIES]
 
 
 def unworn(worn: Wear) -> TangentialContact:
