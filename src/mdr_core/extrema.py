@@ -1,6 +1,7 @@
 """Largest pressure and shear stress of a contact, searched where no closed form exists."""
 
 from collections.abc import Callable
+from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.polynomial import chebyshev
 
 from mdr_core.abel import Annulus, InnerEnd
 from mdr_core.broadcasting import with_parameters
+from mdr_core.elementwise import full, where
 from mdr_core.profiles import Paraboloid, Profile
 from mdr_core.typing import Array, Flags, Indices
 
@@ -71,19 +73,35 @@ def largest_stress(
         root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
         return 2 * root / (np.pi * profile.radius)
     shape = loaded.shape
-    parts = [np.broadcast_to(part, shape) for part in (edge, *(slip or ()))]
     a, c = profile.contact_radius(edge), profile.contact_radius(slip[1]) if slip else 0.0
-    infinite = np.zeros(shape, dtype=bool)
+    infinite = loaded & False
     for b in profile.infinite_pressure_radii:
-        infinite |= loaded & (c <= b) & (b <= a)
-    result, finite = np.where(infinite, np.inf, 0.0), loaded & ~infinite
+        infinite = infinite | (loaded & (c <= b) & (b <= a))
+    if not np.any(loaded & ~infinite):
+        return where(infinite, inf, full(0.0, edge))
+    finite = np.atleast_1d(loaded & ~infinite)
+    parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
+    result = np.atleast_1d(np.where(infinite, inf, 0.0))
     if not profile.swept:
-        result[finite] = _search(profile, *(part[finite] for part in parts))
-        return result
+        result[finite] = _largest(profile, *(part[finite] for part in parts))
+        return result.reshape(shape)[()]
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
     for place in zip(*np.nonzero(finite), strict=True):
         one = with_parameters(profile, {name: float(value[place]) for name, value in named.items()})
-        result[place] = _search(one, *(part[place][None] for part in parts))[0]
+        result[place] = _largest(one, *(part[place][None] for part in parts))[0]
+    return result
+
+
+def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
+    """The largest stress of contacts with one profile, where it is finite; shape (loads,)."""
+    at_axis = profile.falls_from_axis(edge)
+    if slip or not at_axis.any():
+        return _search(profile, edge, *slip)
+    if at_axis.all():
+        return profile.axis_stress(edge, _RTOL)
+    result = np.empty_like(edge)
+    result[at_axis] = profile.axis_stress(edge[at_axis], _RTOL)
+    result[~at_axis] = _search(profile, edge[~at_axis])
     return result
 
 

@@ -16,7 +16,7 @@ from mdr_core.abel.stress import StressPanels
 from mdr_core.elementwise import full
 from mdr_core.errors import Notice
 from mdr_core.profiles.energy import energy_integral
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 # Quantities of a normal contact, as `Profile.closed_forms` names them.
 NORMAL_QUANTITIES: Final = (
@@ -354,6 +354,18 @@ class Profile(ABC):
         """2 int_0^x x g'(x) dx, zero on a flat [length^2]."""
         flat = self.contact_radius(np.zeros_like(x))
         return self.reduced_force(self.coordinate_from_radius(np.maximum(x, flat)))
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        """True where the pressure is known to fall from the axis to the contact edge.
+
+        It does where g'(x)/x does not increase, and where its increase is slight enough.
+        Source: notes, §7.
+        """
+        return coordinate < 0
+
+    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
+        """Stress integral at the axis of each contact, for `falls_from_axis` [1], shape (m,)."""
+        return self.pressure_kernel(Annulus(coordinate), np.zeros(coordinate.size), rtol)
 
     @abstractmethod
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:

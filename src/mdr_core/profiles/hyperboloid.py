@@ -12,7 +12,7 @@ from mdr_core.abel.two_root import arcsinh_difference
 from mdr_core.profiles.base import Profile, require_positive
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.quadrature import integrate
-from mdr_core.typing import Array, Chosen, Parameter
+from mdr_core.typing import Array, Chosen, Flags, Parameter
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,9 @@ class Hyperboloid(Profile):
     def reduced_force(self, coordinate: Array) -> Array:
         a, h = coordinate, self.scale
         return self.slope * (a * a * np.arctan(a / h) + h * atan_gap(a, h))
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return coordinate >= 0
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """x^2 + h^2 = (r^2 + h^2) cosh^2 y removes the root at r and the branch points +-ih.

@@ -20,7 +20,7 @@ from mdr_core.profiles.power_functions import (
     power_stick,
     slip_moment,
 )
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 _EVERYTHING: Final = (
     *NORMAL_QUANTITIES,
@@ -340,6 +340,9 @@ class Power(Profile):
     def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: notes, §6. Parameters: see `Profile`."""
         return slip_moment([self.g(coordinate)], [self.exponent], coordinate, width, stick)
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return (coordinate >= 0) & (self.exponent <= 2)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: mdr-5, Eqs. (5.68), (5.70). Parameters: see `Profile`."""

@@ -21,7 +21,7 @@ from mdr_core.profiles.power_functions import (
     slip_moment,
 )
 from mdr_core.profiles.power_sums import cancellation, first_negative_radius, log_terms
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 # Largest ratio of the terms to their sum for which ten digits of the sum are accurate.
 _MOST_CANCELLATION: Final = 1e5
@@ -210,6 +210,9 @@ class Series(Profile):
         """Source: notes, §6. Parameters: see `Profile`."""
         depths, exponents = zip(*self._depths(coordinate), strict=True)
         return slip_moment(depths, exponents, coordinate, width, stick)
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return (coordinate >= 0) & self._positive & (self._powers[-1][1] <= 2)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: mdr-5, Eqs. (5.68), (5.70), superposed. Parameters: see `Profile`."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -12,7 +12,10 @@ from mdr_core.profiles.base import require_positive
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroids import Sphere, artanh_ratio, artanh_ratio_difference, sphere_kernel
 from mdr_core.profiles.tipped import TippedCone
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
+
+# Slope up to which the curvature of the tip rises too little to move the largest pressure.
+_SHALLOW: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -128,6 +131,11 @@ class SphericalTipCone(TippedCone):
         sphere = np.square(b * b) / (big * x + h * s)
         sphere = sphere + (big * big + x * x) * tanh_gap(self._log_term(x, s))
         return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        if self.slope <= _SHALLOW:
+            return coordinate >= 0
+        return (coordinate <= self.scale) & self._tip.falls_from_axis(coordinate)
 
     def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
         v = artanh_ratio(a, self.tip_radius)

@@ -15,7 +15,7 @@ from mdr_core.profiles.base import Profile, require_positive
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.equator import slope_integral_inside, slope_integral_outside
 from mdr_core.quadrature import integrate
-from mdr_core.typing import Array, Chosen, Parameter
+from mdr_core.typing import Array, Chosen, Flags, Parameter
 from mdr_core.validation import first_index
 
 # artanh(1 - 4 eps): closer to the equator R - a is dominated by rounding error.
@@ -23,6 +23,9 @@ _EQUATOR: Final = -log(2 * float(np.finfo(float).eps)) / 2
 # Contact coordinate, a tenth of R before the equator, beyond which a radius does not resolve the
 # distance from the pole there.
 _NEAR_EQUATOR: Final = 1.5
+# a/R up to which h = g'(x)/x rises no faster than x: at the root of sum_k (2k + 2)(2k - 1)/(2k + 1) t^2k
+# = 2 from k = 1 on, 0.6412, a h'(a) is h(a).
+_SHALLOW: Final = 0.64
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
 
@@ -128,6 +131,9 @@ class Spheroid(Profile):
     @property
     def _axes(self) -> tuple[float, float]:
         return float(np.asarray(self.radius)), float(np.asarray(self.height))
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return np.tanh(coordinate) <= _SHALLOW
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """h/R times that of the sphere. Parameters: see `Profile`."""

@@ -18,7 +18,7 @@ from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.powers import Paraboloid
 from mdr_core.profiles.spheroids import Sphere
 from mdr_core.quadrature import DEFAULT, Analytic
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 _OnTip = Callable[[Array], Array]
 # Of x and s on the flank.
@@ -247,6 +247,9 @@ class RoundedCone(TippedCone):
         b = self.tangent_radius
         square = x * x * (np.arctan(s / b) + (4 / 3) * b / (x + s))
         return self.slope * (square + b * s / 3)
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return coordinate >= 0
 
     def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
         return self._tip.pressure_kernel(Annulus(a, inner), r, rtol)
