@@ -3,15 +3,12 @@
 Source: notes, §4.
 """
 
-from collections.abc import Sequence
-from math import ceil, log2
 from typing import Any, Final
 
 import numpy as np
 from scipy.special import beta
 
 from mdr_core.elementwise import where
-from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Parameter
 
 # Exponent up to which powers of lengths from 1e-50 to 1e50 are representable.
@@ -21,14 +18,6 @@ _DIRECT: Final = 4.0
 _COARSE: Final = 2.0**20
 # Exponents for which NumPy calls another function if a single exponent is given.
 _EXACT: Final = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
-# Gauss-Legendre nodes of a piece of the slip moment.
-_NODES: Final = 16
-# Length of its first piece times the largest rate: 16 nodes integrate e^-u over 12 to 1e-18.
-_FIRST_LENGTH: Final = 12.0
-# Value of u above which e^-u is below rounding error.
-_VANISHED: Final = 40.0
-# Values of exponentials evaluated at once, so that temporaries stay in the processor's cache.
-_BLOCK: Final = 65_536
 
 
 def raised(base: Parameter, exponent: Parameter) -> Array:
@@ -132,50 +121,3 @@ def power_step(a: Array, width: Array, c: Array, exponent: Parameter) -> Array:
     exponent : m > 0 [1].
     """
     return -np.expm1(-exponent * log_annulus(a, width, c))
-
-
-def slip_moment(
-    depths: Sequence[Array], exponents: Sequence[Parameter], a: Array, width: Array, c: Array
-) -> Array:
-    """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx of g = sum d_i (x/a)^n_i [length^3].
-
-    With u = log(a/x) every factor is a sum of exponentials. The pieces double in length, because
-    a term that decays faster than a piece is long has already decayed where that piece begins.
-    Source: notes, §6.
-
-    Parameters
-    ----------
-    depths, exponents : d_i [length] and n_i > 0 [1].
-    a, width, c : outer radius, a - c and inner radius [length].
-    """
-    shape = np.broadcast_shapes(np.shape(a), *map(np.shape, (*depths, *exponents, width, c)))
-    d, n = (
-        np.stack([np.broadcast_to(part, shape).ravel() for part in parts])
-        for parts in (depths, exponents)
-    )
-    a, width, c = (np.broadcast_to(part, shape).ravel() for part in (a, width, c))
-    length = log_annulus(a, width, c)
-    # The largest rate at which the integrand changes.
-    rate = 1 + 2 * n.max(axis=0)
-    count = ceil(log2(_VANISHED * float(rate.max(initial=1.0)) / _FIRST_LENGTH)) + 1
-    doubled = _FIRST_LENGTH * 2.0 ** np.arange(count)
-    result = np.empty(a.size)
-    step = max(_BLOCK // (n.shape[0] * (count + 1) * _NODES), 1)
-    for start in range(0, a.size, step):
-        part = slice(start, start + step)
-        ends = np.minimum(np.append(0.0, doubled)[:, None] / rate[part], length[part])
-        sizes = d[:, None, None, part], n[:, None, None, part], length[part]
-        result[part] = _moment_of_exponentials(ends, *sizes)
-    return (result * a).reshape(shape)
-
-
-def _moment_of_exponentials(ends: Array, d: Array, n: Array, length: Array) -> Array:
-    """int_0^length e^-u sum d_i (1 - e^(-n_i u)) sum d_j (e^(-n_j u) - e^(-n_j length)) du."""
-    nodes, weights = (part[:, None, None] for part in gauss_legendre(_NODES))
-    half = np.diff(ends, axis=0) / 2
-    u = ends[:-1] + half * (1 + nodes)
-    above = (d * -np.expm1(-n * u)).sum(axis=0)
-    below = (d * (np.exp(-n * u) * -np.expm1(-n * (length - u)))).sum(axis=0)
-    # Summed in one order, whatever the number of loads: a sweep is bit-identical to its cases.
-    of_pieces = np.cumsum(weights * above * below * np.exp(-u), axis=0)[-1]
-    return np.cumsum(half * of_pieces, axis=0)[-1]

@@ -18,7 +18,6 @@ from mdr_core.profiles.power_functions import (
     power_slope,
     power_step,
     power_stick,
-    slip_moment,
 )
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -336,10 +335,6 @@ class Power(Profile):
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
         return self.g(coordinate) * power_step(coordinate, width, stick, self.exponent)
-
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Source: notes, §6. Parameters: see `Profile`."""
-        return slip_moment([self.g(coordinate)], [self.exponent], coordinate, width, stick)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return (coordinate >= 0) & (self.exponent <= 2)

@@ -18,7 +18,6 @@ from mdr_core.profiles.power_functions import (
     power,
     power_slope,
     power_step,
-    slip_moment,
 )
 from mdr_core.profiles.power_sums import cancellation, first_negative_radius, log_terms
 from mdr_core.typing import Array, Flags, Parameter
@@ -205,11 +204,6 @@ class Series(Profile):
         return _total(
             depth * power_step(coordinate, width, stick, n) for depth, n in self._depths(coordinate)
         )
-
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Source: notes, §6. Parameters: see `Profile`."""
-        depths, exponents = zip(*self._depths(coordinate), strict=True)
-        return slip_moment(depths, exponents, coordinate, width, stick)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return (coordinate >= 0) & self._positive & (self._powers[-1][1] <= 2)

@@ -23,8 +23,8 @@ _EQUATOR: Final = -log(2 * float(np.finfo(float).eps)) / 2
 # Contact coordinate, a tenth of R before the equator, beyond which a radius does not resolve the
 # distance from the pole there.
 _NEAR_EQUATOR: Final = 1.5
-# a/R up to which h = g'(x)/x rises no faster than x: at the root of sum_k (2k + 2)(2k - 1)/(2k + 1) t^2k
-# = 2 from k = 1 on, 0.6412, a h'(a) is h(a).
+# a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
+# (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
 _SHALLOW: Final = 0.64
 _CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
