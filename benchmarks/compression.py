@@ -11,10 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from mdr_service.content_negotiation import FORMATS
 from mdr_service.dispatch import respond
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES
+from mdr_service.serializers import FORMATS
 
 REPEATS: Final = 7
 # The fastest; the others take several times as long for a tenth less.

@@ -18,7 +18,7 @@ from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.wear import EvolutionQuery
-from mdr_service.serializers import json
+from mdr_service.serializers import FORMATS, json
 
 _STATUS: Final = {
     problems.INTERNAL: ExitStatus.INTERNAL_ERROR,
@@ -40,7 +40,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format",
         default="json",
-        metavar="|".join(content_negotiation.FORMATS),
+        metavar="|".join(FORMATS),
         help="format of the response (default: json)",
     )
     parser.epilog = (

@@ -5,14 +5,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from mdr_service import problems
-from mdr_service.serializers import csv, json, npz, svg
+from mdr_service.serializers import FORMATS
 
-FORMATS: Final = {
-    "json": json.MEDIA_TYPE,
-    "csv": csv.MEDIA_TYPE,
-    "npz": npz.MEDIA_TYPE,
-    "svg": svg.MEDIA_TYPE,
-}
 _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 

@@ -18,14 +18,12 @@ from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.fields import FieldQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
-from mdr_service.serializers import csv, json, npz, svg
+from mdr_service.serializers import SERIALIZERS, json, svg
 from mdr_service.settings import SETTINGS
 
 _Model = TypeVar("_Model", bound=BaseModel)
-_WRITERS: Final[Mapping[str, Callable[[Mapping[str, Any]], bytes]]] = {
-    json.MEDIA_TYPE: json.write,
-    csv.MEDIA_TYPE: csv.write,
-    npz.MEDIA_TYPE: npz.write,
+_WRITE: Final[Mapping[str, Callable[[Any], bytes]]] = {
+    module.MEDIA_TYPE: module.write for module in SERIALIZERS.values()
 }
 
 _logger: Final = logging.getLogger(__name__)
@@ -66,11 +64,10 @@ def respond(
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
         source = kind.solve(query, **progress)
-        result = kind.result(query, source)
+        result: Any = kind.result(query, source)
         if media_type == svg.MEDIA_TYPE:
-            plot = PLOTS[name](query, source, result)
-            return svg.write(plot)
-    return _WRITERS[media_type](result)
+            result = PLOTS[name](query, source, result)
+    return _WRITE[media_type](result)
 
 
 def respond_to_text(name: str, text: bytes, media_type: str) -> bytes:

@@ -1,4 +1,4 @@
-"""Distribution of chunks: in this process, over processes, or over a Dask cluster."""
+"""Distribution of chunks over processes, or over a Dask cluster."""
 
 import os
 import signal
@@ -24,12 +24,6 @@ _AHEAD: Final = 2
 # Pools lost one after the other, without a completed chunk, after which the sweep ends.
 _MAX_LOST: Final = 3
 _THREADS: Final = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
-
-
-def in_this_process(spec: Spec, chunks: Iterable[Chunk]) -> Generator[Chunk, None, None]:
-    """Yield each chunk solved."""
-    for index, batch in chunks:
-        yield index, vectorized.solve(spec, batch)
 
 
 def in_processes(spec: Spec, chunks: Iterable[Chunk], workers: int) -> Generator[Chunk, None, None]:

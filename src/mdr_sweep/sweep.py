@@ -15,11 +15,10 @@ import pyarrow as pa
 from tqdm import tqdm
 
 from mdr_core.errors import InputError
-from mdr_service.schemas.flat import nested
-from mdr_sweep import resources, scheduler
-from mdr_sweep.cells import fits
+from mdr_service.schemas.flat import flat, nested
+from mdr_sweep import resources, scheduler, vectorized
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.request_fields import fields, flat, generic
+from mdr_sweep.columns import field
 from mdr_sweep.spec import ERROR, MAXIMA, QUANTITIES, WARNING, Spec, UsageError, versions
 from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 
@@ -61,7 +60,7 @@ def run(arguments: Namespace) -> int:
         elif estimate.processes:
             solved = scheduler.in_processes(spec, chunks, estimate.processes)
         else:
-            solved = scheduler.in_this_process(spec, chunks)
+            solved = ((index, vectorized.solve(spec, batch)) for index, batch in chunks)
         rows = min(len(done) * chunk, source.rows)
         interval = 0.1 if sys.stderr.isatty() else _LOG_SECONDS
         bar = tqdm(total=source.rows, initial=rows, unit=" cases", mininterval=interval)
@@ -105,8 +104,7 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     spec = Spec(query, constants, quantities, kept)
     _reject("rename columns whose names the result uses:", set(names) & {*allowed, WARNING, ERROR})
     columns = [name for name in names if name not in kept]
-    known = fields(query)
-    unknown = {name for name in (*constants, *columns) if generic(name) not in known}
+    unknown = {name for name in (*constants, *columns) if field(query, name) is None}
     _reject(f"unknown fields of {query} (--keep copies columns):", unknown)
     try:
         nested(dict.fromkeys((*constants, *columns)))
@@ -115,9 +113,9 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     kinds = {name: source.schema.field(name).type for name in columns}
     listed = [name for name, value in constants.items() if isinstance(value, list)]
     for name, kind in (kinds | dict.fromkeys(listed, pa.list_(pa.float64()))).items():
-        field = known[generic(name)]
-        if not fits(field, kind):
-            raise UsageError(f"{name} holds values of type {kind}; a case has one {field.type}")
+        own = field(query, name)
+        if own and not own.fits(kind):
+            raise UsageError(f"{name} holds values of type {kind}; a case has one {own.type}")
     return spec, source
 
 

@@ -21,8 +21,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import body, control, friction
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
-from mdr_sweep import cells
-from mdr_sweep.cells import Column, Values
+from mdr_sweep.columns import Column, Values, read_columns
 from mdr_sweep.spec import ERROR, MAXIMA, TEXTS, WARNING, Spec
 
 Rows = NDArray[np.intp]
@@ -41,7 +40,7 @@ _ARRAYS: Final = (
 
 def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
     """Return the rows of the result: the cases, their quantities, warnings and errors."""
-    columns, size = cells.columns(spec, batch), batch.num_rows
+    columns, size = read_columns(spec, batch), batch.num_rows
     names = (*spec.quantities, WARNING, ERROR)
     results: Results = {name: np.full(size, None if name in TEXTS else np.nan) for name in names}
     solved = np.zeros(size, dtype=bool)

@@ -8,13 +8,13 @@ import pytest
 
 from mdr_core.errors import InputError
 from mdr_service import cost
-from mdr_service.content_negotiation import FORMATS
 from mdr_service.dispatch import parse, respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.schemas import examples
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import Query
+from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from mdr_service.workers import AT_ONCE_SECONDS
 from tests.conftest import Client

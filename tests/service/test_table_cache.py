@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from mdr_core.profiles import Tabulated
-from mdr_service.content_negotiation import FORMATS
 from mdr_service.dispatch import parse, respond
 from mdr_service.queries import QUERIES, contacts
 from mdr_service.schemas.profiles import TabulatedProfile
+from mdr_service.serializers import FORMATS
 from mdr_service.table_cache import TableCache
 
 R = np.linspace(0, 1e-3, 40)

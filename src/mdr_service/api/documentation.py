@@ -3,8 +3,8 @@
 from typing import Any, Final
 
 from mdr_service import problems
-from mdr_service.content_negotiation import FORMATS
 from mdr_service.problems import ProblemType
+from mdr_service.serializers import FORMATS
 
 Responses = dict[int | str, dict[str, Any]]
 

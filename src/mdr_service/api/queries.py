@@ -13,7 +13,7 @@ from starlette.responses import Response
 
 from mdr_service import cost, problems
 from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES
-from mdr_service.content_negotiation import FORMATS, media_type
+from mdr_service.content_negotiation import media_type
 from mdr_service.dispatch import parse, respond, respond_to_text
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
@@ -33,7 +33,7 @@ from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-from mdr_service.serializers import json
+from mdr_service.serializers import FORMATS, json
 from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES, AT_ONCE_SECONDS
 
 Format = Literal["json", "csv", "npz", "svg"]

@@ -35,8 +35,18 @@ def leaves(
         yield name, node
 
 
+def flat(part: Any, path: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return the fields of a request by their dotted names; a list of numbers is one field."""
+    if isinstance(part, list) and any(isinstance(item, Mapping | str) for item in part):
+        part = {str(index): item for index, item in enumerate(part)}
+    if not isinstance(part, Mapping) or (path and not part):
+        return {".".join(path): part}
+    inner = (flat(value, (*path, name)) for name, value in part.items())
+    return dict(item for fields in inner for item in fields.items())
+
+
 def nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the request with the given fields.
+    """Return the request with the given fields, the inverse of `flat`.
 
     Raises
     ------

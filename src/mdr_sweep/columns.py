@@ -1,0 +1,125 @@
+"""Columns of a table as fields of requests, by dotted names such as ``load.normal_force``."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from math import inf, isnan
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+from numpy.typing import NDArray
+
+from mdr_service.queries import QUERIES
+from mdr_service.schemas.flat import leaves
+from mdr_sweep.spec import Spec
+
+Values = NDArray[np.float64]
+Cells: TypeAlias = "pa.Array[Any]"
+# Decimal numbers, which Arrow converts to the nearest double.
+_NUMBER: Final = r"^-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$"
+# Members of a list are named by their index; `#` stands for any of them.
+_INDEX: Final = re.compile(r"(?<=\.)(0|[1-9][0-9]*)(?=\.|$)")
+# Fields over the radius, which no sweep computes.
+_OVER_RADIUS: Final = frozenset({"radius", "points", "quantities"})
+
+
+@dataclass(frozen=True)
+class Field:
+    """Type of a field (``number``, ``string``, ``array`` of numbers), and bounds of a number."""
+
+    type: str
+    low: float
+    high: float
+    smallest: float
+    """Smallest magnitude besides 0."""
+
+    def accepts(self, values: Values) -> NDArray[np.bool_]:
+        """Return True for the values within the bounds, False for NaN."""
+        is_significant = (np.abs(values) >= self.smallest) | (values == 0)
+        return np.asarray(is_significant & (values >= self.low) & (values <= self.high))
+
+    def fits(self, kind: pa.DataType) -> bool:
+        """Return True if a column of an Arrow type can hold the field."""
+        if self.type == "array":
+            is_numbers = pa.types.is_list(kind) and _is_number(kind.value_type)
+            return pa.types.is_null(kind) or is_numbers
+        if pa.types.is_dictionary(kind):
+            kind = kind.value_type
+        is_number = self.type == "number" and _is_number(kind)
+        return is_number or _is_text(kind) or pa.types.is_null(kind)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A field of all cases of a batch."""
+
+    field: Field
+    cells: Cells
+    given: NDArray[np.bool_]
+    """False where the cell is empty: the field is absent from the request."""
+    values: Values
+    """Numbers; NaN where the cell is empty or is not a number."""
+
+    def value(self, row: int) -> Any:
+        """Return the value of a row, as it stands in the request."""
+        number = float(self.values[row])
+        return self.cells[row].as_py() if isnan(number) else number
+
+    @property
+    def output(self) -> Cells:
+        """The column as it stands in the result: numbers are doubles, and NaN is empty."""
+        if self.field.type == "number":
+            return pa.array(self.values, mask=np.isnan(self.values))
+        return pc.cast(self.cells, pa.string()) if self.field.type == "string" else self.cells
+
+
+def field(query: str, name: str) -> Field | None:
+    """Return the field of a query with a dotted name; None if there is none."""
+    return _fields(query).get(_INDEX.sub("#", name))
+
+
+@cache
+def _fields(query: str) -> Mapping[str, Field]:
+    """Return the fields of a request model, as its JSON schema describes them."""
+    found: dict[str, Field] = {}
+    for name, leaf in leaves(QUERIES[query].model.model_json_schema()):
+        # A load takes a number or a list; a case of a sweep has one number.
+        if name not in _OVER_RADIUS and not (name in found and leaf["type"] == "array"):
+            low, high = leaf.get("minimum", -inf), leaf.get("maximum", inf)
+            smallest = leaf.get("x-smallest-magnitude", 0.0)
+            found[name] = Field(leaf["type"], low, high, smallest)
+    return found
+
+
+def read_columns(spec: Spec, batch: pa.RecordBatch) -> dict[str, Column]:
+    """Return the fields of a batch by their dotted names, without the columns that are kept."""
+    found = {}
+    for name, given in zip(batch.schema.names, batch.columns, strict=True):
+        own = None if name in spec.kept else field(spec.query, name)
+        if own:
+            cells = given
+            if pa.types.is_dictionary(cells.type):
+                cells = pc.cast(cells, cells.type.value_type)
+            is_number = own.type == "number"
+            values = _numbers(cells) if is_number else np.full(len(cells), np.nan)
+            found[name] = Column(own, cells, np.asarray(cells.is_valid()), values)
+    return found
+
+
+def _numbers(cells: Cells) -> Values:
+    if _is_text(cells.type):
+        text = pc.utf8_trim_whitespace(cells)
+        cells = pc.if_else(pc.match_substring_regex(text, _NUMBER), text, None)
+    doubles = pc.cast(cells, pa.float64(), safe=False)
+    return np.asarray(doubles.fill_null(np.nan).to_numpy(zero_copy_only=False))
+
+
+def _is_number(kind: pa.DataType) -> bool:
+    return pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_decimal(kind)
+
+
+def _is_text(kind: pa.DataType) -> bool:
+    return pa.types.is_string(kind) or pa.types.is_large_string(kind)
