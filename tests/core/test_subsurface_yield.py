@@ -207,9 +207,10 @@ def test_friction_brings_yield_forward() -> None:
         2.5,
         0.3,
         normal_force=contact.normal_force[3],
-        tangential_force=[forces[3], 0.0, forces[2]],
+        tangential_force=[0.0, forces[3], 0.0],
     )
-    assert yielding(history, (0.3,), STRENGTH).where.tolist() == [True, False, False]
+    # Tractions that the cycle leaves behind are as severe as its extreme.
+    assert yielding(history, (0.3,), STRENGTH).where.tolist() == [False, True, True]
 
 
 def test_yielding_of_many_loads_is_that_of_each() -> None:

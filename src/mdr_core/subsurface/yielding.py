@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from mdr_core import normal, tangential
 from mdr_core.broadcasting import with_parameters
 from mdr_core.errors import InputError
-from mdr_core.history import LoadHistory
+from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid, Power
 from mdr_core.subsurface.peaks import MEASURES, largest
@@ -87,7 +87,7 @@ def yielding(
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
 
     The largest stress grows with the load, and with the ratio of the forces. Along a load history
-    the forces of every sample count as applied once.
+    the forces of every sample count as applied once; at its end the traction is that of the path.
 
     Source: johnson, section 4.2; notes, §14.
 
@@ -114,6 +114,8 @@ def yielding(
             index = np.flatnonzero((group == one) & loads.loaded.ravel())
             if index.size:
                 _mark(flags, index, loads, ratios, yield_strength)
+    if isinstance(contact, LoadHistory) and not flags[-1]:
+        flags[-1] = _reaches(contact.state, ratios, yield_strength)
     where = flags.reshape(loads.loaded.shape)
 
     def message() -> str:
@@ -178,10 +180,7 @@ def _mark(
     places = loads.coordinate[index], loads.ratio[index]
 
     def reaches(coordinate: float, ratio: float) -> bool:
-        contact = loads.under(int(index[0]), coordinate, ratio)
-        given: dict[str, Any] = {"rounds": _FEW_ROUNDS, "limit": strength / 2}
-        peaks = (largest(contact, MEASURES[1], poissons_ratio=nu, **given) for nu in ratios)
-        return any(peak.value >= strength / 2 for peak in peaks)
+        return _reaches(loads.under(int(index[0]), coordinate, ratio), ratios, strength)
 
     high, low = ([bound(part) for part in places] for bound in (np.max, np.min))
     if not reaches(*high):
@@ -192,6 +191,13 @@ def _mark(
     order = np.argsort(places[0] if low[0] < high[0] else places[1], kind="stable")
     for half in np.array_split(index[order], 2):
         _mark(flags, half, loads, ratios, strength)
+
+
+def _reaches(contact: _Contact | ContactState, ratios: tuple[float, ...], strength: float) -> bool:
+    """Return whether the largest shear stress in a body reaches half of the yield strength."""
+    given: dict[str, Any] = {"rounds": _FEW_ROUNDS, "limit": strength / 2}
+    peaks = (largest(contact, MEASURES[1], poissons_ratio=nu, **given) for nu in ratios)
+    return any(peak.value >= strength / 2 for peak in peaks)
 
 
 @lru_cache(maxsize=64)
