@@ -75,7 +75,9 @@ def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
-    """Return the contact coordinate of a contact radius.
+    """Return the contact coordinate of a contact radius; where g is constant, of the loaded part.
+
+    The springs of a level carry no load, so that forces and stresses are those of its inner end.
 
     Raises
     ------
@@ -83,7 +85,13 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     """
     if not np.all(np.isinf(profile.domain)):
         _reject(contact_radius > profile.domain, profile, "contact_radius")
-    return profile.coordinate_from_radius(contact_radius)
+    coordinate = profile.coordinate_from_radius(contact_radius)
+    levels = profile.coordinate_levels
+    if not levels.size:
+        return coordinate
+    below = np.maximum(np.searchsorted(levels[:, 0], coordinate) - 1, 0)
+    low, high = levels[below, 0], levels[below, 1]
+    return where((low < coordinate) & (coordinate <= high), low, coordinate)
 
 
 def force_slope(profile: Profile) -> Function:

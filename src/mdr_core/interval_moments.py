@@ -46,7 +46,7 @@ _WIDE_BEYOND_BREAK: Final = 2.5
 # Up to this many radii of its flat the radius of a contact hardly changes: differences cancel.
 _SHALLOW: Final = 1.5
 # The width of an interval is taken from its ends if it is larger than this part of them, otherwise
-# from the slope at its upper end.
+# from the slope at one of them.
 _THIN: Final = 1e-10
 # So far below a break, as a part of it, all functions are those of the panel that ends there.
 _BELOW: Final = 1e-11
@@ -275,8 +275,12 @@ class IntervalMoments:
         `base`, elsewhere in the logarithm.
         """
         profile, (start, stop) = self.profile, ends
+        slope = self._slope(stop)
+        if not slope.all():
+            # An interval may end where g becomes constant.
+            slope = np.where(slope > 0, slope, self._slope(start))
         with np.errstate(divide="ignore"):
-            estimate = span / self._slope(stop)
+            estimate = span / slope
         thin = (stop - start < _THIN * stop) & (estimate > 0)
         width = np.where(thin, np.minimum(estimate, stop), stop - start)
         nodes, weights = gauss_legendre(_POINTS)

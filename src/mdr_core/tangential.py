@@ -76,6 +76,15 @@ class TangentialContact(Results):
     def _stick(self) -> Array:
         return broadcast(self.stick_coordinate, self.width.shape)
 
+    @property
+    def _beyond_load(self) -> Flags | None:
+        """True where the contact radius is prescribed on a level of g, which carries no load."""
+        profile = self.normal.profile
+        if self.normal.control != "contact_radius" or not profile.coordinate_levels.size:
+            return None
+        loaded = profile.contact_radius(self._coordinate)
+        return np.asarray(self.normal.contact_radius > loaded * (1 + 2.0**-50))
+
     @cached_property
     def limiting_force(self) -> Array:
         """mu F_N [force]."""
@@ -137,6 +146,8 @@ class TangentialContact(Results):
         if self.normal.profile.slips_at_once:
             return where(self.full_slip, a, 0 * self.width)
         width = self.normal.profile.radius_width(self._coordinate, self.width)
+        if self._beyond_load is not None:
+            width = where(self._beyond_load, a - self.stick_radius, width)
         return where(self.full_slip, a, width) if self.full_slip.any() else width
 
     @cached_property
@@ -147,7 +158,7 @@ class TangentialContact(Results):
             a = broadcast(self.normal.contact_radius, self.width.shape)
             return where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self._stick)
-        if c is not self._stick:
+        if c is not self._stick or self._beyond_load is not None:
             # By rounding error c may exceed a. Without slip both are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)

@@ -193,3 +193,44 @@ def test_resolved_table_has_a_known_size_and_can_be_pickled() -> None:
     x = np.linspace(0.01, 0.6, 50)
     np.testing.assert_array_equal(copy.g(x), profile.g(x))
     assert copy.resolved.nbytes == size < 300_000
+
+
+def rough(seed: int) -> Tabulated:
+    """A parabola with noise, whose heights are ordered, as instruments deliver it."""
+    rng = np.random.default_rng(seed)
+    count, noise = int(rng.integers(12, 60)), 10 ** rng.uniform(-4, -2.3)
+    r = np.linspace(0.0, 1.0, count)
+    f = np.sort(np.append(0.0, np.maximum(r[1:] ** 2 + noise * rng.normal(size=count - 1), 0.0)))
+    return Tabulated(tuple(r), tuple(0.1 * f), ("linear", "pchip", "auto")[seed % 3])
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_equivalent_profile_of_a_rough_table_never_falls(seed: int) -> None:
+    """Not even between the points at which falls are searched for."""
+    body = rough(seed)
+    g = body.g(np.linspace(0.0, body.domain, 20_001))
+    assert (np.diff(g) >= -1e-11 * g.max()).all()
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
+def test_contact_radius_on_a_level_has_the_load_of_its_inner_end(control: str, seed: int) -> None:
+    body = rough(seed)
+    levels = body.resolved.levels
+    levels = levels[levels[:, 1] < body.domain]
+    for share in (0.0, 1e-16, 1e-12, 1e-3, 0.5, 1 - 1e-9, 1 - 1e-14):
+        for begin, end in levels[:4]:
+            contacts = [
+                solve(body, 1.0, contact_radius=begin + part * (end - begin)) for part in (0, 0.4)
+            ]
+            limit = "normal_force" if control == "tangential_force" else "indentation_depth"
+            size = 0.3 * share * float(getattr(contacts[0], limit))
+            inner, level = (
+                tangential.solve(each, 1.0, 0.3, **{control: size}) for each in contacts
+            )
+            assert float(level.dissipated_energy) == float(inner.dissipated_energy) >= 0
+            assert float(level.tangential_force) == float(inner.tangential_force) >= 0
+            assert float(level.tangential_displacement) >= 0
+            a, c = float(contacts[1].contact_radius), float(level.stick_radius)
+            assert float(level.slip_width) == pytest.approx(a - c, rel=0, abs=1e-14)
+            assert (share > 0) == (float(level.slip_width) > 0)

@@ -215,3 +215,19 @@ def test_incipient_slip_next_to_a_kink(flat: float, gap: float) -> None:
         assert float(tangential_contact.tangential_force) == pytest.approx(
             float(force), rel=rel, abs=0
         )
+
+
+@pytest.mark.parametrize("kind", INTERPOLATIONS)
+def test_tables_in_other_units_have_the_same_digits(kind: Any) -> None:
+    """A slope removed on the axis puts an equation without a length among the spline's."""
+    r = np.linspace(0.0, 3.0, 60)
+    # Rounded heights, so that the spline has a slope on the axis.
+    f = np.round(np.log1p(r * r), 5)
+    exact = solve(Tabulated(tuple(r), tuple(f), kind), 1.0, contact_radius=0.2)
+    for unit in (2.0**-20, 2.0**10, 2.0**20):
+        found = solve(
+            Tabulated(tuple(unit * r), tuple(unit * f), kind), 1.0, contact_radius=0.2 * unit
+        )
+        assert float(found.indentation_depth) == unit * float(exact.indentation_depth)
+        assert float(found.normal_force) == unit**2 * float(exact.normal_force)
+        assert float(found.maximum_pressure) == float(exact.maximum_pressure)

@@ -5,7 +5,14 @@ import pytest
 
 from mdr_core import normal
 from mdr_core.errors import AccuracyError, InputError
-from mdr_core.profiles import Paraboloid, Power, Tabulated
+from mdr_core.profiles import (
+    Paraboloid,
+    Power,
+    Profile,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
 from mdr_core.wear import evolution, limit
 
 
@@ -91,4 +98,18 @@ def test_first_wear_of_a_narrow_annulus_about_a_break_is_within_its_estimate(pla
     worn = evolution.solve(contact, 0.9, 0.4, cycles=[cycles], **given)
     work = 4 * float(worn.initial.sideways.dissipated_energy) * cycles
     bound = pytest.approx(2e-4 * work, rel=worn.error_estimate, abs=0)
+    assert worn.worn_volume[0] == bound
+
+
+@pytest.mark.parametrize("body", [TruncatedCone(0.5, 1.0), TruncatedParaboloid(1.0, 1.0)])
+def test_narrow_annulus_next_to_a_flat_wears_to_its_limit(body: Profile) -> None:
+    contact = normal.solve(body, 1.3, contact_radius=1 + 1e-6)
+    within = normal.solve(body, 1.3, contact_radius=1 + 2e-8)
+    contact = normal.solve(body, 1.3, indentation_depth=float(contact.indentation_depth))
+    rise = float(contact.indentation_depth - within.indentation_depth)
+    moved = {"tangential_displacement": 0.4 * 1.3 / 0.9 * rise}
+    worn = evolution.solve(contact, 0.9, 0.4, wear_coefficient=2e-4, cycles=[1e12], **moved)
+    limit_volume = float(limit.solve(contact, 0.9, 0.4, **moved).worn_volume)
+    assert worn.error_estimate < 2e-4
+    bound = pytest.approx(limit_volume, rel=worn.error_estimate, abs=0)
     assert worn.worn_volume[0] == bound

@@ -311,7 +311,7 @@ def overlap(at: Setting, c: mpf) -> mpf:
 
 
 def _monomial_overlap(shape: Monomials, a: mpf, c: mpf) -> mpf:
-    high, low, terms = shape.g(a), shape.g(c), shape.equivalent_profile
+    high, low, terms = shape.g(a), shape.g(c), shape.equivalent_terms
 
     def power(n: mpf) -> mpf:
         return (a ** (n + 1) - c ** (n + 1)) / (n + 1)

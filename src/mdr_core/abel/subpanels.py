@@ -144,16 +144,21 @@ class Subpanels:
         return self.depth * np.arange(1, self.depth.shape[1] + 1) / self.length[:, None]
 
     def dips(self) -> Dips:
-        """Return the dips of g, found at a dozen points of each subpanel."""
+        """Return the dips of g, found at a dozen points of each subpanel and its maxima between."""
         u = np.append(fit_points(FEW)[0], 1.0)
         powers = u ** np.arange(1, self.depth.shape[1] + 1)[:, None]
         g = np.append(0.0, self.at_edges[0, :-1, None] + self.depth @ powers)
+        s = np.append(0.0, np.multiply.outer(self.length, u))
+        panel = np.append(0, np.repeat(np.arange(self.length.size), u.size))
+        at, top = self._maxima(u)
+        place = at * u.size + np.searchsorted(u, top) + 1
+        top = top * self.length[at]
+        g = np.insert(g, place, self.depth_at(at, top))
+        s, panel = np.insert(s, place, top), np.insert(panel, place, at)
         highest = np.maximum.accumulate(g)
         below = g < highest * (1 - _DIP)
         if not below.any():
             return Dips(*np.empty((4, 0)))
-        s = np.append(0.0, np.multiply.outer(self.length, u))
-        panel = np.append(0, np.repeat(np.arange(self.length.size), u.size))
         first = np.flatnonzero(below & ~np.append(False, below[:-1]))
         last = np.flatnonzero(below & ~np.append(below[1:], False))
         bottom = np.minimum.reduceat(g, np.stack([first, last], axis=1).ravel())[::2]
@@ -167,6 +172,20 @@ class Subpanels:
         end = np.where(after > last, self.radius(panel[after], high), self.edges[-1])
         begin = self.radius(panel[first - 1], s[first - 1])
         return Dips(begin, end, highest[first], np.minimum(bottom, g[last]))
+
+    def _maxima(self, u: Array) -> tuple[Indices, Array]:
+        """Return subpanel and u of the maxima of g between ascending points u."""
+        degrees = np.arange(1, self.depth.shape[1] + 1)
+        # The slope may vanish at the left edge itself.
+        ends = np.append(u[0] / 100, u)
+        rises = (self.depth * degrees) @ ends ** (degrees[:, None] - 1) > 0
+        panel, place = np.nonzero(rises[:, :-1] & ~rises[:, 1:])
+        low, high = ends[place], ends[place + 1]
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            up = _sum(self.depth, panel, middle, degrees) > 0
+            low, high = np.where(up, middle, low), np.where(up, high, middle)
+        return panel, low
 
     def radius(self, panel: Indices, s: Array) -> Array:
         """Return the radius at s in the given subpanels [length], an edge at its ends."""

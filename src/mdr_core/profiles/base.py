@@ -29,6 +29,7 @@ NORMAL_QUANTITIES: Final = (
     "elastic_energy",
 )
 _NO_BREAKS: Final = np.empty(0)
+_NO_LEVELS: Final = np.empty((0, 2))
 
 
 def require_positive(name: str, value: Parameter) -> None:
@@ -175,6 +176,11 @@ class Profile(ABC):
     def coordinate_breaks(self) -> Array:
         """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
         return _NO_BREAKS
+
+    @property
+    def coordinate_levels(self) -> Array:
+        """Intervals of the contact coordinate in which g is constant, ascending, (m, 2)."""
+        return _NO_LEVELS
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         """Contact coordinate of a contact radius."""

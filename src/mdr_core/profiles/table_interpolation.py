@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import inf
+from math import frexp, inf
 from typing import Final, Literal
 
 import numpy as np
@@ -168,10 +168,16 @@ def _not_a_knot(r: Array, f: Array, first: float | None = None, last: float | No
 
 
 def _end_condition(width: Array, chord: Array, slope: float | None) -> tuple[float, float, float]:
-    """Diagonal, next element and right side of the first equation for the slopes."""
-    if slope is not None:
-        return 1.0, 0.0, slope
+    """Diagonal, next element and right side of the first equation for the slopes.
+
+    The diagonal is as large as the element below: rows that change places lose digits one after
+    the other.
+    """
     h, k = float(width[0]), float(width[1])
+    if slope is not None:
+        # A power of two, so that no rounding error is added.
+        scale = 2.0 ** frexp(k)[1]
+        return scale, 0.0, scale * slope
     both = h + k
     return k, both, ((h + 2 * both) * k * chord[0] + h**2 * chord[1]) / both
 

@@ -102,6 +102,10 @@ class Tabulated(FlatEnded):
         return inverse_hypot(self.resolved.breaks, self.flat_radius)
 
     @property
+    def coordinate_levels(self) -> Array:
+        return inverse_hypot(self.resolved.levels, self.flat_radius)
+
+    @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         panels = self.resolved.panels
         radii = panels.edges[:-1][panels.depth[:, 0] > 0]

@@ -118,10 +118,11 @@ class _Unworn:
     state: InitialState
 
     @cached_property
-    def breaks(self) -> Array:
-        """Radii at which g_0 is not smooth [length]."""
+    def singular(self) -> Array:
+        """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
         profile = self.state.contact.profile
-        return np.asarray(profile.contact_radius(profile.coordinate_breaks))
+        inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
+        return np.append(profile.contact_radius(inner), profile.domain)
 
     def rise(self, shift: float, offset: Array) -> Array:
         """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
@@ -129,7 +130,7 @@ class _Unworn:
         unit = state.length_unit
         stick, by = state.stick + unit * shift, unit * offset
         # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
-        near = np.abs(self.breaks - stick) < by[-1]
+        near = np.abs(self.singular - stick) < 2 * by[-1]
         if by[-1] > _NARROW * stick or near.any():
             end = state.domain
             g = profile.g(np.minimum(np.append(stick, stick + by), end))
