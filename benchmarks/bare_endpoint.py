@@ -1,7 +1,7 @@
-"""Serve the least that a FastAPI service can do: `python bare_endpoint.py PORT`.
+"""Minimal FastAPI reference of the wire benchmarks: `python bare_endpoint.py PORT`.
 
-It validates the body of `/v1/normal` or `/v1/stress` by the same model and returns constants,
-with the same event loop and parser as the service; `/small` takes any body by a model of its own.
+It validates the body of `/v1/normal` or `/v1/stress` with the product's model and returns constants,
+with the same event loop and parser as the service; `/small` validates any body with a small model.
 """
 
 import sys
@@ -39,7 +39,7 @@ async def plain(query: NormalQuery):
     return CONSTANT
 
 
-# Declared, the answer is written by pydantic, which is the framework's fastest way.
+# With a declared response model pydantic serialises the response, the framework's fastest way.
 @app.post("/declared")
 async def declared(query: NormalQuery) -> dict[str, float]:
     return CONSTANT

@@ -1,4 +1,4 @@
-"""Stresses beneath the surface against Hamilton's closed formulas in bare NumPy."""
+"""Subsurface stresses against Hamilton's closed form in bare NumPy."""
 
 from __future__ import annotations
 
@@ -56,33 +56,33 @@ def hamilton(x: Array, y: Array, z: Array, peak: float) -> list[Array]:
 
 
 def rows() -> list[measure.Row]:
-    """10^4 points of a map, and a whole request of as many."""
-    found = []
+    """A map of 10^4 points, and a whole request for it."""
+    rows_ = []
     for name, (profile, target) in PROFILES.items():
         contact = solve(profile, E_STAR, contact_radius=1.0)
         peak = float(solve(Paraboloid(2.0), E_STAR, contact_radius=1.0).maximum_pressure)
 
-        def ours(contact=contact) -> object:
+        def mdr(contact=contact) -> object:
             return stress(contact, X, Y, Z, poissons_ratio=NU)
 
         def bare(peak=peak) -> object:
             return hamilton(X, Y, Z, peak)
 
-        rounds = measure.interleaved(ours, bare, 2.0)
+        rounds = measure.interleaved(mdr, bare, 2.0)
         detail = ""
         if isinstance(profile, Paraboloid):
             exact = np.array(hamilton(X[1:], Y[1:], Z[1:], peak))
             own = np.array(stress(contact, X[1:], Y[1:], Z[1:], poissons_ratio=NU, rtol=1e-13))
             detail = f"both agree to {np.abs(own - exact).max() / peak:.0e} of p_0"
-        what = f"stress beneath, {name}, 1e4 points / Hamilton's formulas in bare NumPy"
-        found.append(measure.row(what, "", rounds, target, detail))
+        what = f"subsurface stress, {name}, 1e4 points / Hamilton's formulas in bare NumPy"
+        rows_.append(measure.row(what, "", rounds, target, detail))
 
         def request(model=MODELS[name]) -> object:
             return respond(
                 "subsurface", SubsurfaceQuery.model_validate(GIVEN | model), json.MEDIA_TYPE
             )
 
-        rounds = measure.interleaved(request, ours, 2.0)
-        what = f"whole request beneath, {name}, 1e4 points / its stresses alone"
-        found.append(measure.row(what, "", rounds, "<= 0.2 s"))
-    return found
+        rounds = measure.interleaved(request, mdr, 2.0)
+        what = f"whole subsurface request, {name}, 1e4 points / its stresses alone"
+        rows_.append(measure.row(what, "", rounds, "<= 0.2 s"))
+    return rows_

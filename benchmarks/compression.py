@@ -1,7 +1,7 @@
-"""What gzip would save, and what it would cost: why the service leaves it to a proxy.
+"""Savings and costs of gzip: the reason to leave compression to a proxy.
 
-Prints a table: the size of an answer, what is left of it, what computing and compressing it take,
-and how slow a connection has to be for the compressed answer to arrive sooner.
+Prints the size of a response, the compressed fraction, the times of computation and compression,
+and the bandwidth below which the compressed response arrives earlier.
 """
 
 import gzip
@@ -17,7 +17,7 @@ from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES
 from mdr_service.serializers import FORMATS
 
 REPEATS: Final = 7
-# The fastest; the others take several times as long for a tenth less.
+# The fastest level; higher ones take several times as long for a tenth less.
 LEVEL: Final = 1
 
 BALL = NORMAL_EXAMPLES["hertz"]["value"]
@@ -39,7 +39,7 @@ CASES = {
 
 
 def fastest(work: Callable[[], object]) -> float:
-    """Return the shortest of some times, in milliseconds."""
+    """Return the shortest of several run times [ms]."""
     times = []
     for _ in range(REPEATS):
         start = time.perf_counter()
@@ -66,7 +66,10 @@ def row(case: str, form: str) -> str:
 
 def main() -> None:
     """Print the table."""
-    print("| answer | form | bytes | left | ms to answer | ms to compress | pays below, Mbit/s |")
+    print(
+        "| response | type | bytes | compressed | ms to compute | ms to compress "
+        "| useful below, Mbit/s |"
+    )
     print("|---|---|---|---|---|---|---|")
     for case in CASES:
         for form in FORMATS:

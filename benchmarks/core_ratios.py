@@ -1,11 +1,11 @@
-"""The core against bare NumPy expressions and SciPy, one measurement to a process.
+"""Core against bare NumPy expressions and SciPy, one process per measurement.
 
-`python core_ratios.py NAME STATE` prints the rows of one measurement as JSON. Each has a process
-of its own, because what was allocated before decides whether an array's memory is at hand:
+`python core_ratios.py NAME STATE` prints the rows of one measurement as JSON. Each runs in a
+process of its own, because earlier allocations decide whether an array's memory is at hand:
 
-* "fresh pages": the C library's defaults. Large temporaries go back to the system on every call
-  and are faulted in again at the next, for both sides alike.
-* "kept memory": the environment tells the C library to keep what is freed (`KEPT` below).
+- "fresh pages": the C library's defaults. Large temporaries return to the system on every call and
+  cause page faults at the next, for both sides.
+- "kept memory": the environment makes the C library keep freed memory (`KEPT` below).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-# Before NumPy is loaded: threads of its BLAS would wait for each other.
+# Set before NumPy is loaded: BLAS threads would compete for the cores.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import measure
@@ -31,7 +31,7 @@ from mdr_core import fields, tangential
 from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import Paraboloid, RoundedPunch, Tabulated
 
-# The references of the tests stand outside the package.
+# The references of the tests are not part of the package.
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.oracles.tables import TABLE_DIGITS, Table
@@ -50,14 +50,14 @@ def paraboloid_pressure(state: str) -> list[measure.Row]:
     a = float(contact.contact_radius)
     r = np.linspace(0.0, a, 100_000, endpoint=False)
 
-    def ours() -> Array:
+    def mdr() -> Array:
         return fields.pressure(contact, r)
 
     def bare() -> Array:
         return 2 * e_star / (np.pi * R) * np.sqrt(a * a - r * r)
 
-    difference = float(np.max(np.abs(ours() / bare() - 1)[: r.size // 2]))
-    rounds = measure.interleaved(ours, bare, 2.0)
+    difference = float(np.max(np.abs(mdr() / bare() - 1)[: r.size // 2]))
+    rounds = measure.interleaved(mdr, bare, 2.0)
     detail = f"both agree to {difference:.0e} for r < a/2"
     return [
         measure.row("p(r), paraboloid, 1e5 radii / bare NumPy", state, rounds, "<= 1.3", detail)
@@ -70,7 +70,7 @@ def punch_pressure(state: str) -> list[measure.Row]:
     r = np.linspace(0.0, a, 1000, endpoint=False)
     contact = solve(RoundedPunch(b, R), e_star, contact_radius=a, rtol=1e-12)
 
-    def ours() -> Array:
+    def mdr() -> Array:
         return fields.pressure(contact, r, rtol=1e-12)
 
     def hertz() -> Array:
@@ -87,9 +87,9 @@ def punch_pressure(state: str) -> list[measure.Row]:
         measure.row(
             "p(r), rounded punch b/a = 0.95, 1000 radii / bare Hertz",
             state,
-            measure.interleaved(ours, hertz, 2.0),
+            measure.interleaved(mdr, hertz, 2.0),
             "<= 75",
-            f"true error {error(ours()):.1e} at {len(checked)} radii",
+            f"true error {error(mdr()):.1e} at {len(checked)} radii",
         )
     ]
     for substitution, (form, target) in _SUBSTITUTIONS.items():
@@ -99,14 +99,14 @@ def punch_pressure(state: str) -> list[measure.Row]:
             integral, _ = quad_vec(integrand, 0.0, 1.0, epsabs=0.0, epsrel=epsrel, norm="max")
             return e_star / (np.pi * R) * integral
 
-        # SciPy is asked for no more than it needs to be as good as what ours is held to.
+        # SciPy's tolerance is the loosest one that meets the error limit of MDR.
         tolerances = (1e-9, 1e-10, 1e-11, 1e-12, 1e-13)
         epsrel = next(one for one in tolerances if error(scipy(one)) <= 1e-12)
         found.append(
             measure.row(
                 f"scipy quad_vec, {substitution} / the same p(r)",
                 state,
-                measure.interleaved(lambda run=scipy, tol=epsrel: run(tol), ours, 2.0),
+                measure.interleaved(lambda run=scipy, tol=epsrel: run(tol), mdr, 2.0),
                 target,
                 f"true error {error(scipy(epsrel)):.1e} at epsrel {epsrel:.0e}",
             )
@@ -133,9 +133,8 @@ def _punch_slope(b: float) -> Slope:
 def _punch_truth(
     r: float, a: float, b: float, R: float, e_star: float, c: float = 0.0
 ) -> mpmath.mpf:
-    """(E*/(pi R)) int (2 sqrt(x^2 - b^2) - b arccos(b/x))/sqrt(x^2 - r^2) dx, 30 digits.
-
-    From max(r, b, c) to a.
+    """(E*/(pi R)) int (2 sqrt(x^2 - b^2) - b arccos(b/x))/sqrt(x^2 - r^2) dx from max(r, b, c) to
+    a, with 30 digits.
     """
     with mpmath.workdps(40):
         point, edge, flat = mpmath.mpf(r), mpmath.mpf(a), mpmath.mpf(b)
@@ -149,11 +148,11 @@ def _punch_truth(
             numerator = 2 * leg - flat * mpmath.atan(leg / flat)
             return numerator * 2 * v * length / mpmath.sqrt((gap + step) * (x + point))
 
-        # The other root, at r or at b, is this far from the end.
+        # Distance of the other root, at r or at b, from the end.
         other = mpmath.sqrt(abs(point - flat) / length)
         value, error = mpmath.quad(integrand, sorted({0, min(other, 1), 1}), error=True)
         if error > 1e-25 * length:
-            raise ArithmeticError(f"the reference at r = {r} is not one: {error}")
+            raise ArithmeticError(f"the reference at r = {r} has not converged: {error}")
         return mpmath.mpf(e_star) * value / (mpmath.pi * mpmath.mpf(R))
 
 
@@ -167,13 +166,13 @@ def table_pressure(state: str) -> list[measure.Row]:
         profile = Tabulated(radii, radii**2 / (1 + np.sqrt(1 - radii**2)), interpolation)
         contact = solve(profile, 1.0, contact_radius=a, rtol=1e-11)
 
-        def ours(contact: NormalContact = contact) -> Array:
+        def mdr(contact: NormalContact = contact) -> Array:
             return fields.pressure(contact, r, rtol=1e-11)
 
         def hertz() -> Array:
             return 2 / np.pi * np.sqrt(a * a - r * r)
 
-        p, checked = ours(), [603, 950, 995, 999]
+        p, checked = mdr(), [603, 950, 995, 999]
         with mpmath.workdps(TABLE_DIGITS):
             scene = {"r": radii.tolist(), "f": profile.values.tolist()}
             exact = Table({**scene, "interpolation": interpolation})
@@ -182,13 +181,13 @@ def table_pressure(state: str) -> list[measure.Row]:
         error = max(float(abs(mpmath.mpf(float(p[i])) / true - 1)) for i, true in pairs)
         name = f"p(r), {interpolation} table of 200 points, 1000 radii / bare Hertz"
         detail = f"true error {error:.1e} at {len(checked)} radii"
-        rounds = measure.interleaved(ours, hertz, 2.0)
+        rounds = measure.interleaved(mdr, hertz, 2.0)
         found.append(measure.row(name, state, rounds, "<= 300", detail))
     return found
 
 
-def hertz_scenes(state: str) -> list[measure.Row]:
-    """A million scenes of Hertz in one call."""
+def hertz_sweep(state: str) -> list[measure.Row]:
+    """A million Hertz contacts in one call."""
     random = np.random.default_rng(5)
     R, e_star, force = (
         10 ** random.uniform(low, high, 1_000_000) for low, high in ((-3, 0), (9, 12), (-3, 3))
@@ -197,11 +196,11 @@ def hertz_scenes(state: str) -> list[measure.Row]:
     def contact() -> NormalContact:
         return solve(Paraboloid(R), e_star, normal_force=force)
 
-    def ours_two() -> tuple[Array, ...]:
+    def mdr_two() -> tuple[Array, ...]:
         one = contact()
         return one.contact_radius, one.indentation_depth
 
-    def ours_four() -> tuple[Array, ...]:
+    def mdr_four() -> tuple[Array, ...]:
         one = contact()
         return (
             one.contact_radius,
@@ -218,51 +217,51 @@ def hertz_scenes(state: str) -> list[measure.Row]:
         a = np.cbrt(0.75 * R * force / e_star)
         return a, a * a / R, force / (np.pi * a * a), 2 * e_star * a
 
-    pairs = zip(ours_four(), bare_four(), strict=True)
+    pairs = zip(mdr_four(), bare_four(), strict=True)
     difference = max(float(np.abs(mine / other - 1).max()) for mine, other in pairs)
     detail = f"both agree to {difference:.0e}"
     return [
         measure.row(
-            "1e6 Hertz scenes: a, d, mean pressure, stiffness / bare NumPy",
+            "1e6 Hertz contacts: a, d, mean pressure, stiffness / bare NumPy",
             state,
-            measure.interleaved(ours_four, bare_four, 3.0),
+            measure.interleaved(mdr_four, bare_four, 3.0),
             "<= 1.5",
             detail,
         ),
         measure.row(
-            "1e6 Hertz scenes: a, d alone / bare NumPy",
+            "1e6 Hertz contacts: a, d only / bare NumPy",
             state,
-            measure.interleaved(ours_two, bare_two, 2.0),
+            measure.interleaved(mdr_two, bare_two, 2.0),
             "<= 1.5",
         ),
     ]
 
 
 def punch_traction(state: str) -> list[measure.Row]:
-    """tau(r) of the rounded punch with b/a = 0.95, c halfway, at 1000 radii, to 1e-12."""
+    """tau(r) of the rounded punch with b/a = 0.95 and c half-way, at 1000 radii, to 1e-12."""
     a, b, e_star, g_star = 1e-3, 0.95e-3, 1.1e11, 0.9e11
     r = np.linspace(0.0, a, 1000, endpoint=False)
     contact = solve(RoundedPunch(b, 0.02), e_star, contact_radius=a, rtol=1e-12)
     friction, c = 0.3, (a + b) / 2
     sideways = tangential.solve(contact, g_star, friction, stick_radius=c)
 
-    def ours() -> Array:
+    def mdr() -> Array:
         return fields.shear_stress(sideways, r, rtol=1e-12)
 
     def hertz() -> Array:
         return 2 * e_star / (np.pi * 0.02) * np.sqrt(a * a - r * r)
 
-    tau, checked = ours(), [0, 300, 700, 949, 950, 951, 974, 975, 976, 990, 999]
+    tau, checked = mdr(), [0, 300, 700, 949, 950, 951, 974, 975, 976, 990, 999]
     truth = {i: friction * _punch_truth(float(r[i]), a, b, 0.02, e_star, c) for i in checked}
     error = max(float(abs(mpmath.mpf(float(tau[i])) / truth[i] - 1)) for i in checked)
-    rounds = measure.interleaved(ours, hertz, 2.0)
+    rounds = measure.interleaved(mdr, hertz, 2.0)
     name = "tau(r), rounded punch b/a = 0.95, 1000 radii / bare Hertz"
     detail = f"true error {error:.1e} at {len(checked)} radii"
     return [measure.row(name, state, rounds, "<= 90", detail)]
 
 
-def mindlin_scenes(state: str) -> list[measure.Row]:
-    """A million scenes of Cattaneo and Mindlin in one call."""
+def mindlin_sweep(state: str) -> list[measure.Row]:
+    """A million Cattaneo-Mindlin contacts in one call."""
     random = np.random.default_rng(5)
     R, e_star, force = (
         10 ** random.uniform(low, high, 1_000_000) for low, high in ((-3, 0), (9, 12), (-3, 3))
@@ -270,7 +269,7 @@ def mindlin_scenes(state: str) -> list[measure.Row]:
     friction, g_star = 0.3, 1e11
     push = friction * force * random.uniform(0.01, 0.99, force.size)
 
-    def ours() -> tuple[Array, ...]:
+    def mdr() -> tuple[Array, ...]:
         contact = solve(Paraboloid(R), e_star, normal_force=force)
         one = tangential.solve(contact, g_star, friction, tangential_force=push)
         return contact.contact_radius, one.stick_radius, one.tangential_displacement
@@ -280,13 +279,13 @@ def mindlin_scenes(state: str) -> list[measure.Row]:
         c = a * np.cbrt(1 - push / (friction * force))
         return a, c, friction * e_star / g_star * (a * a - c * c) / R
 
-    pairs = zip(ours(), bare(), strict=True)
+    pairs = zip(mdr(), bare(), strict=True)
     difference = max(float(np.abs(mine / other - 1).max()) for mine, other in pairs)
     return [
         measure.row(
-            "1e6 Mindlin scenes: a, c, displacement / bare NumPy",
+            "1e6 Mindlin contacts: a, c, displacement / bare NumPy",
             state,
-            measure.interleaved(ours, bare, 3.0),
+            measure.interleaved(mdr, bare, 3.0),
             "<= 1.6",
             f"both agree to {difference:.0e}",
         )
@@ -299,15 +298,15 @@ MEASUREMENTS = {
         paraboloid_pressure,
         punch_pressure,
         table_pressure,
-        hertz_scenes,
+        hertz_sweep,
         punch_traction,
-        mindlin_scenes,
+        mindlin_sweep,
     )
 }
 
 
 def rows() -> list[measure.Row]:
-    """All measurements in both states of the allocator."""
+    """All measurements in both allocator states."""
     found = []
     for name in MEASUREMENTS:
         for state, extra in ((FRESH, {}), (KEPT, _KEEP)):

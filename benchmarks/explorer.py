@@ -1,9 +1,9 @@
-"""Figures of the explorer in headless Chromium, beside a service on this machine.
+"""Performance of the explorer in headless Chromium, with the service on this machine.
 
-    make pages
+make pages
 
-Prints the time to the first chart, without and with the browser's cache; from a slider to the new
-charts; and of small queries while twenty browsers drag.
+Prints the time to the first chart with and without the browser cache, the time from a slider to the
+new charts, and the latency of small queries while twenty browsers drag sliders.
 """
 
 import asyncio
@@ -26,10 +26,10 @@ from tests.faults.server import free_port, running, service
 REPEATS = 5
 BROWSERS = 20
 SECONDS = 10.0
-# A browser draws for about this time before it asks again [s].
+# Time a browser spends on drawing before its next query [s].
 DRAWING = 0.04
 SLIDERS = {"press": "load", "push": "amount"}
-# Moves a slider step by step, each as soon as the charts show the last one, and returns the times.
+# Moves a slider step by step, each as soon as the previous charts are drawn; returns the times.
 DRAG = """async key => {
     const drawn = async () => {
         while (!document.body.dataset.drawn) await new Promise(requestAnimationFrame);
@@ -62,7 +62,7 @@ def browser() -> Iterator[BrowserContext]:
 
 
 def first_chart(context: BrowserContext, address: str) -> float:
-    """Return the time until a new page shows its first chart [s]."""
+    """Return the time to the first chart of a new page [s]."""
     page = context.new_page()
     start = time.monotonic()
     page.goto(address, wait_until="commit")
@@ -74,32 +74,32 @@ def first_chart(context: BrowserContext, address: str) -> float:
 
 
 def drag(page: Page, address: str, tab: str, kind: str) -> list[float]:
-    """Return the times from the slider to the new charts [ms]."""
+    """Return the times from a slider to the new charts [ms]."""
     page.goto(f"{address}?tab={tab}&kind={kind}")
     times: list[float] = page.evaluate(DRAG, SLIDERS[tab])
     return times
 
 
 def recorded(page: Page, address: str) -> list[list[Any]]:
-    """Return the requests of a dragged slider, by drawing."""
-    asked: list[Any] = []
+    """Return the requests of a dragged slider, grouped by drawing."""
+    requests: list[Any] = []
     page.on(
         "request",
-        lambda each: each.method == "POST" and asked.append([each.url, each.post_data_json]),
+        lambda each: each.method == "POST" and requests.append([each.url, each.post_data_json]),
     )
     drag(page, address, "push", "rounded_punch")
-    of_path = [[url.partition("/v1")[2], body] for url, body in asked[3:]]
+    of_path = [[url.partition("/v1")[2], body] for url, body in requests[3:]]
     return [of_path[i : i + 3] for i in range(0, len(of_path) - 2, 3)]
 
 
 async def dragging(port: int, drawings: list[list[Any]]) -> None:
-    """Ask what a browser asks that drags without end."""
+    """Send the requests of a browser whose slider is dragged continuously."""
     async with clients(port, 3) as connections:
         while True:
             for drawing in drawings:
-                asked = [post(f"/v1{path}", body) for path, body in drawing]
+                requests = [post(f"/v1{path}", body) for path, body in drawing]
                 await asyncio.gather(
-                    *(client.ask(text) for client, text in zip(connections, asked, strict=True))
+                    *(client.ask(text) for client, text in zip(connections, requests, strict=True))
                 )
                 await asyncio.sleep(DRAWING)
 
@@ -108,7 +108,7 @@ async def replay(port: int, drawings: list[list[Any]]) -> None:
     await asyncio.gather(*(dragging(port, drawings) for _ in range(BROWSERS)))
 
 
-def beside_browsers(port: int, drawings: list[list[Any]]) -> tuple[float, float]:
+def with_browsers(port: int, drawings: list[list[Any]]) -> tuple[float, float]:
     """Return the 99th percentile of small queries, idle and while browsers drag [s]."""
     asyncio.run(small_queries(port, 1.0))
     idle = percentile(asyncio.run(small_queries(port, SECONDS)), 0.99)
@@ -145,7 +145,7 @@ def main() -> None:
                 for kind in ("paraboloid", "rounded_punch")
             }
             drawings = recorded(page, address)
-        idle, busy = beside_browsers(port, drawings)
+        idle, busy = with_browsers(port, drawings)
     print(f"first chart            {median(firsts):6.2f} s   (bound 1.5)")
     print(f"first chart, cached    {median(again):6.2f} s   (bound 0.7)")
     for (tab, kind), taken in moves.items():

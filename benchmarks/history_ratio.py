@@ -1,17 +1,17 @@
 """A million steps of random loading: the polyline of `mdr_core.history` against 1000 springs.
 
-The springs come twice: as the law of friction is written down, all of them at once, and as lean
-as NumPy alone allows, in place, without a temporary, the pressed ones only. Their time is taken
-over a part of the steps and multiplied; ours is that of the whole call.
+The springs are implemented twice: directly from the friction law, for all springs at once, and as
+fast as NumPy allows, in place, without temporaries, for springs in contact only. Their time is
+measured for a part of the steps and extrapolated; that of MDR is for the whole call.
 
-`python history_ratio.py` prints the row; `ratios.py` has it among the others.
+`python history_ratio.py` prints the row; `ratios.py` includes it.
 """
 
 from __future__ import annotations
 
 import os
 
-# Before NumPy is loaded: threads of its BLAS would wait for each other.
+# Set before NumPy is loaded: BLAS threads would compete for the cores.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import sys
@@ -27,7 +27,7 @@ from mdr_core.profiles import Paraboloid
 Array = np.ndarray
 
 STEPS, PART, SPRINGS, ROUNDS = 1_000_000, 20_000, 1000, 3
-#: Steps that the reference follows, with so many springs.
+#: Steps of the reference, and its number of springs.
 CHECKED, MANY = 300, 400_000
 R, E_STAR, G_STAR, MU = 0.01, 1.1e11, 0.9e11, 0.3
 DEPTH = 1e-6
@@ -46,7 +46,7 @@ def springs(d: Array, u: Array, count: int) -> Array:
     """F_x after each step, from `count` springs at the midpoints of equal lengths."""
     a = np.sqrt(R * DEPTH)
     touch = ((np.arange(count) + 0.5) * (a / count)) ** 2 / R
-    # The springs that a step presses for the first time are a run of neighbours.
+    # The springs in first contact in a step are contiguous.
     below = np.searchsorted(touch, d)
     load, limit, most = np.zeros(count), np.empty(count), np.empty(count)
     np.multiply(touch, -MU * E_STAR, out=most)
@@ -64,19 +64,19 @@ def springs(d: Array, u: Array, count: int) -> Array:
             entering = load[inside:reach]
             np.subtract(new_d, touch[inside:reach], out=entering)
             entering *= push / (new_d - last_d)
-        pressed, bound = load[:reach], limit[:reach]
-        pressed[:inside] += push
+        in_contact, bound = load[:reach], limit[:reach]
+        in_contact[:inside] += push
         np.add(most[:reach], MU * E_STAR * new_d, out=bound)
-        np.minimum(pressed, bound, out=pressed)
+        np.minimum(in_contact, bound, out=in_contact)
         np.negative(bound, out=bound)
-        np.maximum(pressed, bound, out=pressed)
-        force[step] = scale * pressed.sum()
+        np.maximum(in_contact, bound, out=in_contact)
+        force[step] = scale * in_contact.sum()
         last_d, last_u, inside = new_d, new_u, reach
     return force
 
 
-def springs_as_written(d: Array, u: Array, count: int) -> Array:
-    """The same by the text of the law: trial, bounds, clip."""
+def springs_plain(d: Array, u: Array, count: int) -> Array:
+    """F_x after each step, directly from the friction law: trial, bounds, clip."""
     a = np.sqrt(R * DEPTH)
     touch = ((np.arange(count) + 0.5) * (a / count)) ** 2 / R
     load, force = np.zeros(count), np.empty(d.size)
@@ -91,7 +91,7 @@ def springs_as_written(d: Array, u: Array, count: int) -> Array:
     return force
 
 
-def ours(d: Array, u: Array) -> Array:
+def mdr(d: Array, u: Array) -> Array:
     return history.solve(
         Paraboloid(R),
         E_STAR,
@@ -107,23 +107,23 @@ def rows() -> list[measure.Row]:
     few = slice(CHECKED)
     truth = springs(d[few], u[few], MANY)
     size = np.max(np.abs(truth))
-    # The whole path is asked for, so that what is checked is what is timed.
+    # The whole path is requested, so that the checked results are those that are timed.
     errors = [
         float(np.max(np.abs(found - truth)) / size)
-        for found in (ours(d, u)[few], springs(d[few], u[few], SPRINGS))
+        for found in (mdr(d, u)[few], springs(d[few], u[few], SPRINGS))
     ]
     part = slice(PART)
-    rounds: dict[str, list[tuple[float, float]]] = {"as written": [], "in place": []}
+    rounds: dict[str, list[tuple[float, float]]] = {"plain": [], "in place": []}
     for _ in range(ROUNDS):
-        for how, simulate in (("as written", springs_as_written), ("in place", springs)):
+        for how, simulate in (("plain", springs_plain), ("in place", springs)):
             start = perf_counter()
             simulate(d[part], u[part], SPRINGS)
             middle = perf_counter()
-            ours(d, u)
+            mdr(d, u)
             end = perf_counter()
             rounds[how].append(((middle - start) * (STEPS / PART), end - middle))
     detail = (
-        f"against {MANY} springs: ours within {errors[0]:.0e}, {SPRINGS} springs {errors[1]:.0e}"
+        f"against {MANY} springs: MDR within {errors[0]:.0e}, {SPRINGS} springs {errors[1]:.0e}"
     )
     return [
         measure.row(

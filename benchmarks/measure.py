@@ -1,4 +1,4 @@
-"""Ratios of running times, measured so that whatever else the machine does cancels."""
+"""Ratios of run times, insensitive to other load on the machine."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-# A batch this long is timed to a fraction of a percent, and seldom loses the processor.
+# A batch of this length is resolved to a fraction of a percent and is rarely preempted.
 BATCH_SECONDS = 4e-4
-# What takes longer needs no warming up, and is not run for nothing.
+# Longer runs need no warm-up, which would waste time.
 LONG_SECONDS = 0.05
-# So many rounds tell the median of a quick one.
+# Number of rounds that determines the median of a fast run.
 ROUNDS = 60
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table: `ratio` with the bounds between which half of its rounds lie."""
+    """One row of the table: `ratio` with its quartiles over the rounds."""
 
     name: str
     state: str
@@ -32,26 +32,25 @@ class Row:
 
 
 def interleaved(
-    ours: Callable[[], object], theirs: Callable[[], object], seconds: float
+    first_run: Callable[[], object], second_run: Callable[[], object], seconds: float
 ) -> list[tuple[float, float]]:
     """Seconds per call of both, in rounds A B A B ..., for about `seconds` of wall time."""
-    fastest = [min(_time(run, 1) for _ in range(5)) for run in (ours, theirs)]
-    # Equal batches: neither side finds the caches colder than its own calls leave them.
+    fastest = [min(_time(run, 1) for _ in range(5)) for run in (first_run, second_run)]
+    # Equal batches: neither run finds the caches colder than its own calls leave them.
     batch = max(BATCH_SECONDS, *fastest)
     repeats = [max(1, round(batch / one)) for one in fastest]
     rounds: list[tuple[float, float]] = []
     end = perf_counter_ns() + int(seconds * 1e9)
     while perf_counter_ns() < end or len(rounds) < 9:
-        rounds.append((_time(ours, repeats[0]), _time(theirs, repeats[1])))
+        rounds.append((_time(first_run, repeats[0]), _time(second_run, repeats[1])))
     return rounds
 
 
 def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[str, float]:
-    """Median seconds per call of each, all of them in turn, for about `seconds` in all.
+    """Median seconds per call of each run, interleaved, for about `seconds` in total.
 
-    Seconds of this thread on the processor: what takes longer than a slice of time would else be
-    charged with whatever else the machine does. What takes long is run less often, at least once:
-    its share of the time is that of the others.
+    CPU time of this thread, since wall time would include other processes for runs longer than a
+    time slice. Slow runs are repeated less often, at least once, so that all runs get equal time.
     """
     fastest = {
         name: min(_time(run, 1, thread_time_ns) for _ in range(_tries(run)))
@@ -59,29 +58,29 @@ def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[st
     }
     repeats = {name: max(1, round(BATCH_SECONDS / one)) for name, one in fastest.items()}
     share = seconds / len(runs)
-    wanted = {name: share / max(one, BATCH_SECONDS) for name, one in fastest.items()}
-    found: dict[str, list[float]] = {name: [] for name in runs}
+    target_count = {name: share / max(one, BATCH_SECONDS) for name, one in fastest.items()}
+    samples: dict[str, list[float]] = {name: [] for name in runs}
     for number in range(ROUNDS):
         for name, run in runs.items():
-            # Spread over all rounds, so that a busy moment of the machine hits all alike.
-            due = min(1.0, wanted[name] / ROUNDS) * (number + 1)
-            if not found[name] or len(found[name]) < due:
+            # Runs are spread over all rounds, so that a busy period affects all alike.
+            due = min(1.0, target_count[name] / ROUNDS) * (number + 1)
+            if not samples[name] or len(samples[name]) < due:
                 if repeats[name] > 1:
-                    # The one before may have taken the caches.
+                    # The previous run may have displaced the caches.
                     run()
-                found[name].append(_time(run, repeats[name], thread_time_ns))
-    return {name: median(times) for name, times in found.items()}
+                samples[name].append(_time(run, repeats[name], thread_time_ns))
+    return {name: median(times) for name, times in samples.items()}
 
 
 def _tries(run: Callable[[], object]) -> int:
-    """What is quick is warmed up."""
+    """Fast runs are warmed up."""
     return 5 if _time(run, 1) < LONG_SECONDS else 1
 
 
 def row(
     name: str, state: str, rounds: list[tuple[float, float]], target: str, detail: str = ""
 ) -> Row:
-    """The line for rounds of (first, second): the ratio is first / second within each round."""
+    """Row for rounds of (first, second): the ratio is first / second within each round."""
     times = " / ".join(_readable(median(column)) for column in zip(*rounds, strict=True))
     return Row(
         name,

@@ -1,14 +1,14 @@
-"""Print how fast the product is, as ratios that do not depend on the machine: `make bench`.
+"""Print performance ratios that do not depend on the machine: `make bench`.
 
-Every ratio is measured within one run, both sides in turn; the median of the rounds is printed,
-with the bounds between which half of them lie. Nothing here passes or fails.
+Every ratio is measured within one run, alternating between both sides. The median of the rounds is
+printed with its quartiles. There are no pass or fail limits.
 """
 
 from __future__ import annotations
 
 import os
 
-# Before NumPy is loaded: threads of its BLAS would wait for each other.
+# Set before NumPy is loaded: BLAS threads would compete for the cores.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import beneath_ratio
@@ -22,7 +22,7 @@ import wire_ratio
 
 def main() -> None:
     header = ("what", "state", "ratio", "half lie in", "target", "medians and accuracy")
-    found = [
+    rows_ = [
         *core_ratios.rows(),
         *beneath_ratio.rows(),
         *history_ratio.rows(),
@@ -40,7 +40,7 @@ def main() -> None:
             row.target,
             row.detail,
         )
-        for row in found
+        for row in rows_
     ]
     widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
     for line in (header, *lines):

@@ -1,7 +1,7 @@
 """Requests per second of `/v1/stress` with many radii against a bare endpoint.
 
-The bare endpoint validates the same body by the same model and writes the two arrays of the
-answer, computed once, by the same writer. Servers and load are those of `wire_ratio`.
+The bare endpoint validates the same body with the same model and serialises the two precomputed
+arrays of the result with the same library. Servers and load are those of `wire_ratio`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import wire_ratio
 
 RADII = 10_000
 ROUNDS = 9
-# Every radius with all its digits, as a program would send it.
+# All digits of every radius, as a program would send them.
 QUERY = {
     "profile": {"kind": "paraboloid", "radius": 0.01},
     "material": {"e_star": 1.1e11, "g_star": 0.9e11},
@@ -35,11 +35,10 @@ def rows() -> list[measure.Row]:
     with ExitStack() as stack:
         service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
-        ours, theirs = (
-            stack.enter_context(wire_ratio.server(command)) for command in (service, bare)
-        )
+        ports = (stack.enter_context(wire_ratio.server(command)) for command in (service, bare))
+        mdr_port, bare_port = ports
         load = stack.enter_context(wire_ratio.load_generator(body))
-        targets = (f"{ours}/v1/stress", f"{theirs}/stress")
+        targets = (f"{mdr_port}/v1/stress", f"{bare_port}/stress")
         for target in targets:
             wire_ratio.check(target, body)
             load(target)

@@ -1,6 +1,6 @@
-"""int_low^a g'(x)/sqrt(x^2 - r^2) dx for `quad_vec`: what a user of SciPy would write down.
+"""int_low^a g'(x)/sqrt(x^2 - r^2) dx for `quad_vec`, as a user of SciPy writes it.
 
-`slope(x, above)` is g' at x = b + above, b the profile's break; low = max(r, b, c).
+`slope(x, above)` is g' at x = b + above, with the profile's break b; low = max(r, b, c).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Slope = Callable[[Array, Array], Array]
 def one_root_removed(
     slope: Slope, r: Array, a: float, b: float, c: float = 0.0
 ) -> Callable[[float], Array]:
-    """The usual substitution, t = sqrt(x^2 - r^2), from the break or the stick edge on."""
+    """The usual substitution, t = sqrt(x^2 - r^2), starting at the break or the stick edge."""
     low = max(b, c)
     start = np.sqrt(np.maximum((low - r) * (low + r), 0.0))
     length = np.sqrt((a - r) * (a + r)) - start
@@ -32,7 +32,7 @@ def one_root_removed(
 def both_roots_removed(
     slope: Slope, r: Array, a: float, b: float, c: float = 0.0
 ) -> Callable[[float], Array]:
-    """The best that SciPy can be handed: x = low + (a - low) u^2."""
+    """The best substitution for SciPy: x = low + (a - low) u^2."""
     low = np.maximum(r, max(b, c))
     length, gap, above = a - low, low - r, low - b
 

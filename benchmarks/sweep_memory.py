@@ -1,4 +1,4 @@
-"""Peak memory of all processes of a sweep; shared pages count once for each process.
+"""Peak memory of all processes of a sweep; shared pages count once per process.
 
 python benchmarks/sweep_memory.py [cases]
 """
@@ -20,7 +20,7 @@ TARGET = 1024.0
 MIB = 1024**2
 
 
-def held(process: psutil.Process) -> float:
+def resident_memory(process: psutil.Process) -> float:
     """Return the resident memory of a process and all its children [MiB]."""
     total = 0.0
     for one in (process, *process.children(recursive=True)):
@@ -50,7 +50,7 @@ def main() -> None:
         process = psutil.Popen([*command, "--out", "answers.parquet"], cwd=folder)
         most = 0.0
         while process.poll() is None:
-            most = max(most, held(process))
+            most = max(most, resident_memory(process))
             sleep(0.05)
         seconds = perf_counter() - start
         size = (folder / "answers.parquet").stat().st_size / MIB

@@ -1,9 +1,9 @@
-"""Processor time of a sweep over Mindlin cases, Parquet to Parquet, over that of the bare core.
+"""CPU time of a sweep over Mindlin cases, Parquet to Parquet, relative to the bare core.
 
-    python benchmarks/sweep_ratio.py [cases]
+python benchmarks/sweep_ratio.py [cases]
 
-Both read the same table, compute the same quantities and write the same columns. The bare one is
-one call of the core. The sweep is run as `mdr sweep` in this process, and its time includes the
+Both read the same table, compute the same quantities and write the same columns. The bare version
+is one call of the core. The sweep runs as `mdr sweep` in this process, and its time includes the
 estimate.
 """
 
@@ -84,18 +84,20 @@ def main() -> None:
         source, template = folder / "cases.parquet", folder / "template.json"
         pq.write_table(mindlin(cases), source)
         template.write_text('{"profile": {"kind": "paraboloid"}}')
-        ours, theirs = folder / "ours.parquet", folder / "bare.parquet"
-        options = ("--table", str(source), "--template", str(template), "--out", str(ours))
+        swept_table, bare_table = folder / "ours.parquet", folder / "bare.parquet"
+        options = ("--table", str(source), "--template", str(template), "--out", str(swept_table))
         options += ("--workers", "1")
         rounds = []
         for _ in range(ROUNDS + 1):
             start = process_time()
             swept(*options)
             middle = process_time()
-            bare(source, theirs)
+            bare(source, bare_table)
             rounds.append((middle - start, process_time() - middle))
         columns = [*mindlin(1).column_names, *NAMES]
-        same = pq.read_table(ours, columns=columns).equals(pq.read_table(theirs, columns=columns))
+        same = pq.read_table(swept_table, columns=columns).equals(
+            pq.read_table(bare_table, columns=columns)
+        )
     ratios = [one / other for one, other in rounds[1:]]
     seconds = [median(column) for column in zip(*rounds[1:], strict=True)]
     print(f"{cases} cases: sweep {seconds[0]:.2f} s, bare {seconds[1]:.2f} s, same numbers: {same}")

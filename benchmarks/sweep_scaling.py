@@ -1,9 +1,9 @@
-"""Times of a sweep over rounded punches with one process and with two workers.
+"""Run times of a sweep over rounded punches with one process and with two workers.
 
-    python benchmarks/sweep_scaling.py [cases] [rounds]
+python benchmarks/sweep_scaling.py [cases] [rounds]
 
-Every case has its own profile and all quantities of a tangential query. The times include the
-start of the workers. The client, and other load on the machine, takes its share of both cores.
+Every case has its own profile and all quantities of a tangential query. The times include the start
+of the workers. The client and other load on the machine use part of both cores.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Requests per second of `/v1/normal` against a bare endpoint of the same framework.
+"""Requests per second of `/v1/normal` against a bare endpoint of the framework.
 
-The bare endpoint validates the same body by the same model and returns a constant. Both are
-served by one worker with the same event loop and parser, each in a process of its own, and are
-asked in turn, so that one is at work while the other waits.
+The bare endpoint validates the same body with the same model and returns a constant. Each is served
+by one worker with the same event loop and parser, in a process of its own. They receive requests in
+turn, so that one is idle while the other works.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ HOST = "127.0.0.1"
 Load = Callable[[str], float]
 BODY = json.dumps(NORMAL_EXAMPLES["hertz"]["value"])
 CONNECTIONS, ROUND_SECONDS, ROUNDS = 4, 1, 9
-# On a busy machine the service's processes take a while.
+# Start-up takes longer on a busy machine.
 START_SECONDS = 60
 
 
@@ -39,33 +39,33 @@ def rows() -> list[measure.Row]:
     with ExitStack() as stack:
         service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
-        ours, theirs = (stack.enter_context(server(command)) for command in (service, bare))
+        mdr_port, bare_port = (stack.enter_context(server(command)) for command in (service, bare))
         load = stack.enter_context(load_generator(BODY))
-        targets = [f"{ours}/v1/normal", f"{theirs}/declared", f"{theirs}/dict"]
+        targets = [f"{mdr_port}/v1/normal", f"{bare_port}/declared", f"{bare_port}/dict"]
         for target in targets:
             check(target, BODY)
             load(target)
         rounds = [[load(target) for target in targets] for _ in range(ROUNDS)]
     return [
         _row(load, f"bare FastAPI endpoint, {kind}", [(one[0], one[index]) for one in rounds])
-        for index, kind in ((1, "declared answer"), (2, "plain dict"))
+        for index, kind in ((1, "declared response"), (2, "plain dict"))
     ]
 
 
 def _row(load: Load, other: str, rounds: list[tuple[float, float]]) -> measure.Row:
-    ours, theirs = (median(column) for column in zip(*rounds, strict=True))
+    mdr_rate, bare_rate = (median(column) for column in zip(*rounds, strict=True))
     return measure.Row(
         f"/v1/normal, one load, requests/s / {other}",
         load.__name__.removeprefix("_"),
         *measure.spread(rounds),
         ">= 0.7",
-        f"{ours:.0f} / {theirs:.0f} requests/s, {CONNECTIONS} connections",
+        f"{mdr_rate:.0f} / {bare_rate:.0f} requests/s, {CONNECTIONS} connections",
     )
 
 
 @contextmanager
 def server(command: list[str]) -> Iterator[int]:
-    """A server's process, ready, on a port that was free."""
+    """A running server process on a free port."""
     with socket.socket() as probe:
         probe.bind((HOST, 0))
         port = int(probe.getsockname()[1])
@@ -101,13 +101,13 @@ def _request(target: str, body: str) -> tuple[int, bytes]:
 
 
 def check(target: str, body: str) -> None:
-    """Whether the server answers at all: what it answers is for the tests."""
+    """Raise unless the server responds; the tests check the content."""
     port, request = _request(target, body)
     with socket.create_connection((HOST, port)) as connection:
         connection.sendall(request)
         status = connection.recv(4096).split(b"\r\n", 1)[0]
     if b" 200 " not in status:
-        raise RuntimeError(f"the server answers {status!r}")
+        raise RuntimeError(f"the server responds {status!r}")
 
 
 @contextmanager
@@ -115,7 +115,7 @@ def load_generator(body: str) -> Iterator[Load]:
     if shutil.which("wrk") is None:
 
         def _asyncio_client(target: str) -> float:
-            """By a client of one's own, which costs as much itself as a small server."""
+            """A client in Python, which costs as much CPU time as a small server."""
             return rate(target, itertools.repeat(body), ROUND_SECONDS)
 
         yield _asyncio_client
@@ -143,18 +143,18 @@ def load_generator(body: str) -> Iterator[Load]:
 
 
 def rate(target: str, bodies: Iterator[str], seconds: float) -> float:
-    """Requests/s by a client in this process that sends one body after the other."""
+    """Requests per second of a client in this process that sends the bodies in turn."""
     return asyncio.run(_drive(target, bodies, seconds))
 
 
 async def _drive(target: str, bodies: Iterator[str], seconds: float) -> float:
     start = time.perf_counter()
     end = start + seconds
-    counts = await asyncio.gather(*(_ask(target, bodies, end) for _ in range(CONNECTIONS)))
+    counts = await asyncio.gather(*(_send(target, bodies, end) for _ in range(CONNECTIONS)))
     return sum(counts) / (time.perf_counter() - start)
 
 
-async def _ask(target: str, bodies: Iterator[str], end: float) -> int:
+async def _send(target: str, bodies: Iterator[str], end: float) -> int:
     port, _ = target.split("/", 1)
     reader, writer = await asyncio.open_connection(HOST, int(port))
     count = 0

@@ -1,4 +1,4 @@
-"""How the charts look, and where they and their tables go."""
+"""Style and output folder of the charts."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ STYLE = {
 }
 mpl.rcParams.update(STYLE)
 
-#: What is ours is drawn in one colour on every chart.
-OURS = "#c1272d"
+#: Colour of MDR on every chart.
+MDR_COLOR = "#c1272d"
 
 
 def panels(rows: int, columns: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
@@ -49,7 +49,7 @@ def panels(rows: int, columns: int, width: float, height: float) -> tuple[Figure
 
 
 def save(figure: Figure, name: str, foot: str) -> None:
-    """Write docs/charts/NAME.svg with the line at its foot."""
+    """Write docs/charts/NAME.svg with a footer line."""
     figure.supxlabel(foot, fontsize=6.0, color="0.4", x=0.995, ha="right")
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / f"{name}.svg", metadata={"Date": None})
@@ -57,7 +57,7 @@ def save(figure: Figure, name: str, foot: str) -> None:
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]], name: str | None = None) -> None:
-    """Print the rows, and keep them as docs/charts/NAME.csv."""
+    """Print the rows and write them to docs/charts/NAME.csv."""
     lines = [[_short(value) for value in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
     for line in (header, *lines):
@@ -69,7 +69,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]], name: str | N
 
 
 def rows_of(name: str) -> list[dict[str, str]]:
-    """The rows of docs/charts/NAME.csv."""
+    """Rows of docs/charts/NAME.csv."""
     with (FOLDER / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 

@@ -1,8 +1,9 @@
-"""Hertz contact, error against time: ours, and two solvers on grids. `make chart-hertz_contact`.
+"""Hertz contact, error against time: MDR and two grid solvers. `make chart-hertz_contact`.
 
-All are given the force and answer the pressure of a paraboloid, theirs on n x n pixels of a square
-2.2 a wide with free boundaries. Next to the edge of the contact a pixel's pressure is a mean over a
-root, so the error is taken twice: everywhere, and for r < 0.9 a; both relative to the largest one.
+All methods compute the pressure of a paraboloid under a prescribed force. The grid solvers use n x
+n pixels of a square of width 2.2 a with free boundaries. At the contact edge a pixel's pressure
+averages a square-root singularity, so the error is evaluated everywhere and for r < 0.9 a, relative
+to the largest pressure.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 import tamaas
 from ContactMechanics import FreeFFTElasticHalfSpace
 from ContactMechanics.Systems import NonSmoothContactSystem
-from drawing import OURS, panels, save, table
+from drawing import MDR_COLOR, panels, save, table
 from machine import footer
 from SurfaceTopography import Topography
 
@@ -28,13 +29,13 @@ Array = np.ndarray
 #: R = a = E* = 1.
 WIDTH, FORCE, HIGHEST = 2.2, 4.0 / 3.0, 2 / np.pi
 PIXELS, TOLERANCE = (64, 128, 256, 512), 1e-8
-#: Samples while a run takes less than so many seconds, at most so many.
+#: Samples are taken up to this total time, and at most this many.
 PATIENCE, SAMPLES = 6.0, 5
 HEADER = ("method", "resolution", "seconds", "largest error", "largest error for r < 0.9 a")
 
 
 def pixels(count: int) -> Array:
-    """Radii of the pixels' middles."""
+    """Radii of the pixel centres."""
     x = (np.arange(count) + 0.5) * (WIDTH / count) - WIDTH / 2
     return np.hypot(*np.meshgrid(x, x, indexing="ij"))
 
@@ -57,7 +58,7 @@ def by_tamaas(count: int) -> Callable[[], Array]:
 
 
 def by_contact_mechanics(count: int) -> Callable[[], Array]:
-    """The same algorithm, the other implementation."""
+    """The same algorithm in ContactMechanics."""
     surface = Topography(-(pixels(count) ** 2) / 2, (WIDTH, WIDTH))
 
     def run() -> Array:
@@ -70,7 +71,7 @@ def by_contact_mechanics(count: int) -> Callable[[], Array]:
 
 
 def by_mdr(count: int) -> Callable[[], Array]:
-    """From the force on, at as many radii as there are pixels."""
+    """Includes solving for the force, at as many radii as there are pixels."""
     radius = np.ravel(pixels(count))
 
     def run() -> Array:
@@ -84,7 +85,7 @@ METHODS = {"Tamaas": by_tamaas, "ContactMechanics": by_contact_mechanics, "MDR":
 
 
 def errors(count: int, answer: Array) -> tuple[float, float]:
-    """Largest error everywhere and well inside, relative to the largest pressure."""
+    """Largest error everywhere and for r < 0.9 a, relative to the largest pressure."""
     radius = pixels(count)
     error = np.abs(answer / HIGHEST - np.sqrt(np.maximum(1 - radius**2, 0.0)))
     return float(error.max()), float(error[radius < 0.9].max())
@@ -109,11 +110,11 @@ def main() -> None:
         ]
     table(HEADER, rows, "hertz_contact")
     figure, (ax,) = panels(1, 1, 6.0, 3.6)
-    for name, color in zip(METHODS, ("#1f5fa8", "#2b8a3e", OURS), strict=True):
+    for name, color in zip(METHODS, ("#1f5fa8", "#2b8a3e", MDR_COLOR), strict=True):
         seconds, largest, inside = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(seconds, inside, "o-", color=color, label=f"{name}, r < 0.9 a")
         ax.loglog(seconds, largest, "o--", color=color, alpha=0.4, label=f"{name}, everywhere")
-    ax.set(xlabel="processor seconds", ylabel="largest error / largest pressure")
+    ax.set(xlabel="CPU time [s]", ylabel="largest error / largest pressure")
     ax.set_title(f"Hertz contact on {PIXELS[0]}² to {PIXELS[-1]}² pixels")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     save(figure, "hertz_contact", footer("tamaas", "ContactMechanics"))

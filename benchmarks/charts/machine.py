@@ -1,4 +1,4 @@
-"""Where and with what a chart was measured: one line for its foot."""
+"""Chart footer: processor, versions and date of the measurement."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def processor() -> str:
-    """The processor's model and the number of cores."""
+    """Processor model and number of cores."""
     text = Path("/proc/cpuinfo")
     lines = text.read_text("utf-8").splitlines() if text.exists() else []
     models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
@@ -18,7 +18,7 @@ def processor() -> str:
 
 
 def footer(*packages: str) -> str:
-    """Processor, versions and the day, for measurements in one thread."""
+    """Processor, versions and date, for single-threaded measurements."""
     found = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", *packages)]
     today = dt.datetime.now(dt.UTC).date().isoformat()
     python = f"Python {platform.python_version()}"

@@ -1,7 +1,7 @@
-"""Every way to the 1000 numbers of a chart: ours and the peers', each over its resolutions.
+"""Methods for the 1000 values of a chart: MDR and the reference codes, each over its resolutions.
 
-What a peer can prepare without knowing the profile (matrices, bases, plans of its grid) is made
-beforehand and not counted; with it openAbel is shown as well.
+Preparations of a reference code that are independent of the profile (matrices, bases, grid plans)
+are made in advance and not timed; openAbel is also shown with its plan included.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import openabel
 from abel import basex, dasch, daun, direct, hansenlaw
-from scenes import EDGE, RADII, Array, Scene
+from cases import EDGE, RADII, Array, Case
 from scipy.integrate import quad, quad_vec
 from substitutions import both_roots_removed, one_root_removed
 
@@ -23,57 +23,57 @@ from mdr_core import fields, normal, tangential
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-#: Tolerances that ours is asked for.
+#: Requested tolerances of MDR.
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13)
 BARE = "bare Hertz in NumPy"
 
 
 @dataclass(frozen=True)
-class Way:
+class MethodRun:
     """One method at one resolution."""
 
     method: str
     resolution: str
     run: Callable[[], Array]
-    ours: bool = False
+    is_mdr: bool = False
 
     @property
     def name(self) -> str:
         return f"{self.method}, {self.resolution}"
 
 
-def ways(scene: Scene, quantity: str) -> Iterator[Way]:
-    """All of them, for "pressure" or "traction"."""
-    stick = scene.stick if quantity == "traction" else 0.0
-    yield Way(BARE, "closed form", _bare)
-    yield from _ours(scene, quantity)
-    yield from _scipy(scene, stick)
-    yield from _tanh_sinh(scene, stick)
-    yield from _pyabel(scene, stick)
-    yield from _openabel(scene, stick)
+def method_runs(case: Case, quantity: str) -> Iterator[MethodRun]:
+    """All methods for "pressure" or "traction"."""
+    stick = case.stick if quantity == "traction" else 0.0
+    yield MethodRun(BARE, "closed form", _bare)
+    yield from _mdr(case, quantity)
+    yield from _scipy(case, stick)
+    yield from _tanh_sinh(case, stick)
+    yield from _pyabel(case, stick)
+    yield from _openabel(case, stick)
 
 
 def _bare() -> Array:
     return 2 / np.pi * np.sqrt((EDGE - RADII) * (EDGE + RADII))
 
 
-def _ours(scene: Scene, quantity: str) -> Iterator[Way]:
-    known = scene.made()
-    table = scene.profile["kind"] == "tabulated"
+def _mdr(case: Case, quantity: str) -> Iterator[MethodRun]:
+    known = case.product_profile()
+    table = case.profile["kind"] == "tabulated"
     route = {"paraboloid": "closed form", "cone": "closed form", "tabulated": "panel moments"}
-    method = f"MDR, {route.get(scene.profile['kind'], 'series or quadrature')}"
+    method = f"MDR, {route.get(case.profile['kind'], 'series or quadrature')}"
     for rtol in TOLERANCES:
         asked = f"rtol {rtol:.0e}"
         contact = normal.solve(known, 1.0, contact_radius=EDGE, rtol=rtol)
-        yield Way(method, asked, _field(quantity, contact, scene.stick, rtol), ours=True)
+        yield MethodRun(method, asked, _field(quantity, contact, case.stick, rtol), is_mdr=True)
         if table:
 
-            def anew(rtol: float = rtol) -> Array:
-                """From the points on: the panels are resolved in every call."""
-                contact = normal.solve(scene.made(), 1.0, contact_radius=EDGE, rtol=rtol)
-                return _field(quantity, contact, scene.stick, rtol)()
+            def with_setup(rtol: float = rtol) -> Array:
+                """Includes resolving the panels from the points in every call."""
+                contact = normal.solve(case.product_profile(), 1.0, contact_radius=EDGE, rtol=rtol)
+                return _field(quantity, contact, case.stick, rtol)()
 
-            yield Way("MDR, from the points on", asked, anew, ours=True)
+            yield MethodRun("MDR, incl. table setup", asked, with_setup, is_mdr=True)
 
 
 def _field(
@@ -85,9 +85,9 @@ def _field(
     return lambda: fields.shear_stress(pushed, RADII, rtol=rtol)
 
 
-def _scipy(scene: Scene, stick: float) -> Iterator[Way]:
-    # The kinks of a table's g' are too many for it: it stops at so many intervals.
-    table = scene.scalar is None
+def _scipy(case: Case, stick: float) -> Iterator[MethodRun]:
+    # A table's g' has too many kinks for quad_vec, which stops at this number of intervals.
+    table = case.scalar is None
     for epsrel in (1e-3, 1e-6) if table else (1e-3, 1e-6, 1e-9, 1e-12):
         for name, form in (
             ("scipy quad_vec, t² = x² − r²", one_root_removed),
@@ -95,7 +95,7 @@ def _scipy(scene: Scene, stick: float) -> Iterator[Way]:
         ):
 
             def vectors(epsrel: float = epsrel, form: Callable = form) -> Array:
-                integrand = form(scene.slope, RADII, EDGE, scene.b, stick)
+                integrand = form(case.slope, RADII, EDGE, case.b, stick)
                 value, _ = quad_vec(
                     integrand,
                     0.0,
@@ -107,19 +107,19 @@ def _scipy(scene: Scene, stick: float) -> Iterator[Way]:
                 )
                 return value / np.pi
 
-            yield Way(name, f"epsrel {epsrel:.0e}", vectors)
-    if scene.scalar is not None:
+            yield MethodRun(name, f"epsrel {epsrel:.0e}", vectors)
+    if case.scalar is not None:
         for epsrel in (1e-3, 1e-6, 1e-10):
-            yield Way(
+            yield MethodRun(
                 "scipy quad, t² = x² − r²",
                 f"epsrel {epsrel:.0e}",
-                lambda epsrel=epsrel: _loop(scene, stick, epsrel),
+                lambda epsrel=epsrel: _loop(case, stick, epsrel),
             )
 
 
-def _loop(scene: Scene, stick: float, epsrel: float) -> Array:
-    """One call of `quad` for each radius, with the functions of `math`, as is quickest."""
-    slope, b, low = scene.scalar, scene.b, max(scene.b, stick)
+def _loop(case: Case, stick: float, epsrel: float) -> Array:
+    """One call of `quad` per radius, with the functions of `math`, which is fastest."""
+    slope, b, low = case.scalar, case.b, max(case.b, stick)
     found = []
     for r in RADII.tolist():
 
@@ -133,13 +133,13 @@ def _loop(scene: Scene, stick: float, epsrel: float) -> Array:
     return np.array(found) / np.pi
 
 
-def _tanh_sinh(scene: Scene, stick: float) -> Iterator[Way]:
+def _tanh_sinh(case: Case, stick: float) -> Iterator[MethodRun]:
     for level in range(5):
         nodes = _rule(level)
-        yield Way(
+        yield MethodRun(
             "tanh-sinh in NumPy",
             f"{nodes[0].size} nodes",
-            lambda nodes=nodes: _transformed(scene, stick, *nodes),
+            lambda nodes=nodes: _transformed(case, stick, *nodes),
         )
 
 
@@ -152,11 +152,11 @@ def _rule(level: int) -> tuple[Array, Array]:
     return 1 / (1 + np.exp(-2 * v)), step * math.pi / 4 * np.cosh(u) / np.cosh(v) ** 2
 
 
-def _transformed(scene: Scene, stick: float, nodes: Array, weights: Array) -> Array:
-    low = np.maximum(RADII, max(scene.b, stick))
+def _transformed(case: Case, stick: float, nodes: Array, weights: Array) -> Array:
+    low = np.maximum(RADII, max(case.b, stick))
     step = np.multiply.outer(nodes, EDGE - low)
     x = low + step
-    values = scene.slope(x, (low - scene.b) + step)
+    values = case.slope(x, (low - case.b) + step)
     values /= np.sqrt(((low - RADII) + step) * (x + RADII))
     return (weights @ values) * (EDGE - low) / np.pi
 
@@ -166,7 +166,7 @@ def _grid(points: int) -> Array:
 
 
 def _at_radii(points: int, values: Array) -> Array:
-    """The radii are points of grids of 2000, 4000, ... intervals; else in between, linearly."""
+    """The radii are points of grids of 2000, 4000, ... intervals; otherwise interpolate."""
     values = np.ravel(values)
     if (points - 1) % 2000:
         return np.interp(RADII, _grid(points), values)
@@ -176,7 +176,7 @@ def _at_radii(points: int, values: Array) -> Array:
 
 @cache
 def _operator(method: str, points: int) -> Array:
-    """The matrix of one of Dasch's methods; PyAbel itself keeps only the last one."""
+    """Matrix of one of Dasch's methods; PyAbel itself caches only the last one."""
     return dasch.get_bs_cached(method, points, basis_dir=None)
 
 
@@ -192,7 +192,7 @@ _PYABEL: dict[str, tuple[Callable[[Array, float], Array], tuple[int, ...]]] = {
         (251, 1001, 2001, 10001),
     ),
     "direct": (lambda q, dr: direct.direct_transform(q, dr=dr), (251, 1001, 2001)),
-    # Their bases take minutes at 2001 points, and only one is kept at a time.
+    # Their bases take minutes at 2001 points, and only one is cached.
     "basex": (
         lambda q, dr: basex.basex_transform(q, dr=dr, basis_dir=None, verbose=False),
         (1001,),
@@ -204,19 +204,19 @@ _PYABEL: dict[str, tuple[Callable[[Array, float], Array], tuple[int, ...]]] = {
 }
 
 
-def _pyabel(scene: Scene, stick: float) -> Iterator[Way]:
-    """Inverse transforms of the foundation's load, min(q(x), q(c)), zero at a."""
+def _pyabel(case: Case, stick: float) -> Iterator[MethodRun]:
+    """Inverse transforms of the foundation's load min(q(x), q(c)), which vanishes at a."""
     for name, (transform, sizes) in _PYABEL.items():
         for points in sizes:
 
             def run(transform: Callable = transform, points: int = points) -> Array:
-                g = scene.equivalent_profile(_grid(points))
+                g = case.equivalent_profile(_grid(points))
                 if stick:
                     np.maximum(g, g[round(stick * (points - 1))], out=g)
                 answer = transform((g[-1] - g)[None], EDGE / (points - 1))
                 return _at_radii(points, answer)
 
-            yield Way(f"PyAbel {name}", f"{points} points", run)
+            yield MethodRun(f"PyAbel {name}", f"{points} points", run)
 
 
 @cache
@@ -224,25 +224,25 @@ def _plan(points: int, order: int, end: float) -> openabel.Abel:
     return openabel.Abel(points, 2, 0.0, end / (points - 1), method=3, order=order)
 
 
-def _openabel(scene: Scene, stick: float) -> Iterator[Way]:
-    """Its transform of a given derivative, which is g'; under friction up to a less up to c."""
+def _openabel(case: Case, stick: float) -> Iterator[MethodRun]:
+    """Its transform of a given derivative, here g'; in partial slip the difference for a and c."""
     for order in (2, 5):
         for points in (251, 1001, 2001, 10001):
 
             def run(order: int = order, points: int = points, plan: Callable = _plan) -> Array:
                 x = _grid(points)
-                slope = np.ascontiguousarray(scene.slope(x, x - scene.b))
+                slope = np.ascontiguousarray(case.slope(x, x - case.b))
                 answer = plan(points, order, EDGE).execute(slope)
                 if stick:
                     inside = round(stick * (points - 1)) + 1
                     answer = np.array(answer)
                     answer[:inside] -= plan(inside, order, stick).execute(slope[:inside])
-                # It gives -(1/pi) int F'(x)/sqrt(x^2 - r^2) dx of the F' that it is given.
+                # openAbel computes -(1/pi) int F'(x)/sqrt(x^2 - r^2) dx from a given F'.
                 return -_at_radii(points, answer)
 
-            yield Way(f"openAbel, order {order}", f"{points} points", run)
+            yield MethodRun(f"openAbel, order {order}", f"{points} points", run)
 
             def planned(run: Callable = run) -> Array:
                 return run(plan=_plan.__wrapped__)
 
-            yield Way(f"openAbel with its plan, order {order}", f"{points} points", planned)
+            yield MethodRun(f"openAbel incl. plan, order {order}", f"{points} points", planned)

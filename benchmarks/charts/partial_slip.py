@@ -1,9 +1,9 @@
-"""Partial slip of a paraboloid, error against time: ours, and Tamaas. `make chart-partial_slip`.
+"""Partial slip of a paraboloid, error against time: MDR and Tamaas. `make chart-partial_slip`.
 
-The frictional solvers of Tamaas obey another law: the domain is periodic, nu = 1/2, and the shear
-stress is a vector bounded by the pressure, so that it has a part across the load, which Cattaneo
-and Mindlin's theory leaves out. What they differ by is therefore not all error. The charts take the
-part along the load, for r < 0.9 a, relative to mu times the largest pressure.
+The frictional solvers of Tamaas use a different model: the domain is periodic, nu = 1/2, and the
+pressure bounds the magnitude of the shear stress vector, which therefore has a transverse component
+that Cattaneo and Mindlin neglect. The difference is therefore not only numerical error. The charts
+compare the component along the load, for r < 0.9 a, relative to mu times the largest pressure.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import tamaas
-from drawing import OURS, panels, save, table
+from drawing import MDR_COLOR, panels, save, table
 from machine import footer
 
 from mdr_core import fields, normal, tangential
@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Array = np.ndarray
-#: R = a = E* = 1; a square domain of 4 a; half of the limiting force.
+#: R = a = E* = 1; a square domain of width 4 a; half of the limiting force.
 WIDTH, FORCE, FRICTION, POISSON = 4.0, 4.0 / 3.0, 0.3, 0.5
-PUSH = 0.5 * FRICTION * FORCE
+TANGENTIAL_FORCE = 0.5 * FRICTION * FORCE
 STICK = 0.5 ** (1 / 3)
 HIGHEST = FRICTION * 2 / np.pi
-#: Kato's iteration ends at a number of steps: its tolerance is not reached in any sensible time.
+#: Kato's iteration runs for a fixed number of steps, since its tolerance is not reached in
+#: reasonable time.
 RUNS = {
     "Tamaas, Polonsky-Keer with friction": (tamaas.PolonskyKeerTan, (32, 64, 128), 3000),
     "Tamaas, Kato": (tamaas.Kato, (32, 64), 1000),
@@ -39,13 +40,13 @@ HEADER = ("method", "resolution", "seconds", "largest error", "rms error")
 
 
 def pixels(count: int) -> Array:
-    """Radii of the pixels' middles."""
+    """Radii of the pixel centres."""
     x = (np.arange(count) + 0.5) * (WIDTH / count) - WIDTH / 2
     return np.hypot(*np.meshgrid(x, x, indexing="ij"))
 
 
 def by_tamaas(solver: type, count: int, steps: int) -> Callable[[], Array]:
-    """The shear stress along the load, on the pixels."""
+    """Shear stress along the load at the pixels."""
     surface = -(pixels(count) ** 2) / 2
 
     def run() -> Array:
@@ -54,26 +55,26 @@ def by_tamaas(solver: type, count: int, steps: int) -> Callable[[], Array]:
         model.nu, model.E = POISSON, 1 - POISSON**2
         one = solver(model, surface, 1e-8, FRICTION)
         one.max_iter = steps
-        one.solve([PUSH / WIDTH**2, 0.0, FORCE / WIDTH**2])
+        one.solve([TANGENTIAL_FORCE / WIDTH**2, 0.0, FORCE / WIDTH**2])
         return np.abs(np.array(model.traction)[..., 0])
 
     return run
 
 
 def by_mdr(count: int) -> Callable[[], Array]:
-    """From the two forces on, at as many radii as there are pixels."""
+    """Includes solving for both forces, at as many radii as there are pixels."""
     radius = np.ravel(pixels(count))
 
     def run() -> Array:
         contact = normal.solve(Paraboloid(1.0), 1.0, normal_force=FORCE)
-        pushed = tangential.solve(contact, 2 / 3, FRICTION, tangential_force=PUSH)
+        pushed = tangential.solve(contact, 2 / 3, FRICTION, tangential_force=TANGENTIAL_FORCE)
         return fields.shear_stress(pushed, radius).reshape(count, count)
 
     return run
 
 
 def errors(count: int, answer: Array) -> tuple[float, float]:
-    """Largest and root-mean-square distance from Eq. (5.38) inside 0.9 a."""
+    """Maximum and root-mean-square deviation from Eq. (5.38) inside 0.9 a."""
     r = pixels(count)
     inside = r < 0.9
     outer, inner = (np.sqrt(np.maximum(end**2 - r**2, 0.0)) for end in (1.0, STICK))
@@ -103,13 +104,13 @@ def main() -> None:
     ]
     table(HEADER, rows, "partial_slip")
     figure, (ax,) = panels(1, 1, 6.4, 3.6)
-    colors = ("#1f5fa8", "#2b8a3e", "#8a6d3b", OURS)
+    colors = ("#1f5fa8", "#2b8a3e", "#8a6d3b", MDR_COLOR)
     for name, color in zip((*RUNS, "MDR"), colors, strict=True):
         seconds, largest, rms = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(seconds, largest, "o-", color=color, label=f"{name}, largest")
         ax.loglog(seconds, rms, "o--", color=color, alpha=0.4, label=f"{name}, rms")
-    ax.set(xlabel="processor seconds", ylabel=r"error of $\tau/(\mu p_0)$ for r < 0.9 a")
-    ax.set_title("Partial slip at half the limiting force (Tamaas: another law)")
+    ax.set(xlabel="CPU time [s]", ylabel=r"error of $\tau/(\mu p_0)$ for r < 0.9 a")
+    ax.set_title("Partial slip at half the limiting force (Tamaas: other friction law)")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     save(figure, "partial_slip", footer("tamaas"))
 

@@ -1,6 +1,6 @@
-"""Numbers of evaluations of each kind and query: `make chart-routes`.
+"""Number of evaluations of each kind and query: `make chart-routes`.
 
-Costs are counted, not timed: values of the integrand for each radius, and for a load, values of the
+Costs are counted, not timed: values of the integrand per radius and, for a load, values of the
 profile's own functions. The table is written to docs/routes.md.
 """
 

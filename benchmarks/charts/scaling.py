@@ -1,9 +1,9 @@
-"""How the time grows with what is asked for, and the memory of a million radii.
+"""Time against problem size, and memory for a million radii.
 
-`make chart-scaling`. The exponent is fitted to the sizes from 1e3 on; for radii and loads it has to
-be at most 1.05 and the memory of a million radii at most 64 MiB above the answer, or the exit
-status is 1. Python's allocations are counted by tracemalloc, the whole process by its peak
-of resident memory in a fresh process.
+`make chart-scaling`. The exponent is fitted to sizes from 1e3 on. For radii and loads it must be at
+most 1.05, and the memory for a million radii at most 64 MiB beyond the result; otherwise the exit
+status is 1. Python's allocations are measured by tracemalloc, and the whole process by its peak
+resident memory in a fresh process.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import history_ratio as paths
 import numpy as np
-from drawing import OURS, panels, save, table
+from drawing import MDR_COLOR, panels, save, table
 from machine import footer
 from measure import medians
 
@@ -35,26 +35,26 @@ Array = np.ndarray
 Runs = dict[int, "Callable[[], object]"]
 SECONDS, FROM, MOST = 6.0, 1000, 1.05
 HEADER = ("time against", "of", "size", "seconds", "seconds / size", "exponent from 1e3 on")
-#: The lines that the bound on the exponent is for.
+#: Curves with a limit on the exponent.
 BOUND = ("radii", "loads")
 MILLION, MEBIBYTES = 1_000_000, 64.0
 PUNCH, TABLE = RoundedPunch(0.5, 1.0), 200
 
 
 def sizes(low: int, high: int) -> list[int]:
-    """Three sizes to a decade."""
+    """Three sizes per decade."""
     count = round(3 * log10(high / low)) + 1
     return [round(one) for one in np.geomspace(low, high, count)]
 
 
 def sampled(points: int) -> Profile:
-    """A sphere of radius 2 through so many points."""
+    """A sphere of radius 2 as a table of this many points."""
     r = np.linspace(0.0, 1.25, points)
     return Tabulated(r, r * r / (2 + np.sqrt((2 - r) * (2 + r))))
 
 
 def contact(profile: Profile) -> NormalContact:
-    """It has the radius 1."""
+    """Contact of radius 1."""
     return normal.solve(profile, 1.0, contact_radius=1.0)
 
 
@@ -75,7 +75,7 @@ def over_loads(profile: Profile, high: int) -> Runs:
 
 
 def over_breakpoints(high: int) -> Runs:
-    """Ever smaller swings: every turning point is remembered."""
+    """Decreasing amplitudes: every turning point is part of the slip memory."""
 
     def run(turns: int) -> object:
         swing = 0.8 * paths.MOST * (1 - np.arange(turns) / (turns + 1)) * (-1.0) ** np.arange(turns)
@@ -107,7 +107,7 @@ def over_cycles(high: int) -> Runs:
 
 
 def over_table(high: int) -> Runs:
-    """From the points on: spline, admissibility, panels, pressure at 1000 radii."""
+    """Includes spline, admissibility check, panels, and the pressure at 1000 radii."""
     r = (np.arange(1000) + 0.5) / 1000
 
     def run(points: int) -> Array:
@@ -117,7 +117,7 @@ def over_table(high: int) -> Runs:
         try:
             run(points)
         except AccuracyError:
-            print(f"a table of {points} points is refused")
+            print(f"a table of {points} points is rejected")
             return False
         return True
 
@@ -130,9 +130,9 @@ def lines() -> Iterator[tuple[str, str, Runs]]:
     yield "radii", f"pressure, table of {TABLE}", over_radii(sampled(TABLE), 100_000)
     yield "loads", "stick radius, paraboloid", over_loads(Paraboloid(1.0), MILLION)
     yield "loads", "stick radius, rounded punch", over_loads(PUNCH, 100_000)
-    yield "breakpoints", "history of shrinking swings", over_breakpoints(100_000)
+    yield "breakpoints", "history of nested reversals", over_breakpoints(100_000)
     yield "cycles", "energy of each cycle", over_cycles(100_000)
-    yield "table points", "pressure at 1000 radii, from the points on", over_table(100_000)
+    yield "table points", "pressure at 1000 radii, incl. table setup", over_table(100_000)
 
 
 def exponent(points: dict[int, float]) -> float:
@@ -142,12 +142,12 @@ def exponent(points: dict[int, float]) -> float:
 
 
 def memory(name: str) -> dict[str, float]:
-    """MiB above the answer at a million radii, in this process."""
+    """Memory for a million radii beyond the result, in this process [MiB]."""
     profile = {"paraboloid": Paraboloid(1.0), "rounded punch": PUNCH}.get(name) or sampled(TABLE)
     r = np.linspace(0.0, 1.0, MILLION, endpoint=False)
     one = contact(profile)
     fields.pressure(one, r[:: MILLION // 1000])
-    # From here on the kernel notes the highest again.
+    # Reset the kernel's record of the peak.
     Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
     before = resident("VmRSS")
     answer = fields.pressure(one, r)
@@ -160,17 +160,17 @@ def memory(name: str) -> dict[str, float]:
 
 
 def resident(name: str) -> float:
-    """MiB of this process in memory, now or at the highest."""
+    """Current or peak resident memory of this process [MiB]."""
     lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
     return next(float(line.split()[1]) / 1024 for line in lines if line.startswith(name))
 
 
 def main() -> int:
-    rows, found = [], {}
+    rows, measured = [], {}
     for against, of, runs in lines():
         seconds = medians(runs, SECONDS)
         power = exponent(seconds)
-        found[against, of] = seconds, power
+        measured[against, of] = seconds, power
         rows += [(against, of, n, t, t / n, power) for n, t in seconds.items()]
     table(HEADER, rows, "scaling")
     peaks = {}
@@ -178,25 +178,27 @@ def main() -> int:
         command = [sys.executable, str(Path(__file__)), name]
         answer = subprocess.run(command, check=True, capture_output=True, text=True)
         peaks[name] = json.loads(answer.stdout)
-    header = ("pressure at 1e6 radii, MiB above the answer", "tracemalloc", "resident")
+    header = ("pressure at 1e6 radii, MiB beyond the result", "tracemalloc", "resident")
     table(header, [(name, *peak.values()) for name, peak in peaks.items()], "memory")
-    draw(found)
-    high = [f"{key}: {power:.3f}" for key, (_, power) in found.items() if power > MOST]
+    draw(measured)
+    high = [f"{key}: {power:.3f}" for key, (_, power) in measured.items() if power > MOST]
     bad = [one for one in high if one.startswith(tuple(f"('{name}'" for name in BOUND))]
     bad += [name for name, peak in peaks.items() if max(peak.values()) > MEBIBYTES]
-    print("above the bounds:", bad or "nothing")
+    print("limits exceeded:", bad or "nothing")
     return bool(bad)
 
 
-def draw(found: dict[tuple[str, str], tuple[dict[int, float], float]]) -> None:
-    names = list(dict.fromkeys(against for against, _ in found))
+def draw(measured: dict[tuple[str, str], tuple[dict[int, float], float]]) -> None:
+    names = list(dict.fromkeys(against for against, _ in measured))
     figure, axes = panels(2, 3, 3.4, 2.8)
     for ax, name in zip(axes, names, strict=False):
-        mine = [(of, *rest) for (against, of), rest in found.items() if against == name]
-        for (of, seconds, power), color in zip(mine, (OURS, "#1f5fa8", "#2b8a3e"), strict=False):
+        mine = [(of, *rest) for (against, of), rest in measured.items() if against == name]
+        for (of, seconds, power), color in zip(
+            mine, (MDR_COLOR, "#1f5fa8", "#2b8a3e"), strict=False
+        ):
             label = f"{of}: {power:.2f}"
             ax.loglog(list(seconds), list(seconds.values()), "o-", color=color, label=label)
-        ax.set(xlabel=name, ylabel="processor seconds")
+        ax.set(xlabel=name, ylabel="CPU time [s]")
         ax.legend(fontsize=6.5, title="exponent from 10³ on", title_fontsize=6.5)
     for ax in axes[len(names) :]:
         ax.axis("off")

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from drawing import OURS, panels, save, table
+from drawing import MDR_COLOR, panels, save, table
 from machine import footer
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def panel(axis: Axes, curve: Curve) -> None:
     x = curve.distances[order]
     axis.loglog(x, drawn(curve.bound[order]), ":", color="0.5", label="bound")
     axis.loglog(x, drawn(curve.naive[order]), "s-", color="0.45", label="naive formula")
-    axis.loglog(x, drawn(curve.ours[order]), "o-", color=OURS, label="MDR")
+    axis.loglog(x, drawn(curve.ours[order]), "o-", color=MDR_COLOR, label="MDR")
     axis.set_ylim(LOWEST / 2, 2 * HIGHEST)
     axis.set_title(
         f"{wrapped(curve.title)}\n{wrapped('naive: ' + curve.naive_formula)}", fontsize=7.0

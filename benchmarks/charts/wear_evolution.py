@@ -1,8 +1,8 @@
 """Fretting wear over 1e4 cycles, error against time: `make chart-wear_evolution`.
 
-The scene and the explicit scheme are those of `wear_ratio`: cycle by cycle on a uniform grid, with
-its matrices made beforehand. The reference is MDR at resolution 96; the difference between
-resolutions 96 and 64 is drawn as its error.
+The case and the explicit scheme are those of `wear_ratio`: cycle by cycle on a uniform grid with
+precomputed matrices. The reference is MDR at resolution 96; its difference from resolution 64 is
+drawn as its error.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from time import thread_time
 
 import numpy as np
 import wear_ratio
-from drawing import OURS, panels, save, table
+from drawing import MDR_COLOR, panels, save, table
 from machine import footer
 
 GRIDS = (45, 90, 180, 360)
@@ -20,9 +20,9 @@ HEADER = ("method", "resolution", "seconds", "largest error / depth")
 
 
 def main() -> None:
-    explicit = {grid: wear_ratio.CycleByCycle(grid) for grid in GRIDS}
-    ours = [wear_ratio.Ours(*setting) for setting in wear_ratio.SETTINGS]
-    best, next_best = wear_ratio.Ours(96, 1e-8)(), wear_ratio.Ours(64, 1e-8)()
+    explicit = {grid: wear_ratio.Explicit(grid) for grid in GRIDS}
+    mdr = [wear_ratio.Mdr(*setting) for setting in wear_ratio.SETTINGS]
+    best, next_best = wear_ratio.Mdr(96, 1e-8)(), wear_ratio.Mdr(64, 1e-8)()
     finest = explicit[GRIDS[-1]].r
 
     def error(r: np.ndarray, depth: np.ndarray) -> float:
@@ -32,8 +32,8 @@ def main() -> None:
     times: dict[object, list[float]] = {}
     answers = {}
     for number in range(RUNS):
-        for one in (*ours, *explicit.values()):
-            # The finest grid takes longer than all the rest together.
+        for one in (*mdr, *explicit.values()):
+            # The finest grid takes longer than all other runs together.
             if number and one is explicit[GRIDS[-1]]:
                 continue
             start = thread_time()
@@ -55,16 +55,16 @@ def main() -> None:
             float(np.median(times[one])),
             error(finest, answers[one].worn_depth(finest)[0]),
         )
-        for one in ours
+        for one in mdr
     ]
     table(HEADER, rows, "wear_evolution")
     print(f"resolutions 96 and 64 differ by {doubt:.1e}")
     figure, (ax,) = panels(1, 1, 6.0, 3.6)
-    for name, color in (("explicit, cycle by cycle", "#1f5fa8"), ("MDR, implicit", OURS)):
+    for name, color in (("explicit, cycle by cycle", "#1f5fa8"), ("MDR, implicit", MDR_COLOR)):
         points = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(*points, "o-", color=color, label=name)
     ax.axhline(doubt, color="0.4", linestyle=":", label="resolution 96 against 64")
-    ax.set(xlabel="processor seconds", ylabel="largest error of the worn depth / d")
+    ax.set(xlabel="CPU time [s]", ylabel="largest error of the worn depth / d")
     ax.set_title("Wear of a paraboloid over 10⁴ cycles")
     ax.legend()
     save(figure, "wear_evolution", footer())

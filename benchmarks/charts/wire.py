@@ -1,10 +1,9 @@
-"""Where the time of a request goes, by the length of its lists: `make chart-wire`.
+"""Time of a request by stage, against the number of radii: `make chart-wire`.
 
-`/v1/stress` answers pressure and shear stress of a paraboloid in partial slip at n radii that the
-request names. Its stages are timed in this process, one after the other, with the functions that
-the service itself calls: reading and validating the text, computing, arranging the answer,
-writing it. The whole is what a client sees over the loopback on one connection kept
-open; what the stages do not explain is HTTP, the framework and the sockets.
+`/v1/stress` computes pressure and shear stress of a paraboloid in partial slip at n requested
+radii. Its stages are timed one after the other in this process, with the functions of the service:
+parsing and validation, computation, assembly of the result, serialisation. The total is measured by
+a client on one open loopback connection; the remainder is HTTP, framework and sockets.
 """
 
 from __future__ import annotations
@@ -35,27 +34,27 @@ if TYPE_CHECKING:
 LENGTHS = (1, 10, 100, 1000, 10_000, 100_000)
 WRITERS = {"JSON": json_format, "CSV": csv, "NumPy": npz}
 SECONDS, SAMPLES = 2.0, 400
-STAGES = ("validation", "compute", "answer arranged", "serialisation", "HTTP")
+STAGES = ("validation", "compute", "assembly", "serialisation", "HTTP")
 HEADER = ("form", "radii", "bytes in", "bytes out", *(f"{name} [us]" for name in STAGES), "all")
 COLORS = ("#1f5fa8", "#c1272d", "#8a6d3b", "#2b8a3e", "0.7")
 
 
 def body(length: int) -> bytes:
-    """The request's text, every radius with all its digits."""
+    """Request text with all digits of every radius."""
     radius = (np.linspace(0.0, 1.0, length + 1)[:-1] ** 0.5 * 1e-4).tolist()
     return json.dumps(stress_wire_ratio.QUERY | {"radius": radius}).encode()
 
 
-def stages(text: bytes, form: str) -> tuple[dict[str, Callable[[], object]], int]:
-    """The service's own functions, and the bytes of the answer."""
-    question, write = QUERIES["stress"], WRITERS[form].write
+def stages(text: bytes, format_name: str) -> tuple[dict[str, Callable[[], object]], int]:
+    """Duration of each stage, and the response."""
+    question, write = QUERIES["stress"], WRITERS[format_name].write
     query = parse(question.model, text)
     found = question.solve(query)
     document = question.result(query, found)
     runs = {
         "validation": lambda: parse(question.model, text),
         "compute": lambda: question.solve(query),
-        "answer arranged": lambda: question.result(query, found),
+        "assembly": lambda: question.result(query, found),
         "serialisation": lambda: write(document),
     }
     return runs, len(write(document))
@@ -63,7 +62,7 @@ def stages(text: bytes, form: str) -> tuple[dict[str, Callable[[], object]], int
 
 @contextmanager
 def connection(port: int) -> Iterator[socket.socket]:
-    """A connection that is kept open."""
+    """A persistent connection."""
     with socket.create_connection((wire_ratio.HOST, port)) as made:
         made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         yield made
@@ -93,10 +92,10 @@ def main() -> None:
     rows = []
     command = [sys.executable, "-m", "mdr_command", "serve", "--port"]
     with wire_ratio.server(command) as port, connection(port) as link:
-        for form, writer in WRITERS.items():
+        for format_name, writer in WRITERS.items():
             for length in LENGTHS:
                 text = body(length)
-                runs, size = stages(text, form)
+                runs, size = stages(text, format_name)
                 seconds = medians(runs, SECONDS)
                 once = ask(link, text, writer.MEDIA_TYPE)
                 count = max(9, min(SAMPLES, round(SECONDS / 2 / once)))
@@ -104,22 +103,22 @@ def main() -> None:
                 times = [seconds[name] for name in STAGES[:-1]]
                 times.append(max(whole - sum(times), 0.0))
                 micro = [one * 1e6 for one in (*times, whole)]
-                rows.append((form, length, len(text), size, *micro))
+                rows.append((format_name, length, len(text), size, *micro))
     table(HEADER, rows, "wire")
     figure, axes = panels(1, len(WRITERS), 3.4, 3.0)
-    for ax, form in zip(axes, WRITERS, strict=True):
-        mine = [row for row in rows if row[0] == form]
-        parts = np.array([row[4 : 4 + len(STAGES)] for row in mine])
+    for ax, format_name in zip(axes, WRITERS, strict=True):
+        own_rows = [row for row in rows if row[0] == format_name]
+        parts = np.array([row[4 : 4 + len(STAGES)] for row in own_rows])
         share = 100 * parts / parts.sum(axis=1, keepdims=True)
-        bottom = np.zeros(len(mine))
+        bottom = np.zeros(len(own_rows))
         for column, name, color in zip(share.T, STAGES, COLORS, strict=True):
-            ax.bar(range(len(mine)), column, bottom=bottom, color=color, label=name)
+            ax.bar(range(len(own_rows)), column, bottom=bottom, color=color, label=name)
             bottom += column
-        labels = [f"{row[1]:,}\n{_readable(row[-1])}" for row in mine]
-        ax.set_xticks(range(len(mine)), labels, fontsize=6.5)
-        ax.set(title=f"answer as {form}", xlabel="radii, and time of the request")
+        labels = [f"{row[1]:,}\n{_readable(row[-1])}" for row in own_rows]
+        ax.set_xticks(range(len(own_rows)), labels, fontsize=6.5)
+        ax.set(title=f"{format_name} response", xlabel="radii, request time")
         ax.grid(visible=False)
-    axes[0].set_ylabel("share of the request's time [%]")
+    axes[0].set_ylabel("share of request time [%]")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     save(figure, "wire", footer("fastapi", "pydantic", "uvicorn", "orjson"))
 

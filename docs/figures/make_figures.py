@@ -1,4 +1,4 @@
-"""Draw the figures of chapter 5 from the public functions: `make figures`."""
+"""Draw the figures of chapter 5 with the public functions: `make figures`."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -18,7 +18,7 @@ from mdr_core.typing import Array
 from mdr_core.wear import limit
 
 FOLDER: Final = Path(__file__).parent
-# Every axis is a ratio, so any numbers will do.
+# Every axis is a ratio, so the values are arbitrary.
 E_STAR, G_STAR, FRICTION, EDGE = 1.0, 0.8, 0.3, 1.0
 POINTS: Final = 401
 STYLE: Final = {
@@ -42,16 +42,16 @@ SHAPES: Final[dict[str, Profile]] = {
 FLATS: Final = (0.0, 0.5, 0.8, 0.95)
 
 
-def pressed(profile: Profile) -> NormalContact:
+def normal_contact(profile: Profile) -> NormalContact:
     """Return the contact of radius a = 1; a flat punch has that radius under any load."""
     if isinstance(profile, FlatPunch):
         return normal.solve(profile, E_STAR, indentation_depth=1.0)
     return normal.solve(profile, E_STAR, contact_radius=EDGE)
 
 
-def pushed(profile: Profile) -> TangentialContact:
-    """Return the contact under forces from none to the limit, more of them towards the limit."""
-    contact = pressed(profile)
+def tangential_contacts(profile: Profile) -> TangentialContact:
+    """Return contacts under tangential forces from zero to the limit, denser towards the limit."""
+    contact = normal_contact(profile)
     rest = tangential.solve(contact, G_STAR, FRICTION, tangential_force=0.0)
     shares = 1 - np.linspace(1.0, 0.0, POINTS) ** 3
     forces = rest.limiting_force * shares
@@ -71,7 +71,7 @@ def force_ratio(contact: TangentialContact) -> Array:
 def stick_radius_of_powers(axes: Axes) -> None:
     """Figure 5.2: c/a over the tangential force, Eq. (5.31)."""
     for name, profile in SHAPES.items():
-        contact = pushed(profile)
+        contact = tangential_contacts(profile)
         color = "0.6" if name == "$n = 6$" else None
         axes.plot(force_ratio(contact), contact.stick_radius / EDGE, label=name, color=color)
     _force_axis(axes)
@@ -81,7 +81,7 @@ def stick_radius_of_powers(axes: Axes) -> None:
 def displacement_of_powers(axes: Axes) -> None:
     """Figure 5.3: the displacement over the tangential force, Eqs. (5.32), (5.33)."""
     for name, profile in SHAPES.items():
-        contact = pushed(profile)
+        contact = tangential_contacts(profile)
         color = "0.6" if name == "$n = 6$" else None
         reduced = G_STAR * EDGE * contact.tangential_displacement / contact.limiting_force
         axes.plot(force_ratio(contact), reduced, label=name, color=color)
@@ -91,7 +91,7 @@ def displacement_of_powers(axes: Axes) -> None:
 
 def shear_stress_of_the_cone(axes: Axes) -> None:
     """Figure 5.4: the shear stress of the cone for ten stick radii, Eq. (5.53)."""
-    contact = pressed(SHAPES["cone"])
+    contact = normal_contact(SHAPES["cone"])
     radius = np.linspace(0.0, EDGE, POINTS)
     sticking = np.arange(1, 11) / 10
     slipping = tangential.solve(contact, G_STAR, FRICTION, stick_radius=sticking * EDGE)
@@ -122,8 +122,8 @@ def profiles_of_the_rounded_punch(axes: Axes) -> None:
 def stick_radius_of_the_rounded_punch(axes: Axes) -> None:
     """Figure 5.7: c/a over the tangential force, for four flats, Eqs. (5.61), (5.65)."""
     for flat in FLATS:
-        contact = pushed(rounded(flat))
-        # As the last point of the rounding lets go, the flat slides at once.
+        contact = tangential_contacts(rounded(flat))
+        # Once the last point of the rounding slips, the flat slips at once.
         axes.plot(force_ratio(contact), contact.stick_radius / EDGE, label=f"$b/a = {flat:g}$")
     _force_axis(axes)
     axes.set_ylabel("$c/a$")
@@ -133,7 +133,7 @@ def pressure_of_the_rounded_punch(axes: Axes) -> None:
     """Figure 5.8: the pressure for four flats, Eq. (5.68)."""
     radius = _dense(FLATS)
     for flat in FLATS:
-        contact = pressed(rounded(flat))
+        contact = normal_contact(rounded(flat))
         stress = fields.pressure(contact, radius) / contact.mean_pressure
         axes.plot(radius, stress, label=f"$b/a = {flat:g}$")
     _radius_axis(axes)
@@ -145,7 +145,7 @@ def shear_stress_of_the_rounded_punch(axes: Axes) -> None:
     sticking = (0.5, 0.7, 0.9, 0.98)
     radius = _dense((*FLATS, *sticking))
     for flat, stick in zip(FLATS, sticking, strict=True):
-        contact = pressed(rounded(flat))
+        contact = normal_contact(rounded(flat))
         slipping = tangential.solve(contact, G_STAR, FRICTION, stick_radius=stick * EDGE)
         stress = fields.shear_stress(slipping, radius) / (FRICTION * contact.mean_pressure)
         axes.plot(radius, stress, label=f"$b/a = {flat:g}$, $c/a = {stick:g}$")
@@ -185,7 +185,7 @@ FIGURES: Final[dict[str, Callable[[Axes], None]]] = {
 
 
 def main() -> None:
-    """Write every figure beside this file."""
+    """Write every figure to this folder."""
     with mpl.rc_context(dict(STYLE)):
         for number, draw in FIGURES.items():
             figure = Figure()
@@ -195,7 +195,7 @@ def main() -> None:
 
 
 def _dense(edges: tuple[float, ...]) -> Array:
-    """Return radii up to the edge, closer to the places where the stresses bend."""
+    """Return radii up to the edge, denser near the kinks of the stresses."""
     places = np.unique([0.0, *edges, *(() if max(edges) > EDGE else (EDGE,))])
     shares = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS // 4))) / 2
     parts = [low + (high - low) * shares for low, high in pairwise(places)]

@@ -1,8 +1,8 @@
-"""Draw the worked study of docs/sweeps.md: what sticks and what is lost, over load and amplitude.
+"""Draw the parameter study of docs/sweeps.md: stick radius and dissipated energy.
 
-    python docs/figures/sweep_map.py
+python docs/figures/sweep_map.py
 
-A million scenes are swept first, by the command that the page shows.
+Runs the sweep over a million cases first, with the command shown on the page.
 """
 
 import sys
@@ -23,7 +23,7 @@ from mdr_sweep import command
 
 FOLDER: Final = Path(__file__).parent
 POINTS: Final = 1000
-# Every fourth scene in each direction makes a picture that is small and looks smooth.
+# Every fourth case in each direction makes a small figure that looks smooth.
 STEP: Final = 4
 TEMPLATE: Final = """{
   "profile": {"kind": "paraboloid", "radius": 0.01},
@@ -34,41 +34,43 @@ TEMPLATE: Final = """{
   "tangential": {"tangential_displacement": "1e-9:1e-5:1000:log"}
 }
 """
-ANSWERS: Final = "contact_radius,stick_radius,regime,dissipated_energy"
+RESULTS: Final = "contact_radius,stick_radius,regime,dissipated_energy"
 Map = NDArray[np.float64]
 
 
 def swept() -> dict[str, Map]:
-    """The columns of the sweep, load by amplitude."""
+    """Columns of the sweep, load by amplitude."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "study.json").write_text(TEMPLATE)
         template, result = str(folder / "study.json"), str(folder / "study.parquet")
         parser = ArgumentParser()
         command.declare(parser)
-        options = ["--template", template, "--answers", ANSWERS, "--out", result]
+        options = ["--template", template, "--answers", RESULTS, "--out", result]
         if command.run(parser.parse_args(["tangential", *options])):
-            sys.exit("the sweep has failed")
+            sys.exit("the sweep failed")
         table = pq.read_table(result)
     numbers = (name for name in table.column_names if name not in {"regime", "warning", "error"})
     return {name: table[name].to_numpy().reshape(POINTS, POINTS) for name in numbers}
 
 
-def draw(found: dict[str, Map]) -> Figure:
-    """Two maps with their level lines."""
-    force, amplitude = found["load.normal_force"], found["tangential.tangential_displacement"]
+def draw(columns: dict[str, Map]) -> Figure:
+    """Draw two maps with contour lines."""
+    force, amplitude = columns["load.normal_force"], columns["tangential.tangential_displacement"]
     figure = Figure(figsize=(9.0, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
-    sticks = found["stick_radius"] / found["contact_radius"]
-    # A cycle loses four times what the way to its amplitude does.
-    lost = 4 * found["dissipated_energy"]
+    sticks = columns["stick_radius"] / columns["contact_radius"]
+    # The loss per cycle is four times that of first loading to its amplitude.
+    dissipated = 4 * columns["dissipated_energy"]
     _map(left, amplitude, force, sticks, levels=[0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99])
-    _map(right, amplitude, force, lost, levels=10.0 ** np.arange(-16, -2, 2), logarithmic=True)
+    _map(
+        right, amplitude, force, dissipated, levels=10.0 ** np.arange(-16, -2, 2), logarithmic=True
+    )
     left.set(title="stick radius over contact radius, $c/a$", ylabel="normal force $F_N$ in N")
-    right.set(title="energy lost in a cycle, in J")
+    right.set(title="dissipated energy per cycle, in J")
     for axes in (left, right):
         axes.set_xlabel("amplitude of the displacement $u_x$ in m")
-        # Beyond this line all slips.
+        # Full slip beyond this line.
         axes.contour(amplitude, force, sticks > 0, levels=[0.5], colors="black", linewidths=1.4)
     return figure
 

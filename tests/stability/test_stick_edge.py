@@ -73,7 +73,7 @@ def slip(
     r = C * (1 + DISTANCES)
     return curve(
         f"stick-edge-slip-{name}",
-        f"slip of a {name} towards c",
+        f"slip of a {name} near c",
         "r/c − 1",
         naive[0],
         r / C - 1,

@@ -1,8 +1,8 @@
-"""The contacts of the pressure and traction charts, as every method sees them.
+"""Contacts of the pressure and traction charts, as seen by every method.
 
-All have a = 1, E* = 1 and, for the traction, friction coefficient 1: then pressure and traction are
-the integrals (1/pi) int g'(x)/sqrt(x^2 - r^2) dx over [r, a] and [max(r, c), a].
-The radii are (2i + 1)/2000: points of the grids that end at a, but never axis, break, c or a.
+All have a = 1, E* = 1 and, for the traction, friction coefficient 1, so that pressure and traction
+are the integrals (1/pi) int g'(x)/sqrt(x^2 - r^2) dx over [r, a] and [max(r, c), a]. The radii are
+(2i + 1)/2000: points of the grids that end at a, but never at the axis, break, c or a.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mdr_core.profiles import Profile
 
 Array = np.ndarray
-#: A slope g' of x and of x - b, b the break, which is given because its digits are needed.
+#: Slope g' as a function of x and x - b; the distance from the break b avoids cancellation.
 Slope = Callable[[Array, Array], Array]
 
 RADII = (2 * np.arange(1000) + 1) / 2000
@@ -34,8 +34,10 @@ EDGE = 1.0
 
 
 @dataclass(frozen=True)
-class Scene:
-    """One contact: what the product is asked, and what a user of a peer would write down."""
+class Case:
+    """One contact: the product's request, and the integrand as a user of a reference code writes
+    it.
+    """
 
     name: str
     profile: dict[str, Any]
@@ -43,36 +45,35 @@ class Scene:
     slope: Slope
     """g' for arrays."""
     scalar: Callable[[float, float], float] | None
-    """g' for one number, by the functions of `math`; None where it has to be an array's."""
+    """g' of a scalar, by the functions of `math`; None if only arrays are supported."""
     equivalent_profile: Callable[[Array], Array]
     """g."""
     b: float = 0.0
     spacing: int = 4
-    """One in so many radii is compared with the reference, and those next to b, c, axis and a."""
+    """Stride of the radii that are checked, in addition to those next to b, c, axis and a."""
 
-    def made(self) -> Profile:
-        """The product's profile."""
+    def product_profile(self) -> Profile:
         return profile_from(self.profile)
 
-    def truth(self, quantity: str) -> Array:
+    def reference_values(self, quantity: str) -> Array:
         """Pressure or traction at the checked radii as sums of two doubles."""
         with mp.workdps(reference.QUAD_DIGITS):
-            found = self._kernels(EDGE)
+            values = self._kernels(EDGE)
             if quantity == "traction":
                 inside = self._kernels(self.stick)
-                found = [high - low for high, low in zip(found, inside, strict=True)]
-            high = [float(value) for value in found]
-            low = [float(value - mpf(top)) for value, top in zip(found, high, strict=True)]
+                values = [high - low for high, low in zip(values, inside, strict=True)]
+            high = [float(value) for value in values]
+            low = [float(value - mpf(top)) for value, top in zip(values, high, strict=True)]
         return np.array([high, low])
 
     @cached_property
     def checked(self) -> Array:
-        """The places of these radii."""
-        places = [
+        """Indices of the checked radii."""
+        indices = [
             0,
             *(round(1000 * r) + i for r in (self.b, self.stick, EDGE) for i in (-2, -1, 0)),
         ]
-        inside = [i for i in places if 0 <= i < RADII.size]
+        inside = [i for i in indices if 0 <= i < RADII.size]
         return np.union1d(np.arange(0, RADII.size, self.spacing), inside)
 
     @cached_property
@@ -94,9 +95,9 @@ class Scene:
         ]
 
 
-def errors(answer: Array, truth: Array, checked: Array) -> tuple[float, float]:
+def errors(answer: Array, reference_values: Array, checked: Array) -> tuple[float, float]:
     """Largest and median relative error at the checked radii."""
-    high, low = truth
+    high, low = reference_values
     error = np.abs(((answer[checked] - high) - low) / high)
     error[~np.isfinite(error)] = np.inf
     return float(error.max()), float(np.median(error))
@@ -111,7 +112,7 @@ def _power(n: float) -> tuple[Slope, Callable[[float, float], float], Callable[[
     )
 
 
-def _rounded(b: float, stick: float) -> Scene:
+def _rounded(b: float, stick: float) -> Case:
     def slope(x: Array, above: Array) -> Array:
         s = np.sqrt(np.maximum(above, 0.0) * (x + b))
         return 2 * s - b * np.arctan(s / b)
@@ -125,10 +126,10 @@ def _rounded(b: float, stick: float) -> Scene:
         return x * (s - b * np.arctan(s / b))
 
     fields = {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": 1.0}
-    return Scene(f"rounded punch b/a = {b}", fields, stick, slope, scalar, equivalent_profile, b)
+    return Case(f"rounded punch b/a = {b}", fields, stick, slope, scalar, equivalent_profile, b)
 
 
-def _sphere(radius: float) -> Scene:
+def _sphere(radius: float) -> Case:
     def slope(x: Array, _above: Array) -> Array:
         return np.arctanh(x / radius) + x * radius / ((radius - x) * (radius + x))
 
@@ -139,14 +140,14 @@ def _sphere(radius: float) -> Scene:
         return x * np.arctanh(x / radius)
 
     fields = {"kind": "sphere", "radius": radius}
-    return Scene("exact sphere a/R = 0.5", fields, 0.7, slope, scalar, equivalent_profile)
+    return Case("exact sphere a/R = 0.5", fields, 0.7, slope, scalar, equivalent_profile)
 
 
-#: Points of the rule by which a user of a peer takes the table's g' from its spline.
+#: Points of the rule by which g' is computed from the table's spline.
 TABLE_RULE = 64
 
 
-def _table(points: int) -> Scene:
+def _table(points: int) -> Case:
     """A sphere of radius 2, sampled."""
     r = np.linspace(0.0, 1.25, points)
     f = r * r / (2 + np.sqrt((2 - r) * (2 + r)))
@@ -173,14 +174,14 @@ def _table(points: int) -> Scene:
         "breaks": [],
     }
     # One radius of its reference takes a fifth of a second.
-    return Scene(
+    return Case(
         f"table of {points} points", fields, 0.7, slope, None, equivalent_profile, spacing=25
     )
 
 
-def _cone() -> Scene:
+def _cone() -> Case:
     half_pi = math.pi / 2
-    return Scene(
+    return Case(
         "cone",
         {"kind": "cone", "slope": 1.0},
         0.7,
@@ -190,11 +191,11 @@ def _cone() -> Scene:
     )
 
 
-def scenes() -> list[Scene]:
-    """All seven."""
+def cases() -> list[Case]:
+    """All seven cases."""
     slope, scalar, equivalent_profile = _power(1.5)
     return [
-        Scene(
+        Case(
             "paraboloid",
             {"kind": "paraboloid", "radius": 1.0},
             0.7,
@@ -206,7 +207,7 @@ def scenes() -> list[Scene]:
         _sphere(2.0),
         _rounded(0.5, 0.75),
         _rounded(0.95, 0.975),
-        Scene(
+        Case(
             "power law n = 1.5",
             {"kind": "power", "coefficient": 1.0, "exponent": 1.5},
             0.7,
