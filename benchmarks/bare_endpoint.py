@@ -1,7 +1,7 @@
 """Minimal FastAPI reference of the wire benchmarks: `python bare_endpoint.py PORT`.
 
-It validates the body of `/v1/normal` or `/v1/stress` with the product's model and returns constants,
-with the same event loop and parser as the service; `/small` validates any body with a small model.
+It validates the body of `/v1/normal` or `/v1/stress` with the service's model and returns
+constants, with the same event loop and parser as the service; `/small` validates a small model.
 """
 
 import sys
