@@ -7,12 +7,13 @@ Source: notes, §5.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
 
 # Largest length of a subpanel over its left edge's distance from the next root below, both in x^2.
@@ -21,6 +22,8 @@ from mdr_core.typing import Array, Indices
 LONGEST: Final = 1.2
 # Points in a subpanel of a spline, whose roots are weak.
 FEW: Final = 12
+# Gauss nodes in a subpanel where the root lies as near as that: they leave 4.3^-32.
+_AXIS_NODES: Final = 16
 # Rounding errors of a Chebyshev coefficient, over the largest value.
 _ROUNDING: Final = 4 * float(np.finfo(float).eps)
 # Newton's method in log u converges quadratically: a step this short is the last one.
@@ -104,9 +107,9 @@ class Subpanels:
 
     @property
     def nbytes(self) -> int:
-        """Memory of the arrays [byte]."""
-        arrays = (self.edges, self.length, self.depth, self.half_force, self.at_edges)
-        return sum(array.nbytes for array in arrays)
+        """Memory of the arrays, all of which are computed here [byte]."""
+        arrays = self.edges, self.length, self.depth, self.half_force, self.at_edges
+        return sum(array.nbytes for array in (*arrays, self.over_axis, self._largest))
 
     def depth_at(self, panel: Indices, s: Array) -> Array:
         """Return g at s in the given subpanels [length], shape (m,)."""
@@ -142,6 +145,41 @@ class Subpanels:
     def weight(self) -> Array:
         """Coefficients of the powers of u, from 0 on, of dg/ds [1], shape (k, n)."""
         return self.depth * np.arange(1, self.depth.shape[1] + 1) / self.length[:, None]
+
+    @cached_property
+    def over_axis(self) -> Array:
+        """int_0^x dg/x at each edge [1], shape (k + 1,); for a profile without a flat."""
+        panel = np.arange(self.length.size)
+        return np.append(0.0, np.cumsum(self._beyond_edge(panel, self.length)))
+
+    def over_axis_at(self, panel: Indices, s: Array) -> Array:
+        """Return int_0^x dg/x at s in the given subpanels [1], shape (m,)."""
+        return self.over_axis[panel] + self._beyond_edge(panel, s)
+
+    def _beyond_edge(self, panel: Indices, s: Array) -> Array:
+        """Part of `over_axis` beyond the left edge, of which dg/ds vanishes."""
+        nodes, weights = gauss_legendre(_AXIS_NODES)
+        at = s[:, None] * (1 + nodes) / 2
+        x = np.hypot(self.edges[panel, None], at)
+        _, rest = self.slope_at(np.repeat(panel, nodes.size), at.ravel())
+        return (rest.reshape(at.shape) * at / x) @ weights * s / 2
+
+    def increase(self, panel: Indices, x: Array) -> Array:
+        """Return x int max(h', 0)/t dt from 0 to x, h = g'(t)/t, by an upper bound [1/length].
+
+        Infinite where g' jumps. Source: notes, §7.
+        """
+        # In the first subpanel, next to a spline's end, h' may be large.
+        return (self._largest[0] * self.edges[1] + self._largest[panel] * x) * x
+
+    @cached_property
+    def _largest(self) -> Array:
+        """Largest h'(x)/x in the first subpanel, then that from the second up to each of them."""
+        u, degrees = fit_points(FEW)[0], np.arange(1, self.depth.shape[1] + 1)
+        curved = self.depth[:, 2:] * (degrees * (degrees - 2))[2:]
+        own = (curved @ u ** (degrees[2:, None] - 4.0)).max(axis=1) / self.length**4
+        own = np.where(self.depth[:, 0] > 0, np.inf, np.maximum(own, 0.0))
+        return np.append(own[0], np.maximum.accumulate(own[1:]))
 
     def dips(self) -> Dips:
         """Return the dips of g, found at a dozen points of each subpanel and its maxima between."""

@@ -15,11 +15,13 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.profiles.resolved_table import resolve_table
 from mdr_core.profiles.table_interpolation import Interpolation, checked_heights
 from mdr_core.profiles.truncated import FlatEnded
-from mdr_core.typing import Array, Indices, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import first_index
 
 # Bound on the error of the sums over the panels: several times the largest in the bank of tables.
 _ROUNDING: Final = 1e-12
+# The increase of g'(x)/x is found at a dozen points of each panel, and may be larger between them.
+_MARGIN: Final = 1.5
 
 
 class Tabulated(FlatEnded):
@@ -238,6 +240,20 @@ class Tabulated(FlatEnded):
         """Depth and half force of the largest contact."""
         panels, place = self.resolved.panels, _located(self._edges, np.array(self.last_coordinate))
         return float(panels.depth_at(*place)[0]), float(panels.half_force_at(*place)[0])
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        """By the condition of a spheroid, of the largest increase of g'(x)/x. See `Profile`."""
+        if self.flat_radius > 0:
+            return coordinate < 0
+        panels, (panel, s) = self.resolved.panels, _located(self._edges, coordinate)
+        _, height = panels.slope_at(panel, s)
+        return (height > 0) & (_MARGIN * panels.increase(panel, coordinate) <= height)
+
+    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
+        """Parameters: see `Profile`."""
+        del rtol
+        place = _located(self._edges, coordinate)
+        return self.resolved.panels.over_axis_at(*place) / np.pi
 
     @property
     def branches(self) -> tuple[Branch, ...]:
