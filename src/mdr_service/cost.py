@@ -65,7 +65,8 @@ def seconds(query: BaseModel) -> float:
     scale = _complexity(query.profile)
     path = query.path if isinstance(query, HistoryQuery | LoadedQuery) else None
     # Times that are multiplied in full, and those multiplied by the fourth root.
-    evaluated, integrated = _START[type(query)], 0.0
+    # A table is resolved once for many queries.
+    evaluated, integrated = _START[type(query)] * min(1.0, _IMPLICIT / scale), 0.0
     if isinstance(query, FieldQuery):
         if "normal_displacement" in query.quantities:
             evaluated += _VALUE * query.numbers

@@ -236,8 +236,8 @@ class Subpanels:
         Newton's method in log u; a step out of the bracket is replaced by the middle.
         """
         values, rows = self.at_edges[quantity], (self.depth, self.half_force)[quantity]
-        panel = np.clip(np.searchsorted(values, target) - 1, 0, self.length.size - 1)
-        above, whole = target - values[panel], np.diff(values)[panel]
+        panel = np.searchsorted(values[1:-1], target)
+        above, whole = target - values[panel], values[panel + 1] - values[panel]
         positive = (above > 0) & (whole > 0)
         goal, whole = np.where(positive, above, 1.0), np.where(positive, whole, 1.0)
         # Both grow nearly in proportion to x - b, and so to s^2.
@@ -264,5 +264,5 @@ def _sum(rows: Array, panel: Indices, u: Array, factors: Array | None = None) ->
         blocks = [slice(i, i + _BLOCK) for i in range(0, u.size, _BLOCK)]
         return np.concatenate([_sum(rows, panel[part], u[part], factors) for part in blocks])
     terms = rows[panel] if factors is None else rows[panel] * factors
-    powers = np.multiply.accumulate(np.broadcast_to(u[:, None], terms.shape), axis=1)
+    powers = np.multiply.accumulate(np.repeat(u, terms.shape[1]).reshape(terms.shape), axis=1)
     return np.asarray(np.einsum("ij,ij->i", terms, powers))

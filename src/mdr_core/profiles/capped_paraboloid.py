@@ -85,7 +85,7 @@ class CappedParaboloid(Profile):
     def breaks(self) -> tuple[Parameter, ...]:
         return (self.cap_radius,)
 
-    @property
+    @cached_property
     def coordinate_breaks(self) -> Array:
         return np.atleast_1d(np.asarray(self._break, dtype=float))
 

@@ -91,7 +91,7 @@ class Tabulated(FlatEnded):
     def domain(self) -> float:
         return self.resolved.domain
 
-    @property
+    @cached_property
     def last_coordinate(self) -> float:
         return float(inverse_hypot(number(self.domain), self.flat_radius))
 
@@ -99,7 +99,7 @@ class Tabulated(FlatEnded):
     def scale(self) -> float:
         return self.last_coordinate / 2
 
-    @property
+    @cached_property
     def coordinate_breaks(self) -> Array:
         return inverse_hypot(self.resolved.breaks, self.flat_radius)
 
@@ -107,7 +107,7 @@ class Tabulated(FlatEnded):
     def coordinate_levels(self) -> Array:
         return inverse_hypot(self.resolved.levels, self.flat_radius)
 
-    @property
+    @cached_property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         panels = self.resolved.panels
         radii = panels.edges[:-1][panels.depth[:, 0] > 0]
@@ -154,7 +154,7 @@ class Tabulated(FlatEnded):
     def _polynomial(self, radius: Array) -> tuple[Array, Array]:
         """Distance from the point below, and the coefficients (4, ...) of f."""
         self._require_inside(radius)
-        panel = np.clip(np.searchsorted(self.r, radius, side="right") - 1, 0, self.r.size - 2)
+        panel = np.searchsorted(self.r[1:-1], radius, side="right")
         return radius - self.r[panel], self.resolved.rows[:, panel]
 
     def _require_inside(self, radius: Array) -> None:
@@ -272,5 +272,5 @@ class Tabulated(FlatEnded):
 def _located(edges: Array, place: Array) -> tuple[Indices, Array]:
     """Subpanel of each place and s there, shape (m,)."""
     place = np.ravel(place)
-    panel = np.clip(np.searchsorted(edges, place, side="right") - 1, 0, edges.size - 2)
+    panel = np.searchsorted(edges[1:-1], place, side="right")
     return panel, inverse_hypot(place, edges[panel])

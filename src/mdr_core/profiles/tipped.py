@@ -89,7 +89,7 @@ class TippedCone(Profile):
     def scale(self) -> Parameter:
         return self.tangent_radius
 
-    @property
+    @cached_property
     def coordinate_breaks(self) -> Array:
         return np.atleast_1d(np.asarray(self.scale, dtype=float))
 
