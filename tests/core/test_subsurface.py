@@ -213,6 +213,25 @@ def at_end(profile: Profile, name: str) -> tuple[normal.NormalContact, LoadHisto
     return contact, load_history.solve(profile, E_STAR, 2.6, FRICTION, **given)
 
 
+@pytest.mark.parametrize("count", [9, 200])
+@pytest.mark.parametrize("flat", [0.0, 0.5])
+def test_tables_that_are_exact(flat: float, count: int) -> None:
+    """A spline through a paraboloid, or a rounded punch with its break, is that body."""
+    r = np.unique(np.append(np.linspace(0, 1.4, count), flat))
+    heights = np.square(np.maximum(r - flat, 0.0)) / 4
+    table = Tabulated(r, heights, "cubic", (flat,) if flat else ())
+    body = RoundedPunch(flat, 2.0) if flat else Paraboloid(2.0)
+    rng = np.random.default_rng(4)
+    x, z = rng.uniform(-1.6, 1.6, 400), 10 ** rng.uniform(-12, 1, 400)
+    x[:100] = rng.choice([0.0, 0.7, 1.0], 100) + rng.choice([-1, 1], 100) * z[:100]
+    z[100:150] = 0.0
+    found, expected = (
+        np.array(stress(sheared(one, 0.7), x, 0.1 * x, z, poissons_ratio=0.3, rtol=EXACT))
+        for one in (table, body)
+    )
+    assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+
+
 @pytest.mark.parametrize("name", PATHS)
 @pytest.mark.parametrize(
     "profile", [Paraboloid(2.0), Cone(0.2), Power(0.3, 1.6), RoundedPunch(0.5, 2.0), TABLE]

@@ -41,13 +41,13 @@ CURVES: tuple[tuple[str, str, str, list[float], Any], ...] = (
 
 
 def records(curve: int) -> str:
-    """Return one curve as JSON; the points lie in the direction x = y."""
+    """Return one curve as JSON; the points lie in the plane y = 0, where r has no rounding."""
     mp.dps = WORK_DIGITS
     name, title, axis, distances, make = CURVES[curve]
     points = []
     for distance in distances:
         profile, c, r, z = make(distance)
-        place = r / np.sqrt(2), r / np.sqrt(2), z
+        place = r, 0.0, z
         exact = tuple(mpf(float(one)) for one in place)
         stick = None if c is None else mpf(c)
         values = tensor(shape_of(profile), mpf(1), stick, mpf(FRICTION), mpf(NU), exact)

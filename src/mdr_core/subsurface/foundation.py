@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
+from mdr_core.fields.arc import Arc
 from mdr_core.fields.history_end import arcs
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
@@ -19,6 +20,9 @@ from mdr_core.typing import Array
 _NEAREST: Final = 1e-7
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
+# Slope of -q_x/E* in parts of g' on an annulus, None for the whole contact, or times the factor of
+# an arc.
+_Part: TypeAlias = tuple[float, Span | Arc | None]
 
 
 class Foundation(NamedTuple):
@@ -64,11 +68,38 @@ def foundations(
     rtol : accuracy of the stresses, relative to the largest.
     nearest : least distance of the points from the origin [length]; None for a search.
     """
+    for profile, e_star, whole, depth, parts in _cases(contact):
+        panels = profile.panels(rtol)
+        branches = profile.branches if panels is None else panels.branches
+        smooth = [Smooth(branch, _near(profile, branch)) for branch in branches]
+        given = rtol, _NEAREST * whole.a if nearest is None else nearest
+        if profile.slips_at_once:
+            pressed = step_block(whole.a, depth) if depth > 0 else None
+        else:
+            pressed = blocks(smooth, whole, *given)
+        edges, sheared = {whole.a}, []
+        for factor, part in parts:
+            block, span = pressed, whole
+            if isinstance(part, Arc):
+                span = Span(part.high, part.low, part.width)
+                own = [Smooth(each, min(each.base, each.behind)) for each in part.branches(rtol)]
+                block = blocks(own, span, *given)
+            elif part is not None:
+                block, span = blocks(smooth, part, *given), part
+            edges |= {span.c, span.a}
+            if block is not None:
+                sheared.append((factor, block))
+        first = min(edges) if sheared else inf
+        radii = sorted(edges - {0.0}) or [0.0]
+        yield Foundation(profile, e_star / np.pi, radii, pressed, sheared, first, rtol)
+
+
+def _cases(contact: Contact) -> Iterator[tuple[Profile, float, Span, float, list[_Part]]]:
+    """Profile, E*, span and coordinate of the contact, and parts of q_x in each case."""
     if isinstance(contact, ContactState):
-        yield _of_state(contact, rtol, nearest)
+        yield _end(contact)
         return
     normal = contact.normal if isinstance(contact, TangentialContact) else contact
-    profile = normal.profile
     columns: list[Any] = [normal.e_star, normal.contact_radius, normal.coordinate]
     if isinstance(contact, TangentialContact):
         columns += [contact.sign * contact.friction_coefficient, contact.full_slip]
@@ -76,81 +107,50 @@ def foundations(
     shape = shape_of(contact)
     rows = zip(*(np.broadcast_to(part, shape).ravel().tolist() for part in columns), strict=True)
     for e_star, a, coordinate, *friction in rows:
-        build = _Builder(profile, rtol, _NEAREST * a if nearest is None else nearest)
-        whole = build.span(a, coordinate)
-        pressed = build.block(whole, coordinate)
-        edges, sheared, slips_from = [a], [], inf
-        if friction and pressed is not None:
-            scale, full, c, width, share = friction
+        whole = _span(normal.profile, a, coordinate)
+        parts: list[_Part] = []
+        if friction:
+            factor, full, c, width, share = friction
             if full:
-                sheared, slips_from = [(scale, pressed)], 0.0
-            elif profile.slips_at_once:
+                parts = [(factor, None)]
+            elif share > 0 and normal.profile.slips_at_once:
                 # Of a flat punch, which sticks completely, the width is the part of its depth.
-                sheared = [(scale * share, pressed)] if share else []
-            elif share:
-                block = build.block(whole._replace(c=c, width=width))
-                sheared = [] if block is None else [(scale, block)]
-                edges, slips_from = [c, a], c
-        yield Foundation(profile, e_star / np.pi, edges, pressed, sheared, slips_from, rtol)
+                parts = [(factor * share, None)]
+            elif share > 0:
+                parts = [(factor, whole._replace(c=c, width=width))]
+        yield normal.profile, e_star, whole, coordinate, parts
 
 
-def _of_state(state: ContactState, rtol: float, nearest: float | None) -> Foundation:
-    """The loads at the end of a load history, an annulus between neighbouring slip fronts each."""
+def _end(state: ContactState) -> tuple[Profile, float, Span, float, list[_Part]]:
+    """The case at the end of a load history: an annulus between neighbouring slip fronts each."""
     profile, segments, friction = state.profile, state.segments, state.friction_coefficient
-    modulus, a = state.e_star / np.pi, state.contact_radius
     if not state.in_contact:
-        return Foundation(profile, modulus, [0.0], None, [], inf, rtol)
-    build = _Builder(profile, rtol, _NEAREST * a if nearest is None else nearest)
-    radii, places = (
-        part.tolist() for part in (profile.contact_radius(segments.coordinate), segments.coordinate)
-    )
-    depth, parts, slips_from = state.indentation_depth, [], inf
-    pressed = build.block(build.span(a, places[-1]), depth)
+        return profile, state.e_star, Span(0.0, 0.0, 0.0), 0.0, []
+    radii = profile.contact_radius(segments.coordinate).tolist()
+    places, depth = segments.coordinate.tolist(), state.indentation_depth
+    whole = _span(profile, state.contact_radius, places[-1])
     if profile.slips_at_once:
         # All springs carry the same load.
-        parts = [(float(state.load[0]) / (state.e_star * depth), pressed)]
-    else:
-        widths = profile.radius_width(segments.coordinate[1:], segments.width)
-        for i in np.flatnonzero(segments.slope * (segments.rate == 0)):
-            span = build.span(radii[i + 1], places[i + 1])
-            if i:
-                span = span._replace(c=radii[i], width=float(widths[i]))
-            parts.append((friction * float(segments.slope[i]), build.block(span)))
-            slips_from = min(slips_from, span.c)
-        for arc in arcs(state):
-            span = Span(arc.high, arc.low, arc.width, None)
-            smooth = [Smooth(each, min(each.base, each.behind)) for each in arc.branches(rtol)]
-            parts.append((friction, blocks(smooth, span, rtol, build.nearest)))
-            slips_from = min(slips_from, span.c)
-    sheared = [(scale, block) for scale, block in parts if block is not None]
-    edges = [*state.slip_fronts.tolist(), a]
-    return Foundation(profile, modulus, edges, pressed, sheared, slips_from, rtol)
+        return profile, state.e_star, whole, depth, [(state.load[0] / (state.e_star * depth), None)]
+    widths = profile.radius_width(segments.coordinate[1:], segments.width)
+    parts: list[_Part] = [(friction, arc) for arc in arcs(state)]
+    for i in np.flatnonzero(segments.slope * (segments.rate == 0)):
+        span = _span(profile, radii[i + 1], places[i + 1])
+        if i:
+            span = span._replace(c=radii[i], width=float(widths[i]))
+        parts.append((friction * float(segments.slope[i]), span))
+    return profile, state.e_star, whole, depth, parts
 
 
-class _Builder(NamedTuple):
-    profile: Profile
-    rtol: float
-    nearest: float
+def _span(profile: Profile, a: float, coordinate: float) -> Span:
+    flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+    return Span(a, 0.0, a, 0.0 if profile.slips_at_once else flat, coordinate)
 
-    def span(self, a: float, coordinate: float) -> Span:
-        """Return the span from the axis to a radius."""
-        blunt = float(self.profile.contact_radius(np.asarray(self.profile.first_coordinate))) > 0
-        return Span(a, 0.0, a, coordinate if blunt and not self.profile.slips_at_once else None)
 
-    def block(self, span: Span, depth: float = 0.0) -> Block | None:
-        """Return the blocks of g' over an annulus, or of a flat punch's step at its edge."""
-        if self.profile.slips_at_once:
-            return step_block(span.a, depth)
-        panels = self.profile.panels(self.rtol)
-        branches = self.profile.branches if panels is None else panels.branches
-        smooth = [Smooth(branch, self._near(branch)) for branch in branches]
-        return blocks(smooth, span, self.rtol, self.nearest)
-
-    def _near(self, branch: Branch) -> float:
-        """Distance in s over which g' changes next to s = 0."""
-        profile = self.profile
-        if branch.base > 0:
-            return min(branch.base, branch.behind)
-        if branch.stop < inf or branch.pole < inf or isinstance(profile, Cone | Paraboloid):
-            return inf
-        return float(np.asarray(profile.scale)) if isinstance(profile, Hyperboloid) else 0.0
+def _near(profile: Profile, branch: Branch) -> float:
+    """Distance in s over which g' changes next to s = 0."""
+    if branch.base > 0:
+        return min(branch.base, branch.behind)
+    if branch.stop < inf or branch.pole < inf or isinstance(profile, Cone | Paraboloid):
+        return inf
+    return float(np.asarray(profile.scale)) if isinstance(profile, Hyperboloid) else 0.0

@@ -56,8 +56,10 @@ class Span(NamedTuple):
     c: float
     width: float
     """a - c, accurate however narrow the annulus."""
-    root: float | None
-    """sqrt(a^2 - b^2) behind a flat of radius b, accurate however narrow the rest."""
+    flat: float = 0.0
+    """Radius b of the body's flat [length]."""
+    root: float = 0.0
+    """sqrt(a^2 - b^2), accurate however narrow the rest."""
 
 
 class Smooth(NamedTuple):
@@ -161,7 +163,7 @@ def _leaves(smooth: Smooth, span: Span, nodes: int, nearest: float, rtol: float)
     if not end > begin:
         return
     first, last = (sqrt((x - base) * (x + base)) for x in (begin, end))
-    if end == span.a and span.root is not None:
+    if end == span.a and base == span.flat > 0:
         last = span.root
     # What is left out next to the axis is a small part of that next to the points.
     left_out = (_NEGLIGIBLE * rtol) ** (1 / (1 + branch.tip))

@@ -52,9 +52,7 @@ class StressTensor(NamedTuple):
     @property
     def maximum_shear(self) -> Array:
         """Largest shear stress, half the difference of the extreme principal ones [pressure]."""
-        xx, yy, zz, xy, xz, yz = self._finite()
-        rows = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        values = np.linalg.eigvalsh(np.moveaxis(rows, (0, 1), (-2, -1)))
+        values = StressTensor(*self._finite()).principal
         return np.where(np.isinf(self.zz), inf, (values[..., 2] - values[..., 0]) / 2)
 
     def _finite(self) -> list[Array]:

@@ -34,7 +34,7 @@ def solve_subsurface(query: SubsurfaceQuery) -> Contact:
         place = "points" if query.points else "x"
         detail = f"loads times points times quantities must not exceed {SETTINGS.max_numbers}"
         raise InputError((place,), detail)
-    poissons_ratio(query)
+    body_of(query)
     return solve_loaded(query)
 
 
@@ -92,12 +92,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
-    """Return the requested body and its Poisson's ratio, as arguments of the core."""
-    return {"poissons_ratio": poissons_ratio(query), "body": query.body}
-
-
-def poissons_ratio(query: SubsurfaceQuery) -> float:
-    """Return Poisson's ratio of the requested body.
+    """Return the requested body and its Poisson's ratio, as arguments of the core.
 
     Raises
     ------
@@ -108,10 +103,12 @@ def poissons_ratio(query: SubsurfaceQuery) -> float:
         body = material.bodies[query.body - 1]
         if not isinstance(body, BodyMaterial):
             raise InputError(("body",), "is rigid: request the stresses of the other body")
-        return body.poissons_ratio
-    if not material.has("poissons_ratio"):
-        raise InputError(("material", "poissons_ratio"), "is needed for stresses in a body")
-    return material.poissons_ratio
+        ratio = body.poissons_ratio
+    else:
+        if not material.has("poissons_ratio"):
+            raise InputError(("material", "poissons_ratio"), "is needed for stresses in a body")
+        ratio = material.poissons_ratio
+    return {"poissons_ratio": ratio, "body": query.body}
 
 
 def _by_name(tensor: StressTensor, name: str) -> Array:
