@@ -165,3 +165,37 @@ def test_regimes_agree_next_to_full_slip(kind: str, along: str) -> None:
             points: Any = {by: [load, load], along: [0.0, pushed]}
             way = history.solve(KINDS[kind], E_STAR, G_STAR, MU, **points)
             assert way.regime[1] == str(monotonic.regime), (by, units)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.999, 1 - 1e-9, 1 - 1e-15, 1.0])
+@pytest.mark.parametrize("radius", [0.45, 0.52, 0.9, 50.0])
+@pytest.mark.parametrize(
+    "profile",
+    [
+        profiles.RoundedCone(0.5, 1.0),
+        profiles.SphericalTipCone(0.5, 1.0),
+        profiles.CappedParaboloid(0.5, 2.0, 1.0),
+    ],
+    ids=lambda profile: str(profile.kind),
+)
+def test_dissipation_of_forces_past_a_break_and_down_to_the_axis(
+    profile: Profile, radius: float, share: float
+) -> None:
+    """The measure of the springs, |d(1/2a)|, is infinite on the axis, where nothing is dissipated.
+
+    A reversal dissipates twice as much as the first loading: its amplitude is half of its range.
+    """
+    force = float(normal.solve(profile, 1.0, contact_radius=radius).normal_force)
+    pushed = 0.4 * force * share
+    contact = normal.solve(profile, 1.0, normal_force=force)
+    once = float(tangential.solve(contact, 0.8, 0.4, tangential_force=pushed).dissipated_energy)
+    found = history.solve(
+        profile,
+        1.0,
+        0.8,
+        0.4,
+        normal_force=[force] * 3,
+        tangential_force=[0.0, pushed, -pushed],
+    )
+    bound = found.error_estimate
+    assert found.dissipated_energy == pytest.approx([0.0, once, 3 * once], rel=bound, abs=0)

@@ -185,8 +185,8 @@ class LimitingWear(Results):
         Never negative, zero in the stick zone and outside the annulus. Source: mdr-5, Eqs. (5.75),
         (5.82); notes, §9. Shape and errors as of `limiting_profile`.
         """
-        r, rtol = self._radii(radius), self._normal.rtol
-        return limit_fields.worn_depth(self.stuck, self.annulus, self.wear_radius, r, rtol)
+        r = self._radii(radius)
+        return limit_fields.worn_depth(self.stuck, self.annulus, self.wear_radius, r)
 
     def pressure(self, radius: ArrayLike) -> Array:
         """Return the pressure in the limit, (loads, m), or (m,) for a single load [pressure].
@@ -202,7 +202,7 @@ class LimitingWear(Results):
         """
         contact, r = self._normal, checked_radii(radius)
         e_star = np.asarray(contact.e_star)
-        return limit_fields.pressure(contact.profile, self.stuck, e_star, r, contact.rtol)
+        return limit_fields.pressure(contact.profile, self.stuck, e_star, r)
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest worn annulus [length], (points,).

@@ -10,15 +10,13 @@ from mdr_core.abel import Annulus
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
-from mdr_core.wear.worn_annulus import WornAnnulus
+from mdr_core.wear.worn_annulus import RTOL, WornAnnulus
 
 # Pairs of loads and radii handled at once: bounds the memory, whatever their number.
 _BLOCK: Final = 8192
 
 
-def worn_depth(
-    stuck: LimitingStick, annulus: WornAnnulus, outer: Array, r: Array, rtol: float
-) -> Array:
+def worn_depth(stuck: LimitingStick, annulus: WornAnnulus, outer: Array, r: Array) -> Array:
     """Return (2/pi) int_c^r (d - g(x))/sqrt(r^2 - x^2) dx in the annulus up to `outer` [length].
 
     Source: mdr-5, Eqs. (5.75), (5.82).
@@ -29,7 +27,6 @@ def worn_depth(
     annulus : worn annuli, (loads,).
     outer : outer radii of the annuli [length], (loads,).
     r : radii [length], (m,).
-    rtol : relative tolerance of the slip kernel.
     """
     profile, step = annulus.profile, np.ravel(stuck.step)
     inner, end = annulus.stick[:, None], np.ravel(outer)[:, None]
@@ -44,9 +41,9 @@ def worn_depth(
         lag = np.where(profile.slips_at_once, 0.0, profile.f(at))
         some = np.flatnonzero(annuli.stick > 0)
         if some.size and "slip" in profile.closed_forms:
-            lag[some] = profile.slip_kernel(annuli.stick[some], at[some], rtol)
+            lag[some] = profile.slip_kernel(annuli.stick[some], at[some], RTOL)
         elif some.size:
-            lag[some] = annuli.chosen(some).slip_kernel(width[some], rtol)
+            lag[some] = annuli.chosen(some).slip_kernel(width[some])
         share = np.where(at > 0, 2 / np.pi * annuli.angle(width), 1.0)
         # At the outer edge of the annulus the terms cancel but for rounding error.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
@@ -56,7 +53,7 @@ def worn_depth(
     return result.reshape(outer.shape + r.shape)
 
 
-def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array, rtol: float) -> Array:
+def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array) -> Array:
     """Return (E*/pi) [int_r^c g'/sqrt(x^2 - r^2) dx + (d - g(c))/sqrt(c^2 - r^2)] [pressure].
 
     Source: mdr-5, Eqs. (5.34), (5.79), (5.82).
@@ -67,7 +64,6 @@ def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array, rt
     stuck : stick zones of the limit, (loads,).
     e_star : effective modulus E* [pressure].
     r : radii [length], (m,).
-    rtol : relative tolerance.
     """
     # In full slip the limiting pressure is zero.
     held = np.where(stuck.lost | stuck.endless, 0.0, stuck.radius)
@@ -75,7 +71,7 @@ def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array, rt
     moduli = np.ravel(np.broadcast_to(e_star, held.shape))
 
     def values(load: Indices, at: Array) -> Array:
-        inner = profile.pressure_kernel(Annulus(edge[load]), at, rtol)
+        inner = profile.pressure_kernel(Annulus(edge[load]), at, RTOL)
         annulus = step[load] / (np.pi * np.sqrt((c[load] - at) * (c[load] + at)))
         return np.asarray(moduli[load] * (inner + annulus))
 
