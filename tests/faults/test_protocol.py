@@ -3,9 +3,7 @@
 import http.client
 import json
 import random
-import shutil
 import socket
-import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -282,41 +280,6 @@ def test_responses_do_not_depend_on_how_requests_are_split(served: Served) -> No
         pieces = [whole[begin:end] for begin, end in pairwise([0, *cuts, len(whole)])]
         found = served.responses(*pieces, number=6)
         assert [status for status, _ in found] == [kinds[text] for text in texts]
-
-
-EXAMPLES = {
-    "/v1/normal": examples.NORMAL_EXAMPLES,
-    "/v1/tangential": examples.TANGENTIAL_EXAMPLES,
-    "/v1/tangential/history": examples.HISTORY_EXAMPLES,
-    "/v1/stress": examples.STRESS_EXAMPLES,
-    "/v1/wear": examples.WEAR_EXAMPLES,
-    "/v1/wear/evolution": examples.EVOLUTION_EXAMPLES,
-}
-
-
-@pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl")
-@pytest.mark.parametrize("path", [*EXAMPLES, "/v1/batch", "/v1/limits", "/health"])
-def test_curl_with_http2_gets_every_endpoint(served: Served, path: str) -> None:
-    command = [
-        "curl",
-        "--http2",
-        "--silent",
-        "--output",
-        "/dev/null",
-        "--write-out",
-        "%{http_code}",
-    ]
-    query: object = None
-    if path in EXAMPLES:
-        query = next(iter(EXAMPLES[path].values()))["value"]
-    elif path == "/v1/batch":
-        query = {"queries": [{"ask": "normal", "request": json.loads(BODY)}]}
-    if query is not None:
-        command += ["--header", "Content-Type: application/json", "--data", json.dumps(query)]
-    told = subprocess.run(
-        [*command, f"http://127.0.0.1:{served.port}{path}"], capture_output=True, check=True
-    )
-    assert told.stdout == b"200"
 
 
 def test_expected_continue_is_sent(served: Served) -> None:
