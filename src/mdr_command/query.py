@@ -86,7 +86,7 @@ def _respond(name: str, text: bytes, format_: str) -> bytes:
     media_type = content_negotiation.media_type(format_, "*/*")
     query = parse(QUERIES[name].model, text)
     with _progress(query) as progress:
-        return respond(name, query, media_type, **progress)
+        return respond(name, query, media_type, (), **progress)
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-from mdr_service.serializers import svg
+from mdr_service.serializers import PICTURES
 from mdr_service.settings import SETTINGS
 
 # Times on one core of a server of 2023 [s]: of a query about a single load of a cone, ...
@@ -116,7 +116,7 @@ def require_feasible(query: BaseModel, media_type: str) -> float:
     ------
     ServiceError : the query would certainly exceed the time limit.
     """
-    expected = seconds(query) + (_PICTURE if media_type == svg.MEDIA_TYPE else 0.0)
+    expected = seconds(query) + (_PICTURE if media_type in PICTURES else 0.0)
     limit = SETTINGS.budget_seconds
     if expected > _LONGEST:
         part = limit / expected

@@ -4,12 +4,13 @@ Endpoints, compute processes and the command line call these functions, and get 
 """
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
+from mdr_core.errors import InputError
 from mdr_service import cost, problems
 from mdr_service.plots import PLOTS
 from mdr_service.problems import ServiceError
@@ -18,13 +19,10 @@ from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.fields import FieldQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
-from mdr_service.serializers import SERIALIZERS, json, svg
+from mdr_service.serializers import PICTURES, WRITE, json
 from mdr_service.settings import SETTINGS
 
 _Model = TypeVar("_Model", bound=BaseModel)
-_WRITE: Final[Mapping[str, Callable[[Any], bytes]]] = {
-    module.MEDIA_TYPE: module.write for module in SERIALIZERS.values()
-}
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -43,7 +41,11 @@ def parse(model: type[_Model], text: bytes) -> _Model:
 
 
 def respond(
-    name: str, query: BaseModel, media_type: str, **progress: Callable[[int], None]
+    name: str,
+    query: BaseModel,
+    media_type: str,
+    members: Sequence[str] = (),
+    **progress: Callable[[int], None],
 ) -> bytes:
     """Return the response content of a query or a batch.
 
@@ -52,6 +54,7 @@ def respond(
     name : name of the query, a key of `QUERIES`, or ``batch``.
     query : the request.
     media_type : media type of the content.
+    members : members of the result to return, by default all; a picture shows all.
     progress : for an evolution, see `queries.wear.solve_evolution`.
 
     Raises
@@ -65,9 +68,19 @@ def respond(
         kind = QUERIES[name]
         source = kind.solve(query, **progress)
         result: Any = kind.result(query, source)
-        if media_type == svg.MEDIA_TYPE:
+        if media_type in PICTURES:
             result = PLOTS[name](query, source, result)
-    return _WRITE[media_type](result)
+        elif members:
+            result = _chosen(result, members)
+    return WRITE[media_type](result)
+
+
+def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, Any]:
+    """Return some members of a result. Raises InputError if it has no such member."""
+    for name in members:
+        if name not in result:
+            raise InputError(("answers",), f"no member {name!r}; there are {', '.join(result)}")
+    return {name: result[name] for name in members}
 
 
 def respond_to_text(name: str, text: bytes, media_type: str) -> bytes:

@@ -23,10 +23,11 @@ unbounded wear).
 
 **Formats.** `?format=` or the header `Accept` selects JSON (the default); `csv`, a table with a
 column per quantity, in which infinities are written `inf`; `npz`, an archive of arrays for
-`numpy.load`; or `svg`, a picture.
+`numpy.load`; `txt`, the table without its heading; or `svg`, `png` or `pdf`, a picture.
 
-**GET.** Four queries are available by parameters as well, for spreadsheets and browsers: numbers,
-and one range.
+**GET.** Five queries are available by parameters as well, for spreadsheets and browsers: numbers,
+and one range. `answers` chooses members of the response, and with `format=txt` one number is the
+whole text.
 
 **Errors** are `application/problem+json` (RFC 9457); `errors` points into the request.
 """

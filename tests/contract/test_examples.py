@@ -422,7 +422,7 @@ TOLD = {
 # Tips and edges that no real material bears, and slopes at which 0.63 |beta| t + t^2 exceeds 1 %.
 WARNINGS = {
     "boussinesq": {"plastic"},
-    "cone_with_a_gap": set(),
+    "cone_with_a_gap": {"plastic"},
     "exact_sphere": {"half_space"},
     "flat_punch": {"plastic"},
     "sneddon": {"half_space", "plastic"},

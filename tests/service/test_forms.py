@@ -161,7 +161,7 @@ def test_without_a_preference_it_is_json(client: Client) -> None:
     assert client.send(request).headers["content-type"] == "application/json"
 
 
-@pytest.mark.parametrize("accept", ["text/html", "application/xml", "image/png", "rubbish", ";;,"])
+@pytest.mark.parametrize("accept", ["text/html", "application/xml", "image/gif", "rubbish", ";;,"])
 @pytest.mark.parametrize(
     "path",
     [
@@ -174,6 +174,19 @@ def test_an_unknown_form_is_refused(client: Client, path: str, accept: str) -> N
     assert answer.status_code == 406
     assert answer.headers["content-type"] == "application/problem+json"
     assert "text/csv" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    ("form", "media_type", "start"),
+    [("png", "image/png", b"\x89PNG\r\n"), ("pdf", "application/pdf", b"%PDF-1.4")],
+)
+def test_pictures_have_other_formats(
+    client: Client, form: str, media_type: str, start: bytes
+) -> None:
+    answers = [client.post(f"/v1/normal?format={form}", BALL) for _ in range(2)]
+    assert answers[0].headers["content-type"] == media_type
+    assert answers[0].content.startswith(start)
+    assert answers[0].content == answers[1].content
 
 
 def picture(answer: httpx.Response) -> ET.Element:

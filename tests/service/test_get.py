@@ -131,6 +131,29 @@ SAME = {
             "quantities": ["normal_displacement"],
         },
     ),
+    "cycles": (
+        "history",
+        {
+            **BALL,
+            **MODULI,
+            **FRICTION,
+            "normal_force": 10,
+            "normal_amplitude": 2,
+            "tangential_force": 1,
+            "count": 2,
+            "samples_per_step": 3,
+        },
+        {
+            **REQUEST,
+            **FRICTION,
+            "cycles": {
+                "normal": {"normal_force": 10, "amplitude": 2},
+                "tangential": {"tangential_force": 1},
+                "count": 2,
+                "samples_per_step": 3,
+            },
+        },
+    ),
     "wear by the amplitude": (
         "wear",
         {
@@ -172,8 +195,9 @@ SAME = {
 }
 
 
-def at(question: str, asked: Mapping[str, object]) -> str:
-    return f"/v1/{question}?{urlencode(asked)}"
+def at(question: str, asked: Mapping[str, object] | None = None) -> str:
+    path = f"/v1/{'tangential/history' if question == 'history' else question}"
+    return f"{path}?{urlencode(asked)}" if asked else path
 
 
 @pytest.mark.parametrize(
@@ -183,11 +207,30 @@ def at(question: str, asked: Mapping[str, object]) -> str:
 def test_get_returns_the_bytes_of_post(client: Client, name: str, form: str) -> None:
     question, asked, request = SAME[name]
     found = client.get(at(question, {**asked, "format": form}))
-    expected = client.post(f"/v1/{question}?format={form}", request)
+    expected = client.post(f"{at(question)}?format={form}", request)
     assert expected.status_code == 200
     assert found.status_code == expected.status_code
     assert found.headers["content-type"] == expected.headers["content-type"]
     assert found.content == expected.content
+
+
+def test_chosen_members_are_returned_alone(client: Client) -> None:
+    whole = client.get(at("normal", NORMAL)).json()
+    chosen = client.get(at("normal", {**NORMAL, "answers": "contact_radius,method"}))
+    assert chosen.json() == {name: whole[name] for name in ("contact_radius", "method")}
+    for form, separator in {"csv": "\r\n", "txt": "\n"}.items():
+        query = {**BALL, "e_star": 1.15e11, **RANGE, "answers": "normal_force", "format": form}
+        lines = client.get(at("normal", query)).text.strip().split(separator)
+        assert [float(each) for each in lines[form == "csv" :]] == np.linspace(1, 10, 50).tolist()
+
+
+@pytest.mark.parametrize("name", ["contact_radius", "error_estimate"])
+def test_one_number_as_text_is_the_number_alone(client: Client, name: str) -> None:
+    whole = client.get(at("normal", NORMAL)).json()
+    text = client.get(at("normal", {**NORMAL, "answers": name, "format": "txt"}))
+    assert text.headers["content-type"].partition(";")[0] == "text/plain"
+    assert float(text.text) == np.ravel(whole[name])[0]
+    assert re.fullmatch(r"[0-9.e-]+", text.text)
 
 
 REFUSED = {
@@ -301,6 +344,12 @@ REFUSED = {
         {**NORMAL, "quantities": "pressure", "points": "5.0"},
         "points",
     ),
+    "a member that is none": ("normal", {**NORMAL, "answers": "colour"}, "answers"),
+    "cycles without an amplitude": (
+        "history",
+        {**NORMAL, **FRICTION, "g_star": 1},
+        "tangential_displacement",
+    ),
     "no quantity": ("stress", {**NORMAL, "r": 1}, "quantities"),
     "a quantity that is none": ("stress", {**NORMAL, "r": 1, "quantities": "heat"}, "quantities"),
     "a quantity twice": (
@@ -347,7 +396,7 @@ def test_number_of_a_spreadsheet_is_accepted(client: Client, written: str) -> No
 
 @pytest.mark.parametrize("question", PARAMETERS)
 def test_documented_parameters_have_a_result(client: Client, question: str) -> None:
-    get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
+    get = DOCUMENT["paths"][at(question)]["get"]
     shown = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
     assert shown == examples.PARAMETER_EXAMPLES[question]
     assert client.get(at(question, shown)).status_code == 200
@@ -355,19 +404,19 @@ def test_documented_parameters_have_a_result(client: Client, question: str) -> N
 
 @pytest.mark.parametrize("question", PARAMETERS)
 def test_every_parameter_is_documented(question: str) -> None:
-    get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
+    get = DOCUMENT["paths"][at(question)]["get"]
     names = [each["name"] for each in get["parameters"]]
     assert sorted(names) == sorted(PARAMETERS[question].model_fields)
     assert all(each["in"] == "query" and each["description"] for each in get["parameters"])
     for each in get["parameters"]:
         if {"type": "number"} in each["schema"].get("anyOf", ()):
-            assert re.search(r"\[[a-z0-9/*^()-]+\]$", each["description"])
+            assert re.search(r"\[([a-z0-9/*^()-]+|as the mean)\]$", each["description"])
 
 
 @pytest.mark.parametrize("question", PARAMETERS)
 def test_the_documentation_page_accepts_exponents(question: str) -> None:
     # Swagger UI compares the text of a parameter of the one type number with a pattern of its own.
-    get = DOCUMENT["paths"][f"/v1/{question}"]["get"]
+    get = DOCUMENT["paths"][at(question)]["get"]
     assert all(
         each["schema"].get("type") not in {"number", "integer"} for each in get["parameters"]
     )

@@ -33,10 +33,16 @@ _SCHEMAS: Final = {
         "contentMediaType": FORMATS["npz"],
         "description": "Archive for `numpy.load`: one array per member of the JSON response.",
     },
+    "txt": {
+        "type": "string",
+        "description": "The table without its heading; of one number, the number alone.",
+    },
     "svg": {
         "type": "string",
         "description": "Picture: dense curves, with the requested values as points.",
     },
+    "png": {"contentMediaType": FORMATS["png"], "description": "The same picture."},
+    "pdf": {"contentMediaType": FORMATS["pdf"], "description": "The same picture."},
 }
 _PROBLEM: Final = {"$ref": "#/components/schemas/Problem"}
 

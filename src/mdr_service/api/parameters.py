@@ -25,12 +25,14 @@ from mdr_service.queries import QUERIES
 from mdr_service.schemas import contacts
 from mdr_service.schemas.answers import (
     Answer,
+    HistoryAnswer,
     NormalAnswer,
     StressAnswer,
     TangentialAnswer,
     WearAnswer,
 )
 from mdr_service.schemas.flat import leaves, nested
+from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import MODELS
 from mdr_service.schemas.quantities import quantity
 from mdr_service.settings import SETTINGS
@@ -71,8 +73,14 @@ _Length = Annotated[int, BeforeValidator(_whole), Field(ge=2, le=SETTINGS.max_lo
 # By the type of the field in JSON.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _LOADS: Final = frozenset({"load", "tangential", "oscillation"})
+_RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude"}
+_CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 _Described = tuple[str, str, Any, str]
 """Name, field of the request, type and description of a parameter."""
+
+
+# Parameters of the response, to which a problem can point.
+_RESPONSE: Final = {"answers": "answers"}
 
 
 class Parameters(BaseModel):
@@ -89,10 +97,13 @@ class Parameters(BaseModel):
         default=None, description="Spacing of a range, linear by default"
     )
     format: Format | None = Field(default=None, description=FORMAT)
+    answers: str | None = Field(
+        default=None, description="Members of the response, separated by commas; by default all"
+    )
 
     def query(self) -> contacts.Query:
         """Return the request; raise InputError or ServiceError that points at a parameter."""
-        given = self.model_dump(exclude_unset=True, exclude={"n", "scale", "format"})
+        given = self.model_dump(exclude_unset=True, exclude={"n", "scale", "format", "answers"})
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
         bodies = {f"material.bodies.{index}" for index in "01"}
@@ -104,7 +115,7 @@ class Parameters(BaseModel):
         if "quantities" in values:
             values["quantities"] = values["quantities"].split(",")
         request = nested(values)
-        for group in ("material", "load", "oscillation"):
+        for group in ("material", "load", "oscillation", "cycles"):
             if group in self.model.model_fields:
                 request.setdefault(group, {})
         try:
@@ -164,6 +175,8 @@ class Parameters(BaseModel):
 def _described(model: type[contacts.Query]) -> Iterator[_Described]:
     """Yield the parameters that stand for a request, without the ends of ranges."""
     found = leaves(model.model_json_schema())
+    # Of load paths only cycles consist of numbers.
+    loads = _CYCLES if model is HistoryQuery else _LOADS
     # Members of groups come before what all queries have.
     for field, leaf in sorted(found, key=lambda each: "." not in each[0]):
         group, _, name = field.rpartition(".")
@@ -182,10 +195,10 @@ def _described(model: type[contacts.Query]) -> Iterator[_Described]:
             for body in (1, 2):
                 text = f"`{name}` of body {body}, rigid if absent {dimension}"
                 yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
-        elif type_ and group in {"", "profile", "material", *_LOADS}:
+        elif type_ and group in {"", "profile", "material", *loads}:
             if group == "profile":
                 text = f"`{name}` of the profile, see GET /v1/profiles {dimension}"
-            yield name, field, type_, text
+            yield _RENAMED.get(field, name), field, type_, text
 
 
 def _with_ends(described: Iterable[_Described]) -> Iterator[_Described]:
@@ -211,7 +224,7 @@ def _parameters(model: type[contacts.Query]) -> type[Parameters]:
     }
     title = model.__name__.replace("Query", "Parameters")
     made = create_model(title, __base__=Parameters, **definitions)
-    made.model, made.fields = model, {name: field for name, field, *_ in described}
+    made.model, made.fields = model, {name: field for name, field, *_ in described} | _RESPONSE
     return made
 
 
@@ -237,8 +250,9 @@ def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """
         respond, query = Responder(request, parameters.format), parameters.query()
+        members = parameters.answers.split(",") if parameters.answers else ()
         try:
-            response = await respond(name, query)
+            response = await respond(name, query, members)
         except problems.FAILURES as error:
             raise parameters.pointed(problems.to_problem(error)) from None
         return _cacheable(request, response)
@@ -249,14 +263,16 @@ def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
 _QUERIES: Final[Mapping[str, tuple[str, str, type[Answer]]]] = {
     "normal": ("contact", "Normal contact", NormalAnswer),
     "tangential": ("contact", "Partial slip", TangentialAnswer),
+    "history": ("contact", "Cycles of the tangential load", HistoryAnswer),
     "stress": ("contact", "Fields over the radius", StressAnswer),
     "wear": ("wear", "Limiting state of fretting wear", WearAnswer),
 }
+_PATHS: Final = {"history": "/v1/tangential/history"}
 PARAMETERS: Final = {name: _parameters(QUERIES[name].model) for name in _QUERIES}
 router = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(url_parameters)])
 for _name, (_tag, _title, _answer) in _QUERIES.items():
     router.get(
-        f"/v1/{_name}",
+        _PATHS.get(_name, f"/v1/{_name}"),
         operation_id=f"get_{_name}",
         tags=[_tag],
         summary=f"{_title} by parameters, for spreadsheets and browsers",

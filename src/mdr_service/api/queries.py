@@ -1,7 +1,7 @@
 """Endpoints of the queries by POST, and the route class that they share."""
 
 from collections import Counter
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from functools import partial
 from inspect import signature
 from typing import Annotated, Any, ClassVar, Final, Literal, get_args
@@ -36,7 +36,7 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.serializers import FORMATS, json
 from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES, AT_ONCE_SECONDS
 
-Format = Literal["json", "csv", "npz", "svg"]
+Format = Literal["json", "csv", "npz", "txt", "svg", "png", "pdf"]
 FORMAT: Final = "Format of the response; overrides `Accept`"
 _ANY: Final = "*/*"
 # Bound; the longest query has about forty.
@@ -69,10 +69,10 @@ class Responder:
             self.media_type = media_type(format_, accept, self.formats)
         self.workers = request.app.state.workers
 
-    async def __call__(self, name: str, query: BaseModel) -> Response:
+    async def __call__(self, name: str, query: BaseModel, members: Sequence[str] = ()) -> Response:
         """Compute on the event loop if that is short, else in a compute process."""
         seconds = cost.require_feasible(query, self.media_type)
-        arguments = name, query, self.media_type
+        arguments = name, query, self.media_type, members
         if seconds <= AT_ONCE_SECONDS:
             content = respond(*arguments)
         else:

@@ -25,7 +25,9 @@ def leaves(
     if "$ref" in node:
         node = root["$defs"][node["$ref"].rpartition("/")[2]]
     for branch in node.get("oneOf", ()):
-        yield from leaves(root, branch, name)
+        # A number or a list of numbers is described once, for both.
+        described = {"description": node.get("description", "")} | branch
+        yield from leaves(root, described, name)
     for member, child in node.get("properties", {}).items():
         yield from leaves(root, child, f"{name}.{member}" if name else member)
     if node.get("type") == "array" and node["items"].get("type") not in {"number", "string"}:

@@ -1,13 +1,23 @@
-"""Response formats: each writes a complete result and computes nothing."""
+"""Response formats: each writes a complete result, or a plot of it, and computes nothing."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Final
 
-from mdr_service.serializers import csv, json, npz, svg
+from mdr_service.serializers import csv, json, npz, picture, text
 
-SERIALIZERS: Final[Mapping[str, Any]] = {"json": json, "csv": csv, "npz": npz, "svg": svg}
-"""Modules with `MEDIA_TYPE` and `write`, by the name of the format."""
 FORMATS: Final[Mapping[str, str]] = {
-    name: module.MEDIA_TYPE for name, module in SERIALIZERS.items()
+    "json": json.MEDIA_TYPE,
+    "csv": csv.MEDIA_TYPE,
+    "npz": npz.MEDIA_TYPE,
+    "txt": text.MEDIA_TYPE,
+    **picture.MEDIA_TYPES,
 }
 """Media types by the name of the format."""
+PICTURES: Final = frozenset(picture.MEDIA_TYPES.values())
+"""Media types of plots."""
+WRITE: Final[Mapping[str, Callable[[Any], bytes]]] = {
+    **{module.MEDIA_TYPE: module.write for module in (json, csv, npz, text)},
+    **{media_type: partial(picture.write, media_type=media_type) for media_type in PICTURES},
+}
+"""Functions by the media type that they write."""

@@ -1,6 +1,7 @@
 """CSV: one column per quantity, one row per load (and radius), sample or number of cycles."""
 
 from collections.abc import Mapping
+from itertools import zip_longest
 from typing import Any, Final
 
 import numpy as np
@@ -22,6 +23,7 @@ _NOT_IN_ROWS: Final = frozenset(
         "yield_onset_force",
     }
 )
+_OBJECTS: Final = frozenset({"warnings", "largest", "yield_onset_force"})
 # Given over the radius only, and repeated for each load.
 _BY_RADIUS: Final = frozenset({"initial_profile"})
 
@@ -29,13 +31,16 @@ _BY_RADIUS: Final = frozenset({"initial_profile"})
 def write(result: Mapping[str, Any]) -> bytes:
     """Return the table of a result (RFC 4180); infinities are written ``inf``."""
     values = {name: value for name, value in result.items() if name not in _NOT_IN_ROWS}
+    if not values:
+        # None of the chosen members has rows: each is a column of its own length.
+        values = {name: np.atleast_1d(result[name]) for name in result if name not in _OBJECTS}
     if "radius" in values:
         columns = _by_radius(values)
     elif "x" in values:
         columns = _by_position(values)
     else:
         columns = {name: _cells(value) for name, value in values.items()}
-    rows = map(b",".join, zip(*columns.values(), strict=True))
+    rows = map(b",".join, zip_longest(*columns.values(), fillvalue=b""))
     return b"\r\n".join([",".join(columns).encode(), *rows, b""])
 
 

@@ -1,4 +1,4 @@
-"""SVG: a plot drawn by Matplotlib."""
+"""Pictures: a plot drawn by Matplotlib, as SVG, PNG or PDF."""
 
 import io
 from itertools import groupby
@@ -11,8 +11,9 @@ from mdr_service.plots.plot import Curve, Map, Mark, Panel, Plot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
-MEDIA_TYPE: Final = "image/svg+xml"
+MEDIA_TYPES: Final = {"svg": "image/svg+xml", "png": "image/png", "pdf": "application/pdf"}
 
 # Width of the picture and height of a panel, a single and one of several, in inches.
 _WIDTH, _SINGLE, _PANEL = 7.2, 4.0, 2.6
@@ -36,6 +37,9 @@ _STYLE: Final[dict[Any, Any]] = {
     "lines.linewidth": 1.4,
     # Text stays text: it can be searched, selected and read aloud.
     "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    # Pixels per inch of a PNG.
+    "savefig.dpi": 150.0,
     # Equal plots give identical bytes.
     "svg.hashsalt": "mdr",
 }
@@ -43,16 +47,23 @@ _STYLE: Final[dict[Any, Any]] = {
 _lock: Final = Lock()
 
 
-def write(plot: Plot | Map) -> bytes:
-    """Return the text of the picture; equal plots give identical bytes."""
+# Time and version of the program would differ from run to run.
+_METADATA: Final = {
+    "svg": {"Date": None, "Creator": None},
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+
+
+def write(plot: Plot | Map, media_type: str) -> bytes:
+    """Return the picture; equal plots give identical bytes."""
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
 
     if isinstance(plot, Map):
-        return _write_map(plot)
+        return _write_map(plot, media_type)
     count = len(plot.panels)
     height = 0.9 + (_SINGLE if count == 1 else _PANEL * count)
-    text = io.BytesIO()
     with _lock, mpl.rc_context(_STYLE):
         figure = Figure(figsize=(_WIDTH, height), layout="constrained")
         axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
@@ -63,11 +74,10 @@ def write(plot: Plot | Map) -> bytes:
         axes[-1].set_xlabel(f"{plot.x_label}   (in the units of the request)")
         _label(axes[0], plot.marks)
         _legend(axes[0], plot)
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return text.getvalue()
+        return _save(figure, media_type)
 
 
-def _write_map(plot: Map) -> bytes:
+def _write_map(plot: Map, media_type: str) -> bytes:
     """Draw contours, and beside them the values on the axis."""
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
@@ -76,7 +86,6 @@ def _write_map(plot: Map) -> bytes:
     # Singular peaks would leave a single colour for the rest.
     top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _MOST)))
     levels = np.linspace(0.0, top or 1.0, _LEVELS)
-    text = io.BytesIO()
     with _lock, mpl.rc_context(_STYLE):
         figure = Figure(figsize=(_WIDTH, _SINGLE), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
@@ -94,8 +103,14 @@ def _write_map(plot: Map) -> bytes:
         right.plot(on_axis, plot.depth)
         right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
         left.invert_yaxis()
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return text.getvalue()
+        return _save(figure, media_type)
+
+
+def _save(figure: "Figure", media_type: str) -> bytes:
+    content = io.BytesIO()
+    name = next(name for name, each in MEDIA_TYPES.items() if each == media_type)
+    figure.savefig(content, format=name, metadata=_METADATA[name])
+    return content.getvalue()
 
 
 def _draw(axes: "Axes", panel: Panel, plot: Plot) -> None:
