@@ -1,4 +1,4 @@
-"""The commands: what each takes, and what is loaded for it."""
+"""Commands of `mdr`: arguments, help, and lazy imports."""
 
 import subprocess
 import sys
@@ -20,10 +20,10 @@ def test_help_exits_with_status_zero(given: list[str], capsys: pytest.CaptureFix
     with pytest.raises(SystemExit) as ended:
         command.main(given)
     assert ended.value.code == 0
-    told = capsys.readouterr().out
-    assert told.startswith("usage: mdr")
+    result = capsys.readouterr().out
+    assert result.startswith("usage: mdr")
     if given == ["--help"]:
-        assert all(name in told for name in command.COMMANDS)
+        assert all(name in result for name in command.COMMANDS)
 
 
 def test_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -50,7 +50,7 @@ def test_missing_module_raises(monkeypatch: pytest.MonkeyPatch) -> None:
         command.main(["broken"])
 
 
-def test_a_command_without_its_packages_tells_the_remedy() -> None:
+def test_missing_packages_are_reported_with_the_install_command() -> None:
     code = (
         "import sys\nsys.modules['orjson'] = None\nfrom mdr_command.__main__ import main\n"
         "raise SystemExit(main(['normal']))"

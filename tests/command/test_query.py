@@ -1,4 +1,4 @@
-"""The command line answers with the bytes of the service, and fails by its documents."""
+"""The command line prints the bytes of the service and exits with a status per problem type."""
 
 import json
 import os
@@ -18,7 +18,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EVOLUTION_EXAMPLES
 from tests.conftest import Client
 from tests.faults.server import PATIENCE
-from tests.service.test_batch import ASKS
+from tests.service.test_batch import NAMES
 from tests.service.test_forms import BALL, CASES
 
 MDR = [sys.executable, "-m", "mdr_command"]
@@ -30,45 +30,47 @@ PAST_THE_EQUATOR = json.dumps(
         "load": {"contact_radius": 2.0},
     }
 ).encode()
-FOLLOWED = EVOLUTION_EXAMPLES["held_forces"]["value"] | {"resolution": 8}
-# Takes a second at least: long enough to be interrupted.
-LONG = FOLLOWED | {"resolution": 96, "rtol": 1e-9}
+HISTORY = EVOLUTION_EXAMPLES["held_forces"]["value"] | {"resolution": 8}
+# Takes at least a second, so that it can be interrupted.
+LONG = HISTORY | {"resolution": 96, "rtol": 1e-9}
 
 
-class Within:
-    """The command line in this process, which is faster than one of its own."""
+class InProcess:
+    """The command line in this process, which is faster than a subprocess."""
 
     def __init__(self, capture: pytest.CaptureFixture[bytes], file: Path) -> None:
         self.capture = capture
         self.file = file
 
-    def __call__(self, name: str, text: bytes, form: str = "json") -> tuple[int, bytes, bytes]:
+    def __call__(
+        self, name: str, text: bytes, format_name: str = "json"
+    ) -> tuple[int, bytes, bytes]:
         self.file.write_bytes(text)
-        status = main([name, str(self.file), "--format", form])
+        status = main([name, str(self.file), "--format", format_name])
         return status, *self.capture.readouterr()
 
 
 @pytest.fixture
-def within(capfdbinary: pytest.CaptureFixture[bytes], tmp_path: Path) -> Within:
-    return Within(capfdbinary, tmp_path / "request.json")
+def in_process(capfdbinary: pytest.CaptureFixture[bytes], tmp_path: Path) -> InProcess:
+    return InProcess(capfdbinary, tmp_path / "request.json")
 
 
 @pytest.mark.parametrize(
-    "form", ["json", "csv", "npz", pytest.param("svg", marks=pytest.mark.long)]
+    "format_name", ["json", "csv", "npz", pytest.param("svg", marks=pytest.mark.long)]
 )
 @pytest.mark.parametrize(
     ("path", "query"), [case[::2] for case in CASES], ids=[f"{case[0]} {case[1]}" for case in CASES]
 )
 def test_output_is_the_response_of_the_service(
-    client: Client, within: Within, path: str, query: object, form: str
+    client: Client, in_process: InProcess, path: str, query: object, format_name: str
 ) -> None:
     text = json.dumps(query).encode()
-    answer = client.post_text(f"{path}?format={form}", text)
-    if answer.status_code == 200:
-        assert within(ASKS[path], text, form) == (0, answer.content, b"")
+    output = client.post_text(f"{path}?format={format_name}", text)
+    if output.status_code == 200:
+        assert in_process(NAMES[path], text, format_name) == (0, output.content, b"")
     else:
-        assert (path, form) == ("/v1/normal", "svg")
-        assert within(ASKS[path], text, form) == (2, b"", answer.content + b"\n")
+        assert (path, format_name) == ("/v1/normal", "svg")
+        assert in_process(NAMES[path], text, format_name) == (2, b"", output.content + b"\n")
 
 
 @pytest.mark.parametrize("where", ["standard input", "a file"])
@@ -80,12 +82,12 @@ def test_request_is_read_from_file_or_standard_input(
     command, text = ([*MDR, "normal"], BODY)
     if where == "a file":
         command, text = [*command, str(file)], b""
-    told = subprocess.run(command, input=text, capture_output=True, check=True, timeout=PATIENCE)
-    assert (told.stdout, told.stderr) == (client.post_text("/v1/normal", BODY).content, b"")
+    result = subprocess.run(command, input=text, capture_output=True, check=True, timeout=PATIENCE)
+    assert (result.stdout, result.stderr) == (client.post_text("/v1/normal", BODY).content, b"")
 
 
 @pytest.mark.parametrize(
-    ("asked", "text", "form"),
+    ("query", "text", "format_name"),
     [
         ("normal", b"{", "json"),
         ("normal", BODY.replace(b"0.01", b"-1"), "json"),
@@ -93,14 +95,14 @@ def test_request_is_read_from_file_or_standard_input(
         ("tangential", BODY, "json"),
         ("normal", BODY, "xml"),
     ],
-    ids=["no JSON", "a wrong value", "no contact", "another query", "no such form"],
+    ids=["malformed JSON", "a wrong value", "no contact", "another query", "unknown format"],
 )
-def test_problem_is_the_document_of_the_service(
-    client: Client, within: Within, asked: str, text: bytes, form: str
+def test_problem_is_that_of_the_service(
+    client: Client, in_process: InProcess, query: str, text: bytes, format_name: str
 ) -> None:
-    answer = client.post_text(f"/v1/{asked}?format={form}", text)
-    assert answer.status_code >= 400
-    assert within(asked, text, form) == (2, b"", answer.content + b"\n")
+    output = client.post_text(f"/v1/{query}?format={format_name}", text)
+    assert output.status_code >= 400
+    assert in_process(query, text, format_name) == (2, b"", output.content + b"\n")
 
 
 def failing(error: Exception) -> Callable[[object], object]:
@@ -113,15 +115,15 @@ def failing(error: Exception) -> Callable[[object], object]:
 @pytest.mark.parametrize(
     ("error", "status", "kind"),
     [
-        (AccuracyError("not in doubles"), 3, "accuracy-not-reachable"),
+        (AccuracyError("overflow"), 3, "accuracy-not-reachable"),
         (ZeroDivisionError(), 1, "internal-error"),
     ],
 )
 def test_each_type_of_problem_has_its_exit_status(
-    within: Within, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int, kind: str
+    in_process: InProcess, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int, kind: str
 ) -> None:
     monkeypatch.setitem(QUERIES, "normal", QUERIES["normal"]._replace(solve=failing(error)))
-    found, out, err = within("normal", BODY)
+    found, out, err = in_process("normal", BODY)
     assert (found, out) == (status, b"")
     assert json.loads(err.splitlines()[-1])["type"] == f"urn:mdr:problem:{kind}"
 
@@ -144,70 +146,70 @@ def test_query_imports_no_server(tmp_path: Path) -> None:
 
 @contextmanager
 def terminal() -> Iterator[tuple[int, int]]:
-    """Two ends of a terminal: that of the person, and that of the program."""
-    ours, theirs = pty.openpty()
+    """Both ends of a pseudoterminal: the user's and the program's."""
+    ours, response = pty.openpty()
     try:
-        yield ours, theirs
+        yield ours, response
     finally:
         os.close(ours)
-        os.close(theirs)
+        os.close(response)
 
 
 def test_progress_bar_is_shown_on_a_terminal(client: Client) -> None:
-    text = json.dumps(FOLLOWED).encode()
-    with terminal() as (ours, theirs):
-        told = subprocess.run(
+    text = json.dumps(HISTORY).encode()
+    with terminal() as (ours, response):
+        result = subprocess.run(
             [*MDR, "evolution"],
             input=text,
             stdout=subprocess.PIPE,
-            stderr=theirs,
+            stderr=response,
             check=True,
             timeout=PATIENCE,
         )
         shown = os.read(ours, 100_000)
-    assert told.stdout == client.post_text("/v1/wear/evolution", text).content
+    assert result.stdout == client.post_text("/v1/wear/evolution", text).content
     assert b"about 1 %" in shown
-    # Nothing is left in the line.
+    # The progress bar is erased.
     assert shown.endswith(b"\r\x1b[K")
 
 
 def test_output_on_a_terminal_ends_with_a_newline(client: Client) -> None:
-    with terminal() as (ours, theirs):
-        subprocess.run([*MDR, "normal"], input=BODY, stdout=theirs, check=True, timeout=PATIENCE)
+    with terminal() as (ours, response):
+        subprocess.run([*MDR, "normal"], input=BODY, stdout=response, check=True, timeout=PATIENCE)
         shown = os.read(ours, 100_000)
     assert shown == client.post_text("/v1/normal", BODY).content + b"\r\n"
 
 
 def test_interrupt_ends_the_command_without_a_traceback() -> None:
-    with terminal() as (ours, theirs):
-        asked = subprocess.Popen(
+    with terminal() as (ours, response):
+        process = subprocess.Popen(
             [*MDR, "evolution"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=theirs,
-            # A process inherits it if its parent ignores the signal, as in a shell's background.
+            stderr=response,
+            # A process inherits an ignored SIGINT from its parent, e.g. from a background shell.
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509 -- no threads
         )
-        assert asked.stdin is not None
-        asked.stdin.write(json.dumps(LONG).encode())
-        asked.stdin.close()
-        asked.stdin = None
-        # As soon as the bar is there it is under way.
+        assert process.stdin is not None
+        process.stdin.write(json.dumps(LONG).encode())
+        process.stdin.close()
+        process.stdin = None
+        # The command is running once the bar is shown.
         shown = os.read(ours, 100)
-        asked.send_signal(signal.SIGINT)
-        out, _ = asked.communicate(timeout=PATIENCE)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=PATIENCE)
         shown += os.read(ours, 100_000)
-    assert (asked.returncode, out) == (130, b"")
+    assert (process.returncode, out) == (130, b"")
     assert b"Traceback" not in shown
 
 
 def test_closed_output_pipe_ends_silently() -> None:
     many = BALL | {"load": {"normal_force": [1.0 + i for i in range(10_000)]}}
-    asked = subprocess.Popen(
+    process = subprocess.Popen(
         [*MDR, "normal"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
-    assert asked.stdout is not None
-    asked.stdout.close()
-    asked.stdout = None
-    _, err = asked.communicate(json.dumps(many).encode(), timeout=PATIENCE)
-    assert (asked.returncode, err) == (141, b"")
+    assert process.stdout is not None
+    process.stdout.close()
+    process.stdout = None
+    _, err = process.communicate(json.dumps(many).encode(), timeout=PATIENCE)
+    assert (process.returncode, err) == (141, b"")

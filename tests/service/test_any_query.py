@@ -1,4 +1,4 @@
-"""Whatever the schema lets in is answered with numbers or refused with a reason."""
+"""Every query that the schema accepts returns finite numbers or a problem with a cause."""
 
 from collections.abc import Callable
 from functools import partial
@@ -77,31 +77,31 @@ PROFILES = (
     | st.lists(TERMS, min_size=1, max_size=3).map(lambda terms: {"kind": "series", "terms": terms})
 )
 CONTROLS = st.sampled_from(["indentation_depth", "normal_force", "contact_radius"])
-PRESSED = {
+NORMAL_LOADS = {
     "profile": PROFILES,
     "material": st.fixed_dictionaries({"e_star": LENGTHS}),
     "load": st.dictionaries(
         CONTROLS, LOADS | st.lists(LOADS, min_size=1, max_size=4), min_size=1, max_size=1
     ),
 }
-QUERIES = st.fixed_dictionaries(PRESSED)
+QUERIES = st.fixed_dictionaries(NORMAL_LOADS)
 SIGNED = LOADS | LOADS.map(lambda load: -load)
-PUSHES = st.sampled_from(["tangential_force", "tangential_displacement"]).flatmap(
+TANGENTIAL_LOADS = st.sampled_from(["tangential_force", "tangential_displacement"]).flatmap(
     lambda name: (SIGNED | st.lists(SIGNED, min_size=1, max_size=4)).map(lambda one: {name: one})
 ) | (LOADS | st.lists(LOADS, min_size=1, max_size=4)).map(lambda one: {"stick_radius": one})
 FRICTION = {
     "material": st.fixed_dictionaries({"e_star": LENGTHS, "g_star": LENGTHS}),
     "friction_coefficient": st.floats(0.01, 2) | st.floats(1e-15, 1e6),
-    "tangential": PUSHES,
+    "tangential": TANGENTIAL_LOADS,
 }
-PUSHED = st.fixed_dictionaries(PRESSED | FRICTION)
+TANGENTIAL = st.fixed_dictionaries(NORMAL_LOADS | FRICTION)
 NORMAL_FIELDS = ["pressure", "normal_displacement", "foundation_load"]
 SHEAR_FIELDS = ["shear_stress", "slip", "foundation_shear"]
 ORDINARY_LOADS = st.just(0.0) | ORDINARY
 PLACES = st.lists(ORDINARY_LOADS, min_size=1, max_size=8).map(lambda radius: {"radius": radius}) | (
     st.integers(2, 30).map(lambda points: {"points": points})
 )
-ORDINARILY_PRESSED = PRESSED | {
+ORDINARY_CONTACTS = NORMAL_LOADS | {
     "profile": PROFILES,
     "load": st.dictionaries(
         CONTROLS,
@@ -118,9 +118,9 @@ def quantities(names: list[str]) -> st.SearchStrategy[list[str]]:
 
 STRESSES = st.builds(
     lambda query, places: query | places,
-    st.fixed_dictionaries(ORDINARILY_PRESSED | {"quantities": quantities(NORMAL_FIELDS)})
+    st.fixed_dictionaries(ORDINARY_CONTACTS | {"quantities": quantities(NORMAL_FIELDS)})
     | st.fixed_dictionaries(
-        ORDINARILY_PRESSED | FRICTION | {"quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS)}
+        ORDINARY_CONTACTS | FRICTION | {"quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS)}
     ),
     PLACES,
 )
@@ -130,7 +130,7 @@ def one_or_many(values: st.SearchStrategy[float]) -> st.SearchStrategy[object]:
     return values | st.lists(values, min_size=1, max_size=4)
 
 
-# Pushes that friction may carry, besides those of any size.
+# Small tangential forces, likely to be within the friction limit.
 SMALL = st.just(0.0) | st.floats(-1e-9, 1e-9) | SIGNED
 NORMAL_POINTS = {"normal_force": LOADS, "indentation_depth": SIGNED}
 TANGENTIAL_POINTS = {"tangential_force": SMALL, "tangential_displacement": SIGNED}
@@ -166,22 +166,22 @@ def cycles(draw: st.DrawFn, controls: list[tuple[str, str]]) -> dict[str, object
     }
 
 
-FOLLOWED = {
+HISTORIES = {
     "profile": PROFILES,
     **{name: FRICTION[name] for name in ("material", "friction_coefficient")},
 }
-# Each step of such a way is many steps: profiles that need no search.
-FOLLOWED_SHORTLY = FOLLOWED | {"profile": simple(), "rtol": st.just(1e-3)}
-WAYS = st.fixed_dictionaries(FOLLOWED | {"history": histories(STRAIGHT)}) | (
-    st.fixed_dictionaries(FOLLOWED | {"cycles": cycles(STRAIGHT)})
+# Each step of a nonlinear path is subdivided, so use profiles without iteration.
+SHORT_HISTORIES = HISTORIES | {"profile": simple(), "rtol": st.just(1e-3)}
+LINEAR_HISTORIES = st.fixed_dictionaries(HISTORIES | {"history": histories(STRAIGHT)}) | (
+    st.fixed_dictionaries(HISTORIES | {"cycles": cycles(STRAIGHT)})
 )
-CURVED_WAYS = st.fixed_dictionaries(FOLLOWED_SHORTLY | {"history": histories(CURVED)}) | (
-    st.fixed_dictionaries(FOLLOWED_SHORTLY | {"cycles": cycles(CURVED)})
+NONLINEAR_HISTORIES = st.fixed_dictionaries(SHORT_HISTORIES | {"history": histories(CURVED)}) | (
+    st.fixed_dictionaries(SHORT_HISTORIES | {"cycles": cycles(CURVED)})
 )
 ENDS = st.builds(
     lambda query, places: query | places,
     st.fixed_dictionaries(
-        FOLLOWED
+        HISTORIES
         | {
             "history": histories(STRAIGHT),
             "quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS),
@@ -191,22 +191,22 @@ ENDS = st.builds(
 )
 
 
-HELD = st.sampled_from(["indentation_depth", "normal_force"])
+CONSTANT_LOADS = st.sampled_from(["indentation_depth", "normal_force"])
 AMPLITUDE = st.sampled_from(["tangential_displacement", "tangential_force"])
 MANY = LOADS | st.lists(LOADS, min_size=1, max_size=4)
-# Powers whose contacts have a radius with digits for its cube.
+# Powers whose contact radius can be cubed without underflow.
 ORDINARY_POWERS = st.fixed_dictionaries(
     {"kind": st.just("power"), "coefficient": st.floats(1e-3, 1e3), "exponent": st.floats(0.5, 20)}
 )
-WEARING = {"profile": simple() | tables() | ORDINARY_POWERS, "rtol": st.just(1e-3)} | {
+WEAR = {"profile": simple() | tables() | ORDINARY_POWERS, "rtol": st.just(1e-3)} | {
     name: FRICTION[name] for name in ("material", "friction_coefficient")
 }
 LIMITS = st.builds(
     lambda query, places, names: query | places | ({"quantities": names} if places else {}),
     st.fixed_dictionaries(
-        WEARING
+        WEAR
         | {
-            "load": st.dictionaries(HELD, MANY, min_size=1, max_size=1),
+            "load": st.dictionaries(CONSTANT_LOADS, MANY, min_size=1, max_size=1),
             "oscillation": st.dictionaries(AMPLITUDE, MANY, min_size=1, max_size=1),
         }
     ),
@@ -216,13 +216,13 @@ LIMITS = st.builds(
 
 
 @st.composite
-def ways_to_wear(draw: st.DrawFn) -> dict[str, object]:
-    """Queries of which many slip in part: by a share of the friction, or by any displacement.
+def wear_queries(draw: st.DrawFn) -> dict[str, object]:
+    """Wear queries, many in partial slip: by a fraction of the friction limit or any displacement.
 
-    Without those whose stick edge moves: less than its radius' last digit is not followed.
+    Excludes loads with a moving stick edge, which is not resolved below its last digit.
     """
-    query = draw(st.fixed_dictionaries(WEARING | {"wear_coefficient": LENGTHS}))
-    held, load = draw(HELD), draw(LOADS)
+    query = draw(st.fixed_dictionaries(WEAR | {"wear_coefficient": LENGTHS}))
+    held, load = draw(CONSTANT_LOADS), draw(LOADS)
     if held == "normal_force":
         push = draw(st.floats(0.0, 1.0)) * load * query["friction_coefficient"]
         query["oscillation"] = {"tangential_force": min(LARGEST, max(SMALLEST, push))}
@@ -235,8 +235,8 @@ def ways_to_wear(draw: st.DrawFn) -> dict[str, object]:
 
 
 @st.composite
-def partial_slips(draw: st.DrawFn) -> dict[str, object]:
-    """Queries that slip in part, of ordinary bodies: these are followed to the last cycle."""
+def partial_slip_wear(draw: st.DrawFn) -> dict[str, object]:
+    """Wear in partial slip of ordinary bodies, up to the last cycle."""
     size = st.floats(0.1, 10)
     kind = draw(st.sampled_from(["cone", "paraboloid", "rounded_punch", "hyperboloid"]))
     force, friction = draw(size), draw(st.floats(0.1, 1))
@@ -266,14 +266,14 @@ def check(client: Client, path: str, query: object, model: type[Known]) -> None:
         singular = any(warning.code in infinite for warning in told.warnings)
         assert singular == (b"null" in answer.content)
     else:
-        # The deadline is the guarantee: the slowest evolutions exceed it.
+        # The time limit is the guarantee; the slowest evolutions exceed it.
         slow = {504} if path.endswith("evolution") else set()
         assert answer.status_code in {422} | slow, answer.text
         assert answer.headers["content-type"] == MEDIA_TYPE
         assert all(error["pointer"] for error in document["errors"])
 
 
-def many(test: Callable[..., None], examples: int = 400) -> Callable[..., None]:
+def with_examples(test: Callable[..., None], examples: int = 400) -> Callable[..., None]:
     return settings(
         max_examples=examples,
         deadline=None,
@@ -282,59 +282,57 @@ def many(test: Callable[..., None], examples: int = 400) -> Callable[..., None]:
     )(test)
 
 
-@many
+@with_examples
 @given(query=QUERIES)
-def test_a_normal_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+def test_normal_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/normal", query, NormalAnswer)
 
 
-@many
-@given(query=PUSHED)
-def test_a_tangential_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+@with_examples
+@given(query=TANGENTIAL)
+def test_tangential_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/tangential", query, TangentialAnswer)
 
 
-@many
+@with_examples
 @given(query=STRESSES)
-def test_a_stress_query_within_the_schema(client: Client, query: dict[str, object]) -> None:
+def test_stress_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/stress", query, StressAnswer)
 
 
-@many
-@given(query=WAYS)
-def test_a_history_within_the_schema(client: Client, query: dict[str, object]) -> None:
+@with_examples
+@given(query=LINEAR_HISTORIES)
+def test_history_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/tangential/history", query, HistoryAnswer)
 
 
-@partial(many, examples=50)
-@given(query=CURVED_WAYS)
-def test_a_curved_history_within_the_schema(client: Client, query: dict[str, object]) -> None:
+@partial(with_examples, examples=50)
+@given(query=NONLINEAR_HISTORIES)
+def test_nonlinear_history_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/tangential/history", query, HistoryAnswer)
 
 
-@many
+@with_examples
 @given(query=ENDS)
-def test_a_stress_query_of_an_end_within_the_schema(
-    client: Client, query: dict[str, object]
-) -> None:
+def test_stress_query_at_the_end_of_a_history(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/stress", query, StressAnswer)
 
 
-@many
+@with_examples
 @given(query=LIMITS)
-def test_a_limit_of_wear_within_the_schema(client: Client, query: dict[str, object]) -> None:
+def test_wear_limit_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear", query, WearAnswer)
 
 
-@partial(many, examples=25)
-@given(query=ways_to_wear())
-def test_wear_over_the_cycles_within_the_schema(client: Client, query: dict[str, object]) -> None:
+@partial(with_examples, examples=25)
+@given(query=wear_queries())
+def test_wear_evolution_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear/evolution", query, EvolutionAnswer)
 
 
-@partial(many, examples=40)
-@given(query=partial_slips())
-def test_ordinary_bodies_are_followed(client: Client, query: dict[str, object]) -> None:
+@partial(with_examples, examples=40)
+@given(query=partial_slip_wear())
+def test_wear_evolution_of_ordinary_bodies(client: Client, query: dict[str, object]) -> None:
     answer = client.post("/v1/wear/evolution", query)
     assert answer.status_code == 200
     check(client, "/v1/wear/evolution", query, EvolutionAnswer)

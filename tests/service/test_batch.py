@@ -1,4 +1,4 @@
-"""A batch answers each query with the bytes it would have had on its own."""
+"""Every entry of a batch response has the bytes of the single response."""
 
 import json
 from collections.abc import Sequence
@@ -13,9 +13,9 @@ from mdr_service.schemas.examples import BATCH_EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_forms import BALL, CASES
-from tests.service.test_wrong_input import POINTED, POINTED_ELSEWHERE
+from tests.service.test_wrong_input import NORMAL_QUERIES, OTHER_QUERIES
 
-ASKS = {
+NAMES = {
     "/v1/normal": "normal",
     "/v1/tangential": "tangential",
     "/v1/tangential/history": "history",
@@ -24,37 +24,37 @@ ASKS = {
     "/v1/wear/evolution": "evolution",
 }
 LOADS = [1.0 + load for load in range(100)]
-FOLLOWED = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
-# An integer of hundreds of digits is rejected in other words: in a batch it is one of Python.
+HISTORY = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
+# An integer of hundreds of digits gets another message: within a batch it is a Python int.
 WRONG = [
     ("/v1/normal", body)
-    for body, _ in POINTED.values()
+    for body, _ in NORMAL_QUERIES.values()
     if body.startswith(b"{") and b"7" * 99 not in body
-] + [(f"/v1/{path}", body) for path, body, _ in POINTED_ELSEWHERE.values()]
+] + [(f"/v1/{path}", body) for path, body, _ in OTHER_QUERIES.values()]
 
 
 def batch(client: Client, queries: Sequence[tuple[str, bytes]]) -> httpx.Response:
     entries = [
-        b'{"ask": "%s", "request": %s}' % (ASKS[path].encode(), body) for path, body in queries
+        b'{"ask": "%s", "request": %s}' % (NAMES[path].encode(), body) for path, body in queries
     ]
     return client.post_text("/v1/batch", b'{"queries": [%s]}' % b",".join(entries))
 
 
-def alone(client: Client, path: str, body: bytes) -> bytes:
-    """Return the entry that holds what a query is answered on its own."""
-    answer = client.post_text(path, body)
-    name = b"answer" if answer.status_code == 200 else b"problem"
-    return b'{"status":%d,"%s":%s}' % (answer.status_code, name, answer.content)
+def single_entry(client: Client, path: str, body: bytes) -> bytes:
+    """Return the batch entry expected from the single response."""
+    response = client.post_text(path, body)
+    name = b"answer" if response.status_code == 200 else b"problem"
+    return b'{"status":%d,"%s":%s}' % (response.status_code, name, response.content)
 
 
 def test_batch_entries_equal_single_responses_in_order(client: Client) -> None:
     queries = [(path, json.dumps(query).encode()) for path, _, query in CASES]
-    answer = batch(client, queries)
-    assert answer.status_code == 200
-    assert answer.headers["content-type"] == "application/json"
-    expected = b",".join(alone(client, *query) for query in queries)
-    assert answer.content == b'{"answers":[%s]}' % expected
-    BatchAnswer.model_validate_json(answer.content)
+    response = batch(client, queries)
+    assert response.status_code == 200
+    assert response.headers["content-type"] == "application/json"
+    expected = b",".join(single_entry(client, *query) for query in queries)
+    assert response.content == b'{"answers":[%s]}' % expected
+    BatchAnswer.model_validate_json(response.content)
 
 
 @pytest.mark.parametrize(("path", "body"), WRONG)
@@ -62,11 +62,11 @@ def test_invalid_query_of_a_batch_has_its_own_problem(
     client: Client, path: str, body: bytes
 ) -> None:
     right = json.dumps(BALL).encode()
-    answer = batch(client, [("/v1/normal", right), (path, body), ("/v1/normal", right)])
-    assert answer.status_code == 200
-    good, bad = alone(client, "/v1/normal", right), alone(client, path, body)
+    response = batch(client, [("/v1/normal", right), (path, body), ("/v1/normal", right)])
+    assert response.status_code == 200
+    good, bad = single_entry(client, "/v1/normal", right), single_entry(client, path, body)
     assert bad.startswith(b'{"status":422')
-    assert answer.content == b'{"answers":[%s,%s,%s]}' % (good, bad, good)
+    assert response.content == b'{"answers":[%s,%s,%s]}' % (good, bad, good)
 
 
 @pytest.mark.parametrize(
@@ -88,10 +88,10 @@ def test_invalid_query_of_a_batch_has_its_own_problem(
     ids=lambda value: str(value)[:60],
 )
 def test_invalid_batch_is_rejected_as_a_whole(client: Client, body: object, pointer: str) -> None:
-    answer = client.post("/v1/batch", body)
-    assert answer.status_code == 422
-    assert answer.headers["content-type"] == MEDIA_TYPE
-    assert answer.json()["errors"][0]["pointer"] == pointer
+    response = client.post("/v1/batch", body)
+    assert response.status_code == 422
+    assert response.headers["content-type"] == MEDIA_TYPE
+    assert response.json()["errors"][0]["pointer"] == pointer
 
 
 def test_numbers_of_a_batch_are_limited_in_total(client: Client) -> None:
@@ -102,13 +102,13 @@ def test_numbers_of_a_batch_are_limited_in_total(client: Client) -> None:
     )
     many_samples = {
         "ask": "history",
-        "request": FOLLOWED
-        | {"cycles": FOLLOWED["cycles"] | {"count": SETTINGS.max_samples // 4 - 1}},
+        "request": HISTORY
+        | {"cycles": HISTORY["cycles"] | {"count": SETTINGS.max_samples // 4 - 1}},
     }
     for queries, index in (([few, many, few, many], 3), ([many_samples] * 11, 10)):
-        answer = client.post("/v1/batch", {"queries": queries})
-        assert answer.status_code == 422
-        assert [error["pointer"] for error in answer.json()["errors"]] == [f"/queries/{index}"]
+        response = client.post("/v1/batch", {"queries": queries})
+        assert response.status_code == 422
+        assert [error["pointer"] for error in response.json()["errors"]] == [f"/queries/{index}"]
     answers = client.post("/v1/batch", {"queries": [few, too_many]}).json()["answers"]
     assert [each["status"] for each in answers] == [200, 422]
 

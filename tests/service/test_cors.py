@@ -1,4 +1,4 @@
-"""Requests from pages of other hosts: off by default, and for each origin that is named."""
+"""Cross-origin requests: rejected by default, allowed for configured origins."""
 
 import asyncio
 
@@ -22,50 +22,50 @@ def application(monkeypatch: pytest.MonkeyPatch, origins: str) -> FastAPI:
     given = from_environment({"MDR_CORS_ORIGINS": origins} if origins else {})
     monkeypatch.setattr(middleware, "SETTINGS", given)
     app = create_app()
-    # Without a process or a queue whatever needs one is refused.
+    # Without a compute process or a queue, queries that need one are rejected.
     none = SETTINGS.model_copy(update={"queue_length": 0})
     app.state.workers = WorkerPool(none, app.state.transfers)
     return app
 
 
-def ask(app: FastAPI, method: str, path: str, origin: str = PAGE, **options: object) -> Response:
-    async def asked() -> Response:
+def send(app: FastAPI, method: str, path: str, origin: str = PAGE, **options: object) -> Response:
+    async def request() -> Response:
         async with AsyncClient(transport=ASGITransport(app), base_url="http://service") as client:
             headers = {"Origin": origin, **options.pop("headers", {})}
             return await client.request(method, path, headers=headers, **options)
 
-    return asyncio.run(asked())
+    return asyncio.run(request())
 
 
 def preflight(app: FastAPI, origin: str = PAGE) -> Response:
-    asked = {"Access-Control-Request-Method": "POST"}
-    asked["Access-Control-Request-Headers"] = "content-type"
-    return ask(app, "OPTIONS", "/v1/normal", origin, headers=asked)
+    headers = {"Access-Control-Request-Method": "POST"}
+    headers["Access-Control-Request-Headers"] = "content-type"
+    return send(app, "OPTIONS", "/v1/normal", origin, headers=headers)
 
 
 def allowed(response: httpx.Response) -> str | None:
     return response.headers.get("access-control-allow-origin")
 
 
-def test_no_other_page_may_ask_by_default(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_origins_are_rejected_by_default(monkeypatch: pytest.MonkeyPatch) -> None:
     app = application(monkeypatch, "")
     assert preflight(app).status_code == 405
-    assert allowed(ask(app, "POST", "/v1/normal", json=LOADED)) is None
+    assert allowed(send(app, "POST", "/v1/normal", json=LOADED)) is None
 
 
-def test_a_named_page_may_ask_and_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_configured_origin_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
     app = application(monkeypatch, f"http://localhost:5173, {PAGE}")
-    answer = preflight(app)
-    assert (answer.status_code, allowed(answer)) == (200, PAGE)
-    assert "content-type" in answer.headers["access-control-allow-headers"].lower()
+    response = preflight(app)
+    assert (response.status_code, allowed(response)) == (200, PAGE)
+    assert "content-type" in response.headers["access-control-allow-headers"].lower()
     assert preflight(app, "https://other.example").status_code == 400
-    answer = ask(app, "POST", "/v1/normal", json=LOADED)
-    assert (answer.status_code, allowed(answer)) == (200, PAGE)
-    assert allowed(ask(app, "POST", "/v1/normal", "https://other.example", json=LOADED)) is None
+    response = send(app, "POST", "/v1/normal", json=LOADED)
+    assert (response.status_code, allowed(response)) == (200, PAGE)
+    assert allowed(send(app, "POST", "/v1/normal", "https://other.example", json=LOADED)) is None
 
 
-def test_all_pages_may_ask(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert allowed(ask(application(monkeypatch, "*"), "GET", "/health")) == "*"
+def test_wildcard_allows_all_origins(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert allowed(send(application(monkeypatch, "*"), "GET", "/health")) == "*"
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_all_pages_may_ask(monkeypatch: pytest.MonkeyPatch) -> None:
         (503, "POST", "/v1/normal", {"json": TABLE}),
     ],
 )
-def test_a_page_can_read_problems(
+def test_problems_are_readable_across_origins(
     status: int,
     method: str,
     path: str,
@@ -91,14 +91,14 @@ def test_a_page_can_read_problems(
         app.state.workers = None
     if "content" in options:
         options = options | {"headers": {"Content-Type": "application/json"}}
-    answer = ask(app, method, path, **options)
-    assert answer.status_code == status
-    assert answer.json()["status"] == status
-    assert allowed(answer) == PAGE
-    assert "X-Request-Id" in answer.headers["access-control-expose-headers"]
+    response = send(app, method, path, **options)
+    assert response.status_code == status
+    assert response.json()["status"] == status
+    assert allowed(response) == PAGE
+    assert "X-Request-Id" in response.headers["access-control-expose-headers"]
 
 
 @pytest.mark.parametrize("origins", ["page.example", "https://page.example/", "https://a b"])
-def test_what_is_no_origin_ends_the_start(origins: str) -> None:
+def test_invalid_origin_prevents_startup(origins: str) -> None:
     with pytest.raises(SystemExit, match="MDR_CORS_ORIGINS: "):
         from_environment({"MDR_CORS_ORIGINS": origins})

@@ -1,4 +1,4 @@
-"""Expected computing time: order of magnitude, growth with the sizes, and rejection."""
+"""Estimated computing time: order of magnitude, growth with the sizes, and rejection."""
 
 import json
 from time import thread_time
@@ -42,8 +42,8 @@ def query(name: str, value: dict[str, Any]) -> Query:
 
 
 @pytest.mark.parametrize(("name", "value"), EXAMPLES)
-def test_no_example_takes_far_longer_than_expected(name: str, value: dict[str, Any]) -> None:
-    # A first call loads what later ones need. The event loop must not be blocked.
+def test_examples_take_about_the_estimated_time(name: str, value: dict[str, Any]) -> None:
+    # The first call imports modules. The event loop must not be blocked.
     given = query(name, value)
     times = []
     for _ in range(3):
@@ -53,7 +53,7 @@ def test_no_example_takes_far_longer_than_expected(name: str, value: dict[str, A
     assert min(times) < 4 * max(cost.seconds(given), AT_ONCE_SECONDS)
 
 
-def test_each_field_takes_time() -> None:
+def test_each_field_adds_to_the_estimate() -> None:
     fields, one = (
         {**STRESS, "radius": [1e-5] * 10_000, "quantities": names}
         for names in (STRESS["quantities"], ["slip"])
@@ -77,13 +77,13 @@ def test_each_field_takes_time() -> None:
         ("history", HISTORY, {"cycles": {**HISTORY["cycles"], "samples_per_step": 1000}}),
     ],
 )
-def test_a_larger_query_is_expected_to_take_longer(
+def test_estimate_grows_with_the_size(
     name: str, value: dict[str, Any], change: dict[str, Any]
 ) -> None:
     assert cost.seconds(query(name, value | change)) > 1.1 * cost.seconds(query(name, value))
 
 
-def test_a_step_in_which_both_controls_change_is_expensive_under_mixed_control() -> None:
+def test_nonlinear_steps_under_mixed_control_are_expensive() -> None:
     path = {"normal": {"indentation_depth": [1e-6, 2e-6]}}
     mixed = path | {"tangential": {"tangential_force": [0.1, 0.2]}}
     exact = path | {"tangential": {"tangential_displacement": [1e-8, 2e-8]}}
@@ -92,12 +92,12 @@ def test_a_step_in_which_both_controls_change_is_expensive_under_mixed_control()
     assert slow - fast == pytest.approx(2 * 2.5e-3, rel=1e-9, abs=0)
 
 
-def test_a_picture_is_drawn_in_a_compute_process() -> None:
+def test_plots_are_drawn_in_a_compute_process() -> None:
     assert cost.require_feasible(query("normal", BALL), FORMATS["svg"]) > AT_ONCE_SECONDS
     assert cost.require_feasible(query("normal", BALL), JSON) < AT_ONCE_SECONDS
 
 
-def test_a_batch_takes_the_sum_of_its_queries() -> None:
+def test_batch_estimate_is_the_sum_of_its_queries() -> None:
     items = [{"ask": "normal", "request": BALL}, {"ask": "stress", "request": STRESS}]
     invalid = {"ask": "normal", "request": {}}
     batch = BatchQuery.model_validate({"queries": [*items, invalid]})
@@ -112,26 +112,26 @@ def mixed(steps: int) -> dict[str, Any]:
     return rest | {"history": {"normal": normal, "tangential": {"tangential_force": 0.1}}}
 
 
-HOPELESS = mixed(50_000)
+OVERSIZED = mixed(50_000)
 
 
-def test_a_hopeless_query_is_rejected_with_the_size_that_fits(client: Client) -> None:
+def test_oversized_query_is_rejected_with_the_feasible_size(client: Client) -> None:
     with pytest.raises(ServiceError) as raised:
-        cost.require_feasible(query("history", HOPELESS), JSON)
+        cost.require_feasible(query("history", OVERSIZED), JSON)
     pointer, detail = raised.value.errors[0]
     assert pointer == "/history"
     fitting = int(detail.rpartition("about ")[2].split()[0])
     expected = cost.require_feasible(query("history", mixed(fitting)), JSON)
     assert expected == pytest.approx(SETTINGS.budget_seconds, rel=0.2, abs=0)
-    response = client.post("/v1/tangential/history", HOPELESS)
+    response = client.post("/v1/tangential/history", OVERSIZED)
     assert response.status_code == 422
     assert response.json()["type"] == "urn:mdr:problem:too-costly"
     assert response.json()["errors"][0]["pointer"] == "/history"
 
 
-def test_a_hopeless_query_of_a_batch_is_rejected_alone(client: Client) -> None:
+def test_oversized_query_of_a_batch_is_rejected_separately(client: Client) -> None:
     queries = [
-        {"ask": "history", "request": HOPELESS},
+        {"ask": "history", "request": OVERSIZED},
         {"ask": "normal", "request": BALL},
     ]
     first, second = client.post("/v1/batch", {"queries": queries}).json()["answers"]

@@ -1,4 +1,4 @@
-"""Answers as arrays of NumPy: the numbers of the document, to the last bit, without pickle."""
+"""Responses as NumPy archives: bit-identical to the JSON response, without pickle."""
 
 import io
 import zipfile
@@ -14,33 +14,35 @@ from tests.service.test_forms import BALL, EVERY_EXAMPLE, ask
 NPZ = "application/x-npz"
 
 
-def arrays(answer: httpx.Response) -> dict[str, np.ndarray]:
-    assert answer.status_code == 200
-    assert answer.headers["content-type"] == NPZ
-    with np.load(io.BytesIO(answer.content), allow_pickle=False) as archive:
+def arrays(response: httpx.Response) -> dict[str, np.ndarray]:
+    assert response.status_code == 200
+    assert response.headers["content-type"] == NPZ
+    with np.load(io.BytesIO(response.content), allow_pickle=False) as archive:
         return {name: archive[name] for name in archive.files}
 
 
-def infinite(value: object) -> object:
-    """Return a value of a JSON answer with the infinities that `null` stands for."""
+def with_infinity(value: object) -> object:
+    """Return a JSON value with `null` replaced by the infinity it represents."""
     if isinstance(value, list):
-        return [infinite(each) for each in value]
+        return [with_infinity(each) for each in value]
     return inf if value is None else value
 
 
 @EVERY_EXAMPLE
-def test_the_arrays_hold_the_bits_of_the_document(
+def test_arrays_are_bit_identical_to_json(
     client: Client, path: str, query: dict[str, object]
 ) -> None:
     found = arrays(ask(client, path, query, NPZ))
     document = client.post(path, query).json()
     assert list(found) == list(document)
     warnings = document.pop("warnings")
-    told = found.pop("warnings")
-    assert told.dtype.names == ("code", "message")
-    assert [dict(zip(told.dtype.names, each, strict=True)) for each in told.tolist()] == warnings
+    warning_array = found.pop("warnings")
+    assert warning_array.dtype.names == ("code", "message")
+    assert [
+        dict(zip(warning_array.dtype.names, each, strict=True)) for each in warning_array.tolist()
+    ] == warnings
     for name, values in document.items():
-        assert found[name].tolist() == infinite(values), name
+        assert found[name].tolist() == with_infinity(values), name
         assert found[name].dtype.kind in {"f", "i", "U"}
 
 
@@ -58,7 +60,7 @@ def test_fields_are_arrays_by_load_and_radius(client: Client) -> None:
     assert found["method"].shape == found["error_estimate"].shape == ()
 
 
-def test_the_same_question_has_the_same_bytes(client: Client) -> None:
+def test_repeated_query_has_identical_bytes(client: Client) -> None:
     first, second = (ask(client, "/v1/normal", BALL, NPZ).content for _ in range(2))
     assert first == second
     with zipfile.ZipFile(io.BytesIO(first)) as archive:
@@ -74,7 +76,9 @@ def test_the_same_question_has_the_same_bytes(client: Client) -> None:
         ("svg", "image/svg+xml"),
     ],
 )
-def test_a_form_can_be_asked_for_by_name(client: Client, name: str, media_type: str) -> None:
+def test_format_parameter_selects_the_media_type(
+    client: Client, name: str, media_type: str
+) -> None:
     query = {**BALL, "radius": [0.0, 1e-5], "quantities": ["pressure"]}
     named = ask(client, f"/v1/stress?format={name}", query, "text/html, image/svg+xml;q=0.1")
     assert named.status_code == 200
@@ -83,10 +87,10 @@ def test_a_form_can_be_asked_for_by_name(client: Client, name: str, media_type: 
 
 
 @pytest.mark.parametrize("name", ["xml", "", "JSON", "text/csv"])
-def test_an_unknown_name_is_refused_with_those_that_are_known(client: Client, name: str) -> None:
-    answer = ask(client, f"/v1/normal?format={name}", BALL, "application/json")
-    assert answer.status_code == 406
-    assert answer.json()["detail"] == (
+def test_unknown_format_is_rejected_with_the_available_formats(client: Client, name: str) -> None:
+    response = ask(client, f"/v1/normal?format={name}", BALL, "application/json")
+    assert response.status_code == 406
+    assert response.json()["detail"] == (
         "available formats: json (application/json), csv (text/csv), npz (application/x-npz), "
         "svg (image/svg+xml)"
     )
@@ -101,9 +105,9 @@ def test_an_unknown_name_is_refused_with_those_that_are_known(client: Client, na
         ("&".join(f"u{i}=1" for i in range(101)), "/"),
     ],
 )
-def test_nothing_else_is_read_from_the_address_of_a_body(
+def test_other_query_parameters_of_post_are_rejected(
     client: Client, query_string: str, pointer: str
 ) -> None:
-    answer = ask(client, f"/v1/normal?{query_string}", BALL, "*/*")
-    assert answer.status_code == 422
-    assert answer.json()["errors"][0]["pointer"] == pointer
+    response = ask(client, f"/v1/normal?{query_string}", BALL, "*/*")
+    assert response.status_code == 422
+    assert response.json()["errors"][0]["pointer"] == pointer

@@ -1,4 +1,4 @@
-"""The same answer in other forms: tables, pictures, and a refusal where there is no such form."""
+"""Response formats: CSV tables, SVG plots, and rejection of unknown media types."""
 
 import csv
 import io
@@ -53,14 +53,14 @@ def ask(client: Client, path: str, query: object, accept: str) -> httpx.Response
     return client.request("POST", path, json=query, headers={"accept": accept})
 
 
-def table(answer: httpx.Response) -> list[dict[str, str]]:
-    assert answer.status_code == 200
-    assert answer.headers["content-type"] == "text/csv; charset=utf-8"
-    return list(csv.DictReader(io.StringIO(answer.text, newline="")))
+def table(response: httpx.Response) -> list[dict[str, str]]:
+    assert response.status_code == 200
+    assert response.headers["content-type"] == "text/csv; charset=utf-8"
+    return list(csv.DictReader(io.StringIO(response.text, newline="")))
 
 
-def told(value: object) -> str:
-    """Return a value of a JSON answer as the table shows it: as the answer itself does."""
+def cell(value: object) -> str:
+    """Return a JSON value as it appears in a table."""
     return repr(inf) if value is None else value if isinstance(value, str) else written(value)
 
 
@@ -68,49 +68,47 @@ def written(value: object) -> str:
     return orjson.dumps(value).decode()
 
 
-OF_NO_LOAD = "initial_profile"
+LOAD_INDEPENDENT = "initial_profile"
 
 
 def has_radii(name: str, values: list[object]) -> bool:
-    return name == OF_NO_LOAD or isinstance(values[0], list)
+    return name == LOAD_INDEPENDENT or isinstance(values[0], list)
 
 
 @EVERY_EXAMPLE
-def test_the_table_holds_the_digits_of_the_document(
-    client: Client, path: str, query: dict[str, object]
-) -> None:
+def test_csv_has_the_digits_of_json(client: Client, path: str, query: dict[str, object]) -> None:
     rows = table(ask(client, path, query, "text/csv"))
     document = client.post(path, query).json()
     columns = {name: values for name, values in document.items() if name not in WITHOUT_ROWS}
     if "radius" not in document:
         for name, values in columns.items():
-            assert [row[name] for row in rows] == [told(value) for value in values]
+            assert [row[name] for row in rows] == [cell(value) for value in values]
         return
     radius = columns.pop("radius")
     cycles = columns.get("cycles")
     columns = {name: values for name, values in columns.items() if has_radii(name, values)}
-    loads = range(max(len(field) for name, field in columns.items() if name != OF_NO_LOAD))
-    if OF_NO_LOAD in columns:
-        columns[OF_NO_LOAD] = [columns[OF_NO_LOAD]] * len(loads)
+    loads = range(max(len(field) for name, field in columns.items() if name != LOAD_INDEPENDENT))
+    if LOAD_INDEPENDENT in columns:
+        columns[LOAD_INDEPENDENT] = [columns[LOAD_INDEPENDENT]] * len(loads)
     assert ("load" in rows[0]) == (len(loads) > 1 and cycles is None)
     assert ("cycles" in rows[0]) == (cycles is not None)
     expected = [
         ({"cycles": written(cycles[load])} if cycles else {"load": str(load)} if loads[1:] else {})
         | {"radius": written(r)}
-        | {name: told(field[load][at]) for name, field in columns.items()}
+        | {name: cell(field[load][at]) for name, field in columns.items()}
         for load in loads
         for at, r in enumerate(radius)
     ]
     assert rows == expected
 
 
-def test_a_table_of_fields_has_its_columns_in_the_order_asked_for(client: Client) -> None:
+def test_columns_have_the_requested_order(client: Client) -> None:
     query = {**BALL, "radius": [0.0], "quantities": ["foundation_load", "pressure"]}
-    answer = ask(client, "/v1/stress", query, "text/csv")
-    assert answer.text.splitlines()[0] == "radius,foundation_load,pressure"
+    response = ask(client, "/v1/stress", query, "text/csv")
+    assert response.text.splitlines()[0] == "radius,foundation_load,pressure"
 
 
-def test_infinity_is_written_inf(client: Client) -> None:
+def test_infinity_is_inf_in_csv(client: Client) -> None:
     query = {
         "profile": {"kind": "power", "coefficient": 1.0, "exponent": 0.5},
         "material": {"e_star": 1.0},
@@ -120,7 +118,7 @@ def test_infinity_is_written_inf(client: Client) -> None:
     assert row["mean_pressure"] == "inf"
 
 
-def test_numbers_are_written_with_their_sign_and_all_their_digits() -> None:
+def test_numbers_have_sign_and_all_digits() -> None:
     numbers = np.array([inf, -inf, -0.0, 1e-300, 0.1 + 0.2])
     text = table_of.write({"number": numbers, "regime": ["a", "b", "c", "d", "e"]}).decode()
     assert text.split("\r\n") == [
@@ -148,14 +146,14 @@ def test_numbers_are_written_with_their_sign_and_all_their_digits() -> None:
         ("image/svg+xml, text/csv;q=0.5", "image/svg+xml"),
     ],
 )
-def test_the_form_is_the_preferred_one(client: Client, accept: str, media_type: str) -> None:
+def test_accept_header_selects_the_format(client: Client, accept: str, media_type: str) -> None:
     query = {**BALL, "radius": [0.0, 1e-5], "quantities": ["pressure"]}
-    answer = ask(client, "/v1/stress", query, accept)
-    assert answer.status_code == 200
-    assert answer.headers["content-type"].partition(";")[0] == media_type
+    response = ask(client, "/v1/stress", query, accept)
+    assert response.status_code == 200
+    assert response.headers["content-type"].partition(";")[0] == media_type
 
 
-def test_without_a_preference_it_is_json(client: Client) -> None:
+def test_default_format_is_json(client: Client) -> None:
     request = httpx.Request("POST", "http://service/v1/normal", json=BALL)
     assert "accept" not in request.headers
     assert client.send(request).headers["content-type"] == "application/json"
@@ -169,30 +167,30 @@ def test_without_a_preference_it_is_json(client: Client) -> None:
         *("/v1/wear", "/v1/wear/evolution"),
     ],
 )
-def test_an_unknown_form_is_refused(client: Client, path: str, accept: str) -> None:
-    answer = ask(client, path, BALL, accept)
-    assert answer.status_code == 406
-    assert answer.headers["content-type"] == "application/problem+json"
-    assert "text/csv" in answer.json()["detail"]
+def test_unknown_media_type_is_rejected(client: Client, path: str, accept: str) -> None:
+    response = ask(client, path, BALL, accept)
+    assert response.status_code == 406
+    assert response.headers["content-type"] == "application/problem+json"
+    assert "text/csv" in response.json()["detail"]
 
 
 @pytest.mark.parametrize(
-    ("form", "media_type", "start"),
+    ("format_name", "media_type", "start"),
     [("png", "image/png", b"\x89PNG\r\n"), ("pdf", "application/pdf", b"%PDF-1.4")],
 )
-def test_pictures_have_other_formats(
-    client: Client, form: str, media_type: str, start: bytes
+def test_plots_as_png_and_pdf(
+    client: Client, format_name: str, media_type: str, start: bytes
 ) -> None:
-    answers = [client.post(f"/v1/normal?format={form}", BALL) for _ in range(2)]
-    assert answers[0].headers["content-type"] == media_type
-    assert answers[0].content.startswith(start)
-    assert answers[0].content == answers[1].content
+    responses = [client.post(f"/v1/normal?format={format_name}", BALL) for _ in range(2)]
+    assert responses[0].headers["content-type"] == media_type
+    assert responses[0].content.startswith(start)
+    assert responses[0].content == responses[1].content
 
 
-def picture(answer: httpx.Response) -> ET.Element:
-    assert answer.status_code == 200
-    assert answer.headers["content-type"] == "image/svg+xml"
-    root = ET.fromstring(answer.content)  # noqa: S314 -- our own
+def parse_svg(response: httpx.Response) -> ET.Element:
+    assert response.status_code == 200
+    assert response.headers["content-type"] == "image/svg+xml"
+    root = ET.fromstring(response.content)  # noqa: S314 -- our own
     assert root.tag == f"{SVG}svg"
     return root
 
@@ -202,9 +200,9 @@ def picture(answer: httpx.Response) -> ET.Element:
     [case[::2] for case in CASES],
     ids=[f"{path} {name}" for path, name, _ in CASES],
 )
-def test_every_example_has_a_picture(client: Client, path: str, query: dict[str, object]) -> None:
-    answer = ask(client, path, query, "image/svg+xml")
-    axes = [part.get("id", "") for part in picture(answer).iter(f"{SVG}g")]
+def test_every_example_has_a_plot(client: Client, path: str, query: dict[str, object]) -> None:
+    response = ask(client, path, query, "image/svg+xml")
+    axes = [part.get("id", "") for part in parse_svg(response).iter(f"{SVG}g")]
     panels = [name for name in axes if name.startswith("axes_")]
     if path.startswith("/v1/wear"):
         requested = set(query.get("quantities", ()))
@@ -212,8 +210,8 @@ def test_every_example_has_a_picture(client: Client, path: str, query: dict[str,
         assert len(panels) == len(always | requested - {"initial_profile"})
     else:
         assert len(panels) == len(query.get("quantities", ["force over displacement"]))
-    # The same question, the same picture.
-    assert ask(client, path, query, "image/svg+xml").content == answer.content
+    # Identical queries give identical plots.
+    assert ask(client, path, query, "image/svg+xml").content == response.content
 
 
 @pytest.mark.long
@@ -231,13 +229,13 @@ def test_every_example_has_a_picture(client: Client, path: str, query: dict[str,
     ids=str,
 )
 @pytest.mark.parametrize("path", ["/v1/tangential", "/v1/stress"])
-def test_what_is_hard_to_draw_has_a_picture(
+def test_degenerate_contacts_have_a_plot(
     client: Client, path: str, change: dict[str, object]
 ) -> None:
     query = {**STRESS_EXAMPLES["cattaneo_mindlin"]["value"], **change}
     if path == "/v1/tangential":
         query = {name: query[name] for name in query if name not in {"radius", "quantities"}}
-    picture(ask(client, path, query, "image/svg+xml"))
+    parse_svg(ask(client, path, query, "image/svg+xml"))
 
 
 @pytest.mark.long
@@ -253,13 +251,11 @@ def test_what_is_hard_to_draw_has_a_picture(
     ],
     ids=["nothing", "gaps", "slip without force", "curves", "many points", "many samples"],
 )
-def test_a_history_that_is_hard_to_draw_has_a_picture(
-    client: Client, change: dict[str, object]
-) -> None:
+def test_degenerate_histories_have_a_plot(client: Client, change: dict[str, object]) -> None:
     example = HISTORY_EXAMPLES["residual"]["value"]
     displaced = {"tangential": {"tangential_displacement": [0.0, 1e-8]}}
     simple = example["history"] | (displaced if "tangential" not in change else {})
-    picture(
+    parse_svg(
         ask(
             client,
             "/v1/tangential/history",
@@ -286,9 +282,9 @@ def test_a_history_that_is_hard_to_draw_has_a_picture(
     ],
     ids=str,
 )
-def test_wear_that_is_hard_to_draw_has_a_picture(client: Client, change: dict[str, object]) -> None:
+def test_degenerate_wear_has_a_plot(client: Client, change: dict[str, object]) -> None:
     query = {**WEAR_EXAMPLES["amplitudes"]["value"], "oscillation": {"tangential_force": 0.2}}
-    picture(ask(client, "/v1/wear", query | change, "image/svg+xml"))
+    parse_svg(ask(client, "/v1/wear", query | change, "image/svg+xml"))
 
 
 @pytest.mark.long
@@ -305,30 +301,28 @@ def test_wear_that_is_hard_to_draw_has_a_picture(client: Client, change: dict[st
     ],
     ids=str,
 )
-def test_a_way_that_is_hard_to_draw_has_a_picture(
-    client: Client, change: dict[str, object]
-) -> None:
+def test_degenerate_wear_evolution_has_a_plot(client: Client, change: dict[str, object]) -> None:
     query = EVOLUTION_EXAMPLES["held_forces"]["value"]
-    picture(ask(client, "/v1/wear/evolution", query | change, "image/svg+xml"))
+    parse_svg(ask(client, "/v1/wear/evolution", query | change, "image/svg+xml"))
 
 
-def test_the_picture_shows_the_curve_and_not_its_chords(client: Client) -> None:
-    answer = ask(
+def test_plot_shows_a_smooth_curve(client: Client) -> None:
+    response = ask(
         client, "/v1/tangential/history", HISTORY_EXAMPLES["residual"]["value"], "image/svg+xml"
     )
-    lines = [len(path.get("d", "").split("L")) for path in picture(answer).iter(f"{SVG}path")]
-    # Drawn are as many of the samples as it takes.
+    lines = [len(path.get("d", "").split("L")) for path in parse_svg(response).iter(f"{SVG}path")]
+    # As many samples are drawn as a smooth curve requires.
     assert max(lines) > 20
 
 
-def test_what_is_wrong_is_told_in_json_whatever_was_accepted(client: Client) -> None:
-    answer = ask(client, "/v1/stress", {**BALL, "quantities": []}, "image/svg+xml")
-    assert answer.status_code == 422
-    assert answer.headers["content-type"] == "application/problem+json"
-    json.loads(answer.content)
+def test_problems_are_json_for_any_accept_header(client: Client) -> None:
+    response = ask(client, "/v1/stress", {**BALL, "quantities": []}, "image/svg+xml")
+    assert response.status_code == 422
+    assert response.headers["content-type"] == "application/problem+json"
+    json.loads(response.content)
 
 
-def test_drawing_is_not_loaded_before_a_picture_is_asked_for() -> None:
+def test_matplotlib_is_imported_lazily() -> None:
     code = (
         "import sys; from mdr_service.app import create_app; create_app(); "
         "sys.exit('matplotlib' in sys.modules)"

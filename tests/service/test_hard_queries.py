@@ -1,4 +1,4 @@
-"""Queries that were once answered by an internal error, wrongly, or far too slowly."""
+"""Regressions: queries that once caused an internal error, a wrong result or a long run time."""
 
 import json
 from pathlib import Path
@@ -25,25 +25,25 @@ ENDPOINTS = {
 
 @pytest.mark.parametrize(
     "name",
-    # An extreme ratio of moduli: some seconds until the tolerance proves unreachable.
+    # Extreme ratio of moduli: it takes seconds until the tolerance proves unreachable.
     [
         pytest.param(name, marks=[pytest.mark.long] if name == "evolution_gstar1" else [])
         for name in QUERIES
     ],
 )
-def test_hard_query_has_finite_numbers_or_a_pointer_to_its_fault(client: Client, name: str) -> None:
+def test_hard_query_returns_finite_numbers_or_a_pointer(client: Client, name: str) -> None:
     query = QUERIES[name]
     response = client.post(ENDPOINTS[query["ask"]], query["request"])
-    # The parser accepts neither NaN nor Infinity.
-    answer = strict_json.loads(response.content)
+    # This parser rejects NaN and Infinity.
+    document = strict_json.loads(response.content)
     if response.status_code == 200:
-        assert 0 < answer["error_estimate"] < 1
+        assert 0 < document["error_estimate"] < 1
     else:
         assert response.status_code == 422
         assert response.headers["content-type"] == MEDIA_TYPE
-        assert all(error["pointer"] for error in answer["errors"])
+        assert all(error["pointer"] for error in document["errors"])
 
 
 @pytest.mark.parametrize("ask", ENDPOINTS)
-def test_every_query_type_is_among_the_hard_ones(ask: str) -> None:
+def test_every_query_type_is_covered(ask: str) -> None:
     assert any(query["ask"] == ask for query in QUERIES.values())

@@ -9,14 +9,14 @@ from tests.contract import strict_json
 
 
 @pytest.mark.parametrize("path", ["/health", "/health/live", "/health/ready"])
-def test_an_instance_that_works_is_healthy(client: Client, path: str) -> None:
-    answer = client.get(path)
-    assert answer.status_code == 200
-    assert strict_json.loads(answer.content) == {"status": "ok"}
+def test_working_instance_is_ready(client: Client, path: str) -> None:
+    response = client.get(path)
+    assert response.status_code == 200
+    assert strict_json.loads(response.content) == {"status": "ok"}
 
 
 @pytest.mark.parametrize("name", ["normal_force", "contact_radius"])
-def test_an_instance_with_a_wrong_result_is_not_ready(
+def test_instance_with_a_wrong_result_is_not_ready(
     monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     health.self_test()

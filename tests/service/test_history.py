@@ -1,4 +1,4 @@
-"""Histories over the wire: the core's digits at every sample, its fields at the end."""
+"""Histories over HTTP: the core's digits at every sample, and its fields at the end."""
 
 import pytest
 
@@ -21,10 +21,10 @@ SAMPLED = (
     "tangential_energy",
     "regime",
 )
-WAYS = {
+PATHS = {
     "forces": ({"normal_force": [1e5, 2e5, 5e4]}, {"tangential_force": [0.0, 5e4, -1e4]}),
     "one force": ({"normal_force": 1e5}, {"tangential_force": [0.0, 3e4, -3e4, 1e4]}),
-    "depths, a gap": (
+    "depths, separation": (
         {"indentation_depth": [1e-4, 2e-4, -1e-5, 1e-4]},
         {"tangential_displacement": [0.0, 5e-5, 0.0, -1e-3]},
     ),
@@ -36,16 +36,16 @@ WAYS = {
 }
 
 
-def query(kind: str = "paraboloid", **way: object) -> dict[str, object]:
+def query(kind: str = "paraboloid", **load_path: object) -> dict[str, object]:
     return {
         "profile": {"kind": kind, **PROFILES[kind][0]},
         "material": {"e_star": E_STAR, "g_star": G_STAR},
         "friction_coefficient": FRICTION,
-        **way,
+        **load_path,
     }
 
 
-def told(normal_load: object, tangential: object, **more: object) -> dict[str, object]:
+def history_of(normal_load: object, tangential: object, **more: object) -> dict[str, object]:
     return {"history": {"normal": normal_load, "tangential": tangential, **more}}
 
 
@@ -54,11 +54,13 @@ def solved(kind: str, *controls: dict[str, object], **more: object) -> history.L
     return history.solve(PROFILES[kind][1], E_STAR, G_STAR, FRICTION, **given, **more)
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("load_path", PATHS)
 @pytest.mark.parametrize("kind", ["paraboloid", "flat_punch", "cone", "truncated_cone"])
-def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str, way: str) -> None:
-    document = client.post(PATH, query(kind, **told(*WAYS[way], samples_per_step=3))).json()
-    expected = solved(kind, *WAYS[way], samples_per_step=3)
+def test_response_equals_the_core(client: Client, kind: str, load_path: str) -> None:
+    document = client.post(
+        PATH, query(kind, **history_of(*PATHS[load_path], samples_per_step=3))
+    ).json()
+    expected = solved(kind, *PATHS[load_path], samples_per_step=3)
     for name in (*SAMPLED, "slip_fronts"):
         assert document[name] == getattr(expected, name).tolist(), name
     assert document["method"] == expected.method
@@ -67,11 +69,11 @@ def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str, way: str
 
 
 @pytest.mark.parametrize(("rtol", "reached"), [(1e-3, True), (1e-6, True), (1e-13, False)])
-def test_curved_steps_reach_the_tolerance_or_warn(
+def test_nonlinear_steps_reach_the_tolerance_or_warn(
     client: Client, rtol: float, *, reached: bool
 ) -> None:
     path = {"normal_force": [1e5, 2e5]}, {"tangential_displacement": [1e-5, -1e-5]}
-    document = client.post(PATH, query(**told(*path), rtol=rtol)).json()
+    document = client.post(PATH, query(**history_of(*path), rtol=rtol)).json()
     expected = solved("paraboloid", *path, rtol=rtol)
     assert document["tangential_force"] == expected.tangential_force.tolist()
     assert document["error_estimate"] == expected.error_estimate
@@ -79,12 +81,14 @@ def test_curved_steps_reach_the_tolerance_or_warn(
     assert ("accuracy" not in {each["code"] for each in document["warnings"]}) == reached
 
 
-def test_numbers_and_lists_of_one_are_the_same(client: Client) -> None:
+def test_scalars_equal_lists_of_length_one(client: Client) -> None:
     answers = [
-        client.post(PATH, query(**told({"normal_force": one}, {"tangential_force": other}))).json()
+        client.post(
+            PATH, query(**history_of({"normal_force": one}, {"tangential_force": other}))
+        ).json()
         for one, other in ((1e5, 1e4), ([1e5], 1e4), (1e5, [1e4]), ([1e5], [1e4]))
     ]
-    assert all(answer == answers[0] for answer in answers)
+    assert all(response == answers[0] for response in answers)
     assert all(len(answers[0][name]) == 1 for name in SAMPLED)
 
 
@@ -100,9 +104,9 @@ CYCLES = {
 }
 
 
-@pytest.mark.parametrize("way", CYCLES)
-def test_cycles_agree_with_the_core_digit_for_digit(client: Client, way: str) -> None:
-    pressed, pushed = CYCLES[way]
+@pytest.mark.parametrize("load_path", CYCLES)
+def test_cycles_equal_the_core(client: Client, load_path: str) -> None:
+    pressed, pushed = CYCLES[load_path]
     told_by = {"normal": pressed, "tangential": pushed, "count": 3, "samples_per_step": 2}
     document = client.post(PATH, query(cycles=told_by)).json()
     controls = {name: value for name, value in pressed.items() if name != "amplitude"}
@@ -124,37 +128,37 @@ def test_cycles_agree_with_the_core_digit_for_digit(client: Client, way: str) ->
         assert len(document[name]) == 3
 
 
-def test_cycles_are_one_without_their_number(client: Client) -> None:
+def test_default_number_of_cycles_is_one(client: Client) -> None:
     told_by = {"normal": {"normal_force": 1e5}, "tangential": {"tangential_force": 3e4}}
     document = client.post(PATH, query(cycles=told_by)).json()
     assert document["tangential_force"] == [0.0, 3e4, -3e4, 3e4]
     assert len(document["energy_per_cycle"]) == 1
 
 
-def test_bodies_and_yield_are_as_for_any_contact(client: Client) -> None:
+def test_bodies_and_yield_strength(client: Client) -> None:
     rubber = {"youngs_modulus": 5e6, "poissons_ratio": 0.4, "yield_strength": 1.0}
     material = {"bodies": ["rigid", {k: rubber[k] for k in ("youngs_modulus", "poissons_ratio")}]}
-    question = query(**told({"normal_force": 1.0}, {"tangential_force": 0.1}))
-    answer = client.post(PATH, question | {"material": material | {"yield_strength": 1.0}})
-    assert {each["code"] for each in answer.json()["warnings"]} == {"elastic_similarity", "yield"}
+    request = query(**history_of({"normal_force": 1.0}, {"tangential_force": 0.1}))
+    response = client.post(PATH, request | {"material": material | {"yield_strength": 1.0}})
+    assert {each["code"] for each in response.json()["warnings"]} == {"elastic_similarity", "yield"}
 
 
-def test_a_load_of_nothing_has_no_singular_answer(client: Client) -> None:
-    question = query(
-        "truncated_cone", **told({"normal_force": [0.0, 1.0]}, {"tangential_force": 0})
+def test_zero_load_gives_zero(client: Client) -> None:
+    request = query(
+        "truncated_cone", **history_of({"normal_force": [0.0, 1.0]}, {"tangential_force": 0})
     )
-    question["profile"] = {"kind": "power", "coefficient": 1.0, "exponent": 0.5}
-    answer = client.post(PATH, question)
-    assert answer.status_code == 200
-    assert "singular" not in {each["code"] for each in answer.json()["warnings"]}
+    request["profile"] = {"kind": "power", "coefficient": 1.0, "exponent": 0.5}
+    response = client.post(PATH, request)
+    assert response.status_code == 200
+    assert "singular" not in {each["code"] for each in response.json()["warnings"]}
 
 
 def test_samples_are_limited(client: Client) -> None:
-    for way in (WAYS["one force"], WAYS["a force and displacements"]):
-        asked = query(**told(*way, samples_per_step=SETTINGS.max_samples // 3 + 1))
-        answer = client.post(PATH, asked)
-        assert answer.status_code == 422
-        pointers = [error["pointer"] for error in answer.json()["errors"]]
+    for load_path in (PATHS["one force"], PATHS["a force and displacements"]):
+        asked = query(**history_of(*load_path, samples_per_step=SETTINGS.max_samples // 3 + 1))
+        response = client.post(PATH, asked)
+        assert response.status_code == 422
+        pointers = [error["pointer"] for error in response.json()["errors"]]
         assert pointers == ["/history/samples_per_step"]
 
 
@@ -165,9 +169,9 @@ def test_cycles_are_limited(client: Client) -> None:
         ({"count": SETTINGS.max_samples, "samples_per_step": 2}, "/cycles/samples_per_step"),
         ({"count": SETTINGS.max_samples + 1}, "/cycles/count"),
     ):
-        answer = client.post(PATH, query(cycles=told_by | more))
-        assert answer.status_code == 422
-        assert [error["pointer"] for error in answer.json()["errors"]] == [pointer]
+        response = client.post(PATH, query(cycles=told_by | more))
+        assert response.status_code == 422
+        assert [error["pointer"] for error in response.json()["errors"]] == [pointer]
 
 
 RADII = [0.0, 0.001, 0.01, 0.3, 1.2]
@@ -175,12 +179,14 @@ OF_NORMAL = ("pressure", "normal_displacement", "foundation_load")
 OF_SHEAR = ("shear_stress", "slip", "foundation_shear")
 
 
-@pytest.mark.parametrize("way", ["forces", "depths, a gap", "a depth and forces"])
+@pytest.mark.parametrize("load_path", ["forces", "depths, separation", "a depth and forces"])
 @pytest.mark.parametrize("kind", ["paraboloid", "flat_punch", "cone", "truncated_cone"])
-def test_the_fields_of_the_end_are_those_of_the_core(client: Client, kind: str, way: str) -> None:
+def test_fields_at_the_end_equal_the_core(client: Client, kind: str, load_path: str) -> None:
     asked = {"radius": RADII, "quantities": [*OF_NORMAL, *OF_SHEAR]}
-    document = client.post("/v1/stress", query(kind, **told(*WAYS[way]), **asked)).json()
-    expected = solved(kind, *WAYS[way])
+    document = client.post(
+        "/v1/stress", query(kind, **history_of(*PATHS[load_path]), **asked)
+    ).json()
+    expected = solved(kind, *PATHS[load_path])
     depth = max(float(expected.indentation_depth[-1]), 0.0)
     end = normal.solve(PROFILES[kind][1], E_STAR, indentation_depth=depth)
     for names, source in ((OF_NORMAL, end), (OF_SHEAR, expected.state)):
@@ -189,25 +195,25 @@ def test_the_fields_of_the_end_are_those_of_the_core(client: Client, kind: str, 
             assert document[name] == [[r if abs(r) < float("inf") else None for r in found]], name
 
 
-def test_a_push_told_as_a_history_has_the_same_fields(client: Client) -> None:
+def test_single_load_as_a_history_has_identical_fields(client: Client) -> None:
     asked = {"radius": RADII, "quantities": [*OF_NORMAL, *OF_SHEAR]}
-    way = told({"normal_force": 1e5}, {"tangential_force": [0.0, 3e4]})
+    load_path = history_of({"normal_force": 1e5}, {"tangential_force": [0.0, 3e4]})
     push = {"load": {"normal_force": 1e5}, "tangential": {"tangential_force": 3e4}}
     followed, pushed = (
-        client.post("/v1/stress", query(**each, **asked)).json() for each in (way, push)
+        client.post("/v1/stress", query(**each, **asked)).json() for each in (load_path, push)
     )
     for name in asked["quantities"]:
         (one,), (other,) = followed[name], pushed[name]
         assert one == pytest.approx(other, rel=1e-11, abs=1e-13 * max(map(abs, other)))
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_the_grid_of_an_end_clusters_at_its_slip_fronts(client: Client, way: str) -> None:
-    asked = query(**told(*WAYS[way]), points=100, quantities=["shear_stress"])
+@pytest.mark.parametrize("load_path", PATHS)
+def test_grid_at_the_end_clusters_at_slip_fronts(client: Client, load_path: str) -> None:
+    asked = query(**history_of(*PATHS[load_path]), points=100, quantities=["shear_stress"])
     document = client.post("/v1/stress", asked).json()
     assert len(document["radius"]) == len(document["shear_stress"][0]) == 100
-    fronts = client.post(PATH, query(**told(*WAYS[way]))).json()["slip_fronts"]
-    # At a front itself the rounding error of a stress is largest: the grid passes just inside.
+    fronts = client.post(PATH, query(**history_of(*PATHS[load_path]))).json()["slip_fronts"]
+    # The rounding error of a stress is largest at a front, so the grid point lies just inside.
     for front in fronts:
         nearest = min(abs(radius / front - 1) for radius in document["radius"])
         assert nearest < 1e-3

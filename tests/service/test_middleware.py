@@ -1,4 +1,4 @@
-"""The middleware between the server and the application: long bodies, failures and endings."""
+"""Middleware between server and application: long bodies, errors and shutdown."""
 
 import asyncio
 import json
@@ -18,7 +18,7 @@ TEXT = bytes(range(256)) * (LONG // 100)
 
 
 class Connection:
-    """One request to an application of one endpoint, and what is sent in response."""
+    """One request to an application with a single endpoint, and its response messages."""
 
     def __init__(
         self, app: FastAPI, method: str = "GET", body: bytes = b"", **headers: str
@@ -78,14 +78,14 @@ async def echo(request: Request) -> Response:
     return Response(await read_body(request))
 
 
-def test_long_response_is_sent_in_pieces() -> None:
+def test_long_response_is_sent_in_chunks() -> None:
     async def test() -> None:
         app = application(long_response)
         found = await Connection(app).run()
         assert found.body == TEXT
         pieces = [len(message["body"]) for message in found.sent[1:]]
         assert max(pieces) == LONG
-        # The server waits until the client has read most of it before it takes the last message.
+        # The server waits until the client has read most of it before it accepts the last message.
         assert pieces[-1] == 0
         assert [message.get("more_body", False) for message in found.sent[1:]][-2:] == [True, False]
         assert app.state.transfers._total == 0
@@ -93,7 +93,7 @@ def test_long_response_is_sent_in_pieces() -> None:
     asyncio.run(test())
 
 
-def test_long_response_is_refused_while_others_are_sent() -> None:
+def test_long_response_is_rejected_while_others_are_sent() -> None:
     async def test() -> None:
         app = application(long_response, len(TEXT))
         slow = Connection(app)
@@ -128,7 +128,7 @@ def test_oldest_response_is_aborted_for_the_next(monkeypatch: pytest.MonkeyPatch
     asyncio.run(test())
 
 
-def test_long_body_is_refused_while_others_are_received() -> None:
+def test_long_body_is_rejected_while_others_are_received() -> None:
     async def test() -> None:
         app = application(echo, 4 * LONG)
         json_type = {"content_type": "application/json"}
@@ -147,7 +147,7 @@ def test_long_body_is_refused_while_others_are_received() -> None:
         await asyncio.sleep(0)
         found = await Connection(app, "POST", TEXT, **json_type).run()
         assert (found.status, found.problem) == (503, "busy")
-        # Short ones are not counted.
+        # Short bodies are not counted.
         assert (await Connection(app, "POST", b"{}", **json_type).run()).body == b"{}"
         arrived.set()
         await receiving
@@ -166,7 +166,7 @@ def test_long_body_is_refused_while_others_are_received() -> None:
         (bytes(SETTINGS.max_body_bytes + 1), {"content_type": "application/json"}, 413),
     ],
 )
-def test_body_is_refused_by_type_and_length(
+def test_body_is_rejected_by_type_and_length(
     body: bytes, headers: dict[str, str], status: int
 ) -> None:
     found = asyncio.run(Connection(application(echo, 2**30), "POST", body, **headers).run())
@@ -182,7 +182,7 @@ def test_client_that_disconnects_gets_no_response() -> None:
 
 
 @pytest.mark.parametrize("responding", [False, True])
-def test_request_in_flight_at_the_end_of_a_shutdown_is_refused(*, responding: bool) -> None:
+def test_request_in_flight_at_the_end_of_shutdown_is_rejected(*, responding: bool) -> None:
     async def wait(_request: Request) -> Response:
         await asyncio.sleep(60)
         return Response()

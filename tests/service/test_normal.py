@@ -1,4 +1,4 @@
-"""The wire adds nothing to the core and takes nothing away."""
+"""Normal contact over HTTP: responses equal the core's results."""
 
 import json
 
@@ -62,32 +62,32 @@ def query(kind: str, **load: object) -> dict[str, object]:
     }
 
 
-def test_all_kinds_are_here() -> None:
+def test_all_kinds_are_covered() -> None:
     assert list(PROFILES) == list(profiles.KINDS)
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str) -> None:
+def test_response_equals_the_core(client: Client, kind: str) -> None:
     forces = [1e3, 1e5, 2.5e7]
-    answer = client.post("/v1/normal", query(kind, normal_force=forces)).json()
+    response = client.post("/v1/normal", query(kind, normal_force=forces)).json()
     contact = solve(PROFILES[kind][1], E_STAR, normal_force=forces)
     for name in NAMES:
-        assert answer[name] == getattr(contact, name).tolist()
-    assert answer["method"] == contact.method
-    assert answer["error_estimate"] == contact.error_estimate
+        assert response[name] == getattr(contact, name).tolist()
+    assert response["method"] == contact.method
+    assert response["error_estimate"] == contact.error_estimate
 
 
 @pytest.mark.parametrize("kind", PROFILES)
 @pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
-def test_one_load_is_answered_by_lists_of_one(client: Client, kind: str, control: str) -> None:
+def test_scalar_load_gives_lists_of_length_one(client: Client, kind: str, control: str) -> None:
     load = 1e-3 if control == "indentation_depth" else 1e4
-    answer = client.post("/v1/normal", query(kind, **{control: load})).json()
+    response = client.post("/v1/normal", query(kind, **{control: load})).json()
     for name in NAMES:
-        assert len(answer[name]) == 1
-    assert answer[control] == [load]
+        assert len(response[name]) == 1
+    assert response[control] == [load]
 
 
-def test_many_loads_are_answered_as_few_are(client: Client) -> None:
+def test_many_loads_equal_few(client: Client) -> None:
     forces = [float(force) for force in range(2000)]
     many = client.post("/v1/normal", query("cone", normal_force=forces)).json()
     few = client.post("/v1/normal", query("cone", normal_force=forces[:100])).json()
@@ -95,31 +95,31 @@ def test_many_loads_are_answered_as_few_are(client: Client) -> None:
         assert many[name][:100] == few[name]
 
 
-def test_bodies_are_reduced_to_their_modulus(client: Client) -> None:
+def test_bodies_equal_their_effective_modulus(client: Client) -> None:
     steel = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
-    question = query("cone", indentation_depth=1e-6) | {"material": {"bodies": [steel, "rigid"]}}
-    answer = client.post("/v1/normal", question).json()
+    request = query("cone", indentation_depth=1e-6) | {"material": {"bodies": [steel, "rigid"]}}
+    response = client.post("/v1/normal", request).json()
     e_star = materials.from_bodies([materials.Body(210e9, 0.3), "rigid"]).e_star
-    (a,), (stiffness,) = answer["contact_radius"], answer["normal_stiffness"]
+    (a,), (stiffness,) = response["contact_radius"], response["normal_stiffness"]
     assert stiffness == pytest.approx(2 * e_star * a, rel=1e-15, abs=0)
 
 
-def test_a_true_infinity_is_null_and_is_announced(client: Client) -> None:
-    question = query("cone", normal_force=[0, 1.0])
-    question["profile"] = {"kind": "power", "coefficient": 1, "exponent": 0.5}
-    answer = client.post("/v1/normal", question).json()
-    assert answer["mean_pressure"][0] is None
-    assert answer["mean_pressure"][1] > 0
-    assert "singular" in [warning["code"] for warning in answer["warnings"]]
+def test_infinity_is_null_with_a_warning(client: Client) -> None:
+    request = query("cone", normal_force=[0, 1.0])
+    request["profile"] = {"kind": "power", "coefficient": 1, "exponent": 0.5}
+    response = client.post("/v1/normal", request).json()
+    assert response["mean_pressure"][0] is None
+    assert response["mean_pressure"][1] > 0
+    assert "singular" in [warning["code"] for warning in response["warnings"]]
 
 
-def test_a_single_infinity_is_null_as_well(client: Client) -> None:
-    question = query("cone", contact_radius=0)
-    question["profile"] = {"kind": "power", "coefficient": 1, "exponent": 0.5}
-    assert client.post("/v1/normal", question).json()["mean_pressure"] == [None]
+def test_scalar_infinity_is_null(client: Client) -> None:
+    request = query("cone", contact_radius=0)
+    request["profile"] = {"kind": "power", "coefficient": 1, "exponent": 0.5}
+    assert client.post("/v1/normal", request).json()["mean_pressure"] == [None]
 
 
-def test_the_catalogue_lists_every_kind_with_its_fields(client: Client) -> None:
+def test_catalogue_lists_every_kind_with_its_fields(client: Client) -> None:
     listed = {kind.pop("kind"): kind for kind in client.get("/v1/profiles").json()["profiles"]}
     assert list(listed) == list(PROFILES)
     for name, kind in listed.items():
@@ -131,7 +131,7 @@ def test_the_catalogue_lists_every_kind_with_its_fields(client: Client) -> None:
     assert "normal_force" in listed["cone"]["closed_forms"]
 
 
-def test_health_is_reported_and_the_root_is_the_explorer(client: Client) -> None:
+def test_health_and_explorer_endpoints(client: Client) -> None:
     assert client.get("/health").json() == {"status": "ok"}
     root = client.get("/")
     assert root.status_code == 200

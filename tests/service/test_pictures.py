@@ -1,4 +1,4 @@
-"""Content of the pictures: curves, points, limits, marks, labels and legends."""
+"""Content of the plots: curves, points, limits, markers, labels and legends."""
 
 import json
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ EXAMPLES = [
     for example in getattr(examples, f"{name.upper()}_EXAMPLES").values()
 ]
 BALL = examples.NORMAL_EXAMPLES["hertz"]["value"]
-PUSHED = examples.TANGENTIAL_EXAMPLES["cattaneo_mindlin"]["value"]
+TANGENTIAL = examples.TANGENTIAL_EXAMPLES["cattaneo_mindlin"]["value"]
 STRESS = examples.STRESS_EXAMPLES["cattaneo_mindlin"]["value"]
 PUNCH = examples.STRESS_EXAMPLES["boussinesq"]["value"]
 WEAR = examples.WEAR_EXAMPLES["amplitudes"]["value"]
@@ -63,7 +63,7 @@ def labels(plot: Plot, panel: int = 0) -> list[str]:
 @pytest.mark.parametrize(
     "value", [example["value"] for example in examples.SUBSURFACE_EXAMPLES.values()]
 )
-def test_map_of_the_stress_marks_its_contact_and_its_peak(
+def test_stress_map_marks_the_contact_and_its_maximum(
     value: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plot, result = plotted("subsurface", value)
@@ -99,7 +99,8 @@ def test_every_point_lies_on_its_curve(name: str, value: dict[str, Any]) -> None
                 np.diff(curve.x[finite]) / (np.ptp(curve.x) or 1.0),
                 np.diff(curve.y[finite]) / (np.ptp(curve.y[finite]) or 1.0),
             )
-            # Dense: but for a jump or a peak that ends at infinity, chords are short.
+            # The samples are dense: chords are short except at a jump or at a maximum that is
+            # infinite.
             assert np.median(steps) < 0.01
             for x, y in zip(curve.point_x, curve.point_y, strict=True):
                 if np.isfinite(y):
@@ -111,7 +112,7 @@ def test_every_point_lies_on_its_curve(name: str, value: dict[str, Any]) -> None
 
 
 @pytest.mark.parametrize(("name", "value"), EXAMPLES)
-def test_the_picture_is_the_plot(
+def test_svg_draws_the_plot(
     name: str, value: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plot, _ = plotted(name, value)
@@ -161,7 +162,7 @@ def test_force_over_depth_runs_from_first_contact_to_the_largest_load() -> None:
 
 def test_each_normal_force_has_a_curve_into_full_slip() -> None:
     change = {"load": {"normal_force": [10.0, 20.0]}, "tangential": {"tangential_force": 2.0}}
-    plot, result = plotted("tangential", PUSHED | change)
+    plot, result = plotted("tangential", TANGENTIAL | change)
     assert labels(plot) == ["F_N = 10", "F_N = 20"]
     for curve, force in zip(plot.panels[0].curves, (10.0, 20.0), strict=True):
         assert curve.y.max() == pytest.approx(0.3 * force, rel=1e-12, abs=0)
@@ -177,7 +178,7 @@ def test_each_normal_force_has_a_curve_into_full_slip() -> None:
 
 
 def test_forces_of_both_signs_show_both_limits() -> None:
-    plot, _ = plotted("tangential", PUSHED | {"tangential": {"tangential_force": [-2.0, 1.0]}})
+    plot, _ = plotted("tangential", TANGENTIAL | {"tangential": {"tangential_force": [-2.0, 1.0]}})
     (curve,) = plot.panels[0].curves
     assert curve.y.min() == pytest.approx(-3.0, rel=1e-12, abs=0)
     assert curve.y.max() == pytest.approx(3.0, rel=1e-12, abs=0)
@@ -185,7 +186,7 @@ def test_forces_of_both_signs_show_both_limits() -> None:
     assert symbols == ["µ F_N", "−µ F_N"]
 
 
-def test_a_history_passes_through_its_turning_points_as_a_smooth_curve() -> None:
+def test_history_is_a_smooth_curve_through_its_turning_points() -> None:
     plot, _ = plotted("history", HISTORY)
     (curve,) = plot.panels[0].curves
     assert plot.points_label == "turning points"
@@ -197,10 +198,10 @@ def test_a_history_passes_through_its_turning_points_as_a_smooth_curve() -> None
     assert plot.panels[0].marks == []
 
 
-def test_a_field_is_dense_between_the_requested_radii_and_marks_the_edges() -> None:
+def test_field_plot_is_dense_and_marks_the_edges() -> None:
     radii = [0.0, 4e-5, 9e-5]
     plot, result = plotted("stress", STRESS | {"radius": radii})
-    contact = plotted("tangential", {k: v for k, v in STRESS.items() if k in PUSHED})[1]
+    contact = plotted("tangential", {k: v for k, v in STRESS.items() if k in TANGENTIAL})[1]
     a, c = contact["contact_radius"][0], contact["stick_radius"][0]
     assert plot.x_limits == (0.0, 9e-5)
     assert [(mark.place, mark.symbol) for mark in plot.marks] == [(a, "a"), (c, "c")]
@@ -218,9 +219,9 @@ def test_a_field_is_dense_between_the_requested_radii_and_marks_the_edges() -> N
     assert pressure.y[inside] == pytest.approx(exact, rel=1e-4, abs=0)
 
 
-def test_a_single_radius_shows_the_whole_contact() -> None:
+def test_single_radius_plots_the_whole_contact() -> None:
     plot, _ = plotted("stress", STRESS | {"radius": [4e-5]})
-    contact = plotted("tangential", {k: v for k, v in STRESS.items() if k in PUSHED})[1]
+    contact = plotted("tangential", {k: v for k, v in STRESS.items() if k in TANGENTIAL})[1]
     assert plot.x_limits is not None
     assert plot.x_limits[0] == 0.0
     assert plot.x_limits[1] > 1.4 * contact["contact_radius"][0]
@@ -231,7 +232,7 @@ def test_no_line_crosses_an_infinite_pressure(monkeypatch: pytest.MonkeyPatch) -
     (curve,) = plot.panels[0].curves
     radius = PUNCH["profile"]["radius"]
     assert np.isinf(curve.y[curve.x == radius]).all()
-    # The limits show the usual pressures, not the peak: the mean is 1.0, the centre 0.5 of it.
+    # The limits show the typical pressures, not the maximum: the mean is 1.0, the centre 0.5 of it.
     limits = plot.panels[0].y_limits
     assert limits is not None
     centre = curve.y[0]
@@ -243,7 +244,7 @@ def test_no_line_crosses_an_infinite_pressure(monkeypatch: pytest.MonkeyPatch) -
     assert "a, b" in texts
 
 
-def test_loads_are_told_apart_by_what_differs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_curves_are_labelled_by_the_varying_quantity(monkeypatch: pytest.MonkeyPatch) -> None:
     loads = {"load": {"normal_force": [5.0, 10.0]}, "radius": [0.0, 1e-5]}
     plot, _ = plotted("stress", STRESS | loads | {"tangential": {"tangential_force": 1.0}})
     assert labels(plot) == ["F_N = 5", "F_N = 10"]
@@ -268,7 +269,7 @@ def test_loads_are_told_apart_by_what_differs(monkeypatch: pytest.MonkeyPatch) -
         ),
         (
             "tangential",
-            PUSHED
+            TANGENTIAL
             | {"load": {"normal_force": [10.0 + i for i in range(9)]}}
             | {"tangential": {"tangential_force": 1.0}},
             "normal forces",
@@ -276,7 +277,7 @@ def test_loads_are_told_apart_by_what_differs(monkeypatch: pytest.MonkeyPatch) -
         ("evolution", EVOLUTION | {"cycles": [1e4 * i for i in range(9)]}, "numbers of cycles"),
     ],
 )
-def test_only_some_of_many_curves_are_drawn_which_the_legend_says(
+def test_legend_states_the_number_of_omitted_curves(
     name: str, value: dict[str, Any], note: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plot, _ = plotted(name, value)
@@ -302,7 +303,7 @@ def test_wear_shows_initial_and_limiting_profile() -> None:
     assert initial.y == pytest.approx(initial.x**2 / 0.02, rel=1e-12, abs=0)
 
 
-def test_unbounded_wear_is_named_and_not_drawn() -> None:
+def test_unbounded_wear_is_labelled_and_not_drawn() -> None:
     plot, _ = plotted("wear", WEAR | {"oscillation": {"tangential_force": [2.0, 3.0]}})
     assert labels(plot) == ["F_x = 2", "F_x = 3: unbounded", "initial"]
     assert np.isinf(plot.panels[0].curves[1].y).any()
@@ -321,7 +322,7 @@ def test_evolution_shows_the_cycles_and_the_initial_profile() -> None:
     assert [(mark.place, mark.symbol) for mark in plot.marks] == [(edges[0], "c"), (edges[1], "a")]
 
 
-def test_text_stays_text() -> None:
+def test_svg_text_is_text() -> None:
     plot, _ = plotted("normal", BALL)
     root = ET.fromstring(picture.write(plot, picture.MEDIA_TYPES["svg"]))  # noqa: S314 -- our own
     texts = {"".join(each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")}
@@ -331,7 +332,7 @@ def test_text_stays_text() -> None:
 
 @pytest.mark.parametrize("force", [2.9999999999999996, 3.0])
 @pytest.mark.parametrize("kind", ["cone", "paraboloid", "sphere", "truncated_cone"])
-def test_the_onset_of_full_slip_has_a_picture(kind: str, force: float) -> None:
+def test_onset_of_full_slip_has_a_plot(kind: str, force: float) -> None:
     fields = {"radius": 0.01, "slope": 0.1, "flat_radius": 1e-5}
     model = next(
         m
@@ -339,6 +340,6 @@ def test_the_onset_of_full_slip_has_a_picture(kind: str, force: float) -> None:
         if m.get("properties", {}).get("kind", {}).get("const") == kind
     )
     profile = {"kind": kind} | {n: fields[n] for n in model["properties"] if n != "kind"}
-    value = PUSHED | {"profile": profile, "tangential": {"tangential_force": force}}
+    value = TANGENTIAL | {"profile": profile, "tangential": {"tangential_force": force}}
     plot, _ = plotted("tangential", value)
     assert plot.panels[0].curves[0].y.max() == pytest.approx(3.0, rel=1e-12, abs=0)

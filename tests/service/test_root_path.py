@@ -1,4 +1,4 @@
-"""Below a root path the framework finds the endpoints; the answers are the same."""
+"""Behind a root path, endpoints are found and responses are unchanged."""
 
 import asyncio
 
@@ -11,14 +11,14 @@ APP = create_app()
 GOOD = b'{"profile":{"kind":"cone","slope":0.1},"material":{"e_star":1},"load":{"normal_force":1}}'
 
 
-def ask(root_path: str, method: str, path: str, body: bytes) -> Response:
-    async def asked() -> Response:
+def send(root_path: str, method: str, path: str, body: bytes) -> Response:
+    async def request() -> Response:
         transport = ASGITransport(APP, root_path=root_path)
         async with AsyncClient(transport=transport, base_url="http://service") as client:
             headers = {"Content-Type": "application/json", "X-Request-Id": "one"}
             return await client.request(method, root_path + path, content=body, headers=headers)
 
-    return asyncio.run(asked())
+    return asyncio.run(request())
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def ask(root_path: str, method: str, path: str, body: bytes) -> Response:
     ],
 )
 def test_below_a_root_path(status: int, method: str, path: str, body: bytes) -> None:
-    here, below = (ask(root, method, path, body) for root in ("", "/mdr"))
+    here, below = (send(root, method, path, body) for root in ("", "/mdr"))
     assert here.status_code == status
     assert (below.status_code, below.headers, below.content) == (
         here.status_code,

@@ -1,4 +1,4 @@
-"""Stresses beneath the surface over HTTP: the core's numbers, textbooks, formats, rejections."""
+"""Subsurface stresses over HTTP: the core's results, textbook values, formats, rejections."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ NAMES = [
 ]
 
 
-def answer(client: Client, query: dict[str, Any]) -> dict[str, Any]:
+def result_of(client: Client, query: dict[str, Any]) -> dict[str, Any]:
     response = client.post(PATH, query)
     assert response.status_code == 200, response.content
     found: dict[str, Any] = response.json()
@@ -48,8 +48,8 @@ def pointers(client: Client, query: dict[str, Any]) -> list[str]:
 
 
 def test_hertz_on_the_axis(client: Client) -> None:
-    """Johnson, Eqs. (3.45), (4.10): stresses on the axis, their peak, and the onset of yield."""
-    found = answer(client, AXIS)
+    """Johnson, Eqs. (3.45), (4.10): stresses on the axis, their maximum, and the onset of yield."""
+    found = result_of(client, AXIS)
     modulus = 210e9 / (2 * (1 - 0.3**2))
     a = (0.75 * 10.0 * 0.01 / modulus) ** (1 / 3)
     peak = 1.5 * 10.0 / (np.pi * a * a)
@@ -70,16 +70,16 @@ def test_hertz_on_the_axis(client: Client) -> None:
 
 
 @pytest.mark.parametrize("factor", [0.99, 1.01])
-def test_yield_is_warned_of_from_its_onset_on(client: Client, factor: float) -> None:
-    onset = answer(client, AXIS)["yield_onset_force"]["tresca"][0]
-    found = answer(client, AXIS | {"load": {"normal_force": [factor * onset, 0.5 * onset]}})
+def test_yield_warning_starts_at_the_onset(client: Client, factor: float) -> None:
+    onset = result_of(client, AXIS)["yield_onset_force"]["tresca"][0]
+    found = result_of(client, AXIS | {"load": {"normal_force": [factor * onset, 0.5 * onset]}})
     codes = [notice["code"] for notice in found["warnings"]]
     assert codes == (["yield"] if factor > 1 else [])
 
 
-def test_numbers_are_those_of_the_core(client: Client) -> None:
+def test_response_equals_the_core(client: Client) -> None:
     principal = ["principal_1", "principal_2", "principal_3"]
-    found = answer(client, MAP | {"quantities": NAMES + principal})
+    found = result_of(client, MAP | {"quantities": NAMES + principal})
     contact = tangential.solve(
         normal.solve(Paraboloid(2.0), 3.0, contact_radius=[0.1, 0.2]), 2.5, 0.3, stick_radius=0.05
     )
@@ -95,18 +95,18 @@ def test_numbers_are_those_of_the_core(client: Client) -> None:
     assert "yield_onset_force" not in found
 
 
-def test_bodies_give_their_own_ratio(client: Client) -> None:
+def test_bodies_use_their_poissons_ratio(client: Client) -> None:
     steel = {"youngs_modulus": 2e11, "poissons_ratio": 0.3}
     rubber = {"youngs_modulus": 2e6, "poissons_ratio": 0.5}
     given = AXIS | {"material": {"bodies": [steel, rubber]}, "quantities": ["mean_stress"]}
-    one, two = (answer(client, given | {"body": body})["mean_stress"] for body in (1, 2))
+    one, two = (result_of(client, given | {"body": body})["mean_stress"] for body in (1, 2))
     # The trace is proportional to 1 + nu.
     assert np.array(one) * 1.5 == pytest.approx(np.array(two) * 1.3, rel=1e-9, abs=0)
 
 
-def test_chosen_points_cover_the_contact(client: Client) -> None:
+def test_default_points_cover_the_contact(client: Client) -> None:
     query = {key: value for key, value in MAP.items() if key not in ("x", "z")}
-    found = answer(client, query | {"points": 7})
+    found = result_of(client, query | {"points": 7})
     assert found["x"][0] == -found["x"][-1] == pytest.approx(-0.3, rel=1e-14, abs=0)
     assert (found["z"][0], found["z"][-1]) == (0.0, found["x"][-1])
     assert np.shape(found["von_mises"]) == (2, 7, 7)
@@ -114,7 +114,7 @@ def test_chosen_points_cover_the_contact(client: Client) -> None:
 
 def test_infinite_stress_is_null_with_a_warning(client: Client) -> None:
     cone = MAP | {"profile": {"kind": "cone", "slope": 0.05}, "y": 0.0, "largest": True}
-    found = answer(client, cone | {"quantities": ["stress_zz", "von_mises", "stress_xy"]})
+    found = result_of(client, cone | {"quantities": ["stress_zz", "von_mises", "stress_xy"]})
     for name in ("stress_zz", "von_mises", "stress_xy"):
         assert found[name][0][0][1] is None
     assert found["largest"]["von_mises"]["value"] == [None, None]
@@ -123,7 +123,7 @@ def test_infinite_stress_is_null_with_a_warning(client: Client) -> None:
 
 def test_formats(client: Client) -> None:
     given = MAP | {"quantities": ["von_mises", "stress_xy"], "largest": True}
-    numbers = answer(client, given)
+    numbers = result_of(client, given)
     headers = {"accept": "text/csv"}
     rows = client.request("POST", PATH, json=given, headers=headers).text.splitlines()
     assert rows[0] == "load,z,x,von_mises,stress_xy"

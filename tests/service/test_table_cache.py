@@ -1,4 +1,4 @@
-"""Tables kept by a compute process: same bytes, bounded memory."""
+"""Cache of resolved tables in a compute process: identical bytes and bounded memory."""
 
 import json
 
@@ -21,7 +21,7 @@ def table(curvature: float = 1.0, **rest: object) -> TabulatedProfile:
     return TabulatedProfile.model_validate({"kind": "tabulated"} | given)
 
 
-def test_a_table_is_resolved_once() -> None:
+def test_table_is_resolved_once() -> None:
     cache = TableCache(10 * BYTES)
     assert cache.resolved(table()) is cache.resolved(table())
     assert cache.size == BYTES
@@ -36,12 +36,12 @@ def test_a_table_is_resolved_once() -> None:
         table(breaks=[R[4]]),
     ],
 )
-def test_another_table_is_resolved_anew(other: TabulatedProfile) -> None:
+def test_different_table_is_resolved_separately(other: TabulatedProfile) -> None:
     cache = TableCache(10 * BYTES)
     assert cache.resolved(table()) is not cache.resolved(other)
 
 
-def test_the_table_used_longest_ago_goes_first_and_the_bound_holds() -> None:
+def test_least_recently_used_table_is_evicted() -> None:
     cache = TableCache(int(2.5 * BYTES))
     first = cache.resolved(table(1.0))
     second = cache.resolved(table(2.0))
@@ -52,14 +52,14 @@ def test_the_table_used_longest_ago_goes_first_and_the_bound_holds() -> None:
     assert cache.resolved(table(2.0)) is not second
 
 
-def test_a_table_beyond_the_bound_is_not_kept() -> None:
+def test_oversized_table_is_not_cached() -> None:
     cache = TableCache(BYTES - 1)
     assert cache.resolved(table()) is not cache.resolved(table())
     assert cache.size == 0
 
 
 @pytest.mark.parametrize("name", ["normal", "tangential", "stress", "wear"])
-def test_a_kept_table_gives_the_same_bytes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cached_table_gives_identical_bytes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     request = {
         "profile": table().model_dump(),
         "material": {"e_star": 1e11, "g_star": 8e10},

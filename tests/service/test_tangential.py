@@ -1,4 +1,4 @@
-"""Friction over the wire: the core's digits, one entry per pair of loads."""
+"""Tangential contact over HTTP: the core's digits, one entry per pair of loads."""
 
 import pytest
 
@@ -29,26 +29,26 @@ def query(kind: str, load: object, **control: object) -> dict[str, object]:
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_wire_and_core_agree_digit_for_digit(client: Client, kind: str) -> None:
+def test_response_equals_the_core(client: Client, kind: str) -> None:
     forces, pushes = [1e3, 1e5, 2.5e7], [0.0, -3e4, 1e7]
-    answer = client.post("/v1/tangential", query(kind, forces, tangential_force=pushes)).json()
+    response = client.post("/v1/tangential", query(kind, forces, tangential_force=pushes)).json()
     contact = normal.solve(PROFILES[kind][1], E_STAR, normal_force=forces)
     pushed = tangential.solve(contact, G_STAR, FRICTION, tangential_force=pushes)
     for name in NAMES:
-        assert answer[name] == getattr(contact, name).tolist()
+        assert response[name] == getattr(contact, name).tolist()
     for name in TANGENTIAL_NAMES:
-        assert answer[name] == getattr(pushed, name).tolist()
-    assert answer["regime"][:2] == ["stick", "stick" if kind == "flat_punch" else "partial_slip"]
-    assert answer["method"] == pushed.method
-    assert answer["error_estimate"] == pushed.error_estimate
+        assert response[name] == getattr(pushed, name).tolist()
+    assert response["regime"][:2] == ["stick", "stick" if kind == "flat_punch" else "partial_slip"]
+    assert response["method"] == pushed.method
+    assert response["error_estimate"] == pushed.error_estimate
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_each_control_finds_the_same_state(client: Client, kind: str) -> None:
+def test_controls_are_equivalent(client: Client, kind: str) -> None:
     by_force = client.post("/v1/tangential", query(kind, 1e5, tangential_force=3e4)).json()
     for control in ("tangential_displacement", "stick_radius"):
         if kind == "flat_punch" and control == "stick_radius":
-            # It sticks as a whole under every force but the last.
+            # Full stick under every force but the last.
             continue
         (value,) = by_force[control]
         again = client.post("/v1/tangential", query(kind, 1e5, **{control: value})).json()
@@ -62,13 +62,13 @@ def test_each_control_finds_the_same_state(client: Client, kind: str) -> None:
     ("load", "control", "count"),
     [(1e5, 1e4, 1), ([1e5], 1e4, 1), (1e5, [1e4, 2e4], 2), ([1e5, 2e5], 1e4, 2)],
 )
-def test_one_load_meets_many(client: Client, load: object, control: object, count: int) -> None:
-    answer = client.post("/v1/tangential", query("cone", load, tangential_force=control)).json()
+def test_scalar_loads_broadcast(client: Client, load: object, control: object, count: int) -> None:
+    response = client.post("/v1/tangential", query("cone", load, tangential_force=control)).json()
     for name in (*NAMES, *TANGENTIAL_NAMES):
-        assert len(answer[name]) == count
+        assert len(response[name]) == count
 
 
-def test_the_other_way_changes_the_sign_only(client: Client) -> None:
+def test_reversed_direction_changes_the_sign_only(client: Client) -> None:
     there, back = (
         client.post("/v1/tangential", query("cone", 1e5, tangential_force=force)).json()
         for force in (2e4, -2e4)
@@ -79,20 +79,20 @@ def test_the_other_way_changes_the_sign_only(client: Client) -> None:
         assert back[name] == there[name]
 
 
-def test_a_displacement_past_full_slip_is_answered(client: Client) -> None:
-    answer = client.post("/v1/tangential", query("cone", 1e5, tangential_displacement=-10.0))
-    document = answer.json()
+def test_displacement_beyond_full_slip(client: Client) -> None:
+    response = client.post("/v1/tangential", query("cone", 1e5, tangential_displacement=-10.0))
+    document = response.json()
     assert document["regime"] == ["full_slip"]
     assert document["tangential_force"] == [-FRICTION * 1e5]
     assert document["stick_radius"] == [0.0]
 
 
-def test_bodies_have_a_shear_modulus(client: Client) -> None:
+def test_bodies_give_the_shear_modulus(client: Client) -> None:
     steel = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
-    question = query("cone", 1e5, tangential_force=1e4)
-    question["material"] = {"bodies": [steel, steel]}
+    request = query("cone", 1e5, tangential_force=1e4)
+    request["material"] = {"bodies": [steel, steel]}
     (stiffness,), (c,) = (
-        client.post("/v1/tangential", question).json()[name]
+        client.post("/v1/tangential", request).json()[name]
         for name in ("tangential_stiffness", "stick_radius")
     )
     shear_modulus = 210e9 / (2 * 1.3)
@@ -118,11 +118,9 @@ RUBBER = {"youngs_modulus": 5e6, "poissons_ratio": 0.4}
         ("normal", {"e_star": 1e9, "yield_strength": 1e4}, {"yield"}),
     ],
 )
-def test_the_limits_of_the_model_are_told(
-    client: Client, path: str, material: object, codes: set[str]
-) -> None:
-    question = query("paraboloid", 1e3, tangential_force=1.0) | {"material": material}
+def test_validity_warnings(client: Client, path: str, material: object, codes: set[str]) -> None:
+    request = query("paraboloid", 1e3, tangential_force=1.0) | {"material": material}
     if path == "normal":
-        del question["friction_coefficient"], question["tangential"]
-    answer = client.post(f"/v1/{path}", question)
-    assert {warning["code"] for warning in answer.json()["warnings"]} == codes
+        del request["friction_coefficient"], request["tangential"]
+    response = client.post(f"/v1/{path}", request)
+    assert {warning["code"] for warning in response.json()["warnings"]} == codes

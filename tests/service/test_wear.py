@@ -1,4 +1,4 @@
-"""Wear over the wire: the core's digits, nothing that was not asked for, and what is refused."""
+"""Wear over HTTP: the core's digits, requested quantities only, and rejections."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ OVER_CYCLES = (
     "dissipated_energy",
 )
 RADII = [0.0, 0.001, 0.01, 0.05, 0.3]
-HELD: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+CONTROLS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "depth and displacement": (
         {"indentation_depth": 1e-3},
         {"tangential_displacement": 3e-4},
@@ -47,8 +47,12 @@ def query(kind: str, load: object, oscillation: object, **more: object) -> dict[
     }
 
 
-def followed(kind: str = "paraboloid", held: str = "forces", **more: object) -> dict[str, object]:
-    return query(kind, *HELD[held], **({"wear_coefficient": 1e-13, "cycles": [1.0, 1e6]} | more))
+def evolution_query(
+    kind: str = "paraboloid", control: str = "forces", **more: object
+) -> dict[str, object]:
+    return query(
+        kind, *CONTROLS[control], **({"wear_coefficient": 1e-13, "cycles": [1.0, 1e6]} | more)
+    )
 
 
 def worn(kind: str, load: dict[str, Any], oscillation: dict[str, Any]) -> limit.LimitingWear:
@@ -56,7 +60,7 @@ def worn(kind: str, load: dict[str, Any], oscillation: dict[str, Any]) -> limit.
     return limit.solve(contact, G_STAR, FRICTION, **oscillation)
 
 
-def told(values: Any) -> Any:
+def as_json(values: Any) -> Any:
     return np.where(np.isfinite(values), values, None).tolist()
 
 
@@ -64,34 +68,32 @@ def codes(document: dict[str, Any]) -> set[str]:
     return {each["code"] for each in document["warnings"]}
 
 
-@pytest.mark.parametrize("held", HELD)
+@pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_limit_is_that_of_the_core_digit_for_digit(
-    client: Client, kind: str, held: str
-) -> None:
+def test_limit_equals_the_core(client: Client, kind: str, control: str) -> None:
     names = ["initial_profile", "limiting_profile", "worn_depth", "pressure"]
-    asked = query(kind, *HELD[held], radius=RADII, quantities=names)
-    document = client.post(LIMIT, asked).json()
-    expected = worn(kind, *HELD[held])
+    body = query(kind, *CONTROLS[control], radius=RADII, quantities=names)
+    document = client.post(LIMIT, body).json()
+    expected = worn(kind, *CONTROLS[control])
     for name in LIMITS:
         assert document[name] == [float(getattr(expected, name))], name
     assert document["regime"] == [str(expected.regime)]
     assert document["radius"] == RADII
     assert document["initial_profile"] == expected.initial_profile(RADII).tolist()
     for name in names[1:]:
-        assert document[name] == [told(getattr(expected, name)(RADII))], name
+        assert document[name] == [as_json(getattr(expected, name)(RADII))], name
     assert document["error_estimate"] == expected.error_estimate
-    assert ("path_dependent" in codes(document)) == (held == "force and displacement")
+    assert ("path_dependent" in codes(document)) == (control == "force and displacement")
 
 
-@pytest.mark.parametrize("held", HELD)
+@pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_way_is_that_of_the_core_digit_for_digit(client: Client, kind: str, held: str) -> None:
+def test_evolution_equals_the_core(client: Client, kind: str, control: str) -> None:
     names = ["profile", "worn_depth", "pressure"]
-    asked = followed(kind, held, radius=RADII, quantities=names, resolution=8)
-    answer = client.post(EVOLUTION, asked)
-    document = answer.json()
-    contact = normal.solve(PROFILES[kind][1], E_STAR, **HELD[held][0])
+    body = evolution_query(kind, control, radius=RADII, quantities=names, resolution=8)
+    response = client.post(EVOLUTION, body)
+    document = response.json()
+    contact = normal.solve(PROFILES[kind][1], E_STAR, **CONTROLS[control][0])
     expected = evolution.solve(
         contact,
         G_STAR,
@@ -99,25 +101,25 @@ def test_the_way_is_that_of_the_core_digit_for_digit(client: Client, kind: str, 
         wear_coefficient=1e-13,
         cycles=[1.0, 1e6],
         resolution=8,
-        **HELD[held][1],
+        **CONTROLS[control][1],
     )
     for name in OVER_CYCLES:
         assert document[name] == getattr(expected, name).tolist(), name
     for name in names:
-        assert document[name] == told(getattr(expected, name)(RADII)), name
+        assert document[name] == as_json(getattr(expected, name)(RADII)), name
     assert document["error_estimate"] == expected.error_estimate
     assert document["field_error_estimate"] == expected.field_error_estimate(RADII, names)
 
 
-def test_many_loads_have_a_limit_each(client: Client) -> None:
+def test_limits_of_many_loads(client: Client) -> None:
     loads, pushes = {"normal_force": [1e5, 2e5, 0.0]}, {"tangential_force": [1e4, 8e4, 0.0]}
     document = client.post(LIMIT, query("paraboloid", loads, pushes, radius=RADII)).json()
     expected = worn("paraboloid", loads, pushes)
     for name in LIMITS:
-        assert document[name] == told(getattr(expected, name)), name
-    assert document["limiting_profile"] == told(expected.limiting_profile(RADII))
+        assert document[name] == as_json(getattr(expected, name)), name
+    assert document["limiting_profile"] == as_json(expected.limiting_profile(RADII))
     assert document["initial_profile"] == expected.initial_profile(RADII).tolist()
-    # 0.4 x 2e5 N is what friction bears at most.
+    # 0.4 x 2e5 N is the friction limit.
     assert document["worn_volume"][1] is None
     assert {"endless_wear", "no_wear"} <= codes(document)
     pushes = {"tangential_force": [1e4, 2e4, 3e4]}
@@ -125,120 +127,120 @@ def test_many_loads_have_a_limit_each(client: Client) -> None:
     assert len(one["stick_radius"]) == 3
 
 
-def test_what_is_not_asked_for_is_left_out(client: Client) -> None:
-    for path, asked, of_radii, default in (
+def test_only_requested_quantities_are_returned(client: Client) -> None:
+    for path, body, of_radii, default in (
         (
             LIMIT,
-            query("cone", *HELD["forces"]),
+            query("cone", *CONTROLS["forces"]),
             {"radius"},
             {"initial_profile", "limiting_profile"},
         ),
         (
             EVOLUTION,
-            followed("cone", resolution=8),
+            evolution_query("cone", resolution=8),
             {"radius", "field_error_estimate"},
             {"profile", "pressure"},
         ),
     ):
-        plain = set(client.post(path, asked).json())
+        plain = set(client.post(path, body).json())
         assert not plain & {"radius", "pressure", "profile", "worn_depth", "initial_profile"}
-        assert set(client.post(path, asked | {"radius": RADII}).json()) - plain == (
+        assert set(client.post(path, body | {"radius": RADII}).json()) - plain == (
             default | of_radii
         )
-        chosen = client.post(path, asked | {"radius": RADII, "quantities": ["worn_depth"]}).json()
+        chosen = client.post(path, body | {"radius": RADII, "quantities": ["worn_depth"]}).json()
         assert set(chosen) - plain == of_radii | {"worn_depth"}
 
 
-def test_the_chosen_radii_hold_the_edges(client: Client) -> None:
-    document = client.post(LIMIT, query("cone", *HELD["forces"], points=50)).json()
+def test_default_radii_include_the_edges(client: Client) -> None:
+    document = client.post(LIMIT, query("cone", *CONTROLS["forces"], points=50)).json()
     assert {*document["stick_radius"], *document["wear_radius"]} <= set(document["radius"])
-    document = client.post(EVOLUTION, followed("cone", points=50, resolution=8)).json()
+    document = client.post(EVOLUTION, evolution_query("cone", points=50, resolution=8)).json()
     assert {*document["stick_radius"], *document["contact_radius"]} <= set(document["radius"])
     assert len(document["radius"]) == len(document["profile"][1]) == 50
 
 
-def test_the_pressure_at_the_stick_edge_is_infinite(client: Client) -> None:
-    asked = query("paraboloid", *HELD["forces"], points=50, quantities=["pressure"])
-    document = client.post(LIMIT, asked).json()
+def test_pressure_at_the_stick_edge_is_infinite(client: Client) -> None:
+    body = query("paraboloid", *CONTROLS["forces"], points=50, quantities=["pressure"])
+    document = client.post(LIMIT, body).json()
     at = document["radius"].index(document["stick_radius"][0])
     assert [where for where, p in enumerate(document["pressure"][0]) if p is None] == [at]
     assert "singular" in codes(document)
 
 
-def test_outside_a_flat_punch_its_profile_is_infinite(client: Client) -> None:
+def test_profile_outside_a_flat_punch_is_infinite(client: Client) -> None:
     radii = [0.1, 0.3, 0.4]
-    held = {"normal_force": 1e5}, {"tangential_force": 1e4}
+    control = {"normal_force": 1e5}, {"tangential_force": 1e4}
     for path, names, more in (
         (LIMIT, ("initial_profile", "limiting_profile"), {}),
         (EVOLUTION, ("profile",), {"wear_coefficient": 1e-13, "cycles": [1.0]}),
     ):
-        answer = client.post(path, query("flat_punch", *held, radius=radii, **more))
-        document = answer.json()
+        response = client.post(path, query("flat_punch", *control, radius=radii, **more))
+        document = response.json()
         for name in names:
             assert np.ravel(document[name]).tolist() == [0.0, 0.0, None]
             said = f"{name} is infinite at radius 0.4"
             assert said in {each["message"] for each in document["warnings"]}
 
 
-def test_the_way_ends_in_the_limit(client: Client) -> None:
-    for held in ("forces", "depth and displacement"):
-        document = client.post(EVOLUTION, followed(held=held, cycles=[1e12])).json()
-        ends = client.post(LIMIT, query("paraboloid", *HELD[held])).json()
+def test_evolution_converges_to_the_limit(client: Client) -> None:
+    for control in ("forces", "depth and displacement"):
+        document = client.post(EVOLUTION, evolution_query(control=control, cycles=[1e12])).json()
+        ends = client.post(LIMIT, query("paraboloid", *CONTROLS[control])).json()
         assert "limit_reached" in codes(document)
         for name in ("worn_volume", "indentation_depth", "normal_force", "stick_radius"):
             assert document[name] == pytest.approx(ends[name], rel=1e-3, abs=0), name
         assert document["contact_radius"] == pytest.approx(ends["wear_radius"], rel=1e-3, abs=0)
 
 
-def test_many_radii_are_answered_in_blocks(client: Client) -> None:
-    asked = followed(held="force and displacement", resolution=8, cycles=[1e6])
-    many = client.post(EVOLUTION, asked | {"points": 5_000}).json()
+def test_many_radii_equal_few(client: Client) -> None:
+    body = evolution_query(control="force and displacement", resolution=8, cycles=[1e6])
+    many = client.post(EVOLUTION, body | {"points": 5_000}).json()
     few = many["radius"][1_990:2_010]
-    assert client.post(EVOLUTION, asked | {"radius": few}).json()["profile"] == [
+    assert client.post(EVOLUTION, body | {"radius": few}).json()["profile"] == [
         many["profile"][0][1_990:2_010]
     ]
 
 
-def refused(client: Client, path: str, asked: object) -> tuple[str, str]:
-    answer = client.post(path, asked)
-    assert answer.status_code == 422
-    ((error),) = answer.json()["errors"]
+def rejection(client: Client, path: str, body: object) -> tuple[str, str]:
+    response = client.post(path, body)
+    assert response.status_code == 422
+    ((error),) = response.json()["errors"]
     return error["pointer"], error["detail"]
 
 
-def test_too_many_numbers_are_refused(client: Client) -> None:
+def test_too_many_numbers_are_rejected(client: Client) -> None:
     radii = {"points": 1 + SETTINGS.max_numbers // 100}
     loads = {"normal_force": [1e5] * 100}
-    asked = query("paraboloid", loads, {"tangential_force": 1e4}, **radii)
-    assert refused(client, LIMIT, asked)[0] == "/points"
-    answer = client.post(EVOLUTION, followed(cycles=[1.0] * 100, **radii))
-    # It would take too long as well, which is said together with what would fit.
-    assert answer.status_code == 422
-    assert "/points" in {error["pointer"] for error in answer.json()["errors"]}
+    body = query("paraboloid", loads, {"tangential_force": 1e4}, **radii)
+    assert rejection(client, LIMIT, body)[0] == "/points"
+    response = client.post(EVOLUTION, evolution_query(cycles=[1.0] * 100, **radii))
+    # The estimated time exceeds its limit, too, and is reported together with the feasible size.
+    assert response.status_code == 422
+    assert "/points" in {error["pointer"] for error in response.json()["errors"]}
 
 
-def test_yield_and_material_are_spoken_of_as_for_any_contact(client: Client) -> None:
+def test_yield_and_material_warnings(client: Client) -> None:
     bodies = ["rigid", {"youngs_modulus": 5e6, "poissons_ratio": 0.4}]
     material = {"material": {"bodies": bodies, "yield_strength": 1.0}}
     load, push = {"normal_force": 1.0}, {"tangential_force": 0.1}
     limits = query("paraboloid", load, push) | material
-    for path, asked in (
+    for path, body in (
         (LIMIT, limits),
         (EVOLUTION, limits | {"wear_coefficient": 1e-13, "cycles": [1.0], "resolution": 8}),
     ):
-        assert {"elastic_similarity", "yield"} <= codes(client.post(path, asked).json())
+        assert {"elastic_similarity", "yield"} <= codes(client.post(path, body).json())
 
 
-def test_a_radius_beyond_the_profile_is_refused(client: Client) -> None:
+def test_radius_beyond_the_profile_is_rejected(client: Client) -> None:
     sphere = {"profile": {"kind": "sphere", "radius": 0.5}, "resolution": 8}
-    asked = followed(held="forces", radius=[0.0, 0.49, 0.51]) | sphere
-    pointer, detail = refused(client, EVOLUTION, asked)
+    body = evolution_query(control="forces", radius=[0.0, 0.49, 0.51]) | sphere
+    pointer, detail = rejection(client, EVOLUTION, body)
     assert pointer == "/radius/2"
     assert "0.5" in detail
-    assert client.post(EVOLUTION, asked | {"radius": [0.0, 0.49]}).status_code == 200
+    assert client.post(EVOLUTION, body | {"radius": [0.0, 0.49]}).status_code == 200
 
 
-def test_radius_beyond_the_profile_is_rejected_by_its_index(client: Client) -> None:
+def test_radius_beyond_the_profile_is_rejected_with_its_index(client: Client) -> None:
     query = {
         "profile": {"kind": "sphere", "radius": 0.01},
         "material": {"e_star": 1e11, "g_star": 8e10},

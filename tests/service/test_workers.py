@@ -1,4 +1,4 @@
-"""Compute processes: time limits, the queue, and processes that end, stop or do not start."""
+"""Compute processes: time limits, queue, and processes that end, stop or fail to start."""
 
 import os
 import signal
@@ -32,8 +32,8 @@ ONE = Settings(
 PATIENCE = 30.0
 
 
-def begin() -> observability.RequestRecord:
-    """Begin the record of a request."""
+def start_record() -> observability.RequestRecord:
+    """Start the record of a request."""
     record = observability.RequestRecord("id", "GET")
     observability.CURRENT.set(record)
     return record
@@ -47,13 +47,13 @@ def own_process() -> int:
     return os.getpid()
 
 
-def asleep(seconds: float) -> int:
+def sleep_for(seconds: float) -> int:
     time.sleep(seconds)
     return os.getpid()
 
 
 def until(path: Path) -> int:
-    """Return once there is a file."""
+    """Return once the file exists."""
     while not path.exists():
         time.sleep(0.01)
     return os.getpid()
@@ -63,7 +63,7 @@ def kill_itself() -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def let_go(path: Path) -> None:
+def release(path: Path) -> None:
     path.touch()
 
 
@@ -113,10 +113,10 @@ async def occupied(pool: WorkerPool, path: Path) -> AsyncIterator[None]:
         tasks.start_soon(pool.run_in_process, until, path)
         await anyio.sleep(0.05)
         yield
-        let_go(path)
+        release(path)
 
 
-async def failure(awaited: Awaitable[object]) -> ServiceError:
+async def error_of(awaited: Awaitable[object]) -> ServiceError:
     with pytest.raises(ServiceError) as caught:
         await awaited
     return caught.value
@@ -127,14 +127,14 @@ def ready_processes() -> float:
     return metric.samples[0].value
 
 
-async def wait_for(happened: Callable[[], bool]) -> None:
+async def wait_for(condition: Callable[[], bool]) -> None:
     deadline = time.monotonic() + PATIENCE
-    while not happened() and time.monotonic() < deadline:  # noqa: ASYNC110 -- no event tells
+    while not condition() and time.monotonic() < deadline:  # noqa: ASYNC110 -- no event available
         await anyio.sleep(0.02)
-    assert happened()
+    assert condition()
 
 
-def test_computations_run_in_a_process_that_is_kept() -> None:
+def test_process_is_reused() -> None:
     async def test(pool: WorkerPool) -> None:
         first = await pool.run_in_process(own_process)
         assert first != os.getpid()
@@ -143,13 +143,13 @@ def test_computations_run_in_a_process_that_is_kept() -> None:
     run(test)
 
 
-def test_failures_return_from_the_process() -> None:
+def test_errors_return_from_the_process() -> None:
     async def test(pool: WorkerPool) -> None:
-        found = await failure(pool.run_in_process(wrong))
+        found = await error_of(pool.run_in_process(wrong))
         assert found.type == problems.INVALID_REQUEST
         assert found.errors == (("/load/normal_force/3", "is wrong"),)
-        assert (await failure(pool.run_in_process(inaccurate))).type == problems.ACCURACY
-        found = await failure(pool.run_in_process(refused))
+        assert (await error_of(pool.run_in_process(inaccurate))).type == problems.ACCURACY
+        found = await error_of(pool.run_in_process(refused))
         assert (found.type, found.errors) == (problems.NOT_ACCEPTABLE, (("/load", "why"),))
         with pytest.raises(DefectError, match="a bug"):
             await pool.run_in_process(broken)
@@ -160,14 +160,14 @@ def test_failures_return_from_the_process() -> None:
 
 def test_large_result_needs_room_in_memory() -> None:
     async def test(pool: WorkerPool) -> None:
-        record = begin()
-        # A single one may be as long as it likes.
+        record = start_record()
+        # A single result may have any size.
         assert await pool.run_in_process(bytes, 2**22) == bytes(2**22)
         assert record.response == 2**22
-        begin()
-        found = await failure(pool.run_in_process(bytes, 2**18))
+        start_record()
+        found = await error_of(pool.run_in_process(bytes, 2**18))
         assert (found.type, found.retry_after) == (problems.BUSY, 1)
-        # The process is not affected, and small results need no room.
+        # The process is not affected, and small results need no room in memory.
         assert await pool.run_in_process(bytes, 2**15) == bytes(2**15)
         assert ready_processes() == 1
 
@@ -185,7 +185,7 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
     async def test(pool: WorkerPool) -> None:
         first = await pool.run_in_process(own_process)
         began = time.monotonic()
-        found = await failure(pool.run_in_process(asleep, 60.0))
+        found = await error_of(pool.run_in_process(sleep_for, 60.0))
         assert time.monotonic() - began < PATIENCE
         assert found.type == problems.TIME_EXCEEDED
         assert not process_exists(first)
@@ -195,9 +195,9 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
     run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
 
 
-def test_process_that_ends_loses_its_own_computation_only() -> None:
+def test_terminated_process_loses_its_own_computation_only() -> None:
     async def test(pool: WorkerPool) -> None:
-        found = await failure(pool.run_in_process(kill_itself))
+        found = await error_of(pool.run_in_process(kill_itself))
         assert (found.type, found.retry_after) == (problems.LOST, 1)
         assert ready_processes() == 0
         assert await pool.run_in_process(own_process) != os.getpid()
@@ -206,18 +206,18 @@ def test_process_that_ends_loses_its_own_computation_only() -> None:
     run(test)
 
 
-def test_process_stopped_while_idle_is_noticed_by_the_next_query() -> None:
+def test_process_stopped_while_idle_is_detected_by_the_next_query() -> None:
     async def test(pool: WorkerPool) -> None:
         stopped = await pool.run_in_process(own_process)
         os.kill(stopped, signal.SIGSTOP)
-        assert (await failure(pool.run_in_process(own_process))).type == problems.LOST
+        assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
         assert not process_exists(stopped)
         assert await pool.run_in_process(own_process) != stopped
 
     run(test)
 
 
-def test_process_stopped_while_idle_is_noticed_without_a_query(
+def test_process_stopped_while_idle_is_detected_without_a_query(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(workers, "_BEAT_INTERVAL", 0.1)
@@ -231,13 +231,13 @@ def test_process_stopped_while_idle_is_noticed_without_a_query(
     run(test)
 
 
-def test_process_stopped_at_work_is_replaced_after_the_time_limit() -> None:
+def test_process_stopped_while_computing_is_replaced_after_the_time_limit() -> None:
     async def test(pool: WorkerPool) -> None:
         stopped = await pool.run_in_process(own_process)
         async with anyio.create_task_group() as tasks:
 
             async def expect_loss() -> None:
-                assert (await failure(pool.run_in_process(asleep, 60.0))).type == problems.LOST
+                assert (await error_of(pool.run_in_process(sleep_for, 60.0))).type == problems.LOST
 
             tasks.start_soon(expect_loss)
             await anyio.sleep(0.3)
@@ -248,9 +248,9 @@ def test_process_stopped_at_work_is_replaced_after_the_time_limit() -> None:
     run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
 
 
-def test_process_that_dies_at_birth_is_reported_and_started_again(tmp_path: Path) -> None:
+def test_process_that_fails_to_start_is_restarted(tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
-        found = await failure(pool.run_in_process(own_process))
+        found = await error_of(pool.run_in_process(own_process))
         assert (found.type, found.retry_after) == (problems.LOST, 1)
         assert ready_processes() == 0
         (tmp_path / "live").touch()
@@ -262,29 +262,29 @@ def test_process_that_dies_at_birth_is_reported_and_started_again(tmp_path: Path
 
 def test_process_that_fails_its_self_test_is_not_used() -> None:
     async def test(pool: WorkerPool) -> None:
-        assert (await failure(pool.run_in_process(own_process))).type == problems.LOST
+        assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
         assert ready_processes() == 0
 
     run(test, warm_up=broken)
 
 
-def test_query_is_refused_when_the_queue_is_full(tmp_path: Path) -> None:
+def test_query_is_rejected_when_the_queue_is_full(tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
             tasks.start_soon(pool.run_in_process, own_process)
             await anyio.sleep(1.1)
-            found = await failure(pool.run_in_process(own_process))
-            # The first in the queue has waited for so long.
+            found = await error_of(pool.run_in_process(own_process))
+            # The first query in the queue has waited this long.
             assert (found.type, found.retry_after) == (problems.BUSY, 2)
-            let_go(tmp_path / "go")
+            release(tmp_path / "go")
 
     run(test)
 
 
-def test_query_that_waits_too_long_is_refused(tmp_path: Path) -> None:
+def test_query_that_waits_too_long_is_rejected(tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
         async with occupied(pool, tmp_path / "go"):
-            assert (await failure(pool.run_in_process(own_process))).type == problems.BUSY
+            assert (await error_of(pool.run_in_process(own_process))).type == problems.BUSY
 
     run(test, ONE.model_copy(update={"queue_seconds": 0.2}))
 
@@ -293,7 +293,7 @@ def test_queue_is_served_in_order_and_waiting_does_not_count_as_computing(tmp_pa
     order: list[int] = []
 
     async def ask(pool: WorkerPool, number: int) -> None:
-        await pool.run_in_process(asleep, 0.5)
+        await pool.run_in_process(sleep_for, 0.5)
         order.append(number)
 
     async def test(pool: WorkerPool) -> None:
@@ -301,10 +301,10 @@ def test_queue_is_served_in_order_and_waiting_does_not_count_as_computing(tmp_pa
             for number in range(4):
                 tasks.start_soon(ask, pool, number)
                 await anyio.sleep(0.01)
-            let_go(tmp_path / "go")
+            release(tmp_path / "go")
         assert order == [0, 1, 2, 3]
 
-    # Together they take longer than the time limit of each.
+    # Together they exceed the time limit of a single query.
     run(test, ONE.model_copy(update={"queue_length": 9, "budget_seconds": 1.8}))
 
 
@@ -317,7 +317,7 @@ def test_expensive_queries_make_room_for_a_shorter_one() -> None:
 
         async def keep_busy() -> None:
             try:
-                await pool.run_in_process(asleep, 60.0)
+                await pool.run_in_process(sleep_for, 60.0)
             except ServiceError as error:
                 displaced.append(error)
 
@@ -337,20 +337,20 @@ def test_queries_of_equal_cost_do_not_displace_each_other() -> None:
     async def test(pool: WorkerPool) -> None:
         async with anyio.create_task_group() as tasks:
             for _ in range(3):
-                tasks.start_soon(pool.run_in_process, asleep, 1.0)
+                tasks.start_soon(pool.run_in_process, sleep_for, 1.0)
 
     run(test, TWO)
 
 
 def test_time_in_the_queue_is_recorded(tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
-        record = begin()
+        record = start_record()
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
             tasks.start_soon(pool.run_in_process, own_process)
             await anyio.sleep(0.1)
             (length,) = observability.QUEUE.collect()
             assert length.samples[0].value == 1
-            let_go(tmp_path / "go")
+            release(tmp_path / "go")
         (length,) = observability.QUEUE.collect()
         assert length.samples[0].value == 0
         assert record.queued > 0.09

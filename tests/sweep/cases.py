@@ -112,8 +112,8 @@ def served(client: Client, query: str, row: Mapping[str, Any]) -> Row:
     document = response.json()
     nothing: Row = dict.fromkeys(QUANTITIES[query])
     if response.status_code != 200:
-        told = [f"{each['pointer']} {each['detail']}" for each in document.get("errors", [])]
-        return nothing | {"warning": None, "error": "; ".join(told) or document["detail"]}
+        errors = [f"{each['pointer']} {each['detail']}" for each in document.get("errors", [])]
+        return nothing | {"warning": None, "error": "; ".join(errors) or document["detail"]}
     codes = " ".join(dict.fromkeys(each["code"] for each in document["warnings"]))
     # What the service writes as null is infinite.
     answers = {

@@ -1,4 +1,4 @@
-"""Sweeps in processes, as a user starts them."""
+"""Sweeps in subprocesses."""
 
 import os
 import signal
@@ -19,7 +19,7 @@ WAIT = 120.0
 def sweep(
     folder: Path, *options: str, prepare: Callable[[], object] = int
 ) -> "subprocess.Popen[str]":
-    """Start a sweep in a folder, with SIGINT as on a terminal, whatever started the tests."""
+    """Start a sweep in a folder, with the default SIGINT handler."""
     command = [sys.executable, "-m", "mdr_command", "sweep", *options]
 
     def before() -> None:
@@ -37,8 +37,8 @@ def sweep(
 
 def finished(process: "subprocess.Popen[str]") -> tuple[int, str]:
     """Return the exit status of a sweep and its standard error."""
-    _, said = process.communicate(timeout=WAIT)
-    return process.returncode, said
+    _, stderr = process.communicate(timeout=WAIT)
+    return process.returncode, stderr
 
 
 def swept(folder: Path, *options: str, prepare: Callable[[], object] = int) -> tuple[int, str]:
@@ -46,11 +46,11 @@ def swept(folder: Path, *options: str, prepare: Callable[[], object] = int) -> t
     return finished(sweep(folder, *options, prepare=prepare))
 
 
-def until(reached: Callable[[], object]) -> None:
+def until(condition: Callable[[], object]) -> None:
     """Wait until a condition holds."""
     end = time.monotonic() + WAIT
-    while not reached():
-        assert time.monotonic() < end, "nothing happened"
+    while not condition():
+        assert time.monotonic() < end, "timeout"
         time.sleep(0.01)
 
 

@@ -115,7 +115,7 @@ def test_fields_have_the_types_of_the_request_models() -> None:
         ("5:5:1", [5.0]),
     ],
 )
-def test_an_axis_includes_both_ends(text: str, values: list[float]) -> None:
+def test_axis_includes_both_ends(text: str, values: list[float]) -> None:
     found = axis("load.normal_force", text)
     assert found == pytest.approx(values, rel=1e-15, abs=0)
     assert [found[0], found[-1]] == [values[0], values[-1]]
@@ -128,12 +128,12 @@ def test_an_axis_includes_both_ends(text: str, values: list[float]) -> None:
         *("1:2:3:log:log", "1:2:3:"),
     ],
 )
-def test_an_invalid_axis_is_rejected(text: str) -> None:
+def test_invalid_axis_is_rejected(text: str) -> None:
     with pytest.raises(UsageError, match="load"):
         axis("load.normal_force", text)
 
 
-def test_a_grid_equals_the_table_of_its_cases(folder: Path) -> None:
+def test_grid_equals_the_table_of_its_cases(folder: Path) -> None:
     grid = ("--grid", "profile.radius=1e-3:1e-1:3:log")
     options = ("normal", "--template", "ball.json", *grid, "--chunk", "5")
     assert run(*options, "--out", "result.parquet") == 0
@@ -186,7 +186,7 @@ def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("folder")
-def test_the_result_does_not_depend_on_chunks_or_processes() -> None:
+def test_result_is_independent_of_chunks_and_processes() -> None:
     write(
         "cases.parquet",
         pa.Table.from_batches(
@@ -200,9 +200,7 @@ def test_the_result_does_not_depend_on_chunks_or_processes() -> None:
     assert others == [first, first]
 
 
-def test_a_plan_computes_nothing_and_estimates_the_start_of_workers(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_plan_estimates_without_computing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     grid = ("--grid", "profile.radius=1e-3:1:1000000:log")
     assert run("normal", "--template", "ball.json", *grid, "--out", "a.csv", "--plan") == 0
     text = capsys.readouterr().out
@@ -216,12 +214,13 @@ def test_a_plan_computes_nothing_and_estimates_the_start_of_workers(
     )
     alone, two = (resources.estimate(spec, Table(Path("cases.parquet")), n) for n in (1, 2))
     assert (alone.processes, two.processes) == (0, 2)
-    # Twenty cases take a fraction of a second: the start of the workers is all of the estimate.
+    # Twenty cases take a fraction of a second, so the estimate is dominated by the start of the
+    # workers.
     assert alone.seconds < resources.START_SECONDS < two.seconds
     assert resources.estimate(spec, Table(Path("cases.parquet")), None).processes == 0
 
 
-def test_expensive_cases_come_in_small_chunks() -> None:
+def test_expensive_cases_have_small_chunks() -> None:
     constants = {name: value for name, value in HERTZ.items() if name != "load.normal_force"}
     wear = {"material.g_star": 8e10, "friction_coefficient": 0.3}
     wear |= {"oscillation.tangential_displacement": 1e-8}
@@ -233,7 +232,7 @@ def test_expensive_cases_come_in_small_chunks() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "complaint"),
+    ("options", "message"),
     [
         (("--out", "a.parquet"), "either --table"),
         (("--grid", "load.normal_force=1:2:3", "--out", "a.xlsx"), "a.xlsx"),
@@ -266,8 +265,8 @@ def test_expensive_cases_come_in_small_chunks() -> None:
     ],
 )
 @pytest.mark.usefixtures("folder")
-def test_an_invalid_sweep_is_rejected_at_once(
-    capsys: pytest.CaptureFixture[str], options: tuple[str, ...], complaint: str
+def test_invalid_sweep_is_rejected_at_once(
+    capsys: pytest.CaptureFixture[str], options: tuple[str, ...], message: str
 ) -> None:
     Path("unknown.json").write_text('{"load": {"pressure": 1}, "friction_coefficient": 0.3}')
     Path("list.json").write_text('{"load": {"normal_force": [1, 2]}}')
@@ -280,7 +279,7 @@ def test_an_invalid_sweep_is_rejected_at_once(
     write("day.parquet", {"load.normal_force": [dt.date(1882, 1, 1)]})
     write("flag.parquet", {"load.normal_force": [True]})
     assert run("normal", *options) == 2
-    assert complaint in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not Path("a.csv").exists()
     assert not list(Path().glob("*.work"))
 
@@ -320,7 +319,7 @@ def test_numbers_of_every_column_type_are_read(column: "pa.Array[Any]") -> None:
 
 
 @pytest.mark.usefixtures("folder")
-def test_the_summary_counts_failed_cases_by_reason(capsys: pytest.CaptureFixture[str]) -> None:
+def test_summary_counts_failed_cases_by_reason(capsys: pytest.CaptureFixture[str]) -> None:
     force = [1.0] * 6 + [-1.0, -2.0, None, 5.0]
     radius = [0.01] * 9 + [-3.0]
     columns = {"load.normal_force": force, "profile.radius": radius, "profile.kind": ["paraboloid"]}
@@ -342,7 +341,7 @@ def test_the_summary_counts_failed_cases_by_reason(capsys: pytest.CaptureFixture
     assert Path("b.csv").read_text().count("/profile/radius") == 2
 
 
-def test_the_summary_lists_ten_reasons_without_their_numbers() -> None:
+def test_summary_merges_and_limits_the_reasons() -> None:
     errors = [f"/load/{letter} above {i}.5e{i}" for letter in "abcdefghijkl" for i in range(3)]
     failures = Failures()
     assert len(list(failures.counted([pa.record_batch({"error": [*errors, None]})]))) == 1
@@ -353,7 +352,7 @@ def test_the_summary_lists_ten_reasons_without_their_numbers() -> None:
     assert lines[-1] == "and 2 more reasons; see the column error"
 
 
-def test_a_symbolic_link_stays_and_its_target_is_written(folder: Path) -> None:
+def test_symbolic_link_is_followed(folder: Path) -> None:
     (folder / "elsewhere").mkdir()
     target = folder / "elsewhere" / "data"
     (folder / "result.parquet").symlink_to(target)
@@ -372,7 +371,7 @@ def test_a_symbolic_link_stays_and_its_target_is_written(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("folder")
-def test_parquet_holds_its_provenance() -> None:
+def test_parquet_metadata_records_the_provenance() -> None:
     assert run("normal", "--template", "ball.json", "--out", "a.parquet") == 0
     metadata = pq.read_metadata("a.parquet").metadata
     found = json.loads(metadata[b"mdr"])
@@ -383,7 +382,7 @@ def test_parquet_holds_its_provenance() -> None:
     assert "consistent system" in found["units"]
 
 
-def test_a_checkpoint_of_another_sweep_is_rejected(tmp_path: Path) -> None:
+def test_checkpoint_of_another_sweep_is_rejected(tmp_path: Path) -> None:
     checkpoint = Checkpoint(tmp_path / "result.parquet")
     batch = pa.record_batch({"x": [1.0]})
     with checkpoint.opened({"chunk": 1}, restart=False) as done:
@@ -412,7 +411,7 @@ def test_a_checkpoint_of_another_sweep_is_rejected(tmp_path: Path) -> None:
         assert done == set()
 
 
-def test_batches_of_any_size_hold_the_same_rows(tmp_path: Path) -> None:
+def test_rows_are_independent_of_the_batch_size(tmp_path: Path) -> None:
     values = np.arange(1000.0)
     pq.write_table(pa.table({"x": values}), tmp_path / "t.parquet", row_group_size=77)
     source = Table(tmp_path / "t.parquet")
@@ -426,7 +425,7 @@ def test_batches_of_any_size_hold_the_same_rows(tmp_path: Path) -> None:
     assert whole["x"].to_pylist() == values.tolist()
 
 
-def test_core_service_and_command_line_load_no_package_of_sweeps() -> None:
+def test_core_service_and_command_line_import_no_sweep_packages() -> None:
     code = (
         "import sys, mdr_service.app, mdr_command.__main__;"
         "sys.exit(bool({'dask', 'distributed', 'pyarrow', 'tqdm'} & set(sys.modules)))"
@@ -448,21 +447,21 @@ def without_packages(*options: str) -> "subprocess.CompletedProcess[str]":
     return subprocess.run(command, check=False, capture_output=True, text=True)
 
 
-def test_help_prints_without_the_packages_of_sweeps() -> None:
+def test_help_needs_no_sweep_packages() -> None:
     done = without_packages("--help")
     assert done.returncode == 0
     assert "--template" in done.stdout
     assert "mdr[" not in done.stdout
 
 
-def test_a_missing_package_is_installed_from_the_checkout() -> None:
+def test_missing_package_is_reported_with_the_install_command() -> None:
     done = without_packages("normal", "--grid", "load.normal_force=1:2:3", "--out", "a.csv")
     assert done.returncode == 1
     assert "`pip install '.[sweep]'` in the checkout" in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_a_sweep_on_this_machine_does_not_load_dask() -> None:
+def test_local_sweep_does_not_import_dask() -> None:
     code = (
         "import sys, mdr_sweep.sweep, mdr_sweep.scheduler;"
         "sys.exit(bool({'dask', 'distributed'} & set(sys.modules)))"

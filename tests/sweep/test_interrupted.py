@@ -1,4 +1,4 @@
-"""An interrupted sweep resumes, and gives the same bytes as an undisturbed one."""
+"""An interrupted sweep resumes and gives bytes identical to those of an uninterrupted one."""
 
 import json
 import resource
@@ -28,14 +28,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def undisturbed(folder: Path) -> bytes:
-    status, said = running.swept(folder, *OPTIONS, "--out", "undisturbed.parquet")
-    assert status == 0, said
-    assert "2,000 cases: " in said
+def uninterrupted(folder: Path) -> bytes:
+    status, stderr = running.swept(folder, *OPTIONS, "--out", "undisturbed.parquet")
+    assert status == 0, stderr
+    assert "2,000 cases: " in stderr
     return (folder / "undisturbed.parquet").read_bytes()
 
 
-def test_a_killed_worker_and_a_killed_client_lose_nothing(folder: Path, undisturbed: bytes) -> None:
+def test_killed_worker_and_killed_client_lose_nothing(folder: Path, uninterrupted: bytes) -> None:
     options = (*OPTIONS, "--out", "killed.parquet")
     first = running.sweep(folder, *options)
     running.until(lambda: running.chunks(folder, "killed.parquet") >= 2)
@@ -51,64 +51,62 @@ def test_a_killed_worker_and_a_killed_client_lose_nothing(folder: Path, undistur
     assert 0 < left < CASES // CHUNK
     assert not (folder / "killed.parquet").exists()
 
-    status, said = running.swept(folder, *options)
-    assert status == 0, said
-    assert (folder / "killed.parquet").read_bytes() == undisturbed
+    status, stderr = running.swept(folder, *options)
+    assert status == 0, stderr
+    assert (folder / "killed.parquet").read_bytes() == uninterrupted
     assert not (folder / "killed.parquet.work").exists()
 
 
-def test_an_interrupted_sweep_resumes(folder: Path, undisturbed: bytes) -> None:
+def test_interrupted_sweep_resumes(folder: Path, uninterrupted: bytes) -> None:
     options = (*OPTIONS, "--out", "interrupted.parquet")
     first = running.sweep(folder, *options)
     running.until(lambda: running.chunks(folder, "interrupted.parquet") >= 1)
     first.send_signal(signal.SIGINT)
-    status, said = running.finished(first)
+    status, stderr = running.finished(first)
     assert status == 130
-    assert "interrupted; completed chunks are kept; rerun the command to resume" in said
-    assert "Traceback" not in said
+    assert "interrupted; completed chunks are kept; rerun the command to resume" in stderr
+    assert "Traceback" not in stderr
     assert running.swept(folder, *options)[0] == 0
-    assert (folder / "interrupted.parquet").read_bytes() == undisturbed
+    assert (folder / "interrupted.parquet").read_bytes() == uninterrupted
 
 
-def test_one_process_resumes_a_sweep_of_two(folder: Path, undisturbed: bytes) -> None:
+def test_one_process_resumes_a_sweep_of_two(folder: Path, uninterrupted: bytes) -> None:
     options = (*OPTIONS, "--out", "alone.parquet")
     first = running.sweep(folder, *options)
     running.until(lambda: running.chunks(folder, "alone.parquet") >= 2)
     first.send_signal(signal.SIGINT)
     assert running.finished(first)[0] == 130
     assert running.swept(folder, *OPTIONS[:-1], "1", "--out", "alone.parquet")[0] == 0
-    assert (folder / "alone.parquet").read_bytes() == undisturbed
+    assert (folder / "alone.parquet").read_bytes() == uninterrupted
 
 
 @pytest.mark.parametrize("room", [10_000, 100_000])
-def test_a_full_disk_leaves_nothing_half_written(
-    folder: Path, undisturbed: bytes, room: int
-) -> None:
-    # A chunk takes about 20 kB, the result several hundred.
+def test_full_disk_leaves_no_partial_result(folder: Path, uninterrupted: bytes, room: int) -> None:
+    # A chunk takes about 20 kB, the result several hundred kB.
     name = f"full{room}.parquet"
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (room, room))
-    status, said = running.swept(folder, *OPTIONS, "--out", name, prepare=limit)
+    status, stderr = running.swept(folder, *OPTIONS, "--out", name, prepare=limit)
     assert status == 1
-    assert "rerun the command to resume" in said
+    assert "rerun the command to resume" in stderr
     assert not (folder / name).exists()
     assert not list((folder / f"{name}.work").glob("*.unfinished"))
     assert running.chunks(folder, name) == (0 if room == 10_000 else CASES // CHUNK)
 
     assert running.swept(folder, *OPTIONS, "--out", name)[0] == 0
-    assert (folder / name).read_bytes() == undisturbed
+    assert (folder / name).read_bytes() == uninterrupted
 
 
-def test_a_cluster_gives_the_same_bytes(folder: Path, undisturbed: bytes) -> None:
+def test_cluster_gives_identical_bytes(folder: Path, uninterrupted: bytes) -> None:
     with cluster(folder) as address:
         options = (*OPTIONS, "--out", "cluster.parquet", "--scheduler", address)
-        status, said = running.swept(folder, *options)
-    assert status == 0, said
-    assert (folder / "cluster.parquet").read_bytes() == undisturbed
+        status, stderr = running.swept(folder, *options)
+    assert status == 0, stderr
+    assert (folder / "cluster.parquet").read_bytes() == uninterrupted
 
 
 @contextmanager
 def cluster(folder: Path) -> Iterator[str]:
-    """Start a scheduler and a worker as on a cluster, and yield the address."""
+    """Start a scheduler and a worker as on a cluster, and yield the scheduler's address."""
     file = folder / "scheduler.json"
     at_home = ("--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file))
     processes = [

@@ -1,4 +1,4 @@
-"""Files of our own on the way of one request, from the ASGI application to the solved contact."""
+"""Number of source files on the call path of a small query."""
 
 import asyncio
 import json
@@ -25,7 +25,7 @@ SCOPE: dict[str, Any] = {
 
 
 def statuses(app: Any) -> list[int]:
-    """Return the status of the response to a Hertzian contact."""
+    """Return the status of the response to a Hertz query."""
     messages: list[Any] = []
 
     async def receive() -> dict[str, Any]:
@@ -38,9 +38,9 @@ def statuses(app: Any) -> list[int]:
     return [message["status"] for message in messages if "status" in message]
 
 
-def test_a_small_query_passes_seven_files_of_the_service_and_five_of_the_core() -> None:
+def test_small_query_passes_few_files() -> None:
     app = create_app()
-    # The first request builds the stack of the framework's middleware.
+    # The first request builds the framework's middleware stack.
     assert statuses(app) == [200]
     files: set[Path] = set()
     solved: list[bool] = []

@@ -29,13 +29,13 @@ def test_random_rows_of_limiting_wear_equal_the_responses(client: Client, kind: 
     assert swept("wear", rows) == [served(client, "wear", row) for row in rows]
 
 
-def test_a_table_of_all_kinds_equals_the_responses(client: Client) -> None:
+def test_table_of_all_kinds_equals_the_responses(client: Client) -> None:
     rows = [row for kind in KINDS for row in random_cases(kind, "tangential", 12, seed=1)]
     Random(3).shuffle(rows)
     assert swept("tangential", rows) == [served(client, "tangential", row) for row in rows]
 
 
-def test_cases_close_to_full_slip_have_their_own_warnings(client: Client) -> None:
+def test_warnings_are_per_case_near_full_slip(client: Client) -> None:
     row: Row = {"profile.kind": "paraboloid", "profile.radius": 0.01, "material.e_star": 1e11}
     row |= {"material.g_star": 8e10, "friction_coefficient": 0.3, "load.normal_force": 10.0}
     ratios = [i / 400 for i in range(400)] + [1 - 10**-k for k in range(2, 12)]
@@ -69,24 +69,24 @@ def test_rows_with_a_yield_strength_equal_the_responses(client: Client, kind: st
     assert swept("tangential", rows) == [served(client, "tangential", row) for row in rows]
 
 
-# Invalid values of fields, by what is wrong with them.
+# Invalid values of fields, by error.
 INVALID: dict[str, Row] = {
     "negative": {"profile.radius": -1.0},
     "nothing": {"material.e_star": 0.0},
-    "no number": {"load.normal_force": math.nan},
+    "not a number": {"load.normal_force": math.nan},
     "endless": {"friction_coefficient": math.inf},
     "too large": {"material.g_star": 1e51},
-    "next to nothing": {"load.normal_force": 1e-100},
-    "no such kind": {"profile.kind": "pyramid"},
-    "left out": {"material.g_star": None},
+    "too small": {"load.normal_force": 1e-100},
+    "unknown kind": {"profile.kind": "pyramid"},
+    "missing": {"material.g_star": None},
     "two controls": {"load.indentation_depth": 1e-6},
     "no control": {"tangential.tangential_force": None},
     "no equilibrium": {"tangential.tangential_force": 1e6},
-    "of another kind": {"profile.slope": 0.1},
+    "field of another kind": {"profile.slope": 0.1},
 }
 
 
-def with_invalid_rows(every: int, count: int) -> list[Row]:
+def with_invalid_rows(step: int, count: int) -> list[Row]:
     rows: list[Row] = [
         {
             "profile.kind": "paraboloid",
@@ -100,8 +100,8 @@ def with_invalid_rows(every: int, count: int) -> list[Row]:
         for i in range(count)
     ]
     changes = list(INVALID.values())
-    for i in range(0, count, every):
-        rows[i] |= changes[(i // every) % len(changes)]
+    for i in range(0, count, step):
+        rows[i] |= changes[(i // step) % len(changes)]
     return rows
 
 
@@ -115,7 +115,7 @@ def test_invalid_rows_leave_all_other_rows_unchanged(client: Client) -> None:
 
 
 @pytest.mark.parametrize("invalid", INVALID)
-def test_an_invalid_row_has_the_error_of_the_service(client: Client, invalid: str) -> None:
+def test_invalid_row_has_the_error_of_the_service(client: Client, invalid: str) -> None:
     row: dict[str, Any] = with_invalid_rows(2, 2)[1] | INVALID[invalid]
     (alone,) = swept("tangential", [row])
     assert alone["error"].startswith("/")
@@ -123,7 +123,7 @@ def test_an_invalid_row_has_the_error_of_the_service(client: Client, invalid: st
 
 
 @pytest.mark.parametrize("rows", [1, 3, 5])
-def test_a_table_without_a_valid_row(client: Client, rows: int) -> None:
+def test_table_without_a_valid_row(client: Client, rows: int) -> None:
     invalid = [row | {"profile.radius": -1.0} for row in with_invalid_rows(9, rows)]
     assert swept("tangential", invalid) == [served(client, "tangential", row) for row in invalid]
 
@@ -133,8 +133,8 @@ def test_maxima_of_stresses_equal_those_of_the_core(kind: str) -> None:
     names = ("contact_radius", "maximum_pressure", "maximum_shear_stress")
     rows = random_cases(kind, "tangential", 12, seed=4)
     found = vectorized.solve(Spec("tangential", {}, names), table(rows)).to_pylist()
-    for row, told in zip(rows, found, strict=True):
-        if told["error"]:
+    for row, result in zip(rows, found, strict=True):
+        if result["error"]:
             continue
         query: Any = QUERIES["tangential"].model.model_validate(nested(row))
         pushed = solve_tangential(query)
@@ -143,4 +143,4 @@ def test_maxima_of_stresses_equal_those_of_the_core(kind: str) -> None:
             float(pushed.normal.maximum_pressure),
             float(pushed.maximum_shear_stress),
         )
-        assert tuple(told[name] for name in names) == expected
+        assert tuple(result[name] for name in names) == expected
