@@ -6,6 +6,7 @@ from fastapi import FastAPI
 from pydantic.json_schema import models_json_schema
 
 from mdr_service.schemas.answers import Problem
+from mdr_service.schemas.batch import MODELS
 from mdr_service.schemas.examples import ANSWERS, PARAMETER_EXAMPLES
 
 DESCRIPTION: Final = """\
@@ -40,6 +41,13 @@ TAGS: Final = [
 ]
 
 
+_REFERENCE: Final = "#/components/schemas/{model}"
+
+
+def _reference(model: str) -> dict[str, str]:
+    return {"$ref": _REFERENCE.format(model=model)}
+
+
 def extend(app: FastAPI) -> None:
     """Extend the OpenAPI document of `app` by problem documents and examples.
 
@@ -52,10 +60,14 @@ def extend(app: FastAPI) -> None:
         if app.openapi_schema:
             return app.openapi_schema
         document = generate()
-        _, problem = models_json_schema(
-            [(Problem, "validation")], ref_template="#/components/schemas/{model}"
-        )
-        document["components"]["schemas"] |= problem["$defs"]
+        _, problem = models_json_schema([(Problem, "validation")], ref_template=_REFERENCE)
+        schemas = document["components"]["schemas"]
+        schemas |= problem["$defs"]
+        # The service validates each request of a batch alone, so that its model has any object.
+        request = schemas["BatchItem"]["properties"]["request"]
+        del request["type"], request["additionalProperties"]
+        request["anyOf"] = [_reference(model.__name__) for model in MODELS.values()]
+        document["security"] = []
         for path in document["paths"].values():
             for operation in path.values():
                 name = operation["operationId"].removeprefix("get_")

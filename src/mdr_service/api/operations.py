@@ -16,7 +16,7 @@ from mdr_service.settings import SETTINGS, Settings
 if TYPE_CHECKING:
     from mdr_service.workers import WorkerPool
 
-router = APIRouter(responses=failures())
+router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
 # The browser connects to no other host, whatever the page shows.

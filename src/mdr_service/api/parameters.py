@@ -69,7 +69,7 @@ def _whole(text: str) -> int:
 # A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
 _Number = Annotated[float, BeforeValidator(_number)] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
-_Length = Annotated[int, BeforeValidator(_whole), Field(ge=2, le=SETTINGS.max_loads)] | None
+_Length = Annotated[int, Field(ge=2, le=SETTINGS.max_loads), BeforeValidator(_whole)] | None
 # By the type of the field in JSON.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _LOADS: Final = frozenset({"load", "tangential", "oscillation"})

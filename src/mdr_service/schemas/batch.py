@@ -25,7 +25,7 @@ from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.settings import SETTINGS
 
-_MODELS: Final[Mapping[str, type[Query]]] = {
+MODELS: Final[Mapping[str, type[Query]]] = {
     "normal": NormalQuery,
     "tangential": TangentialQuery,
     "history": HistoryQuery,
@@ -54,7 +54,7 @@ class BatchItem(Strict):
     def query(self) -> Query | ValidationError:
         """Query, or the reason why the request is invalid."""
         try:
-            return _MODELS[self.ask].model_validate(self.request)
+            return MODELS[self.ask].model_validate(self.request)
         except ValidationError as error:
             return error
 

@@ -112,18 +112,17 @@ class LoadedQuery(Query):
         return ("load", *self.load.place(index))
 
 
-LOADS_TOGETHER: Final = {
-    "tangential": {"required": ["load", "friction_coefficient"]},
-    "history": {"required": ["friction_coefficient"]},
-    "friction_coefficient": one_of("tangential", "history"),
+NEEDED: Final = {
+    "tangential": ["load", "friction_coefficient"],
+    "history": ["friction_coefficient"],
 }
-"""Members of a `LoadedQuery` that need others, as `dependentSchemas`."""
+"""Members of a `LoadedQuery` that need others, as `dependentRequired`."""
 
 
 def _describe_stress(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
     schema["allOf"] = [one_of("radius", "points"), one_of("load", "history")]
-    schema["dependentSchemas"] = LOADS_TOGETHER
+    schema["dependentRequired"] = NEEDED
 
 
 class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_describe_stress):

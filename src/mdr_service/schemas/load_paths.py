@@ -145,7 +145,7 @@ class Cycles(LoadPath):
 
 def _describe_history(schema: dict[str, Any]) -> None:
     drop_null_defaults(schema)
-    schema |= one_of("history", "cycles")
+    schema["allOf"] = [one_of("history", "cycles")]
 
 
 class HistoryQuery(Query, json_schema_extra=_describe_history):

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.fields import LOADS_TOGETHER, LoadedQuery, OnceEach
+from mdr_service.schemas.fields import NEEDED, LoadedQuery, OnceEach
 from mdr_service.schemas.quantities import Signed, Size, drop_null_defaults, one_of, quantity
 from mdr_service.settings import SETTINGS
 
@@ -30,8 +30,7 @@ def _describe(schema: dict[str, Any]) -> None:
         one_of("load", "history"),
         {"oneOf": [{"required": ["x", "z"]}, {"required": ["points"]}]},
     ]
-    schema["dependentRequired"] = {"x": ["z"], "z": ["x"]}
-    schema["dependentSchemas"] = LOADS_TOGETHER
+    schema["dependentRequired"] = {"x": ["z"], "z": ["x"], **NEEDED}
 
 
 class SubsurfaceQuery(LoadedQuery, json_schema_extra=_describe):

@@ -1,6 +1,6 @@
 """Requests about fretting wear: the limiting state, and its evolution over the cycles."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -10,7 +10,6 @@ from mdr_service.schemas.load_paths import TangentialSwing
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
     Size,
-    drop_null_defaults,
     positive,
     quantity,
 )
@@ -46,14 +45,7 @@ class Oscillation(Choice):
     )
 
 
-def _describe(schema: dict[str, Any]) -> None:
-    drop_null_defaults(schema)
-    either = [{"required": [name]} for name in ("radius", "points")]
-    schema["not"] = {"required": ["radius", "points"]}
-    schema["dependentSchemas"] = {"quantities": {"anyOf": either}}
-
-
-class _FrettingQuery(FieldQuery, json_schema_extra=_describe):
+class _FrettingQuery(FieldQuery):
     friction_coefficient: float = friction()
 
 
