@@ -48,6 +48,21 @@ def _reference(model: str) -> dict[str, str]:
     return {"$ref": _REFERENCE.format(model=model)}
 
 
+def _describe_defaults(schema: dict[str, Any]) -> None:
+    """Move the defaults of optional members to their descriptions.
+
+    Generators of clients require a member with a default, because they take it for one of answers.
+    """
+    for part in schema.get("oneOf", ()):
+        _describe_defaults(part)
+    for member in schema.get("properties", {}).values():
+        if "default" in member:
+            default = member.pop("default")
+            shown = ", ".join(default) or "none" if isinstance(default, list) else default
+            meaning, bracket, dimension = member["description"].rstrip(".").partition(" [")
+            member["description"] = f"{meaning}; default {shown}{bracket}{dimension}"
+
+
 def extend(app: FastAPI) -> None:
     """Extend the OpenAPI document of `app` by problem documents and examples.
 
@@ -67,6 +82,9 @@ def extend(app: FastAPI) -> None:
         request = schemas["BatchItem"]["properties"]["request"]
         del request["type"], request["additionalProperties"]
         request["anyOf"] = [_reference(model.__name__) for model in MODELS.values()]
+        schemas["Settings"]["additionalProperties"] = False
+        for name in schemas.keys() - {"Settings", Problem.__name__}:
+            _describe_defaults(schemas[name])
         document["security"] = []
         for path in document["paths"].values():
             for operation in path.values():

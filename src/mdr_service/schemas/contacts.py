@@ -4,7 +4,7 @@ from abc import abstractmethod
 from functools import cached_property, lru_cache
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from mdr_core import materials
@@ -111,8 +111,10 @@ def _word_or_body(value: object) -> str:
     return "word" if isinstance(value, str) else "body"
 
 
+# As an enumeration, because a generator of clients takes no constant in a choice.
+_Rigid = Annotated[Literal["rigid"], WithJsonSchema({"type": "string", "enum": ["rigid"]})]
 BodyOrRigid = Annotated[
-    Annotated[Literal["rigid"], Tag("word")] | Annotated[BodyMaterial, Tag("body")],
+    Annotated[_Rigid, Tag("word")] | Annotated[BodyMaterial, Tag("body")],
     Discriminator(_word_or_body),
 ]
 
