@@ -371,6 +371,21 @@ def test_balance_of_forces_through_a_plane() -> None:
         )
 
 
+@pytest.mark.parametrize("stick", [0.0, 0.6])
+@pytest.mark.parametrize("exponent", [1.01, 1.3, 2.0, 5.0])
+def test_tractions_at_the_origin(exponent: float, stick: float) -> None:
+    contact = sheared(Power(0.3, exponent), stick)
+    p = float(fields.pressure(contact.normal, [0.0])[0])
+    tau = float(fields.shear_stress(contact, [0.0])[0])
+    for body, sign in ((1, 1), (2, -1)):
+        found = stress(contact, 0.0, 0.0, 0.0, poissons_ratio=0.3, body=body)
+        expected = [-0.8 * p, -0.8 * p, -p, 0.0, sign * tau, 0.0]
+        assert np.abs(np.array(found) - expected).max() < 1e-12 * p
+        if exponent >= 2:
+            beside = stress(contact, 1e-14, 0.0, 0.0, poissons_ratio=0.3, body=body)
+            assert np.abs(np.array(beside) - expected).max() < 1e-11 * p
+
+
 def test_shapes_of_loads_and_points() -> None:
     contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=[0.1, 0.2, 0.4])
     x, z = np.linspace(-1, 1, 5), np.linspace(0, 1, 4)

@@ -49,6 +49,14 @@ def shape_of(contact: Contact) -> tuple[int, ...]:
     return (contact.width if isinstance(contact, TangentialContact) else contact.coordinate).shape
 
 
+def normal_of(contact: Contact) -> NormalContact:
+    """Return the normal contact."""
+    if isinstance(contact, ContactState):
+        coordinate = contact.coordinate[-1] if contact.in_contact else 0.0
+        return NormalContact(contact.profile, contact.e_star, np.asarray(coordinate))
+    return contact.normal if isinstance(contact, TangentialContact) else contact
+
+
 def slips_from(contact: TangentialContact | LoadHistory) -> Array:
     """Return the least radius with slip under each load [length]; infinite without slip."""
     if isinstance(contact, LoadHistory):
@@ -99,7 +107,7 @@ def _cases(contact: Contact) -> Iterator[tuple[Profile, float, Span, float, list
     if isinstance(contact, ContactState):
         yield _end(contact)
         return
-    normal = contact.normal if isinstance(contact, TangentialContact) else contact
+    normal = normal_of(contact)
     columns: list[Any] = [normal.e_star, normal.contact_radius, normal.coordinate]
     if isinstance(contact, TangentialContact):
         columns += [contact.sign * contact.friction_coefficient, contact.full_slip]

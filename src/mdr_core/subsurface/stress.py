@@ -10,7 +10,14 @@ from mdr_core import fields
 from mdr_core.errors import InputError
 from mdr_core.fields.radii import Edges, edge_error
 from mdr_core.history import ContactState
-from mdr_core.subsurface.foundation import Contact, Foundation, foundations, shape_of
+from mdr_core.normal import NormalContact
+from mdr_core.subsurface.foundation import (
+    Contact,
+    Foundation,
+    foundations,
+    normal_of,
+    shape_of,
+)
 from mdr_core.subsurface.moments import moments, rule_error
 from mdr_core.subsurface.tensor import StressTensor
 from mdr_core.typing import Array
@@ -83,8 +90,27 @@ def stress(
     rings = Rings(r, depth.ravel(), cos, sin)
     nearest = float(np.hypot(r, rings.z).min(initial=np.inf))
     under = foundations(contact, rtol, nearest)
-    each = [on_rings(one, rings, poissons_ratio, body) for one in under]
-    return StressTensor(*np.stack(each, axis=1).reshape(6, *shape_of(contact), *across.shape))
+    found = np.stack([on_rings(one, rings, poissons_ratio, body) for one in under], axis=1)
+    origin = (r == 0) & (rings.z == 0)
+    if origin.any():
+        found[..., origin] = _at_origin(contact, poissons_ratio, body)[..., None]
+    return StressTensor(*found.reshape(6, *shape_of(contact), *across.shape))
+
+
+def _at_origin(contact: Contact, nu: float, body: int) -> Array:
+    """Stresses at the origin by the tractions there, which powers next to a cone approach slowly.
+
+    The in-plane stresses are (1 + 2 nu)/2 times -p: V_r/r and Om_r/r are halves of V_rr and Om_rr.
+    """
+    pressed, shape = normal_of(contact), shape_of(contact)
+    pressure = np.broadcast_to(fields.pressure(pressed, [0.0])[..., 0], shape).ravel()
+    found = np.zeros((6, pressure.size))
+    found[:3] = -np.outer([(1 + 2 * nu) / 2, (1 + 2 * nu) / 2, 1.0], pressure)
+    if not isinstance(contact, NormalContact):
+        shear = np.ravel(fields.shear_stress(contact, [0.0])[..., 0])
+        found[4] = shear if body == 1 else -shear
+    found[3:, np.isinf(pressure)] = inf
+    return found
 
 
 class Rings(NamedTuple):

@@ -47,27 +47,26 @@ def solve_stress(query: StressQuery) -> Contact:
     return solve_loaded(query)
 
 
-def solve_loaded(query: LoadedQuery) -> Contact:
-    """Return the contact under the loads of a query, or its load history.
-
-    Raises
-    ------
-    InputError : members of the request contradict each other.
-    """
+def require_loads(query: LoadedQuery) -> None:
+    """Raise InputError unless the query has loads, or a load history, that fit its friction."""
     by_path = query.has("history")
-    with_friction = by_path or query.has("tangential")
     if query.has("load") == by_path:
         place = "history" if by_path else "load"
         raise InputError((place,), "exactly one of load, history is needed")
     if by_path and query.has("tangential"):
         raise InputError(("tangential",), "is part of history where there is one")
-    if query.has("friction_coefficient") != with_friction:
+    if query.has("friction_coefficient") != (by_path or query.has("tangential")):
         missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
         raise InputError((missing,), "friction_coefficient goes with tangential or history")
     if by_path:
         require_few_samples("history", query.history)
+
+
+def solve_loaded(query: LoadedQuery) -> Contact:
+    """Return the contact under the loads of a query, or its load history."""
+    if query.has("history"):
         return solve_points(query)
-    return solve_tangential(query) if with_friction else solve_normal(query)
+    return solve_tangential(query) if query.has("tangential") else solve_normal(query)
 
 
 def stress_result(query: StressQuery, source: Contact) -> Result:
@@ -140,6 +139,7 @@ def require_few_numbers(query: FieldQuery, rows: str = "loads") -> None:
 
 def _require_consistent(query: StressQuery) -> None:
     """Raise InputError where fields that are valid alone contradict each other."""
+    require_loads(query)
     with_friction = query.has("tangential") or query.has("history")
     for index, name in enumerate(query.quantities):
         if name in SHEAR_FIELDS and not with_friction:

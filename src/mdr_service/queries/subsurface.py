@@ -10,7 +10,7 @@ from mdr_core.history import LoadHistory
 from mdr_core.normal import not_reached
 from mdr_core.subsurface import StressTensor
 from mdr_core.typing import Array
-from mdr_service.queries.fields import at_end, solve_loaded
+from mdr_service.queries.fields import at_end, require_loads, solve_loaded
 from mdr_service.results import Contact, Result, checked, notices, without_singular, written
 from mdr_service.schemas.contacts import Bodies, BodyMaterial
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -27,6 +27,7 @@ _CRITERIA: Final = {"tresca": "maximum_shear", "von_mises": "von_mises"}
 
 def solve_subsurface(query: SubsurfaceQuery) -> Contact:
     """Return the contact, or the load history, whose stresses a query requests."""
+    require_loads(query)
     for name in ("x", "z"):
         if query.has(name) == query.has("points"):
             raise InputError((name,), "either x and z or points are needed")
