@@ -85,6 +85,9 @@ def extend(app: FastAPI) -> None:
         schemas["Settings"]["additionalProperties"] = False
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])
+            for needed in schemas[name].get("dependentRequired", {}).values():
+                # The framework keeps them as a set, so that their order changes at every start.
+                needed.sort()
         document["security"] = []
         for path in document["paths"].values():
             for operation in path.values():
