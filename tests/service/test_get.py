@@ -380,6 +380,11 @@ def test_invalid_value_points_at_its_parameter(client: Client, name: str) -> Non
     assert f"/{pointer}" in [error["pointer"] for error in answer.json()["errors"]]
 
 
+def test_unknown_format_is_not_acceptable(client: Client) -> None:
+    answer = client.get(at("normal", {**NORMAL, "format": "xml"}))
+    assert (answer.status_code, answer.json()["type"]) == (406, "urn:mdr:problem:not-acceptable")
+
+
 def test_repeated_parameter_is_rejected(client: Client) -> None:
     answer = client.get(at("normal", NORMAL) + "&radius=0.01")
     assert answer.json()["errors"] == [{"pointer": "/radius", "detail": "is given twice"}]

@@ -11,7 +11,15 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
 from fastapi import APIRouter, Depends, Query, Request
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, create_model
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    SkipValidation,
+    ValidationError,
+    create_model,
+)
 from pydantic_core import PydanticCustomError
 from starlette.responses import Response
 
@@ -96,7 +104,8 @@ class Parameters(BaseModel):
     scale: Literal["linear", "log"] | None = Field(
         default=None, description="Spacing of a range, linear by default"
     )
-    format: Format | None = Field(default=None, description=FORMAT)
+    # An unknown format is not acceptable (406), as for POST, rather than invalid.
+    format: SkipValidation[Format | None] = Field(default=None, description=FORMAT)
     answers: str | None = Field(
         default=None, description="Members of the response, separated by commas; by default all"
     )
