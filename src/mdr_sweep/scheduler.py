@@ -8,7 +8,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from importlib import import_module
 from itertools import chain
-from multiprocessing import active_children, get_context, parent_process
+from multiprocessing import get_context, parent_process
 from threading import Thread
 from typing import Final
 
@@ -29,16 +29,19 @@ _THREADS: Final = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 def in_processes(spec: Spec, chunks: Iterable[Chunk], workers: int) -> Generator[Chunk, None, None]:
     """Yield each chunk as it is completed by worker processes.
 
-    If a worker is lost, all are replaced, and their chunks are solved again.
+    If a worker is lost, all are replaced, and their chunks are solved again. After an interrupt
+    the workers finish their chunks: one that is terminated while it returns a chunk would leave
+    its pool waiting for the rest.
     """
     # More BLAS threads than cores slow each other down.
     os.environ.update(dict.fromkeys(_THREADS, "1"))
+    spawn = get_context("spawn")
     in_flight: dict[int, pa.RecordBatch] = {}
     remaining = iter(chunks)
     lost = 0
     while lost < _MAX_LOST:
         try:
-            with _pool(workers) as executor:
+            with futures.ProcessPoolExecutor(workers, spawn, _end_with_parent) as executor:
                 for each in _solved(executor, workers, spec, remaining, in_flight):
                     lost = 0
                     yield each
@@ -109,20 +112,6 @@ def _to_bytes(batch: pa.RecordBatch) -> bytes:
 def _from_bytes(data: bytes) -> pa.RecordBatch:
     with pa.ipc.open_stream(data) as reader:
         return reader.read_next_batch()
-
-
-@contextmanager
-def _pool(workers: int) -> Iterator[futures.Executor]:
-    """Yield a pool of processes, which are terminated on any exception."""
-    executor = futures.ProcessPoolExecutor(workers, get_context("spawn"), _end_with_parent)
-    try:
-        yield executor
-    except BaseException:
-        for child in active_children():
-            child.terminate()
-        executor.shutdown(cancel_futures=True)
-        raise
-    executor.shutdown()
 
 
 @contextmanager

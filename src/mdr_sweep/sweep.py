@@ -18,7 +18,7 @@ from mdr_core.errors import InputError
 from mdr_service.schemas.flat import flat, nested
 from mdr_sweep import resources, scheduler, vectorized
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.columns import field
+from mdr_sweep.request_columns import field
 from mdr_sweep.spec import ERROR, MAXIMA, QUANTITIES, WARNING, Spec, UsageError, versions
 from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 

@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.csv as pv
 import pyarrow.parquet as pq
 
-from mdr_sweep.columns import Values
+from mdr_sweep.request_columns import Values
 from mdr_sweep.spec import UsageError
 
 # Rows of a row group of a Parquet file, and the most in a chunk: about 10 MB, and one block of

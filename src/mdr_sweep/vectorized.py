@@ -21,7 +21,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import body, control, friction
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
-from mdr_sweep.columns import Column, Values, read_columns
+from mdr_sweep.request_columns import Column, Values, read_columns
 from mdr_sweep.spec import ERROR, MAXIMA, TEXTS, WARNING, Spec
 
 Rows = NDArray[np.intp]

@@ -21,7 +21,7 @@ from mdr_core.errors import InputError
 from mdr_service.schemas.flat import flat, nested
 from mdr_sweep import command, resources, vectorized
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.columns import field
+from mdr_sweep.request_columns import field
 from mdr_sweep.spec import QUANTITIES, Spec, UsageError
 from mdr_sweep.sweep import Failures
 from mdr_sweep.tables import Grid, Table, axis, regrouped
