@@ -9,6 +9,8 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -20,13 +22,15 @@ from tests.faults.server import PATIENCE, free_port, is_served, running, service
 pytestmark = [pytest.mark.long, pytest.mark.alone]
 
 ROOT = Path(__file__).parents[2]
+# How a service starts and ends does not depend on the number of its compute processes.
+FEW = {"MDR_COMPUTE_PROCESSES": "1"}
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])
 @pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_signal_ends_the_service_cleanly(stop: signal.Signals, workers: str) -> None:
     port = free_port()
-    with running([*service(port), "--workers", workers], port) as process:
+    with running([*service(port), "--workers", workers], port, **FEW) as process:
         process.send_signal(stop)
         output, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
@@ -45,7 +49,7 @@ BRIEF = {
 def test_half_sent_request_does_not_delay_the_end() -> None:
     port = free_port()
     with (
-        running(service(port), port, **BRIEF) as process,
+        running(service(port), port, **FEW, **BRIEF) as process,
         socket.create_connection(("127.0.0.1", port)) as half_sent,
     ):
         half_sent.sendall(
@@ -62,7 +66,7 @@ def test_half_sent_request_does_not_delay_the_end() -> None:
 
 def test_end_of_the_terminal_is_ignored_under_nohup() -> None:
     port = free_port()
-    with running(["nohup", *service(port)], port, subprocess.DEVNULL) as process:
+    with running(["nohup", *service(port)], port, subprocess.DEVNULL, **FEW) as process:
         process.send_signal(signal.SIGHUP)
         time.sleep(0.5)
         assert is_served(port)
@@ -70,7 +74,7 @@ def test_end_of_the_terminal_is_ignored_under_nohup() -> None:
 
 def test_second_interrupt_answers_the_request_in_flight_at_once() -> None:
     port = free_port()
-    with running(service(port), port) as process:
+    with running(service(port), port, **FEW) as process:
         client = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
         # Some seconds of computation.
         ball = EVOLUTION_EXAMPLES["shakedown"]["value"]
@@ -89,46 +93,40 @@ def test_second_interrupt_answers_the_request_in_flight_at_once() -> None:
     assert process.returncode == 0
 
 
-def fail(command: list[str], **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command, env=os.environ | environment, capture_output=True, text=True, check=False
-    )
+def failed(*commands: list[str], **environment: str) -> list[subprocess.CompletedProcess[str]]:
+    """Run commands side by side: most of their time is that of the imports."""
+    run = partial(subprocess.run, capture_output=True, text=True, check=False)
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(partial(run, env=os.environ | environment), commands))
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "message"),
-    [
-        ("port", "70000", "--port must be between 0 and 65535"),
-        ("port", "-1", "--port must be between 0 and 65535"),
-        ("port", "http", "--port must be between 0 and 65535"),
-        ("workers", "0", "--workers must be between 1 and 1000"),
-    ],
-)
-def test_invalid_argument_is_refused_with_one_line(name: str, value: str, message: str) -> None:
-    ended = fail([sys.executable, "-m", "mdr_command", "serve", f"--{name}={value}"])
-    assert (ended.returncode, ended.stdout) == (2, "")
-    assert ended.stderr == f"mdr serve: {message}\n"
+def test_invalid_argument_is_refused_with_one_line() -> None:
+    ports, workers = "--port must be between 0 and 65535", "--workers must be between 1 and 1000"
+    given = {"port=70000": ports, "port=-1": ports, "port=http": ports, "workers=0": workers}
+    commands = [[sys.executable, "-m", "mdr_command", "serve", f"--{each}"] for each in given]
+    for ended, message in zip(failed(*commands), given.values(), strict=True):
+        assert (ended.returncode, ended.stdout) == (2, "")
+        assert ended.stderr == f"mdr serve: {message}\n"
 
 
 def test_unknown_host_is_reported_with_one_line() -> None:
-    ended = fail([*service(free_port()), "--host", "nowhere.invalid"])
+    (ended,) = failed([*service(free_port()), "--host", "nowhere.invalid"])
     assert (ended.returncode, ended.stdout) == (1, "")
     assert ended.stderr.startswith("mdr serve: cannot listen on nowhere.invalid port ")
     assert len(ended.stderr.splitlines()) == 1
 
 
-@pytest.mark.parametrize("workers", ["1", "2"])
-def test_port_in_use_is_reported_before_the_compute_processes_start(workers: str) -> None:
+def test_port_in_use_is_reported_before_the_compute_processes_start() -> None:
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))
         other.listen()
         port = other.getsockname()[1]
-        ended = fail([*service(port), "--workers", workers])
-    assert ended.returncode == 1
-    assert ended.stderr == (
-        f"mdr serve: cannot listen on 127.0.0.1 port {port}: Address already in use\n"
-    )
-    assert not ended.stdout
+        for ended in failed(*([*service(port), "--workers", workers] for workers in "12")):
+            assert ended.returncode == 1
+            assert ended.stderr == (
+                f"mdr serve: cannot listen on 127.0.0.1 port {port}: Address already in use\n"
+            )
+            assert not ended.stdout
 
 
 @pytest.mark.parametrize(
@@ -136,7 +134,7 @@ def test_port_in_use_is_reported_before_the_compute_processes_start(workers: str
     [("MDR_MAX_LOADS", "many"), ("MDR_SHUTDOWN_SECONDS", "14"), ("MDR_QUEUE_SECONDS", "nan")],
 )
 def test_invalid_setting_ends_the_process_with_one_line(name: str, value: str) -> None:
-    ended = fail(service(free_port()), **{name: value})
+    (ended,) = failed(service(free_port()), **{name: value})
     assert ended.returncode == 1
     assert ended.stderr.startswith(f"{name}: ")
     assert len(ended.stderr.splitlines()) == 1
@@ -155,7 +153,7 @@ def _environment_is_made() -> bool:
 def test_make_run_ends_with_its_service(stop: str) -> None:
     port = free_port()
     command = ["make", "--directory", str(ROOT), "run", f"PORT={port}"]
-    with running(command, port) as process:
+    with running(command, port, **FEW) as process:
         if stop.startswith("SIGTERM"):
             process.send_signal(signal.SIGTERM)
         else:

@@ -5,13 +5,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
 
 import anyio
 import pytest
+from anyio.from_thread import start_blocking_portal
 
 from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_service import observability, problems, workers
@@ -30,6 +31,9 @@ ONE = Settings(
     shutdown_seconds=121,
 )
 PATIENCE = 30.0
+
+Test = Callable[[WorkerPool], Awaitable[None]]
+Shared = Callable[[Test], None]
 
 
 def start_record() -> observability.RequestRecord:
@@ -94,7 +98,7 @@ def broken() -> None:
 
 
 def run(
-    test: Callable[[WorkerPool], Awaitable[None]],
+    test: Test,
     settings: Settings = ONE,
     warm_up: Callable[[], object] = own_process,
 ) -> None:
@@ -104,6 +108,15 @@ def run(
             await test(pool)
 
     anyio.run(main)
+
+
+@pytest.fixture(scope="module")
+def shared() -> Iterator[Shared]:
+    """Run a test in the pool of one process that several tests share."""
+    pool = WorkerPool(ONE, Transfers(2**20))
+    started = pool.started(own_process)
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(started):
+        yield lambda test: portal.call(test, pool)
 
 
 @asynccontextmanager
@@ -134,16 +147,19 @@ async def wait_for(condition: Callable[[], bool]) -> None:
     assert condition()
 
 
-def test_process_is_reused() -> None:
+# The metrics describe the pool that was started last: tests of the shared pool come first.
+
+
+def test_process_is_reused(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
         first = await pool.run_in_process(own_process)
         assert first != os.getpid()
         assert await pool.run_in_process(own_process) == first
 
-    run(test)
+    shared(test)
 
 
-def test_errors_return_from_the_process() -> None:
+def test_errors_return_from_the_process(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
         found = await error_of(pool.run_in_process(wrong))
         assert found.type == problems.INVALID_REQUEST
@@ -155,10 +171,10 @@ def test_errors_return_from_the_process() -> None:
             await pool.run_in_process(broken)
         assert ready_processes() == 1
 
-    run(test)
+    shared(test)
 
 
-def test_large_result_needs_room_in_memory() -> None:
+def test_large_result_needs_room_in_memory(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
         record = start_record()
         # A single result may have any size.
@@ -171,14 +187,65 @@ def test_large_result_needs_room_in_memory() -> None:
         assert await pool.run_in_process(bytes, 2**15) == bytes(2**15)
         assert ready_processes() == 1
 
-    run(test)
+    shared(test)
 
 
-def test_standard_output_of_the_process_is_not_mistaken_for_a_result() -> None:
+def test_standard_output_of_the_process_is_not_mistaken_for_a_result(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
         assert await pool.run_in_process(print_something) == await pool.run_in_process(own_process)
 
-    run(test)
+    shared(test)
+
+
+def test_terminated_process_loses_its_own_computation_only(shared: Shared) -> None:
+    async def test(pool: WorkerPool) -> None:
+        found = await error_of(pool.run_in_process(kill_itself))
+        assert (found.type, found.retry_after) == (problems.LOST, 1)
+        assert ready_processes() == 0
+        assert await pool.run_in_process(own_process) != os.getpid()
+        assert ready_processes() == 1
+
+    shared(test)
+
+
+def test_process_stopped_while_idle_is_detected_by_the_next_query(shared: Shared) -> None:
+    async def test(pool: WorkerPool) -> None:
+        stopped = await pool.run_in_process(own_process)
+        os.kill(stopped, signal.SIGSTOP)
+        assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
+        assert not process_exists(stopped)
+        assert await pool.run_in_process(own_process) != stopped
+
+    shared(test)
+
+
+def test_query_is_rejected_when_the_queue_is_full(shared: Shared, tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
+            tasks.start_soon(pool.run_in_process, own_process)
+            await anyio.sleep(1.1)
+            found = await error_of(pool.run_in_process(own_process))
+            # The first query in the queue has waited this long.
+            assert (found.type, found.retry_after) == (problems.BUSY, 2)
+            release(tmp_path / "go")
+
+    shared(test)
+
+
+def test_time_in_the_queue_is_recorded(shared: Shared, tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        record = start_record()
+        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
+            tasks.start_soon(pool.run_in_process, own_process)
+            await anyio.sleep(0.1)
+            (length,) = observability.QUEUE.collect()
+            assert length.samples[0].value == 1
+            release(tmp_path / "go")
+        (length,) = observability.QUEUE.collect()
+        assert length.samples[0].value == 0
+        assert record.queued > 0.09
+
+    shared(test)
 
 
 def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answered() -> None:
@@ -193,28 +260,6 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
         assert ready_processes() == 1
 
     run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
-
-
-def test_terminated_process_loses_its_own_computation_only() -> None:
-    async def test(pool: WorkerPool) -> None:
-        found = await error_of(pool.run_in_process(kill_itself))
-        assert (found.type, found.retry_after) == (problems.LOST, 1)
-        assert ready_processes() == 0
-        assert await pool.run_in_process(own_process) != os.getpid()
-        assert ready_processes() == 1
-
-    run(test)
-
-
-def test_process_stopped_while_idle_is_detected_by_the_next_query() -> None:
-    async def test(pool: WorkerPool) -> None:
-        stopped = await pool.run_in_process(own_process)
-        os.kill(stopped, signal.SIGSTOP)
-        assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
-        assert not process_exists(stopped)
-        assert await pool.run_in_process(own_process) != stopped
-
-    run(test)
 
 
 def test_process_stopped_while_idle_is_detected_without_a_query(
@@ -268,19 +313,6 @@ def test_process_that_fails_its_self_test_is_not_used() -> None:
     run(test, warm_up=broken)
 
 
-def test_query_is_rejected_when_the_queue_is_full(tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
-        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
-            tasks.start_soon(pool.run_in_process, own_process)
-            await anyio.sleep(1.1)
-            found = await error_of(pool.run_in_process(own_process))
-            # The first query in the queue has waited this long.
-            assert (found.type, found.retry_after) == (problems.BUSY, 2)
-            release(tmp_path / "go")
-
-    run(test)
-
-
 def test_query_that_waits_too_long_is_rejected(tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
         async with occupied(pool, tmp_path / "go"):
@@ -314,6 +346,8 @@ TWO = ONE.model_copy(update={"compute_processes": 2, "queue_length": 9, "queue_s
 def test_expensive_queries_make_room_for_a_shorter_one() -> None:
     async def test(pool: WorkerPool) -> None:
         displaced: list[ServiceError] = []
+        # Defines the usual time of a computation.
+        await pool.run_in_process(own_process)
 
         async def keep_busy() -> None:
             try:
@@ -330,7 +364,7 @@ def test_expensive_queries_make_room_for_a_shorter_one() -> None:
                 scope.cancel()
         assert [error.type for error in displaced] == [problems.BUSY]
 
-    run(test, TWO.model_copy(update={"queue_seconds": 20.0}))
+    run(test, TWO.model_copy(update={"queue_seconds": 12.0}))
 
 
 def test_queries_of_equal_cost_do_not_displace_each_other() -> None:
@@ -340,22 +374,6 @@ def test_queries_of_equal_cost_do_not_displace_each_other() -> None:
                 tasks.start_soon(pool.run_in_process, sleep_for, 1.0)
 
     run(test, TWO)
-
-
-def test_time_in_the_queue_is_recorded(tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
-        record = start_record()
-        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
-            tasks.start_soon(pool.run_in_process, own_process)
-            await anyio.sleep(0.1)
-            (length,) = observability.QUEUE.collect()
-            assert length.samples[0].value == 1
-            release(tmp_path / "go")
-        (length,) = observability.QUEUE.collect()
-        assert length.samples[0].value == 0
-        assert record.queued > 0.09
-
-    run(test)
 
 
 def test_compute_process_at_work_ends_with_its_server(tmp_path: Path) -> None:
