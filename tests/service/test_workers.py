@@ -382,7 +382,7 @@ import anyio, pathlib, os
 from mdr_service.settings import SETTINGS
 from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
-from tests.service.test_workers import asleep, own_process
+from tests.service.test_workers import own_process, sleep_for
 
 async def main():
     pool = WorkerPool(SETTINGS.model_copy(update={{"compute_processes": 1}}), Transfers(0))
@@ -390,7 +390,7 @@ async def main():
         number = await pool.run_in_process(own_process)
         pathlib.Path({str(tmp_path / "number")!r}).write_text(str(number))
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(pool.run_in_process, asleep, 9.0)
+            tasks.start_soon(pool.run_in_process, sleep_for, 9.0)
             await anyio.sleep(0.2)
             os.kill(os.getpid(), {signal.SIGKILL:d})
 
