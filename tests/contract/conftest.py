@@ -1,4 +1,4 @@
-"""A service and a browser for the tests of the pages."""
+"""Fixtures: a service and a browser for the tests of the pages."""
 
 import shutil
 import subprocess
@@ -19,7 +19,7 @@ MILLISECONDS = 1000
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     port = free_port()
-    # A machine that is busy with other tests must not fail a query for its time.
+    # Queries must not exceed their time limit on a busy machine.
     patient = {
         "MDR_QUEUE_SECONDS": "100",
         "MDR_BUDGET_SECONDS": "100",
@@ -32,7 +32,7 @@ def address() -> Iterator[str]:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        # Whatever is not this machine has no address.
+        # Only this machine can be resolved.
         hosts = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1"
         started = playwright.chromium.launch(
             executable_path=CHROMIUM, args=["--no-sandbox", "--disable-dev-shm-usage", hosts]
@@ -43,7 +43,7 @@ def browser() -> Iterator[Browser]:
 
 @dataclass
 class Visit:
-    """A page and what went wrong on it."""
+    """A page and the errors that occur on it."""
 
     page: Page
     address: str
@@ -55,7 +55,7 @@ class Visit:
         self.drawn()
 
     def drawn(self) -> None:
-        """Wait until the charts show the scene of the form."""
+        """Wait until the charts show the case of the form."""
         shown = "document.body.dataset.drawn === location.search + location.hash"
         for _ in range(int(PATIENCE * MILLISECONDS / 50)):
             if self.page.evaluate(shown):
@@ -69,7 +69,7 @@ class Visit:
 
     def fill(self, key: str, text: str) -> None:
         self.page.fill(f"#field-{key}", text)
-        # The address follows the form with a delay.
+        # The URL follows the form with a delay.
         self.page.wait_for_timeout(400)
 
 
@@ -80,7 +80,7 @@ def visit(browser: Browser, address: str) -> Iterator[Visit]:
     watched = Visit(page, address)
     page.on("request", lambda request: watched.hosts.add(urlsplit(request.url).netloc))
     page.on("pageerror", lambda error: watched.errors.append(str(error)))
-    # A refused request is reported by the browser as well; the page shows it at the field.
+    # The browser also logs a rejected request, which the page shows at its field.
     page.on(
         "console",
         lambda message: (

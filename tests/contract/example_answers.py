@@ -1,4 +1,4 @@
-"""Example responses of the OpenAPI document; written anew if run as a module."""
+"""Example responses of the OpenAPI document; regenerated when run as a module."""
 
 import json
 from importlib.resources import files

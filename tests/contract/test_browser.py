@@ -1,4 +1,4 @@
-"""The documentation page in a browser: its examples run and give the textbook's number."""
+"""The documentation page in a browser: its examples run and give the textbook result."""
 
 import json
 from typing import Any
@@ -27,18 +27,18 @@ def executed(operation: Locator) -> Any:
     return json.loads(response.inner_text())
 
 
-def test_an_example_gives_the_number_of_the_textbook(visit: Visit) -> None:
-    answer = executed(opened(visit, "contact-normal"))
+def test_example_gives_the_textbook_result(visit: Visit) -> None:
+    document = executed(opened(visit, "contact-normal"))
     for quantity, expected in hertz().items():
-        assert answer[quantity] == pytest.approx(expected, rel=1e-12, abs=0)
+        assert document[quantity] == pytest.approx(expected, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("name", ["normal", "tangential", "stress"])
-def test_a_query_by_parameters_runs_with_its_example(visit: Visit, name: str) -> None:
+def test_get_example_runs(visit: Visit, name: str) -> None:
     assert executed(opened(visit, f"contact-get_{name}"))["warnings"] is not None
 
 
-def test_a_picture_is_shown_as_a_picture(visit: Visit) -> None:
+def test_svg_response_is_shown_as_an_image(visit: Visit) -> None:
     operation = opened(visit, "contact-normal")
     operation.locator("tr.response[data-code='200'] select.content-type").select_option(
         "image/svg+xml"
@@ -49,7 +49,7 @@ def test_a_picture_is_shown_as_a_picture(visit: Visit) -> None:
     assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") > 100
 
 
-def test_the_page_links_to_introduction_licence_and_explorer(visit: Visit) -> None:
+def test_page_links_to_introduction_licence_and_explorer(visit: Visit) -> None:
     visit.page.goto(f"{visit.address}docs")
     for name, text in {
         "Introduction": "# MDR",
@@ -57,6 +57,6 @@ def test_the_page_links_to_introduction_licence_and_explorer(visit: Visit) -> No
         "Explorer": "<!DOCTYPE html>",
     }.items():
         link = visit.page.locator(".info a", has_text=name).first.evaluate("link => link.href")
-        answer = httpx.get(link)
-        assert answer.status_code == 200
-        assert answer.text.startswith(text)
+        response = httpx.get(link)
+        assert response.status_code == 200
+        assert response.text.startswith(text)

@@ -1,4 +1,4 @@
-"""The documentation page lives from this host alone."""
+"""The documentation page loads resources from this host only."""
 
 import re
 
@@ -7,7 +7,7 @@ import pytest
 from tests.conftest import Client
 
 
-def test_every_address_on_the_page_is_served_here(client: Client) -> None:
+def test_every_url_on_the_page_is_served_here(client: Client) -> None:
     page = client.get("/docs")
     assert page.status_code == 200
     found = re.findall(r'(?:src|href)="([^"]*)"', page.text)
@@ -17,7 +17,7 @@ def test_every_address_on_the_page_is_served_here(client: Client) -> None:
         assert client.get(f"/{address}").status_code == 200
 
 
-def test_the_page_forbids_the_browser_to_ask_others(client: Client) -> None:
+def test_content_security_policy_allows_this_host_only(client: Client) -> None:
     policy = client.get("/docs").headers["content-security-policy"]
     assert "default-src 'self'" in policy
     assert "http" not in policy
@@ -25,5 +25,5 @@ def test_the_page_forbids_the_browser_to_ask_others(client: Client) -> None:
 
 
 @pytest.mark.parametrize("path", ["/docs", "/docs/page/docs.js"])
-def test_no_other_host_is_named(client: Client, path: str) -> None:
+def test_page_names_no_other_host(client: Client, path: str) -> None:
     assert not re.search(r"https?://", client.get(path).text)

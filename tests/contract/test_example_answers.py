@@ -10,31 +10,31 @@ from tests.contract.example_answers import DIGITS, answers
 
 
 def assert_close(
-    shown: Any, real: Any, place: str = "", tolerance: float = 2 * 10.0**-DIGITS
+    shown: Any, real: Any, pointer: str = "", tolerance: float = 2 * 10.0**-DIGITS
 ) -> None:
     """Assert that JSON agrees within the rounding of the numbers and their own estimates."""
     if isinstance(shown, dict):
-        assert list(shown) == list(real), place
+        assert list(shown) == list(real), pointer
         estimates = [real[name] for name in real if name.endswith("error_estimate")]
         tolerance = max([tolerance, *estimates])
         for name in shown:
             if not name.endswith("error_estimate"):
-                assert_close(shown[name], real[name], f"{place}/{name}", tolerance)
+                assert_close(shown[name], real[name], f"{pointer}/{name}", tolerance)
     elif isinstance(shown, list):
-        assert len(shown) == len(real), place
+        assert len(shown) == len(real), pointer
         for index, pair in enumerate(zip(shown, real, strict=True)):
-            assert_close(*pair, f"{place}/{index}", tolerance)
+            assert_close(*pair, f"{pointer}/{index}", tolerance)
     elif isinstance(shown, float):
-        assert real == pytest.approx(shown, rel=tolerance, abs=0), place
+        assert real == pytest.approx(shown, rel=tolerance, abs=0), pointer
     else:
-        assert shown == real, place
+        assert shown == real, pointer
 
 
 def test_example_responses_are_those_of_the_service(client: Client) -> None:
     assert_close(ANSWERS, answers(client))
 
 
-def test_every_query_shows_an_example_response(client: Client) -> None:
+def test_every_query_has_an_example_response(client: Client) -> None:
     document = client.get("/openapi.json").json()
     for path in document["paths"].values():
         for operation in path.values():

@@ -1,4 +1,4 @@
-"""Every example of the documentation gives the number that its textbook gives."""
+"""Every example of the documentation gives the result of its textbook."""
 
 from collections.abc import Callable
 from math import acos, acosh, asin, atanh, inf, pi, sqrt
@@ -35,7 +35,7 @@ def hertz() -> dict[str, list[float]]:
 
 
 def boussinesq() -> dict[str, list[float]]:
-    """Boussinesq 1885, the flat cylinder: F = 2 E* a d."""
+    """Boussinesq 1885, flat punch: F = 2 E* a d."""
     e_star, a = 5e6 / (1 - 0.5**2), 0.005
     depths = [0.0, 1e-4, 2e-4, 5e-4]
     return {
@@ -69,7 +69,7 @@ def exact_sphere() -> dict[str, list[float]]:
 
 
 def worn_ball() -> dict[str, list[float]]:
-    """Ejike 1981, the ball with a flat: d = a √(a² − b²)/R, F = 2 E* (2a² + b²) √(a² − b²)/3R."""
+    """Ejike 1981, ball with a flat: d = a √(a² − b²)/R, F = 2 E* (2a² + b²) √(a² − b²)/3R."""
     e_star, radius, b, a = 1e9, 0.01, 0.001, 0.002
     root = sqrt(a**2 - b**2)
     return {
@@ -79,7 +79,7 @@ def worn_ball() -> dict[str, list[float]]:
 
 
 def table() -> dict[str, list[float]]:
-    """Hertz 1882 again: a cubic spline through points of a parabola is that parabola."""
+    """Hertz 1882: a cubic spline through points of a parabola is that parabola."""
     e_star, radius = 1e9, 0.01
     radii = [0.001, 0.002]
     return {
@@ -99,7 +99,7 @@ def cattaneo_mindlin() -> dict[str, object]:
     ratio, friction, force = STEEL / STEEL_SHEAR, 0.3, 10.0
     forces = [0.0, 1.0, 2.0, 2.9, 3.0]
     sticking = [(1 - fx / (friction * force)) ** (1 / 3) for fx in forces[:-1]] + [0.0]
-    # Mindlin and Deresiewicz 1953: a quarter of a cycle's dissipation.
+    # Mindlin and Deresiewicz 1953: a quarter of the loss per cycle.
     full = 3 * friction * ratio * force * friction * d / 2 / 5
     return {
         **{name: values * 5 for name, values in hertz().items()},
@@ -146,7 +146,7 @@ def flat_punch() -> dict[str, object]:
 
 
 def mindlin_curve(force: float, friction: float = 0.3) -> float:
-    """Displacement of the steel ball under 10 N and a first push, Eqs. (5.12), (5.16)."""
+    """Displacement of the steel ball under 10 N in first loading, Eqs. (5.12), (5.16)."""
     (depth,), normal_force = hertz()["indentation_depth"], 10.0
     ratio = STEEL / STEEL_SHEAR
     return friction * ratio * depth * (1 - (1 - force / (friction * normal_force)) ** (2 / 3))
@@ -175,7 +175,7 @@ def mindlin_deresiewicz() -> dict[str, object]:
 
 
 def residual() -> dict[str, object]:
-    """Eqs. (5.19), (5.20): half of the push in reverse slips back, the rest remains."""
+    """Eqs. (5.19), (5.20): half of the force in reverse causes reverse slip, the rest remains."""
     (a,), limit, force = hertz()["contact_radius"], 3.0, 2.0
     top = mindlin_curve(force)
     fronts = [1 - force / limit, 1 - force / (2 * limit)]
@@ -189,7 +189,7 @@ def residual() -> dict[str, object]:
 def oblique() -> dict[str, object]:
     """Mindlin and Deresiewicz 1953: F_x = β F_N sticks, and u_x = β E*/G* d.
 
-    The way back is that of friction µ + β, for which the push was none.
+    Unloading follows the solution with friction coefficient µ + β.
     """
     (depth,), share = hertz()["indentation_depth"], 0.1
     there = share * STEEL / STEEL_SHEAR * depth
@@ -201,8 +201,8 @@ def oblique() -> dict[str, object]:
     }
 
 
-def cone_with_a_gap() -> dict[str, object]:
-    """The cone: F_x/(µ F_N) = 1 − (1 − u_x/u_max)², Eqs. (5.47), (5.48); no memory after a gap."""
+def cone_with_separation() -> dict[str, object]:
+    """Cone: F_x/(µ F_N) = 1 − (1 − u_x/u_max)², Eqs. (5.47), (5.48), and a separation."""
     slope, depth, friction = 0.1, 1e-4, 0.5
     depths = [depth / 4, depth / 2, 3 * depth / 4, *[depth] * 5]
     forces = [2 * RUBBER * d**2 / (pi * slope) for d in depths]
@@ -281,12 +281,12 @@ DEPTH, STICK = 1e-6, 5e-5
 
 
 def worn_ball_profile(r: float, c: float, depth: float) -> float:
-    """Eqs. (5.83), (5.85), inside the worn rim."""
-    rim = c * r / (pi * BALL) * sqrt(1 - (c / r) ** 2)
-    return depth - 2 / pi * (depth - r**2 / (2 * BALL)) * asin(c / r) - rim
+    """Eqs. (5.83), (5.85), inside the worn annulus."""
+    annulus = c * r / (pi * BALL) * sqrt(1 - (c / r) ** 2)
+    return depth - 2 / pi * (depth - r**2 / (2 * BALL)) * asin(c / r) - annulus
 
 
-def worn_rim(c: float, depth: float) -> tuple[float, float]:
+def worn_annulus(c: float, depth: float) -> tuple[float, float]:
     """Eq. (5.88) for the wear radius, and the integral of the worn depth up to it."""
     low, high = c * (1 + 1e-9), sqrt(2 * depth * BALL)
     for _ in range(100):
@@ -300,8 +300,8 @@ def worn_rim(c: float, depth: float) -> tuple[float, float]:
 
 
 def shakedown() -> dict[str, object]:
-    """Eqs. (5.80), (5.85), (5.88), (5.90) for c = a/2, at a held depth."""
-    end, volume = worn_rim(STICK, DEPTH)
+    """Eqs. (5.80), (5.85), (5.88), (5.90) for c = a/2 at constant depth."""
+    end, volume = worn_annulus(STICK, DEPTH)
     radii = [0.0, 4e-5, 7e-5, 1e-4, 1.2e-4, 1.5e-4]
     before = [r**2 / (2 * BALL) for r in radii]
     return {
@@ -319,27 +319,27 @@ def shakedown() -> dict[str, object]:
     }
 
 
-def fretted(push: float, force: float = 10.0) -> tuple[float, float, float, float]:
-    """Held forces: c by Eq. (5.16), and F_x = 2 µ E* c (d − c²/R); with it rim and volume."""
+def fretted(tangential_force: float, force: float = 10.0) -> tuple[float, float, float, float]:
+    """Constant forces: c by Eq. (5.16), and F_x = 2 µ E* c (d − c²/R); gives annulus and volume."""
     a = (3 * force * BALL / (4 * E_STAR)) ** (1 / 3)
-    c = a * (1 - push / (FRICTION * force)) ** (1 / 3)
-    depth = c**2 / BALL + push / (2 * FRICTION * E_STAR * c)
-    return c, depth, *worn_rim(c, depth)
+    c = a * (1 - tangential_force / (FRICTION * force)) ** (1 / 3)
+    depth = c**2 / BALL + tangential_force / (2 * FRICTION * E_STAR * c)
+    return c, depth, *worn_annulus(c, depth)
 
 
 def amplitudes() -> dict[str, object]:
-    rims = [fretted(push) for push in (1.0, 2.0, 2.9)]
+    annuli = [fretted(tangential_force) for tangential_force in (1.0, 2.0, 2.9)]
     a = fretted(0.0)[0]
     return {
-        "stick_radius": [a, *(rim[0] for rim in rims)],
-        "indentation_depth": [a**2 / BALL, *(rim[1] for rim in rims)],
-        "wear_radius": [a, *(rim[2] for rim in rims)],
-        "worn_volume": [0.0, *(rim[3] for rim in rims)],
+        "stick_radius": [a, *(annulus[0] for annulus in annuli)],
+        "indentation_depth": [a**2 / BALL, *(annulus[1] for annulus in annuli)],
+        "wear_radius": [a, *(annulus[2] for annulus in annuli)],
+        "worn_volume": [0.0, *(annulus[3] for annulus in annuli)],
         "regime": ["stick"] + ["partial_slip"] * 3,
     }
 
 
-def endless() -> dict[str, object]:
+def unbounded() -> dict[str, object]:
     c, depth, end, volume = fretted(2.0)
     depths = [0.0, 0.0, worn_ball_profile(1e-4, c, depth) - 1e-8 / (2 * BALL)]
     return {
@@ -351,7 +351,7 @@ def endless() -> dict[str, object]:
     }
 
 
-def held_force() -> dict[str, object]:
+def constant_force() -> dict[str, object]:
     """Eq. (5.90): F_N = (4/3) E* √R √(d − w) (d + w/2), w = G* u/(µ E*)."""
     w, force = G_STAR * 2e-7 / (FRICTION * E_STAR), 10.0
     low, high = w, 1e-5
@@ -363,11 +363,11 @@ def held_force() -> dict[str, object]:
 
 
 def wear_of_cycles() -> dict[str, object]:
-    """The first cycle wears K W, and Eqs. (5.80)-(5.90) are the end."""
+    """The first cycle wears K W, and Eqs. (5.80)-(5.90) describe the limit."""
     a, c = sqrt(DEPTH * BALL), STICK
     work = 16 * FRICTION**2 * E_STAR**2 / (15 * G_STAR * BALL**2)
     first = work * (a - c) ** 3 * (a**2 + 3 * a * c + c**2)
-    end, volume = worn_rim(c, DEPTH)
+    end, volume = worn_annulus(c, DEPTH)
     return {
         "cycles": [0.0, 1.0, 1e5, 1e6, 1e8],
         "worn_volume": [0.0, 1e-14 * first, None, None, volume],
@@ -377,7 +377,7 @@ def wear_of_cycles() -> dict[str, object]:
     }
 
 
-def wear_of_held_forces() -> dict[str, object]:
+def wear_at_constant_forces() -> dict[str, object]:
     c, _, _, _ = fretted(2.0)
     return {"normal_force": [10.0] * 5, "stick_radius": [c] * 5}
 
@@ -399,7 +399,7 @@ HISTORY_TEXTBOOK = {
     "mindlin_deresiewicz": mindlin_deresiewicz,
     "residual": residual,
     "oblique": oblique,
-    "cone_with_a_gap": cone_with_a_gap,
+    "cone_with_a_gap": cone_with_separation,
 }
 STRESS_TEXTBOOK = {
     "cattaneo_mindlin": cattaneo_mindlin_fields,
@@ -409,17 +409,18 @@ STRESS_TEXTBOOK = {
 WEAR_TEXTBOOK = {
     "shakedown": shakedown,
     "amplitudes": amplitudes,
-    "endless": endless,
-    "held_force": held_force,
+    "endless": unbounded,
+    "held_force": constant_force,
 }
-EVOLUTION_TEXTBOOK = {"shakedown": wear_of_cycles, "held_forces": wear_of_held_forces}
-# What wear itself has to say of the examples.
-TOLD = {
+EVOLUTION_TEXTBOOK = {"shakedown": wear_of_cycles, "held_forces": wear_at_constant_forces}
+# Validity warnings that concern wear itself.
+WEAR_WARNINGS = {
     "amplitudes": {"no_wear"},
     "endless": {"endless_wear"},
     "held_force": {"path_dependent"},
 }
-# Tips and edges that no real material bears, and slopes at which 0.63 |beta| t + t^2 exceeds 1 %.
+# Tips and edges that no real material withstands, and slopes at which 0.63 |beta| t + t^2 exceeds 1
+# %.
 WARNINGS = {
     "boussinesq": {"plastic"},
     "cone_with_a_gap": {"plastic"},
@@ -443,13 +444,13 @@ CASES = [
 ]
 
 
-def test_every_example_has_its_textbook() -> None:
+def test_every_example_has_a_textbook_reference() -> None:
     assert set(TEXTBOOK) == set(NORMAL_EXAMPLES)
     assert set(TANGENTIAL_TEXTBOOK) == set(TANGENTIAL_EXAMPLES)
     assert set(HISTORY_TEXTBOOK) == set(HISTORY_EXAMPLES)
     assert set(WEAR_TEXTBOOK) == set(WEAR_EXAMPLES)
     assert set(EVOLUTION_TEXTBOOK) == set(EVOLUTION_EXAMPLES)
-    # The stresses of the rounded punch have no closed form; their integrals have.
+    # The stresses of the rounded punch have no closed form, but their integrals do.
     assert {*STRESS_TEXTBOOK, "rounded_punch"} == set(STRESS_EXAMPLES)
 
 
@@ -469,7 +470,7 @@ def same(found: object, expected: object) -> None:
 
 
 @pytest.mark.parametrize(("path", "name", "query", "textbook"), CASES)
-def test_example_gives_the_textbook_number(
+def test_example_gives_the_textbook_result(
     client: Client,
     path: str,
     name: str,
@@ -483,13 +484,13 @@ def test_example_gives_the_textbook_number(
         same(document[quantity], expected)
     codes = {warning["code"] for warning in document["warnings"]}
     if path == "/v1/wear":
-        assert codes == TOLD.get(name, set())
+        assert codes == WEAR_WARNINGS.get(name, set())
         return
     assert codes == WARNINGS.get(name, set()) | ({"singular"} if "null" in answer.text else set())
 
 
 @pytest.mark.parametrize("name", EVOLUTION_EXAMPLES)
-def test_wear_over_the_cycles_gives_what_is_known_of_it(client: Client, name: str) -> None:
+def test_wear_evolution_matches_its_limits(client: Client, name: str) -> None:
     document = client.post("/v1/wear/evolution", EVOLUTION_EXAMPLES[name]["value"]).json()
     for quantity, values in EVOLUTION_TEXTBOOK[name]().items():
         for found, expected in zip(document[quantity], values, strict=True):
@@ -497,8 +498,8 @@ def test_wear_over_the_cycles_gives_what_is_known_of_it(client: Client, name: st
                 assert found == pytest.approx(expected, rel=2e-3, abs=0), quantity
 
 
-def test_the_stresses_of_the_rounded_punch_carry_its_forces(client: Client) -> None:
-    """F_N by Eq. (5.61) and F_x by Eq. (5.65), against the integrals of the answered fields."""
+def test_stresses_of_the_rounded_punch_integrate_to_its_forces(client: Client) -> None:
+    """F_N by Eq. (5.61) and F_x by Eq. (5.65), against the integrals of the computed fields."""
     answer = client.post("/v1/stress", STRESS_EXAMPLES["rounded_punch"]["value"]).json()
     radius, b, a, c, friction = 0.05, 0.004, 0.005, 0.0045, 0.5
 

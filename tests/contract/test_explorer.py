@@ -1,4 +1,4 @@
-"""The explorer in a real browser: every tab draws, and every way of working with it holds."""
+"""The explorer in a browser: every tab is drawn, and every interaction works."""
 
 import json
 import re
@@ -17,7 +17,7 @@ TABS = ["press", "push", "cycle", "stress", "wear"]
 SCENES = 200
 
 
-def test_a_first_visit_shows_a_solved_and_drawn_contact(visit: Visit) -> None:
+def test_first_visit_shows_results_and_charts(visit: Visit) -> None:
     visit.page.goto(visit.address)
     visit.page.locator("figure .plot .main-svg").first.wait_for()
     visit.page.locator("#accuracy").get_by_text("relative error").wait_for()
@@ -25,14 +25,14 @@ def test_a_first_visit_shows_a_solved_and_drawn_contact(visit: Visit) -> None:
     assert visit.number("Normal force") == "100 N"
 
 
-def test_tools_get_the_links_of_the_service(address: str) -> None:
+def test_head_links_are_served(address: str) -> None:
     links = httpx.get(address, headers={"Accept": "application/json"}).json()
     for link in links.values():
         assert httpx.get(urljoin(address, link)).status_code == 200
 
 
 @pytest.mark.parametrize("tab", TABS)
-def test_a_tab_draws_its_charts_without_a_finding_of_axe(visit: Visit, tab: str) -> None:
+def test_tab_draws_its_charts_and_passes_axe(visit: Visit, tab: str) -> None:
     for scheme in ("light", "dark"):
         visit.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
         visit.open(f"?tab={tab}")
@@ -43,7 +43,7 @@ def test_a_tab_draws_its_charts_without_a_finding_of_axe(visit: Visit, tab: str)
         assert [(each["id"], each["nodes"][0]["html"]) for each in findings] == []
 
 
-def test_every_kind_of_profile_is_drawn(visit: Visit) -> None:
+def test_every_profile_kind_is_drawn(visit: Visit) -> None:
     visit.open()
     kinds = visit.page.locator("#kind option").evaluate_all("all => all.map(one => one.value)")
     known = {each["kind"] for each in httpx.get(f"{visit.address}v1/profiles").json()["profiles"]}
@@ -54,7 +54,7 @@ def test_every_kind_of_profile_is_drawn(visit: Visit) -> None:
         assert visit.number("Normal force") == "100 N"
 
 
-def test_the_numbers_are_those_of_hertz(visit: Visit) -> None:
+def test_results_are_those_of_hertz(visit: Visit) -> None:
     visit.open("?kind=paraboloid&ul=m&ud=m&up=Pa&uf=N")
     visit.fill("e1", "1e-9")
     visit.fill("nu1", "0")
@@ -72,7 +72,7 @@ def test_the_numbers_are_those_of_hertz(visit: Visit) -> None:
     )
 
 
-def test_the_newest_position_of_a_slider_is_drawn(visit: Visit) -> None:
+def test_latest_slider_position_is_drawn(visit: Visit) -> None:
     visit.open("?tab=push&kind=rounded_punch")
     visit.page.evaluate(
         """async () => {
@@ -89,7 +89,7 @@ def test_the_newest_position_of_a_slider_is_drawn(visit: Visit) -> None:
     assert visit.number("Tangential force") == "27 N"
 
 
-def test_a_pasted_table_is_solved_and_its_wrong_line_named(visit: Visit) -> None:
+def test_pasted_table_is_solved_and_invalid_line_is_reported(visit: Visit) -> None:
     visit.open("?kind=tabulated")
     heading = "r, f\n"
     rows = [f"{1e-5 * i:.6g}, {5e-9 * i * i:.6g}" for i in range(41)]
@@ -105,7 +105,7 @@ def test_a_pasted_table_is_solved_and_its_wrong_line_named(visit: Visit) -> None
     problem.get_by_text("Line 2: two numbers are expected").wait_for()
 
 
-def test_a_wrong_value_is_named_at_its_field(visit: Visit) -> None:
+def test_invalid_value_is_reported_at_its_field(visit: Visit) -> None:
     visit.open()
     radius = visit.page.locator(".field[data-key=radius]")
     visit.page.fill("#field-radius", "ten")
@@ -118,7 +118,7 @@ def test_a_wrong_value_is_named_at_its_field(visit: Visit) -> None:
     assert radius.locator(".problem").inner_text() == ""
 
 
-def test_a_point_of_the_loading_path_moves_by_the_keyboard(visit: Visit) -> None:
+def test_load_path_points_are_keyboard_accessible(visit: Visit) -> None:
     visit.open("?tab=cycle&path=100,0;100,20")
     before = visit.number("Tangential force")
     visit.page.locator("#editor circle").nth(1).focus()
@@ -133,7 +133,7 @@ def test_a_point_of_the_loading_path_moves_by_the_keyboard(visit: Visit) -> None
     assert "path=100,0&" in visit.page.url
 
 
-def test_everything_on_the_page_can_be_taken_away(visit: Visit, tmp_path: Path) -> None:
+def test_page_contents_can_be_downloaded(visit: Visit, tmp_path: Path) -> None:
     visit.open()
     starts = {"PNG": b"\x89PNG", "SVG": b"<svg"}
     for name, start in starts.items():
@@ -157,7 +157,7 @@ def test_everything_on_the_page_can_be_taken_away(visit: Visit, tmp_path: Path) 
     compile(visit.page.locator("#code").inner_text(), "example", "exec")
 
 
-def test_the_radius_under_the_cursor_is_shown_in_every_chart_over_the_radius(visit: Visit) -> None:
+def test_hover_radius_is_shown_in_every_radial_chart(visit: Visit) -> None:
     visit.open("?tab=push")
     plots = visit.page.locator(
         "figure", has=visit.page.locator("h2", has_text="Tangential traction")
@@ -169,7 +169,7 @@ def test_the_radius_under_the_cursor_is_shown_in_every_chart_over_the_radius(vis
 
 
 @pytest.mark.parametrize("tab", TABS)
-def test_a_scene_is_printed_on_one_sheet(visit: Visit, tab: str) -> None:
+def test_case_is_printed_on_one_sheet(visit: Visit, tab: str) -> None:
     visit.page.emulate_media(color_scheme="dark")
     visit.open(f"?tab={tab}")
     assert len(re.findall(rb"/Type\s*/Page\b", visit.page.pdf(prefer_css_page_size=True))) == 1
@@ -186,7 +186,7 @@ def test_a_scene_is_printed_on_one_sheet(visit: Visit, tab: str) -> None:
 ROUND_TRIP = Path(__file__).with_name("round_trip.js").read_text("utf-8")
 
 
-def test_an_address_restores_the_scene_with_identical_requests(visit: Visit) -> None:
+def test_url_restores_the_case_with_identical_requests(visit: Visit) -> None:
     visit.open()
     results: list[dict[str, Any]] = visit.page.evaluate(ROUND_TRIP, SCENES)
     assert [each["url"] for each in results if each["first"] != each["second"]] == []

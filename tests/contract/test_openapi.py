@@ -1,4 +1,4 @@
-"""The committed document is the one that is served, and it tells all."""
+"""The committed OpenAPI document is the one that is served, and it is complete."""
 
 import json
 import re
@@ -44,7 +44,7 @@ def references(part: object) -> Iterator[str]:
             yield from references(each)
 
 
-def test_the_committed_document_is_the_served_one(client: Client) -> None:
+def test_committed_document_is_the_served_one(client: Client) -> None:
     assert strict_json.loads(client.get("/openapi.json").content) == DOCUMENT, "run make openapi"
 
 
@@ -54,7 +54,7 @@ def test_every_reference_is_defined() -> None:
 
 
 @pytest.mark.parametrize(("name", "operation"), list(operations()))
-def test_every_operation_documents_its_failures(name: str, operation: dict[str, object]) -> None:
+def test_every_operation_documents_its_problems(name: str, operation: dict[str, object]) -> None:
     assert operation["summary"]
     assert operation["operationId"]
     expected = {"200", "500"}
@@ -73,7 +73,7 @@ def test_every_operation_documents_its_failures(name: str, operation: dict[str, 
         assert content == {problems.MEDIA_TYPE: {"schema": schema}}
 
 
-def test_every_field_of_a_profile_tells_its_dimension() -> None:
+def test_every_profile_field_states_its_dimension() -> None:
     profile = DOCUMENT["components"]["schemas"]["NormalQuery"]["properties"]["profile"]
     kinds = [reference.rpartition("/")[2] for reference in references(profile)]
     assert len(set(kinds)) == 15
@@ -92,7 +92,7 @@ def test_every_profile_states_the_limits_of_its_numbers() -> None:
                 assert len(limits) == 2, (name, field)
 
 
-def test_every_kind_of_problem_is_in_the_list_of_failures() -> None:
+def test_every_problem_type_is_documented() -> None:
     for text in (ROOT / "docs/errors.md", ROOT / "README.md"):
         rows = re.findall(r"^\| `([a-z-]+)` \| (\d{3}) \|", text.read_text("utf-8"), re.MULTILINE)
         assert rows == [(kind.name, str(kind.status)) for kind in problems.PROBLEM_TYPES]
@@ -110,24 +110,22 @@ def test_every_kind_of_problem_is_in_the_list_of_failures() -> None:
         ("/v1/wear/evolution", EvolutionAnswer),
     ],
 )
-def test_the_answer_of_a_query_is_the_documented_one(
-    client: Client, path: str, model: type[Answer]
-) -> None:
+def test_response_matches_its_schema(client: Client, path: str, model: type[Answer]) -> None:
     post = DOCUMENT["paths"][path]["post"]
     examples = post["requestBody"]["content"]["application/json"]["examples"]
     for example in examples.values():
         for media_type in post["responses"]["200"]["content"]:
             headers = {"accept": media_type}
-            answer = client.request("POST", path, json=example["value"], headers=headers)
-            assert answer.status_code == 200
-            assert answer.headers["content-type"].partition(";")[0] == media_type
-        answer = client.post(path, example["value"])
-        assert answer.headers["content-type"] == "application/json"
-        strict_json.loads(answer.content)
-        model.model_validate_json(answer.content)
+            response = client.request("POST", path, json=example["value"], headers=headers)
+            assert response.status_code == 200
+            assert response.headers["content-type"].partition(";")[0] == media_type
+        response = client.post(path, example["value"])
+        assert response.headers["content-type"] == "application/json"
+        strict_json.loads(response.content)
+        model.model_validate_json(response.content)
 
 
-def test_every_query_and_answer_tells_its_dimensions() -> None:
+def test_every_member_states_its_dimension() -> None:
     loads = ("Load", "Tangential", "NormalPoints", "TangentialPoints")
     swings = ("NormalSwing", "TangentialSwing", "HeldLoad", "HeldPoint", "Oscillation")
     told = ("NormalAnswer", "TangentialAnswer", "HistoryAnswer", "StressAnswer")
@@ -142,5 +140,5 @@ def test_every_query_and_answer_tells_its_dimensions() -> None:
                 assert re.search(r"\[[a-z0-9/*^]+\]$", field["description"]), (query, name)
 
 
-def test_a_failure_is_the_documented_one(client: Client) -> None:
+def test_problem_matches_its_schema(client: Client) -> None:
     Problem.model_validate_json(client.post("/v1/normal", {}).content)

@@ -1,4 +1,4 @@
-"""What the README shows is what happens."""
+"""The commands and code of the README give the output that it shows."""
 
 import contextlib
 import csv
@@ -27,17 +27,17 @@ def examples(language: str, output: str) -> list[tuple[str, str]]:
     return re.findall(pattern, README)
 
 
-# What is integrated over the cycles is shown to the digits that are the same everywhere.
+# Integrals over the cycles are compared to fewer digits, since they depend on the platform.
 FOLLOWED = "/v1/wear/evolution"
 
 
 def same(found: object, shown: object, rel: float = 1e-12) -> None:
-    """Compare documents: numbers to twelve digits unless told otherwise, all else exactly."""
+    """Compare documents: numbers to twelve digits unless stated otherwise, all else exactly."""
     if isinstance(shown, dict):
         assert isinstance(found, dict)
         assert list(found) == list(shown)
         for name in shown:
-            # The estimate of an error is good for its size.
+            # Only the magnitude of an error estimate is reproducible.
             loose = name == "error_estimate" and rel > 1e-12
             same(found[name], shown[name], 0.5 if loose else rel)
     elif isinstance(shown, list) and shown and isinstance(shown[0], list | dict):
@@ -52,8 +52,8 @@ def same(found: object, shown: object, rel: float = 1e-12) -> None:
         assert found == shown
 
 
-def asked(client: Client, command: str) -> httpx.Response:
-    """Return the answer to a command of curl."""
+def curl_response(client: Client, command: str) -> httpx.Response:
+    """Return the response to a curl command."""
     curl, silent, address, *options = shlex.split(command)
     assert (curl, silent) == ("curl", "-s")
     assert address.startswith(ADDRESS)
@@ -71,31 +71,31 @@ def asked(client: Client, command: str) -> httpx.Response:
     return client.request("POST", path, content=body.encode(), headers=headers)
 
 
-def printed(client: Client, command: str) -> str:
-    """Return what a command of the shell prints: the service's own, or curl in its place."""
+def output_of(client: Client, command: str) -> str:
+    """Return the output of a shell command: of the service itself, or of curl in its place."""
     if command.startswith("curl"):
-        return asked(client, command).text
+        return curl_response(client, command).text
     path = {"PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
     shell = ["sh", "-c", command]
     told = subprocess.run(shell, env=os.environ | path, capture_output=True, check=True)
     return told.stdout.decode()
 
 
-def test_the_shell_is_shown_the_command_line() -> None:
+def test_shell_examples_use_the_command_line() -> None:
     assert any("| mdr " in command for command, _ in examples("sh", "csv"))
 
 
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "json"))
-def test_curl_shows_the_real_answer(client: Client, command: str, shown: str) -> None:
+def test_curl_example_shows_the_response(client: Client, command: str, shown: str) -> None:
     tolerance = 1e-3 if FOLLOWED in command else 1e-12
-    same(json.loads(printed(client, command)), json.loads(shown), tolerance)
+    same(json.loads(output_of(client, command)), json.loads(shown), tolerance)
 
 
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "csv"))
-def test_curl_shows_the_real_table(client: Client, command: str, shown: str) -> None:
+def test_curl_example_shows_the_table(client: Client, command: str, shown: str) -> None:
     found, expected = (
         list(csv.reader(io.StringIO(text, newline="")))
-        for text in (printed(client, command), shown)
+        for text in (output_of(client, command), shown)
     )
     assert found[0] == expected[0]
     for one, other in zip(found[1:], expected[1:], strict=True):
@@ -103,7 +103,7 @@ def test_curl_shows_the_real_table(client: Client, command: str, shown: str) -> 
 
 
 @pytest.mark.parametrize(("code", "shown"), examples("python", "text"))
-def test_python_prints_what_is_shown(code: str, shown: str) -> None:
+def test_python_example_prints_its_output(code: str, shown: str) -> None:
     port = free_port()
     output = io.StringIO()
     with running(service(port), port), contextlib.redirect_stdout(output):
@@ -111,11 +111,11 @@ def test_python_prints_what_is_shown(code: str, shown: str) -> None:
     assert output.getvalue() == shown
 
 
-def test_every_limit_is_shown_with_its_default() -> None:
+def test_every_setting_is_listed_with_its_default() -> None:
     for name, field in Settings.model_fields.items():
         assert f"| `{PREFIX}{name.upper()}` | {field.default or 'none'} |" in README
 
 
-def test_nothing_shown_is_left_untried() -> None:
+def test_every_example_is_tested() -> None:
     tried = [*examples("sh", "json"), *examples("sh", "csv"), *examples("python", "text")]
     assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 13

@@ -62,13 +62,13 @@ def test_history_excludes_loads(client: Client) -> None:
     assert error["pointer"] == "/friction_coefficient"
     strength = HISTORY["material"] | {"yield_strength": 1e9}
     answer = client.post(PATH, HISTORY | {"material": strength}).json()
-    # At its end the ratio of the forces says nothing.
+    # After unloading the ratio of the forces is meaningless.
     assert "yield_onset_force" not in answer
     assert [warning["code"] for warning in answer["warnings"]] == ["yield"]
 
 
 def test_requests_of_the_page(client: Client) -> None:
-    """Their figures, as docs/yield.md states them."""
+    """Their results, as documented in docs/yield.md."""
     ball, punch, fretting = (client.post(PATH, query).json() for query in REQUESTS)
     p0 = 1.370879e9
     assert ball["yield_onset_force"]["tresca"][0] == pytest.approx(122.3, rel=1e-3, abs=0)

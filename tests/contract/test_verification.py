@@ -1,4 +1,4 @@
-"""Published cases: the service meets the bound of each, and the page shows them all."""
+"""Published cases: the service meets the error limit of each, and the page lists them all."""
 
 from pathlib import Path
 
@@ -17,12 +17,12 @@ def rows(client: Client) -> list[Row]:
     return results(client)
 
 
-def test_every_case_is_within_its_bound(rows: list[Row]) -> None:
+def test_every_case_is_within_its_error_limit(rows: list[Row]) -> None:
     missed = {row.case.case: row.deviation for row in rows if not row.met}
     assert not missed
 
 
-def test_the_page_lists_every_case(rows: list[Row]) -> None:
+def test_page_lists_every_case(rows: list[Row]) -> None:
     text = PAGE.read_text("utf-8")
     assert all(f"| {row.case.equation} | {row.case.case} |" in text for row in rows)
     assert len(rows) >= 150

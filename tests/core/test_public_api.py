@@ -1,4 +1,4 @@
-"""The names that `import mdr_core` offers, their readable results, and time-stepping by states."""
+"""Public names of `mdr_core`, readable results, and time stepping with load states."""
 
 import inspect
 import subprocess
@@ -36,26 +36,26 @@ def test_every_public_name_exists() -> None:
 
 
 @pytest.mark.parametrize("result", RESULTS, ids=lambda result: type(result).__name__)
-def test_the_readable_form_shows_every_result_on_a_line(result: Results) -> None:
+def test_str_shows_every_result_on_a_line(result: Results) -> None:
     title, *lines = repr(result).splitlines()
     assert title == f"{type(result).__name__}:"
     assert [line.split(":")[0].strip() for line in lines] == list(result.to_dict())
 
 
 @pytest.mark.parametrize("result", RESULTS, ids=lambda result: type(result).__name__)
-def test_the_dictionary_holds_the_attributes(result: Results) -> None:
+def test_dictionary_holds_the_attributes(result: Results) -> None:
     values = result.to_dict()
     for name in result.quantities:
         np.testing.assert_array_equal(values[name], getattr(result, name))
     assert all(not isinstance(value, np.ndarray) or value.ndim for value in values.values())
 
 
-def test_the_dictionary_names_the_warnings() -> None:
+def test_dictionary_lists_the_warnings() -> None:
     codes = [notice["code"] for notice in RESULTS[1].to_dict()["warnings"]]
     assert "singular" in codes
 
 
-def test_the_readable_form_of_many_loads_stays_short() -> None:
+def test_str_of_many_loads_is_short() -> None:
     contact = mdr.normal.solve(BALL, PAIR.e_star, normal_force=np.linspace(1.0, 10.0, 1000))
     assert max(map(len, repr(contact).splitlines())) < 100
 
@@ -63,7 +63,7 @@ def test_the_readable_form_of_many_loads_stays_short() -> None:
 @pytest.mark.parametrize(
     "profile", [BALL, mdr.Cone(0.1), mdr.RoundedPunch(1e-4, 0.01), mdr.FlatPunch(1e-4)]
 )
-def test_states_keep_the_energies_of_the_history(profile: mdr.Profile) -> None:
+def test_states_retain_the_energies_of_the_history(profile: mdr.Profile) -> None:
     rng = np.random.default_rng(7)
     depth, displacement = rng.uniform(-1e-7, 1e-6, 60), np.cumsum(rng.normal(0.0, 1e-7, 60))
     given = (profile, *FRICTION[1:])
@@ -81,19 +81,19 @@ def test_states_keep_the_energies_of_the_history(profile: mdr.Profile) -> None:
         assert dissipated == pytest.approx(history.dissipated_energy[i], rel=1e-12, abs=0)
 
 
-def test_a_step_at_full_stick_dissipates_nothing() -> None:
+def test_step_in_full_stick_dissipates_nothing() -> None:
     state = advance(advance(unloaded(*FRICTION), 1e-6, 0.0), 2e-6, 1e-8)
     assert state.dissipation == 0
     assert state.tangential_energy > 0
 
 
-def test_an_impact_keeps_its_energy_and_rebounds_as_measured() -> None:
+def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
     path = ROOT / "examples" / "bouncing_sphere.py"
     done = subprocess.run([sys.executable, path], check=True, capture_output=True, text=True)
     rows = [list(map(float, line.split())) for line in done.stdout.splitlines()[1:]]
     assert [row[0] for row in rows] == [4.2, 9.8, 20.2, 30.4, 39.5]
     for _, measured, computed, energy_error in rows:
-        # The spread of single measurements is of this size.
+        # Scatter of single measurements.
         assert computed == pytest.approx(measured, abs=0.04)
         assert energy_error < 1e-13
 

@@ -1,4 +1,4 @@
-"""Stresses beneath the surface, against closed forms of the literature and laws of mechanics."""
+"""Subsurface stresses, against closed forms of the literature and laws of mechanics."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ E_STAR, FRICTION = 3.0, 0.3
 EXACT = 1e-13
 
 
-def pressed(profile: Profile) -> normal.NormalContact:
+def normal_contact(profile: Profile) -> normal.NormalContact:
     if isinstance(profile, FlatPunch):
         return normal.solve(profile, E_STAR, indentation_depth=0.2)
     return normal.solve(profile, E_STAR, contact_radius=1.0)
 
 
-def sheared(profile: Profile, stick: float) -> tangential.TangentialContact:
-    contact = pressed(profile)
+def tangential_contact(profile: Profile, stick: float) -> tangential.TangentialContact:
+    contact = normal_contact(profile)
     if stick > 0:
         return tangential.solve(contact, 2.6, FRICTION, stick_radius=stick)
     return tangential.solve(contact, 2.6, FRICTION, tangential_displacement=100.0)
@@ -47,7 +47,7 @@ def sheared(profile: Profile, stick: float) -> tangential.TangentialContact:
 @pytest.mark.parametrize("nu", [-0.4, 0.0, 0.3, 0.5])
 def test_hertz_on_the_axis(nu: float) -> None:
     """Johnson, Eq. (3.45)."""
-    contact = pressed(Paraboloid(2.0))
+    contact = normal_contact(Paraboloid(2.0))
     peak = float(contact.maximum_pressure)
     z = np.concatenate([[0.0], np.logspace(-13, 2, 50)])
     found = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
@@ -60,8 +60,8 @@ def test_hertz_on_the_axis(nu: float) -> None:
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_sliding_sphere_on_the_surface(nu: float) -> None:
-    """Hamilton 1983: sigma_xx = -mu p_0 pi (4 + nu) x/8 within the contact, by the traction."""
-    contact, x = sheared(Paraboloid(2.0), 0.0), np.linspace(-1, 1, 41)
+    """Hamilton 1983: sigma_xx = -mu p_0 pi (4 + nu) x/8 inside the contact, due to the traction."""
+    contact, x = tangential_contact(Paraboloid(2.0), 0.0), np.linspace(-1, 1, 41)
     peak = float(contact.normal.maximum_pressure)
     found = stress(contact, x, 0.0, 0.0, poissons_ratio=nu, body=2, rtol=EXACT)
     alone = stress(contact.normal, x, 0.0, 0.0, poissons_ratio=nu, rtol=EXACT)
@@ -72,8 +72,8 @@ def test_sliding_sphere_on_the_surface(nu: float) -> None:
 
 
 def test_cone_on_the_axis() -> None:
-    """Sneddon 1948: sigma_zz = -p_m arccosh-like; on the axis -p_m [arcsinh(1/z) + ...]."""
-    contact, z, nu = pressed(Cone(0.2)), np.logspace(-8, 2, 40), 0.3
+    """Sneddon 1948: sigma_zz on the axis is -p_m [arcsinh(1/z) + ...]."""
+    contact, z, nu = normal_contact(Cone(0.2)), np.logspace(-8, 2, 40), 0.3
     found = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
     slope = E_STAR / pi * (pi / 2 * 0.2)
     # int_0^1 x/(x^2 + z^2) dx and int_0^1 2 x z^2/(x^2 + z^2)^2 dx.
@@ -87,7 +87,7 @@ def test_cone_on_the_axis() -> None:
 
 def test_flat_punch() -> None:
     """Sneddon 1946: sigma_zz = -p_m (1 + 3 z^2)/(2 (1 + z^2)^2) on the axis."""
-    contact, z = pressed(FlatPunch(1.0)), np.linspace(0, 5, 30)
+    contact, z = normal_contact(FlatPunch(1.0)), np.linspace(0, 5, 30)
     found = stress(contact, 0.0, 0.0, z, poissons_ratio=0.3)
     mean = float(contact.mean_pressure)
     expected = -mean * (1 + 3 * z * z) / (2 * np.square(1 + z * z))
@@ -112,7 +112,7 @@ def point_force(
 
     xy = m / r2 * ((1 - z / rho) * 2 * x * y / r2 - x * y * z / rho**3)
     xy = p * (xy - 3 * x * y * z / rho**5)
-    pressed = [
+    normal_contact = [
         in_plane(x, y),
         in_plane(y, x),
         -3 * p * z**3 / rho**5,
@@ -130,12 +130,12 @@ def point_force(
         -3 * x * x * z / rho**5,
         -3 * x * y * z / rho**5,
     ]
-    return np.array(pressed) + q * np.array(cerruti)
+    return np.array(normal_contact) + q * np.array(cerruti)
 
 
 @pytest.mark.parametrize("profile", [Paraboloid(2.0), Cone(0.2), RoundedPunch(0.5, 2.0)])
 def test_point_force_in_the_far_field(profile: Profile) -> None:
-    contact = sheared(profile, 0.6)
+    contact = tangential_contact(profile, 0.6)
     rng = np.random.default_rng(1)
     for far in (1e6, 1e9):
         x, y, z = far * rng.normal(size=(3, 30))
@@ -153,9 +153,9 @@ POINTS = np.array([[0.3, 0.2, 0.6], [-0.9, 0.4, 0.5], [1.4, -0.3, 0.7], [0.05, 0
 def superposed(
     contact: normal.NormalContact, partial: TangentialContact | ContactState, stops: list[float]
 ) -> np.ndarray:
-    """The definition: stresses at `POINTS` by the surface tractions as point forces."""
+    """By definition: stresses at `POINTS` with the surface tractions as point forces."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
-    # r = stop - width s^2 from either side removes roots at the stops.
+    # r = stop - width s^2 from either side removes the roots at the stops.
     r, mass = [], []
     for low, high in itertools.pairwise(stops):
         s, at = (1 + nodes) / 2, (low + high) / 2
@@ -181,9 +181,9 @@ def superposed(
 @pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
 def test_superposed_point_forces(profile: Profile) -> None:
     if isinstance(profile, FlatPunch):
-        contact = tangential.solve(pressed(profile), 2.6, FRICTION, tangential_force=0.1)
+        contact = tangential.solve(normal_contact(profile), 2.6, FRICTION, tangential_force=0.1)
     else:
-        contact = sheared(profile, 0.7)
+        contact = tangential_contact(profile, 0.7)
     stops = [0.0, 1.0] if isinstance(profile, FlatPunch) else [0.0, 0.5, 0.7, 1.0]
     expected = superposed(contact.normal, contact, stops)
     found = np.array(stress(contact, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
@@ -191,7 +191,7 @@ def test_superposed_point_forces(profile: Profile) -> None:
 
 
 TABLE = Tabulated(np.linspace(0, 1.4, 29), np.linspace(0, 1.4, 29) ** 2 / 4)
-# Reversed, oblique, and curved load paths that end at the contact radius 1.
+# Reversed, oblique and nonlinear load paths that end at contact radius 1.
 PATHS = {
     "reversed": (
         "indentation_depth",
@@ -205,7 +205,7 @@ PATHS = {
 
 
 def at_end(profile: Profile, name: str) -> tuple[normal.NormalContact, LoadHistory]:
-    contact = pressed(profile)
+    contact = normal_contact(profile)
     control, loads, other, displacements = PATHS[name]
     size = float(contact.indentation_depth)
     loads = [part * float(getattr(contact, control)) for part in loads]
@@ -216,7 +216,7 @@ def at_end(profile: Profile, name: str) -> tuple[normal.NormalContact, LoadHisto
 @pytest.mark.parametrize("count", [9, 200])
 @pytest.mark.parametrize("flat", [0.0, 0.5])
 def test_tables_that_are_exact(flat: float, count: int) -> None:
-    """A spline through a paraboloid, or a rounded punch with its break, is that body."""
+    """A spline through a paraboloid, or through a rounded punch with its break, is exact."""
     r = np.unique(np.append(np.linspace(0, 1.4, count), flat))
     heights = np.square(np.maximum(r - flat, 0.0)) / 4
     table = Tabulated(r, heights, "cubic", (flat,) if flat else ())
@@ -226,7 +226,9 @@ def test_tables_that_are_exact(flat: float, count: int) -> None:
     x[:100] = rng.choice([0.0, 0.7, 1.0], 100) + rng.choice([-1, 1], 100) * z[:100]
     z[100:150] = 0.0
     found, expected = (
-        np.array(stress(sheared(one, 0.7), x, 0.1 * x, z, poissons_ratio=0.3, rtol=EXACT))
+        np.array(
+            stress(tangential_contact(one, 0.7), x, 0.1 * x, z, poissons_ratio=0.3, rtol=EXACT)
+        )
         for one in (table, body)
     )
     assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
@@ -251,7 +253,7 @@ def test_end_of_a_history_by_superposed_point_forces(profile: Profile, name: str
 
 @pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
 def test_end_of_a_monotonic_history_is_the_tangential_contact(profile: Profile) -> None:
-    contact = pressed(profile)
+    contact = normal_contact(profile)
     force = 0.6 * FRICTION * float(contact.normal_force)
     loads = {"normal_force": float(contact.normal_force), "tangential_force": [0.0, force]}
     history = load_history.solve(profile, E_STAR, 2.6, FRICTION, **loads)
@@ -279,7 +281,7 @@ def test_tractions_at_the_end_of_a_history(name: str) -> None:
 
 def test_residual_stress_after_the_tangential_force_is_removed() -> None:
     """Mindlin and Deresiewicz 1953: tau = mu (p(a) - 2 p(b) + p(c)), b and c the slip fronts."""
-    contact = pressed(Paraboloid(2.0))
+    contact = normal_contact(Paraboloid(2.0))
     limit = FRICTION * float(contact.normal_force)
     loads = {"normal_force": float(contact.normal_force), "tangential_force": [0.6 * limit, 0.0]}
     loads["tangential_force"].insert(0, 0.0)
@@ -296,7 +298,7 @@ def test_residual_stress_after_the_tangential_force_is_removed() -> None:
         return np.array(stress(slides, *place, **given)) - np.array(stress(one, *place, **given))
 
     alone = np.array(stress(contact, *place, poissons_ratio=0.3, rtol=EXACT))
-    # The force went to zero by slip of the opposite sign.
+    # The force returned to zero by slip of the opposite sign.
     residual = of(1.0) - 2 * of(b) + of(c)
     assert np.abs(found - alone + residual).max() < 1e-12 * np.abs(alone).max()
     separated = load_history.solve(
@@ -315,7 +317,7 @@ def test_residual_stress_after_the_tangential_force_is_removed() -> None:
 def test_tractions_on_the_surface(profile: Profile, stick: float) -> None:
     if isinstance(profile, RoundedPunch) and stick == 0:
         stick = 0.7
-    contact = sheared(profile, stick)
+    contact = tangential_contact(profile, stick)
     r = np.concatenate([np.linspace(0.01, 2, 60), 1 + np.array([-1e-9, 1e-9]), [stick or 0.5, 1.0]])
     p, tau = fields.pressure(contact.normal, r), fields.shear_stress(contact, r)
     for angle in (0.0, 2.1):
@@ -329,8 +331,8 @@ def test_tractions_on_the_surface(profile: Profile, stick: float) -> None:
 
 
 def test_equilibrium() -> None:
-    """The divergence vanishes, by sixth-order differences."""
-    contact, h = sheared(RoundedPunch(0.5, 2.0), 0.7), 1e-3
+    """The divergence vanishes, evaluated by sixth-order differences."""
+    contact, h = tangential_contact(RoundedPunch(0.5, 2.0), 0.7), 1e-3
     steps = np.array([-3, -2, -1, 1, 2, 3]) * h
     rule = np.array([-1, 9, -45, 45, -9, 1]) / (60 * h)
     rng = np.random.default_rng(2)
@@ -349,7 +351,7 @@ def test_equilibrium() -> None:
 
 
 def test_balance_of_forces_through_a_plane() -> None:
-    contact = sheared(Paraboloid(2.0), 0.5)
+    contact = tangential_contact(Paraboloid(2.0), 0.5)
     nodes, weights = np.polynomial.legendre.leggauss(80)
     angle = 2 * pi * np.arange(16) / 16
     for depth in (0.05, 1.0):
@@ -409,18 +411,18 @@ def test_any_unit_of_length(exponent: int) -> None:
     small = normal.solve(Paraboloid(2.0 * unit), E_STAR, contact_radius=unit)
     x, z = np.array([0.0, 0.3, 1.0, 1.7]), np.array([0.0, 1e-6, 0.4, 3.0])
     found = stress(small, x * unit, 0.0, z * unit, poissons_ratio=0.3, rtol=EXACT)
-    expected = stress(pressed(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3, rtol=EXACT)
+    expected = stress(normal_contact(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3, rtol=EXACT)
     assert np.abs(np.array(found) - np.array(expected)).max() < 1e-13 * np.abs(expected.zz).max()
 
 
 @pytest.mark.parametrize(("x", "z"), [(np.nan, 0.0), (0.0, -1e-30), (np.inf, 0.0)])
 def test_invalid_points_are_rejected(x: float, z: float) -> None:
     with pytest.raises(InputError):
-        stress(pressed(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3)
+        stress(normal_contact(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3)
 
 
 def test_error_estimate_contains_the_rounding_of_the_edge() -> None:
-    exact = pressed(Paraboloid(2.0))
+    exact = normal_contact(Paraboloid(2.0))
     computed = normal.solve(Paraboloid(2.0), E_STAR, normal_force=float(exact.normal_force))
     points = 1 - 1e-12, 0.0, 0.0
     assert error_estimate(exact, *points, rtol=EXACT) < 1e-12

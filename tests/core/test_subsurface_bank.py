@@ -1,4 +1,4 @@
-"""Stresses beneath the surface against the stored references, half of them next to an edge."""
+"""Subsurface stresses against the stored references, half of them next to an edge."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Largest stresses and the onset of yield, against the values of the literature."""
+"""Largest stresses and the onset of yield, against values from the literature."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_hertz(nu: float, shear: float, depth: float, onset: float) -> None:
     ],
 )
 def test_sliding_ball_yields_on_its_surface(nu: float, friction: float, onset: float) -> None:
-    """Tresca on the surface along the load, by the closed stresses of Hamilton."""
+    """Tresca on the surface along the load, by Hamilton's closed form."""
     contact = sliding(friction)
     peak = largest(contact, "maximum_shear", poissons_ratio=nu, body=2)
     assert float(contact.normal.maximum_pressure / peak.value) / 2 == pytest.approx(onset, abs=6e-4)
@@ -79,7 +79,7 @@ def test_sliding_ball_yields_on_its_surface(nu: float, friction: float, onset: f
     assert onset_pressure(float(force)) == pytest.approx(onset, abs=6e-4)
 
 
-def test_the_bodies_are_mirror_images() -> None:
+def test_stresses_of_the_bodies_are_mirror_images() -> None:
     contact = tangential.solve(ball(), 2.5, 0.3, stick_radius=0.06)
     one, two = (largest(contact, poissons_ratio=0.3, body=body) for body in (1, 2))
     assert float(one.value) == pytest.approx(float(two.value), rel=1e-6, abs=0)
@@ -91,7 +91,7 @@ def test_the_bodies_are_mirror_images() -> None:
     "profile",
     [Paraboloid(2.0), Power(0.4, 3.7), RoundedPunch(0.05, 2.0), Hyperboloid(0.2, 0.05)],
 )
-def test_no_sample_exceeds_the_largest_stress(profile: Profile, stick: float | None) -> None:
+def test_largest_stress_is_not_exceeded_by_samples(profile: Profile, stick: float | None) -> None:
     contact = normal.solve(profile, 3.0, contact_radius=0.1)
     case = tangential.solve(contact, 2.5, 0.4, stick_radius=stick) if stick else contact
     x, y, z = np.random.default_rng(3).uniform(-0.12, 0.12, size=(3, 20000))
@@ -154,7 +154,7 @@ def test_incompressible_cone() -> None:
 
 
 def test_largest_difference_next_to_the_tip_of_an_incompressible_cone() -> None:
-    """The definition in mpmath: it is on the axis, and not E* tan(theta)."""
+    """By definition, in mpmath: the maximum is on the axis and differs from E* tan(theta)."""
     mp.dps = 30
     shape = shape_of({"kind": "cone", "slope": 1.0})
     differences = []
@@ -169,7 +169,7 @@ def test_largest_difference_next_to_the_tip_of_an_incompressible_cone() -> None:
 
 
 def test_slope_discontinuity_of_an_incompressible_body() -> None:
-    """Beneath it the pressure -K ln|x| of plane strain, K = E* t/(2 pi), has the difference 2 K."""
+    """Below it, the pressure -K ln|x| in plane strain, K = E* t/(2 pi), has the difference 2 K."""
     contact = normal.solve(TruncatedCone(0.5, 0.1), 3.0, contact_radius=1.0)
     at = stress(contact, 0.5, 0.0, [1e-8, 1e-6], poissons_ratio=0.5)
     assert 2 * at.maximum_shear == pytest.approx(0.3 / np.pi, rel=1e-5, abs=0)
@@ -187,12 +187,12 @@ def test_yielding_under_a_ball(profile: Profile, nu: float, onset: float) -> Non
     radii = onset * STRENGTH * np.pi * 2.0 / (2 * 3.0) * np.array([0.5, 0.997, 1.003, 2.0])
     contact = normal.solve(profile, 3.0, contact_radius=radii)
     assert yielding(contact, (nu,), STRENGTH).where.tolist() == [False, False, True, True]
-    # The softer of two bodies is not known, so the one with the larger stress counts.
+    # It is unknown which body is softer, so the one with the larger stress counts.
     assert yielding(contact, (nu, 0.0), STRENGTH).where[1] == (nu > 0)
 
 
-def test_friction_brings_yield_forward() -> None:
-    """Full sliding at mu = 0.3, nu = 0.3 yields at p_0 = 1.466 Y instead of 1.613 Y."""
+def test_friction_lowers_the_onset_of_yield() -> None:
+    """Full slip at mu = 0.3, nu = 0.3 yields at p_0 = 1.466 Y instead of 1.613 Y."""
     radii = STRENGTH * np.pi * 2.0 / (2 * 3.0) * np.array([1.4, 1.5, 1.5, 1.5])
     contact = normal.solve(Paraboloid(2.0), 3.0, contact_radius=radii)
     limit = 0.3 * contact.normal_force
@@ -209,11 +209,11 @@ def test_friction_brings_yield_forward() -> None:
         normal_force=contact.normal_force[3],
         tangential_force=[0.0, forces[3], 0.0],
     )
-    # Tractions that the cycle leaves behind are as severe as its extreme.
+    # The residual tractions of the cycle are as severe as its extreme.
     assert yielding(history, (0.3,), STRENGTH).where.tolist() == [False, True, True]
 
 
-def test_yielding_of_many_loads_is_that_of_each() -> None:
+def test_yielding_of_many_loads_equals_single_loads() -> None:
     rng = np.random.default_rng(5)
     contact = normal.solve(RoundedPunch(0.5, 20.0), 3.0, contact_radius=rng.uniform(0.51, 0.7, 12))
     share = rng.uniform(0, 0.99, 12)
@@ -238,7 +238,7 @@ def test_yielding_with_arrays_of_profiles() -> None:
     assert yielding(contact, (0.3,), strength).where.tolist() == expected
 
 
-def test_stress_that_no_load_reaches() -> None:
+def test_unreachable_stress_has_no_onset() -> None:
     sphere = normal.solve(Sphere(1.0), 3.0, contact_radius=0.1)
     assert np.isinf(yield_onset_force(sphere, 1e20, poissons_ratio=0.3))
     r = np.linspace(0, 0.2, 20)

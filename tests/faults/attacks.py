@@ -1,7 +1,7 @@
 """Hostile and heavy clients: `python -m tests.faults.attacks NAME PORT SECONDS`.
 
-Each runs in a process of its own, so that what is measured beside it waits for the service alone.
-Prints how often the clients received which status; 0 stands for a closed connection.
+Each attack runs in a separate process, so that measurements beside it depend on the service only.
+Prints the number of responses by status; 0 denotes a closed connection.
 """
 
 import asyncio
@@ -34,7 +34,7 @@ def tangential(count: int) -> bytes:
     )
 
 
-# Seconds of a core. The first is long to send, the other only long to compute.
+# Core seconds each. The first is expensive to send and to compute, the other only to compute.
 EXPENSIVE = (
     post(
         "/v1/normal",
@@ -61,7 +61,7 @@ BATCH = post(
     "/v1/batch",
     {"queries": [{"ask": "normal", "request": CONE | {"load": {"normal_force": 1.0}}}] * 1000},
 )
-# The largest response: as many numbers as one query may ask for.
+# The largest response: the maximum number of values of one query.
 LARGEST = post(
     "/v1/stress",
     CONE
@@ -72,14 +72,14 @@ LARGEST = post(
 Attack = Callable[[int, float], Awaitable[Counter[int]]]
 
 
-def statuses(answer: bytes) -> Counter[int]:
-    return Counter([int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else 0])
+def statuses(response: bytes) -> Counter[int]:
+    return Counter([int(response[9:12]) if response.startswith(b"HTTP/1.1 ") else 0])
 
 
 def sending(
     head: bytes, piece: bytes, length: int, clients: int = 1, patience: float = 5.0
 ) -> Attack:
-    """Return an attack that sends a head and so many bytes, waits, and begins again."""
+    """Return an attack that repeatedly sends a head and a part of its body, then waits."""
 
     async def once(port: int) -> Counter[int]:
         reader, writer = await asyncio.open_connection(HOST, port)
@@ -88,43 +88,43 @@ def sending(
             for _ in range(length // len(piece)):
                 writer.write(piece)
                 await writer.drain()
-        answer = b""
+        response = b""
         with suppress(ConnectionError, TimeoutError):
             async with asyncio.timeout(patience):
-                answer = await reader.read(MEGABYTE)
+                response = await reader.read(MEGABYTE)
         writer.close()
-        return statuses(answer)
+        return statuses(response)
 
     return repeated(once, clients)
 
 
-def asking(text: bytes | tuple[bytes, ...], clients: int) -> Attack:
-    """Return an attack by clients that send valid requests and read the responses."""
+def requesting(text: bytes | tuple[bytes, ...], clients: int) -> Attack:
+    """Return an attack of clients that send valid requests and read the responses."""
     texts = (text,) if isinstance(text, bytes) else text
     numbers = iter(range(clients))
 
     async def once(client: Client, index: int) -> Counter[int]:
         try:
-            answer = await client.ask(texts[index % len(texts)])
+            response = await client.ask(texts[index % len(texts)])
         except (ConnectionError, ResetError):
             await asyncio.sleep(0.1)
             return Counter([0])
-        if answer.status == 503:
+        if response.status == 503:
             await asyncio.sleep(0.5)
-        return Counter([answer.status])
+        return Counter([response.status])
 
     async def attack(port: int, seconds: float) -> Counter[int]:
         end = time.monotonic() + seconds
         found: Counter[int] = Counter()
 
-        async def keep_asking(index: int) -> None:
+        async def keep_sending(index: int) -> None:
             client = Client(port)
             while time.monotonic() < end:
                 found.update(await once(client, index))
                 index += 1
             await client.close()
 
-        await asyncio.gather(*(keep_asking(number) for number in numbers))
+        await asyncio.gather(*(keep_sending(number) for number in numbers))
         return found
 
     return attack
@@ -150,7 +150,7 @@ def repeated(once: Callable[[int], Awaitable[Counter[int]]], clients: int) -> At
 
 
 async def slow_readers(port: int, seconds: float) -> Counter[int]:
-    """Ask for the largest response, and read its first bytes only."""
+    """Request the largest response and read its first bytes only."""
     end = time.monotonic() + seconds
 
     async def one() -> Counter[int]:
@@ -161,7 +161,7 @@ async def slow_readers(port: int, seconds: float) -> Counter[int]:
                 writer.write(LARGEST)
                 status = statuses(await reader.read(100))
                 found += status
-                # A refused client asks again; the others keep their connections.
+                # A rejected client tries again; the others keep their connections.
                 await asyncio.sleep(end - time.monotonic() if status[200] else 0.5)
                 writer.close()
         return found
@@ -170,7 +170,7 @@ async def slow_readers(port: int, seconds: float) -> Counter[int]:
 
 
 async def slow_headers(port: int, seconds: float) -> Counter[int]:
-    """Send a header a second, on many connections, and never the last one."""
+    """Send one header per second on many connections, and never finish."""
     end = time.monotonic() + seconds
 
     async def one(number: int) -> Counter[int]:
@@ -186,14 +186,14 @@ async def slow_headers(port: int, seconds: float) -> Counter[int]:
 
     async def keep_open(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> Counter[int]:
         writer.write(b"GET / HTTP/1.1\r\n")
-        answer = b""
-        while time.monotonic() < end and not answer and not reader.at_eof():
+        response = b""
+        while time.monotonic() < end and not response and not reader.at_eof():
             writer.write(b"X: y\r\n")
             with suppress(TimeoutError):
                 async with asyncio.timeout(1.0):
-                    answer = await reader.read(100)
+                    response = await reader.read(100)
         writer.close()
-        return statuses(answer)
+        return statuses(response)
 
     return sum(await asyncio.gather(*(one(number) for number in range(500))), Counter())
 
@@ -207,8 +207,8 @@ ATTACKS: dict[str, Attack] = {
     "floods of pipelined requests": sending(
         b"", b"GET /health HTTP/1.1\r\nHost: x\r\n\r\n" * 10_000, 4 * MEGABYTE, clients=4
     ),
-    "10⁵ unknown fields, 4 clients": asking(UNKNOWN_FIELDS, clients=4),
-    "batches of 1000, 20 clients": asking(BATCH, clients=20),
+    "10⁵ unknown fields, 4 clients": requesting(UNKNOWN_FIELDS, clients=4),
+    "batches of 1000, 20 clients": requesting(BATCH, clients=20),
     "20 slow readers": slow_readers,
     "100 long bodies without an end": sending(
         request("/v1/normal", b" " * 4 * MEGABYTE)[: -4 * MEGABYTE],
@@ -218,9 +218,9 @@ ATTACKS: dict[str, Attack] = {
         patience=15.0,
     ),
     "500 slow headers": slow_headers,
-    "expensive queries, 1 client": asking(EXPENSIVE, clients=1),
-    "expensive queries, 20 clients": asking(EXPENSIVE, clients=20),
-    "expensive queries, 2 clients": asking(EXPENSIVE[1:], clients=2),
+    "expensive queries, 1 client": requesting(EXPENSIVE, clients=1),
+    "expensive queries, 20 clients": requesting(EXPENSIVE, clients=20),
+    "expensive queries, 2 clients": requesting(EXPENSIVE[1:], clients=2),
 }
 
 

@@ -1,8 +1,8 @@
-"""Figures of the service under load and attack: `make faults`, over loopback only.
+"""Performance of the service under load and attack: `make faults`, over loopback only.
 
-    python -m tests.faults.campaign [name ...]
+python -m tests.faults.campaign [name ...]
 
-Prints a table with every figure and its bound, and exits with 1 if one is missed.
+Prints a table of measured values and their limits, and exits with 1 if a limit is exceeded.
 """
 
 import asyncio
@@ -24,11 +24,11 @@ from mdr_service.schemas import examples
 from mdr_service.settings import SETTINGS
 from tests.contract import strict_json
 from tests.faults.attacks import SMALL, tangential
-from tests.faults.load import Answered, Client, ResetError, clients, percentile, request
+from tests.faults.load import Client, ResetError, Response, clients, percentile, request
 from tests.faults.server import free_port, running, service
 
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
-# Some hundredths of a second of a core: it needs a compute process.
+# A few hundredths of a second of a core, so it needs a compute process.
 LONGER = tangential(8_000)
 QUERIES = {
     "/v1/normal": examples.NORMAL_EXAMPLES,
@@ -47,7 +47,7 @@ MEBIBYTE = 2**20
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table."""
+    """One row of the table."""
 
     what: str
     found: str
@@ -60,34 +60,34 @@ Campaign = Callable[[int, psutil.Process], Awaitable[list[Row]]]
 
 @asynccontextmanager
 async def beside(attack: str, port: int, seconds: float) -> AsyncIterator[Counter[str]]:
-    """Attack while in the context; yield the statuses, which are there when it is left."""
+    """Run an attack within the context; yield its statuses, which are complete on exit."""
     command = [sys.executable, "-m", "tests.faults.attacks", attack, str(port), str(seconds)]
     attackers = await asyncio.create_subprocess_exec(*command, stdout=asyncio.subprocess.PIPE)
     found: Counter[str] = Counter()
-    # Until Python has started.
+    # Wait for the start of Python.
     await asyncio.sleep(1.5)
     try:
         yield found
     finally:
-        told, _ = await attackers.communicate()
-        found.update(json.loads(told))
+        detail, _ = await attackers.communicate()
+        found.update(json.loads(detail))
 
 
 async def small_queries(port: int, seconds: float) -> list[float]:
-    """Return the times of small queries, one after the other."""
+    """Return the times of sequential small queries."""
     times = []
     async with clients(port, 1) as (client,):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            answer = await client.ask(SMALL)
-            assert answer.status == 200
-            times.append(answer.seconds)
+            response = await client.ask(SMALL)
+            assert response.status == 200
+            times.append(response.seconds)
             await asyncio.sleep(0.002)
     return times
 
 
 async def largest_memory(server: psutil.Process) -> int:
-    """Return the largest memory of the server until the task is cancelled."""
+    """Return the peak memory of the server, measured until the task is cancelled."""
     largest = 0
     try:
         while True:
@@ -97,10 +97,10 @@ async def largest_memory(server: psutil.Process) -> int:
         return largest
 
 
-def small_beside(attack: str, *, seconds: float = 14.0, bounded: bool = True) -> Campaign:
-    """Return the campaign of small queries beside an attack, which SIGTERM ends.
+def small_queries_during(attack: str, *, seconds: float = 14.0, bounded: bool = True) -> Campaign:
+    """Return the campaign of small queries during an attack that ends with SIGTERM.
 
-    `bounded` : the attack may not need memory beyond the bound.
+    `bounded` : the attack must not need memory beyond the limit.
     """
 
     async def campaign(port: int, server: psutil.Process) -> list[Row]:
@@ -113,16 +113,16 @@ def small_beside(attack: str, *, seconds: float = 14.0, bounded: bool = True) ->
             watching.cancel()
             growth = (await watching - before) / MEBIBYTE
             server.terminate()
-            told = time.monotonic()
+            detail = time.monotonic()
             await asyncio.to_thread(server.wait, 60)
-            ended = time.monotonic() - told
+            ended = time.monotonic() - detail
         p99 = percentile(times, 0.99)
         most = min(25e-3, 10 * idle)
         return [
             Row(
-                f"small query beside {attack}",
+                f"small query during {attack}",
                 f"p50 {1e3 * percentile(times, 0.5):.2f} ms, p99 {1e3 * p99:.2f} ms, "
-                f"{len(times)} asked; idle p99 {1e3 * idle:.2f} ms; {dict(found)}",
+                f"{len(times)} requests; idle p99 {1e3 * idle:.2f} ms; {dict(found)}",
                 "p99 <= 25 ms and 10 × idle",
                 p99 <= most,
             ),
@@ -144,7 +144,7 @@ def small_beside(attack: str, *, seconds: float = 14.0, bounded: bool = True) ->
 
 
 async def hostile(port: int, _server: psutil.Process) -> list[Row]:
-    """Two connections with the most expensive queries, beside four with long and short ones."""
+    """Two connections with the most expensive queries, and four with long and short ones."""
     counts: Counter[tuple[str, int]] = Counter()
 
     async def ask(name: str, text: bytes, pause: float, end: float) -> None:
@@ -159,12 +159,12 @@ async def hostile(port: int, _server: psutil.Process) -> list[Row]:
         await asyncio.gather(*long, ask("small", SMALL, 0.05, end))
     rows = []
     for name, least in (("long", 0.8), ("small", 1.0)):
-        asked = sum(count for (what, _), count in counts.items() if what == name)
-        share = counts[name, 200] / asked
+        requested = sum(count for (what, _), count in counts.items() if what == name)
+        share = counts[name, 200] / requested
         statuses = {status: count for (what, status), count in counts.items() if what == name}
         rows.append(
             Row(
-                f"{name} queries beside two connections with the most expensive: {dict(found)}",
+                f"{name} queries during two connections with the most expensive:  {dict(found)}",
                 f"{100 * share:.0f} % answered, {statuses}",
                 f">= {100 * least:.0f} %",
                 share >= least,
@@ -174,35 +174,35 @@ async def hostile(port: int, _server: psutil.Process) -> list[Row]:
 
 
 async def overload(port: int, _server: psutil.Process) -> list[Row]:
-    """Four times as much as two processes can do, for a minute."""
+    """Four times the load that two processes can handle, for a minute."""
     async with clients(port, 1) as (client,):
         alone = [await client.ask(LONGER) for _ in range(4)]
-    each = percentile([answer.seconds for answer in alone], 0.5)
+    each = percentile([response.seconds for response in alone], 0.5)
     every = each / SETTINGS.compute_processes / 4
-    tasks: list[asyncio.Task[Answered]] = []
+    tasks: list[asyncio.Task[Response]] = []
     end = time.monotonic() + 60
     while time.monotonic() < end:
         tasks.append(asyncio.create_task(once(port, LONGER)))
         await asyncio.sleep(every)
     answers = [await task for task in tasks]
-    good = [answer for answer in answers if answer.status == 200]
-    late = [answer.seconds for answer in answers if answer.status == 503]
-    right = all(answer.body == alone[0].body for answer in good)
-    others = Counter(answer.status for answer in answers) - Counter({200: len(good)})
+    good = [response for response in answers if response.status == 200]
+    late = [response.seconds for response in answers if response.status == 503]
+    right = all(response.body == alone[0].body for response in good)
+    others = Counter(response.status for response in answers) - Counter({200: len(good)})
     most = SETTINGS.queue_seconds + SETTINGS.budget_seconds
-    slowest = max(answer.seconds for answer in answers)
+    slowest = max(response.seconds for response in answers)
     return [
         Row(
             "overload by a factor of 4 for 60 s",
             f"{len(good)} of {len(answers)} answered, {dict(others)}; slowest {slowest:.1f} s; "
-            f"refused in p50 {1e3 * percentile(late, 0.5):.1f} ms",
+            f"rejected in p50 {1e3 * percentile(late, 0.5):.1f} ms",
             f"all identical or 503, within {most:g} s",
             right and set(others) <= {503} and slowest <= most and len(good) > 0,
         )
     ]
 
 
-async def once(port: int, text: bytes) -> Answered:
+async def once(port: int, text: bytes) -> Response:
     async with clients(port, 1) as (client,):
         return await client.ask(text)
 
@@ -211,7 +211,7 @@ async def parallel(port: int, _server: psutil.Process) -> list[Row]:
     texts = [request(path, body) for path, body in REQUESTS]
     chosen = [texts[n % len(texts)] for n in range(1000)]
     async with clients(port, 1) as (client,):
-        serial = {text: (await patiently(client, text)).body for text in texts}
+        serial = {text: (await retry(client, text)).body for text in texts}
     random.Random(1).shuffle(chosen)
     same = 0
     async with clients(port, 50) as many:
@@ -221,7 +221,7 @@ async def parallel(port: int, _server: psutil.Process) -> list[Row]:
             right = 0
             while queue:
                 text = queue.pop()
-                right += (await patiently(client, text)).body == serial[text]
+                right += (await retry(client, text)).body == serial[text]
             return right
 
         same = sum(await asyncio.gather(*(work(client) for client in many)))
@@ -229,12 +229,12 @@ async def parallel(port: int, _server: psutil.Process) -> list[Row]:
     return [Row(what, f"{same} bit-identical", "1000", same == 1000)]
 
 
-async def patiently(client: Client, text: bytes) -> Answered:
-    """Return the answer, asking again as long as the service is busy."""
+async def retry(client: Client, text: bytes) -> Response:
+    """Return the response, retrying while the service is busy."""
     while True:
-        answer = await client.ask(text)
-        if answer.status != 503:
-            return answer
+        response = await client.ask(text)
+        if response.status != 503:
+            return response
         await asyncio.sleep(0.2)
 
 
@@ -282,17 +282,17 @@ async def mutated(port: int, _server: psutil.Process) -> list[Row]:
             path, body = rng.choice(REQUESTS)
             body = mutation(body, rng)
             try:
-                answer = await client.ask(request(path, body))
+                response = await client.ask(request(path, body))
             except ResetError:
                 faults["reset"] += 1
                 continue
-            counts[answer.status] += 1
-            if answer.status not in documented[path]:
-                faults[f"undocumented {answer.status}"] += 1
-            if answer.status == 500:
+            counts[response.status] += 1
+            if response.status not in documented[path]:
+                faults[f"undocumented {response.status}"] += 1
+            if response.status == 500:
                 faults["500"] += 1
-                say(f"answered by 500: {path} {body!r}")
-            if answer.status == 200 and (fault := fault_of(answer.body)):
+                say(f"responses with 500:  {path} {body!r}")
+            if response.status == 200 and (fault := fault_of(response.body)):
                 faults[fault] += 1
 
     async with clients(port, 8) as many:
@@ -321,7 +321,7 @@ def mutation(body: bytes, rng: random.Random) -> bytes:
         elif way == 3:
             found[at:at] = found[at : at + rng.choice([1, 4, 16])]
         elif way == 4:
-            # A digit becomes another, so that the body is often still a query.
+            # Replacing a digit by another often leaves a valid query.
             digits = [n for n, byte in enumerate(found) if chr(byte).isdigit()]
             if digits:
                 found[rng.choice(digits)] = ord(rng.choice("0123456789"))
@@ -333,12 +333,12 @@ def mutation(body: bytes, rng: random.Random) -> bytes:
 
 
 def fault_of(body: bytes) -> str | None:
-    """Return the fault of a result, if any: invalid JSON, or an infinity without a warning."""
+    """Return the error of a result, if any: invalid JSON, or an infinity without a warning."""
     try:
-        answer = strict_json.loads(body)
+        response = strict_json.loads(body)
     except ValueError:
         return "not JSON"
-    codes = {each["code"] for each in answer["warnings"]}
+    codes = {each["code"] for each in response["warnings"]}
     explained = codes & {"singular", "endless_wear"}
     return "null without a warning" if b"null" in body and not explained else None
 
@@ -349,18 +349,18 @@ async def schema(port: int, _server: psutil.Process) -> list[Row]:
         str(Path(sys.executable).with_name("schemathesis")),
         *("run", f"http://127.0.0.1:{port}/openapi.json", "--no-color", "--continue-on-failure"),
         *("--phases", "examples,coverage,fuzzing", "--max-examples", "350", "--checks", "all"),
-        # Not every query that fits the schema has a result: friction beyond its limit, say.
+        # Some queries that match the schema have no result, e.g. beyond the friction limit.
         *("--exclude-checks", "positive_data_acceptance", "--seed", "1"),
     ]
     process = await asyncio.create_subprocess_exec(
         *command, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT
     )
-    told, _ = await process.communicate()
-    text = told.decode()
+    detail, _ = await process.communicate()
+    text = detail.decode()
     cases = re.search(r"(\d+) generated", text)
     failures = [line.strip() for line in text.splitlines() if line.strip().startswith("❌ ST")]
     if failures:
-        # With the commands that show each of them.
+        # Includes the commands that reproduce each failure.
         say(text)
     number = int(cases[1]) if cases else 0
     return [
@@ -374,16 +374,16 @@ async def schema(port: int, _server: psutil.Process) -> list[Row]:
 
 
 CAMPAIGNS: dict[str, Campaign] = {
-    "value": small_beside("50 MB header value"),
-    "lines": small_beside("50 MB of header lines"),
-    "trailers": small_beside("50 MB of trailers"),
-    "floods": small_beside("floods of pipelined requests"),
-    "fields": small_beside("10⁵ unknown fields, 4 clients"),
-    "batches": small_beside("batches of 1000, 20 clients"),
-    "readers": small_beside("20 slow readers"),
-    "bodies": small_beside("100 long bodies without an end"),
-    "headers": small_beside("500 slow headers"),
-    "expensive": small_beside("expensive queries, 20 clients"),
+    "value": small_queries_during("50 MB header value"),
+    "lines": small_queries_during("50 MB of header lines"),
+    "trailers": small_queries_during("50 MB of trailers"),
+    "floods": small_queries_during("floods of pipelined requests"),
+    "fields": small_queries_during("10⁵ unknown fields, 4 clients"),
+    "batches": small_queries_during("batches of 1000, 20 clients"),
+    "readers": small_queries_during("20 slow readers"),
+    "bodies": small_queries_during("100 long bodies without an end"),
+    "headers": small_queries_during("500 slow headers"),
+    "expensive": small_queries_during("expensive queries, 20 clients"),
     "hostile": hostile,
     "overload": overload,
     "parallel": parallel,

@@ -1,4 +1,4 @@
-"""Clients that ask over raw sockets, as many and as fast as they are told to."""
+"""Asynchronous clients over raw sockets."""
 
 import asyncio
 import json
@@ -12,8 +12,8 @@ HOST = "127.0.0.1"
 
 
 @dataclass(frozen=True)
-class Answered:
-    """One answer, and how long it took."""
+class Response:
+    """A response and its time."""
 
     status: int
     body: bytes
@@ -21,7 +21,7 @@ class Answered:
 
 
 class ResetError(Exception):
-    """The server ended the connection without an answer."""
+    """The server closed the connection without a response."""
 
 
 def request(path: str, body: bytes | None, headers: Sequence[str] = ()) -> bytes:
@@ -37,13 +37,13 @@ def post(path: str, query: Any) -> bytes:
 
 
 class Client:
-    """One connection, kept open and opened again where the server said that it closes it."""
+    """A persistent connection, reopened after a response that closes it."""
 
     def __init__(self, port: int) -> None:
         self._port = port
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
-    async def ask(self, text: bytes) -> Answered:
+    async def ask(self, text: bytes) -> Response:
         if self._streams is None:
             self._streams = await asyncio.open_connection(HOST, self._port, limit=2**26)
         reader, writer = self._streams
@@ -59,7 +59,7 @@ class Client:
         taken = time.perf_counter() - start
         if b"\r\nconnection: close" in head:
             await self.close()
-        return Answered(int(head.split(b" ", 2)[1]), body, taken)
+        return Response(int(head.split(b" ", 2)[1]), body, taken)
 
     async def close(self) -> None:
         if self._streams:

@@ -1,4 +1,4 @@
-"""The service as its own process on a real socket."""
+"""The service as a separate process on a real socket."""
 
 import http.client
 import os
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 PATIENCE = 30.0
-"""Seconds for anything that happens in well under one, but on a busy machine."""
+"""Time limit for events that take well under a second on an idle machine [s]."""
 
 
 def free_port() -> int:
@@ -43,9 +43,9 @@ def is_served(port: int) -> bool:
 def running(
     command: list[str], port: int, output: int = subprocess.PIPE, **environment: str
 ) -> Iterator[subprocess.Popen[str]]:
-    """Start `command`, wait until it serves at `port`, and leave no process behind.
+    """Start `command`, wait until it serves at `port`, and terminate it with all its children.
 
-    A pipe that nobody reads holds the lines of some hundred requests.
+    The output pipe is not read; it holds the log lines of some hundred requests.
     """
     process = subprocess.Popen(
         command,

@@ -31,7 +31,7 @@ BODY = (
 
 @pytest.fixture(scope="module")
 def port() -> Iterator[int]:
-    """Serve from a thread of this process, where a test can plant a bug."""
+    """Serve from a thread of this process, where a test can inject an error."""
     number = free_port()
     config = uvicorn.Config(
         create_app(), port=number, loop="uvloop", http=BoundedProtocol, lifespan="on", ws="none"
@@ -55,18 +55,18 @@ def connection(port: int) -> Iterator[http.client.HTTPConnection]:
 
 def ask(connection: http.client.HTTPConnection, body: bytes) -> tuple[int, str | None, bytes]:
     connection.request("POST", "/v1/normal", body, JSON)
-    answer = connection.getresponse()
-    return answer.status, answer.getheader("content-type"), answer.read()
+    response = connection.getresponse()
+    return response.status, response.getheader("content-type"), response.read()
 
 
-def test_internal_error_is_answered_and_keeps_the_connection(
+def test_internal_error_is_reported_and_keeps_the_connection(
     connection: http.client.HTTPConnection,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     lines: list[str] = []
     formatter = observability.JsonLines()
-    # Where the request is answered, as a handler of the service formats it.
+    # Raised where the request is handled, and formatted by the service's error handler.
     monkeypatch.setattr(
         logging.getLogger("mdr_service.middleware"),
         "handle",
@@ -83,7 +83,7 @@ def test_internal_error_is_answered_and_keeps_the_connection(
     assert (status, media_type) == (500, MEDIA_TYPE)
     assert b"secret" not in body
     assert b"Traceback" not in body
-    # The id in the body is that of the line in the log, where the trace is.
+    # The id in the body identifies the log record, which has the traceback.
     (instance,) = re.findall(rb'"urn:mdr:request:([0-9a-f]+)"', body)
     (record,) = [each for each in caplog.records if each.exc_info]
     assert record.name == "mdr_service.middleware"
@@ -101,19 +101,19 @@ def test_invalid_request_keeps_the_connection(connection: http.client.HTTPConnec
     assert connection.sock is socket
 
 
-def test_long_body_is_refused_by_its_announced_length(
+def test_long_body_is_rejected_by_its_content_length(
     connection: http.client.HTTPConnection,
 ) -> None:
     connection.putrequest("POST", "/v1/normal")
     connection.putheader("Content-Type", "application/json")
     connection.putheader("Content-Length", str(SETTINGS.max_body_bytes + 1))
     connection.endheaders()
-    answer = connection.getresponse()
-    assert (answer.status, answer.getheader("content-type")) == (413, MEDIA_TYPE)
-    assert answer.getheader("connection") == "close"
+    response = connection.getresponse()
+    assert (response.status, response.getheader("content-type")) == (413, MEDIA_TYPE)
+    assert response.getheader("connection") == "close"
 
 
-def test_client_that_sends_all_of_a_long_body_receives_the_response(port: int) -> None:
+def test_client_that_sends_a_rejected_long_body_receives_the_response(port: int) -> None:
     length = 8 * SETTINGS.max_body_bytes
     head = (
         "POST /v1/normal HTTP/1.1\r\nHost: service\r\nContent-Type: application/json\r\n"
@@ -122,11 +122,11 @@ def test_client_that_sends_all_of_a_long_body_receives_the_response(port: int) -
     with sockets.create_connection(("127.0.0.1", port), timeout=PATIENCE) as client:
         client.sendall(head.encode())
         client.sendall(b" " * length)
-        answer = b""
+        response = b""
         while piece := client.recv(65_536):
-            answer += piece
-    assert answer.startswith(b"HTTP/1.1 413 ")
-    assert b"urn:mdr:problem:body-too-large" in answer
+            response += piece
+    assert response.startswith(b"HTTP/1.1 413 ")
+    assert b"urn:mdr:problem:body-too-large" in response
 
 
 @pytest.mark.parametrize(("fields", "listed"), [(15, 15), (5_000, 20), (50_000, 1)])
@@ -134,10 +134,10 @@ def test_number_of_listed_errors_is_bounded(
     connection: http.client.HTTPConnection, fields: int, listed: int
 ) -> None:
     unknown = b",".join(b'"f%d":0' % n for n in range(fields))
-    status, _, answer = ask(connection, BODY[:-1] + b"," + unknown + b"}")
+    status, _, response = ask(connection, BODY[:-1] + b"," + unknown + b"}")
     assert status == 422
-    assert len(answer) <= 4096
-    errors = json.loads(answer)["errors"]
+    assert len(response) <= 4096
+    errors = json.loads(response)["errors"]
     pointers = [each["pointer"] for each in errors]
     assert pointers == ([f"/f{n}" for n in range(listed)] if listed > 1 else [""])
     assert listed > 1 or "50000" in errors[0]["detail"]
@@ -160,31 +160,31 @@ def test_valid_request_id_is_returned(
 ) -> None:
     for path in ("/health", "/nowhere"):
         connection.request("GET", path, headers={"X-Request-Id": given})
-        answer = connection.getresponse()
-        answer.read()
-        found = answer.getheader("x-request-id")
+        response = connection.getresponse()
+        response.read()
+        found = response.getheader("x-request-id")
         assert found is not None
         assert (found == given) == kept
         assert kept or re.fullmatch("[0-9a-f]{16}", found)
-        assert answer.getheader("x-content-type-options") == "nosniff"
-        assert answer.getheader("access-control-allow-origin") is None
+        assert response.getheader("x-content-type-options") == "nosniff"
+        assert response.getheader("access-control-allow-origin") is None
 
 
 def test_head_is_allowed_where_get_is(connection: http.client.HTTPConnection) -> None:
     for path in ("/health", "/health/live", "/metrics", "/v1/limits", "/v1/profiles", "/docs"):
         connection.request("HEAD", path)
-        answer = connection.getresponse()
-        assert (answer.status, answer.read()) == (200, b"")
-        assert int(answer.getheader("content-length", "0")) > 0
+        response = connection.getresponse()
+        assert (response.status, response.read()) == (200, b"")
+        assert int(response.getheader("content-length", "0")) > 0
 
 
-def test_long_chunked_body_is_refused(connection: http.client.HTTPConnection) -> None:
+def test_long_chunked_body_is_rejected(connection: http.client.HTTPConnection) -> None:
     megabyte = b" " * 2**20
     count = SETTINGS.max_body_bytes // len(megabyte) + 1
     chunks = iter([megabyte] * count)
     connection.request("POST", "/v1/normal", chunks, JSON, encode_chunked=True)
-    answer = connection.getresponse()
-    assert (answer.status, answer.getheader("content-type")) == (413, MEDIA_TYPE)
+    response = connection.getresponse()
+    assert (response.status, response.getheader("content-type")) == (413, MEDIA_TYPE)
 
 
 def test_client_that_disconnects_causes_no_error(

@@ -1,4 +1,4 @@
-"""Every endpoint answers clients that offer HTTP/2, as curl --http2 and Java's HttpClient do."""
+"""Every endpoint serves clients that offer HTTP/2, as curl --http2 and Java's HttpClient do."""
 
 import http.client
 import json
@@ -25,12 +25,12 @@ BODIES: dict[str, Any] = {
     "/v1/wear/evolution": examples.EVOLUTION_EXAMPLES,
     "/v1/batch": examples.BATCH_EXAMPLES,
 }
-PRESSED = "kind=cone&slope=0.1&e_star=1&g_star=1&normal_force=1"
+LOADED = "kind=cone&slope=0.1&e_star=1&g_star=1&normal_force=1"
 PARAMETERS = {
-    "/v1/normal": PRESSED,
-    "/v1/tangential": f"{PRESSED}&friction_coefficient=0.3&tangential_force=0.1",
-    "/v1/stress": f"{PRESSED}&points=20&quantities=pressure",
-    "/v1/wear": f"{PRESSED}&friction_coefficient=0.3&tangential_force=0.1",
+    "/v1/normal": LOADED,
+    "/v1/tangential": f"{LOADED}&friction_coefficient=0.3&tangential_force=0.1",
+    "/v1/stress": f"{LOADED}&points=20&quantities=pressure",
+    "/v1/wear": f"{LOADED}&friction_coefficient=0.3&tangential_force=0.1",
 }
 OPERATIONS = [
     *(
@@ -46,7 +46,7 @@ UPGRADE = {
     "Upgrade": "h2c",
     "HTTP2-Settings": "AAEAAEAAAAIAAAAA",
 }
-# The responses contain times.
+# Response headers that contain times.
 CHANGES = {"/metrics"}
 
 
@@ -58,7 +58,7 @@ def port() -> Iterator[int]:
 
 
 def target_and_body(method: str, path: str) -> tuple[str, bytes]:
-    """Return what to send to an operation for a result."""
+    """Return the request target and body of an operation that succeeds."""
     if method == "POST":
         example = next(iter(BODIES[path].values()))
         return path, json.dumps(example["value"]).encode()

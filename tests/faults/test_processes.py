@@ -1,4 +1,4 @@
-"""Processes that end, stop or do not start while requests are in flight."""
+"""Processes that end, stop or fail to start while requests are in flight."""
 
 import http.client
 import json
@@ -25,7 +25,7 @@ SMALL = {
     "material": {"e_star": 1.0, "g_star": 0.8},
     "load": {"normal_force": 1.0},
 }
-# Some hundred milliseconds of work.
+# A few hundred milliseconds of computation.
 LONGER = {
     "profile": {
         "kind": "tabulated",
@@ -48,14 +48,14 @@ def ask(port: int, path: str, query: object) -> tuple[int, bytes]:
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=4 * PATIENCE)
     try:
         connection.request("POST", path, json.dumps(query), {"Content-Type": "application/json"})
-        answer = connection.getresponse()
-        return answer.status, answer.read()
+        response = connection.getresponse()
+        return response.status, response.read()
     finally:
         connection.close()
 
 
 def computing(server: int) -> list[psutil.Process]:
-    """Return the compute processes below a server."""
+    """Return the compute processes of a server."""
     found = []
     for process in psutil.Process(server).children(recursive=True):
         try:
@@ -67,7 +67,7 @@ def computing(server: int) -> list[psutil.Process]:
 
 
 def busy(server: int) -> psutil.Process:
-    """Return a compute process once it is at work."""
+    """Return a compute process once it is computing."""
     found: list[psutil.Process] = []
 
     def is_busy() -> bool:
@@ -80,14 +80,14 @@ def busy(server: int) -> psutil.Process:
     return found[0]
 
 
-def wait_for(happened: Callable[[], bool]) -> None:
+def wait_for(condition: Callable[[], bool]) -> None:
     deadline = time.monotonic() + PATIENCE
-    while not happened():
+    while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.02)
 
 
-def asked(port: int, clients: int) -> tuple[ThreadPoolExecutor, list[Future[tuple[int, bytes]]]]:
+def requests(port: int, clients: int) -> tuple[ThreadPoolExecutor, list[Future[tuple[int, bytes]]]]:
     pool = ThreadPoolExecutor(clients)
     return pool, [pool.submit(ask, port, "/v1/tangential", LONGER) for _ in range(clients)]
 
@@ -110,7 +110,7 @@ def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time()
             b"POST /v1/normal HTTP/1.1\r\nHost: service\r\n"
             b"Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
         )
-        pool, answers = asked(port, 8)
+        pool, answers = requests(port, 8)
         with pool:
             busy(process.pid)
             time.sleep(0.2)
@@ -131,7 +131,7 @@ def test_killed_compute_process_loses_its_own_request_only() -> None:
     with running(service(port), port, **PATIENT) as process:
         expected = ask(port, "/v1/tangential", LONGER)
         assert expected[0] == 200
-        pool, answers = asked(port, 4)
+        pool, answers = requests(port, 4)
         with pool:
             busy(process.pid).kill()
             found = [each.result() for each in answers]
@@ -148,7 +148,7 @@ def test_compute_processes_end_with_a_killed_server() -> None:
     with running(service(port), port, **PATIENT) as process:
         children = computing(process.pid)
         assert len(children) == 2
-        pool, answers = asked(port, 2)
+        pool, answers = requests(port, 2)
         busy(process.pid)
         process.kill()
         process.wait(PATIENCE)
@@ -168,7 +168,7 @@ def test_killed_worker_is_replaced() -> None:
         killed = min(workers)
         orphans = [each for each in computing(process.pid) if each.ppid() == killed]
         os.kill(killed, signal.SIGKILL)
-        # The other one answers meanwhile.
+        # Meanwhile the other worker serves.
         for _ in range(50):
             assert ask(port, "/v1/normal", SMALL) == expected
         wait_for(lambda: not any(each.is_running() for each in orphans))
@@ -191,7 +191,7 @@ def ready(port: int) -> int:
 
 @pytest.mark.parametrize("state", ["idle", "busy"])
 def test_stopped_compute_processes_are_replaced(state: str) -> None:
-    """At most 15 s later; until then the instance is not ready, and queries are refused."""
+    """Within 15 s; until then the instance is not ready, and queries are rejected."""
     port = free_port()
     with running(service(port), port) as process:
         expected = ask(port, "/v1/tangential", LONGER)
@@ -237,19 +237,19 @@ def test_server_without_file_descriptors_recovers() -> None:
         held.sock = connections[0]
         statuses = set()
 
-        def refused() -> bool:
+        def rejected() -> bool:
             held.request("GET", "/health/ready")
-            answer = held.getresponse()
-            statuses.add(answer.status)
-            return b"process-lost" in answer.read()
+            response = held.getresponse()
+            statuses.add(response.status)
+            return b"process-lost" in response.read()
 
-        wait_for(refused)
+        wait_for(rejected)
         assert statuses == {503}
         for each in connections[1:]:
             each.close()
 
         def recovered() -> bool:
-            # Until the server has closed its ends too, it may reset a new connection.
+            # Until the server has closed its ends as well, it may reset a new connection.
             with suppress(ConnectionError):
                 return ready(port) == 200
             return False

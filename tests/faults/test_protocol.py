@@ -1,4 +1,4 @@
-"""Bounds of the HTTP protocol: headers, time, pipelines, upgrades and clients that do not read."""
+"""Limits of the HTTP protocol: headers, time, pipelining, upgrades, and slow clients."""
 
 import http.client
 import json
@@ -60,7 +60,7 @@ class Served:
         return socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE)
 
     def responses(self, *pieces: bytes, number: int = 1) -> list[tuple[int, bytes]]:
-        """Send the pieces; return so many responses, fewer if the connection is closed."""
+        """Send the pieces; return up to this many responses, fewer if the connection is closed."""
         with self.connect() as client:
             sender = threading.Thread(target=send_all, args=(client, pieces))
             sender.start()
@@ -79,15 +79,15 @@ def send_all(client: socket.socket, pieces: tuple[bytes, ...]) -> bool:
     return False
 
 
-def wait_for(happened: Callable[[], bool]) -> None:
+def wait_for(condition: Callable[[], bool]) -> None:
     deadline = time.monotonic() + PATIENCE
-    while not happened():
+    while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.01)
 
 
 class Received:
-    """As much of a socket as `http.client` needs."""
+    """The part of the socket interface that `http.client` needs."""
 
     def __init__(self, stream: BytesIO) -> None:
         self._stream = stream
@@ -132,8 +132,8 @@ def served() -> Iterator[Served]:
 
 
 @pytest.fixture
-def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let requests arrive within half a second, and be noticed a tenth later."""
+def short_timeouts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limit the arrival of requests to half a second, checked every tenth of a second."""
     settings = SETTINGS.model_copy(update={"request_seconds": 0.5})
     monkeypatch.setattr(protocol, "SETTINGS", settings)
     monkeypatch.setattr(protocol, "_CHECK_SECONDS", 0.1)
@@ -157,12 +157,12 @@ def test_every_overridden_method_exists_in_uvicorn() -> None:
     ],
     ids=["long value", "too long value", "many fields", "too many fields"],
 )
-def test_headers_are_bounded_in_bytes_and_number(
+def test_headers_are_limited_in_bytes_and_number(
     served: Served, headers: bytes, status: int
 ) -> None:
     before = served.responses(post())
     text = post(headers=headers)
-    # At once, and in pieces that end inside of names and values.
+    # At once, and in pieces that end inside names and values.
     for pieces in ([text], [text[n : n + 1021] for n in range(0, len(text), 1021)]):
         ((found, body),) = served.responses(*pieces)
         assert found == status
@@ -174,14 +174,14 @@ def test_headers_are_bounded_in_bytes_and_number(
             assert body == before[0][1]
 
 
-def test_refused_connection_is_closed_after_the_response(served: Served) -> None:
+def test_rejected_connection_is_closed_after_the_response(served: Served) -> None:
     with served.connect() as client:
         client.sendall(post(headers=b"X: a\r\n" * 200))
         assert [status for status, _ in read(client, 2)] == [431]
         assert is_closed(client)
 
 
-def test_long_url_is_refused(served: Served) -> None:
+def test_long_url_is_rejected(served: Served) -> None:
     text = b"GET /%s HTTP/1.1\r\nHost: x\r\n\r\n" % (b"a" * 2 * MAX_HEADER_BYTES)
     assert served.responses(text)[0][0] == 431
 
@@ -191,13 +191,13 @@ def test_long_url_is_refused(served: Served) -> None:
     [b"GET / HTTP/1.1\r\nX: ", b"GET /", b"GET / HTTP/1.1\r\nX", b"\r\n", chunked()[:-2] + b"X: "],
     ids=["value", "URL", "name", "empty lines", "trailer"],
 )
-def test_header_without_end_is_refused_once_it_is_too_long(served: Served, head: bytes) -> None:
+def test_unterminated_header_is_rejected_once_it_is_too_long(served: Served, head: bytes) -> None:
     endless = b"\r\n" if head == b"\r\n" else b"a"
     found = served.responses(head, *[endless * 2**19] * 100, number=2)
     assert [status for status, _ in found] == [431]
 
 
-def test_trailers_are_accepted_within_the_bounds_and_ignored(served: Served) -> None:
+def test_trailers_within_the_limits_are_ignored(served: Served) -> None:
     trailers = b"X-Request-Id: trailer\r\nContent-Type: text/plain\r\n"
     found = served.responses(chunked(trailers=trailers) + GET, number=2)
     assert [status for status, _ in found] == [200, 200]
@@ -219,7 +219,7 @@ def test_trailers_are_accepted_within_the_bounds_and_ignored(served: Served) -> 
     ],
     ids=["words", "TLS", "HTTP/2", "CONNECT", "not ASCII", "two lengths", "chunk"],
 )
-def test_malformed_request_is_refused_with_a_problem_document(served: Served, text: bytes) -> None:
+def test_malformed_request_is_rejected_with_a_problem(served: Served, text: bytes) -> None:
     found = served.responses(text, number=2)
     assert [status for status, _ in found] == [400]
     assert json.loads(found[0][1])["type"] == "urn:mdr:problem:malformed-http"
@@ -232,18 +232,18 @@ def test_pipelined_requests_are_answered_in_order(served: Served) -> None:
     assert [status for status, _ in found[1::2]] == [200] * 8
 
 
-def test_flood_of_pipelined_requests_is_cut_off(served: Served) -> None:
+def test_flood_of_pipelined_requests_is_disconnected(served: Served) -> None:
     assert len(served.responses(GET * 10_000, number=10_000)) < 10_000
 
 
-def test_malformed_request_behind_another_is_no_response_to_that(served: Served) -> None:
+def test_malformed_request_after_another_gets_its_own_response(served: Served) -> None:
     found = served.responses(GET + b"NONSENSE\r\n\r\n", number=2)
     assert [status for status, _ in found] in ([], [200])
 
 
 @pytest.mark.parametrize("offer", [UPGRADE, b"Connection: upgrade\r\nUpgrade: websocket\r\n"])
 @pytest.mark.parametrize("make", [post, chunked])
-def test_upgrade_is_declined_and_the_request_answered(
+def test_upgrade_is_ignored_and_the_request_is_served(
     served: Served, make: object, offer: bytes
 ) -> None:
     assert callable(make)
@@ -252,8 +252,8 @@ def test_upgrade_is_declined_and_the_request_answered(
     assert served.responses(text * 3, number=3) == served.responses(post()) * 3
 
 
-def test_body_behind_an_upgrade_is_not_read_as_a_request(served: Served) -> None:
-    """Behind a proxy, that would let a client answer the next client's request."""
+def test_body_after_an_upgrade_is_not_read_as_a_request(served: Served) -> None:
+    """Behind a proxy, this would let one client answer the next client's request (smuggling)."""
     with served.connect() as client:
         client.sendall(post(GET, UPGRADE))
         assert [status for status, _ in read(client, 1)] == [400]
@@ -262,7 +262,7 @@ def test_body_behind_an_upgrade_is_not_read_as_a_request(served: Served) -> None
             client.recv(1)
 
 
-def test_responses_do_not_depend_on_how_requests_are_split(served: Served) -> None:
+def test_responses_are_independent_of_request_fragmentation(served: Served) -> None:
     rng = random.Random(1)
     kinds = {
         post(): 200,
@@ -282,7 +282,7 @@ def test_responses_do_not_depend_on_how_requests_are_split(served: Served) -> No
         assert [status for status, _ in found] == [kinds[text] for text in texts]
 
 
-def test_expected_continue_is_sent(served: Served) -> None:
+def test_100_continue_is_sent(served: Served) -> None:
     with served.connect() as client:
         head, _, body = post(headers=b"Expect: 100-continue\r\n").partition(b"\r\n\r\n")
         client.sendall(head + b"\r\n\r\n")
@@ -304,9 +304,7 @@ def test_expected_continue_is_sent(served: Served) -> None:
     ],
     ids=["nothing", "a byte at a time", "no end of body", "dribbled body", "empty lines", "second"],
 )
-def test_request_that_does_not_arrive_in_time_is_refused(
-    served: Served, pieces: list[bytes], name: str
-) -> None:
+def test_slow_request_is_rejected(served: Served, pieces: list[bytes], name: str) -> None:
     with served.connect() as client:
         began = time.monotonic()
         for piece in pieces:
@@ -321,7 +319,7 @@ def test_request_that_does_not_arrive_in_time_is_refused(
 
 
 @pytest.mark.usefixtures("hasty")
-def test_connection_with_an_early_response_and_an_endless_body_is_closed(served: Served) -> None:
+def test_early_response_closes_a_connection_with_an_endless_body(served: Served) -> None:
     with served.connect() as client:
         client.sendall(b"POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
         assert read(client, 1)[0][0] == 404
@@ -329,11 +327,11 @@ def test_connection_with_an_early_response_and_an_endless_body_is_closed(served:
 
 
 @pytest.mark.usefixtures("hasty")
-def test_response_that_takes_long_is_not_taken_for_a_slow_client(served: Served) -> None:
+def test_slow_response_is_not_a_request_timeout(served: Served) -> None:
     query = next(iter(examples.EVOLUTION_EXAMPLES.values()))["value"] | {"resolution": 96}
     body = json.dumps(query).encode()
     text = post(body).replace(b"/v1/normal", b"/v1/wear/evolution")
-    # The second request is incomplete, but the first one's response is awaited.
+    # The second request is incomplete, but the first response is still pending.
     with served.connect() as client:
         client.sendall(text + GET[:20])
         assert read(client, 1)[0][0] == 200
@@ -346,7 +344,7 @@ def large_request() -> bytes:
 
 
 def reader(served: Served, buffer: int) -> socket.socket:
-    """Return a connection with a buffer of its own of that length."""
+    """Return a connection with a receive buffer of the given length."""
     client = socket.socket()
     client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
     client.settimeout(PATIENCE)
@@ -364,11 +362,11 @@ def test_client_that_does_not_read_is_disconnected(
         assert client.recv(12).startswith(b"HTTP/1.1 200")
         assert served.app.state.transfers._total > 2**20
         wait_for(lambda: served.app.state.transfers._total == 0)
-        # What the kernel holds comes first.
+        # The kernel's buffers are read first.
         wait_for(lambda: is_closed(client))
 
 
-def test_client_that_reads_slowly_receives_all(
+def test_slow_reader_receives_the_whole_response(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(protocol, "_WRITE_SECONDS", 1.0)
@@ -385,7 +383,7 @@ def test_client_that_reads_slowly_receives_all(
     assert time.monotonic() - began > 2.0
 
 
-def test_refusals_are_counted(served: Served) -> None:
+def test_rejections_are_counted(served: Served) -> None:
     counter = observability.PROBLEMS.labels("headers-too-large")
     before = counter._value.get()
     served.responses(post(headers=b"X: a\r\n" * 200))

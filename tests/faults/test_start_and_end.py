@@ -1,4 +1,4 @@
-"""Start and end of the service: signals, settings, ports."""
+"""Start and shutdown of the service: signals, settings, ports."""
 
 import http.client
 import json
@@ -46,7 +46,7 @@ BRIEF = {
 }
 
 
-def test_half_sent_request_does_not_delay_the_end() -> None:
+def test_incomplete_request_does_not_delay_shutdown() -> None:
     port = free_port()
     with (
         running(service(port), port, **FEW, **BRIEF) as process,
@@ -57,14 +57,14 @@ def test_half_sent_request_does_not_delay_the_end() -> None:
             b"Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
         )
         time.sleep(0.2)
-        told = time.monotonic()
+        signalled = time.monotonic()
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=PATIENCE)
-        assert time.monotonic() - told < 5
+        assert time.monotonic() - signalled < 5
     assert process.returncode == 0
 
 
-def test_end_of_the_terminal_is_ignored_under_nohup() -> None:
+def test_sighup_is_ignored_under_nohup() -> None:
     port = free_port()
     with running(["nohup", *service(port)], port, subprocess.DEVNULL, **FEW) as process:
         process.send_signal(signal.SIGHUP)
@@ -72,11 +72,11 @@ def test_end_of_the_terminal_is_ignored_under_nohup() -> None:
         assert is_served(port)
 
 
-def test_second_interrupt_answers_the_request_in_flight_at_once() -> None:
+def test_second_interrupt_completes_the_request_in_flight_at_once() -> None:
     port = free_port()
     with running(service(port), port, **FEW) as process:
         client = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
-        # Some seconds of computation.
+        # A few seconds of computation.
         ball = EVOLUTION_EXAMPLES["shakedown"]["value"]
         query = ball | {"resolution": 96, "cycles": [10.0 * n for n in range(2000)]}
         client.request("POST", "/v1/wear/evolution", json.dumps(query), JSON)
@@ -84,23 +84,23 @@ def test_second_interrupt_answers_the_request_in_flight_at_once() -> None:
         process.send_signal(signal.SIGINT)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
-        told = time.monotonic()
-        answer = client.getresponse()
-        assert answer.status == 503
-        assert json.loads(answer.read())["type"] == "urn:mdr:problem:stopping"
+        signalled = time.monotonic()
+        response = client.getresponse()
+        assert response.status == 503
+        assert json.loads(response.read())["type"] == "urn:mdr:problem:stopping"
         process.communicate(timeout=PATIENCE)
-        assert time.monotonic() - told < 5
+        assert time.monotonic() - signalled < 5
     assert process.returncode == 0
 
 
 def failed(*commands: list[str], **environment: str) -> list[subprocess.CompletedProcess[str]]:
-    """Run commands side by side: most of their time is that of the imports."""
+    """Run commands in parallel, since most of their time is spent on imports."""
     run = partial(subprocess.run, capture_output=True, text=True, check=False)
     with ThreadPoolExecutor() as pool:
         return list(pool.map(partial(run, env=os.environ | environment), commands))
 
 
-def test_invalid_argument_is_refused_with_one_line() -> None:
+def test_invalid_argument_is_rejected_with_one_line() -> None:
     ports, workers = "--port must be between 0 and 65535", "--workers must be between 1 and 1000"
     given = {"port=70000": ports, "port=-1": ports, "port=http": ports, "workers=0": workers}
     commands = [[sys.executable, "-m", "mdr_command", "serve", f"--{each}"] for each in given]
@@ -133,7 +133,7 @@ def test_port_in_use_is_reported_before_the_compute_processes_start() -> None:
     ("name", "value"),
     [("MDR_MAX_LOADS", "many"), ("MDR_SHUTDOWN_SECONDS", "14"), ("MDR_QUEUE_SECONDS", "nan")],
 )
-def test_invalid_setting_ends_the_process_with_one_line(name: str, value: str) -> None:
+def test_invalid_setting_exits_with_one_line(name: str, value: str) -> None:
     (ended,) = failed(service(free_port()), **{name: value})
     assert ended.returncode == 1
     assert ended.stderr.startswith(f"{name}: ")
@@ -141,15 +141,15 @@ def test_invalid_setting_ends_the_process_with_one_line(name: str, value: str) -
 
 
 def _environment_is_made() -> bool:
-    question = ["make", "--question", ".venv/runtime"]
+    command = ["make", "--question", ".venv/runtime"]
     return (
         shutil.which("make") is not None
-        and subprocess.run(question, cwd=ROOT, capture_output=True, check=False).returncode == 0
+        and subprocess.run(command, cwd=ROOT, capture_output=True, check=False).returncode == 0
     )
 
 
-@pytest.mark.skipif(not _environment_is_made(), reason="make has not made this environment")
-@pytest.mark.parametrize("stop", ["SIGTERM to make alone", "Ctrl-C in the terminal"])
+@pytest.mark.skipif(not _environment_is_made(), reason="the environment was not created by make")
+@pytest.mark.parametrize("stop", ["SIGTERM to make only", "Ctrl-C in the terminal"])
 def test_make_run_ends_with_its_service(stop: str) -> None:
     port = free_port()
     command = ["make", "--directory", str(ROOT), "run", f"PORT={port}"]
@@ -157,7 +157,7 @@ def test_make_run_ends_with_its_service(stop: str) -> None:
         if stop.startswith("SIGTERM"):
             process.send_signal(signal.SIGTERM)
         else:
-            # A terminal signals the whole group in its foreground.
+            # A terminal signals the whole foreground process group.
             os.killpg(process.pid, signal.SIGINT)
         output, _ = process.communicate(timeout=PATIENCE)
     assert f"http://127.0.0.1:{port}/docs" in output

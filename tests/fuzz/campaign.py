@@ -1,11 +1,11 @@
-"""Ordinary queries by the thousand, answered in process, each answer held to the laws.
+"""Thousands of ordinary queries, computed in process, whose results are checked against laws.
 
-    python -m tests.fuzz.campaign [--queries N] [--seed S] [--report FILE]     # make fuzz
+python -m tests.fuzz.campaign [--queries N] [--seed S] [--report FILE]     # make fuzz
 
-Every query is posted; shares of them are asked again by GET, in a batch, as CSV, NumPy arrays and
-SVG, at the tightest tolerance, in other units, and by the inverse or an equivalent query. Query i
-of seed S is the same whatever came before it. The report holds one entry per class of failures,
-with the shortest query of the class.
+Every query is sent by POST. Some are repeated by GET, in a batch, as CSV, NumPy arrays and SVG, at
+the tightest tolerance, in other units, and as the inverse or an equivalent query. Query i of seed S
+does not depend on earlier queries. The report has one entry per class of failures, with the
+shortest query of the class.
 """
 
 import argparse
@@ -26,19 +26,19 @@ import numpy as np
 from tests.contract import strict_json
 from tests.fuzz import forms, laws, ordinary_scenes
 from tests.fuzz.service import PATHS, Reply, Service
-from tests.fuzz.units import Units, exactly_scalable, is_representable, scaled, scaled_answer
+from tests.fuzz.units import Units, exactly_scalable, is_representable, scaled, scaled_result
 
-ANSWERED: Final = 0.7
-"""Least share of queries with an answer: others would test little."""
+SOLVED: Final = 0.7
+"""Smallest accepted fraction of queries with a result."""
 
 
 REJECTED: Final = frozenset({"urn:mdr:problem:invalid-request", "urn:mdr:problem:outside-model"})
-"""Problem types of queries outside the model; ordinary queries cost little and are accurate."""
+"""Accepted problem types: queries outside the model's validity."""
 
 
 @dataclass
 class Failures:
-    """Classes of failures: how many, of which kinds of profile, and the shortest query."""
+    """Classes of failures: their number, profile kinds, and the shortest query."""
 
     counts: Counter[str] = field(default_factory=Counter)
     kinds: dict[str, Counter[str]] = field(default_factory=dict)
@@ -69,19 +69,19 @@ class Failures:
 
 
 def _is_never_rejected(profile: Mapping[str, Any], detail: str) -> bool:
-    """Report whether a table is rejected for its interpolation, which the service may choose."""
+    """Report whether the interpolation cannot be the cause, because the service may choose it."""
     return "between the points" in detail and profile.get("interpolation", "auto") == "auto"
 
 
 def _where(error: BaseException) -> str:
-    """Return the kind of a defect and the last frames of this project that it passed."""
+    """Return the type of an internal error and its last frames within this project."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if "/src/mdr_" in f.filename]
     last = " < ".join(f"{Path(f.filename).stem}.{f.name}" for f in reversed(frames[-3:]))
     return f"{type(error).__name__} in {last}"
 
 
 class Campaign:
-    """A run of queries against one service."""
+    """A series of queries against one service."""
 
     def __init__(self, seed: int) -> None:
         self.seed = seed
@@ -91,23 +91,23 @@ class Campaign:
         self.slowest = (0.0, "")
         self._recent: list[tuple[str, Any, Reply]] = []
 
-    def ask(self, index: int) -> None:
-        """Ask query number `index` of the seed in all its forms."""
+    def run_query(self, index: int) -> None:
+        """Send query number `index` of the seed in all its forms."""
         random = Random(f"{self.seed} {index}")
         name, body = ordinary_scenes.query(random)
         start = thread_time()
         reply = self.service.post(name, body)
         self.slowest = max(self.slowest, (thread_time() - start, f"query {index}: {name}"))
         self.statuses[f"{name} {reply.status}"] += 1
-        answer = self._judged(name, body, reply)
-        for label in self._again(random, name, body, reply, answer):
+        result = self._checked_result(name, body, reply)
+        for label in self._repeat(random, name, body, reply, result):
             self.failures.add(f"{name}: {label}", name, body)
         self._recent.append((name, body, reply))
         if len(self._recent) == 6:
             self._batch()
 
-    def _judged(self, name: str, body: Any, reply: Reply) -> dict[str, Any] | None:
-        """Return the answer, if there is one; keep what is wrong with the reply."""
+    def _checked_result(self, name: str, body: Any, reply: Reply) -> dict[str, Any] | None:
+        """Return the result, if any; record what is wrong with the reply."""
         if reply.status not in {200, 422}:
             label = f"{name}: {reply.status} {_where(reply.defect) if reply.defect else ''}"
             shown = "".join(traceback.format_exception(reply.defect)[-6:]) if reply.defect else ""
@@ -119,7 +119,7 @@ class Campaign:
             self.failures.add(f"{name}: not JSON: {error}", name, body)
             return None
         if reply.status == 200:
-            for law in laws.broken(name, body, document):
+            for law in laws.violations(name, body, document):
                 self.failures.add(f"{name}: {law}", name, body)
             return dict(document)
         self.statuses[f"{name} 422 {document['type']}"] += 1
@@ -131,33 +131,33 @@ class Campaign:
             self.failures.add(f"{name}: {document['type']}: {detail}", name, body)
         return None
 
-    def _again(
-        self, random: Random, name: str, body: Any, reply: Reply, answer: dict[str, Any] | None
+    def _repeat(
+        self, random: Random, name: str, body: Any, reply: Reply, result: dict[str, Any] | None
     ) -> Iterator[str]:
         if reply.status in {200, 422}:
-            if random.random() < 0.3 and (address := forms.by_address(name, body)):
+            if random.random() < 0.3 and (address := forms.get_parameters(name, body)):
                 got = self.service.send("GET", PATHS[name], query_string=address)
-                if got.status != reply.status or (answer and got.content != reply.content):
-                    yield f"GET answers {got.status}, or otherwise than POST"
-            yield from self._forms(random, name, body, reply.status, answer)
-        if not answer:
+                if got.status != reply.status or (result and got.content != reply.content):
+                    yield f"GET answers {got.status}, or differs from POST"
+            yield from self._check_formats(random, name, body, reply.status, result)
+        if not result:
             return
         if random.random() < 0.15:
-            other = self._other(name, body | {"rtol": 1e-10 if name == "evolution" else 1e-13})
+            other = self._result_of(name, body | {"rtol": 1e-10 if name == "evolution" else 1e-13})
             if other:
-                for each in laws.disagreements(name, answer, other):
+                for each in laws.disagreements(name, result, other):
                     yield f"at the tightest rtol {each}"
         if random.random() < 0.15 and exactly_scalable(body):
             units = Units(2.0 ** random.randint(-20, 20), 2.0 ** random.randint(-20, 20))
-            yield from self._scaled(name, body, answer, units)
-        yield from self._equivalent(random, name, body, answer)
+            yield from self._scaled(name, body, result, units)
+        yield from self._equivalent(random, name, body, result)
 
-    def _other(self, name: str, body: Any) -> dict[str, Any] | None:
+    def _result_of(self, name: str, body: Any) -> dict[str, Any] | None:
         reply = self.service.post(name, body)
-        return self._judged(name, body, reply)
+        return self._checked_result(name, body, reply)
 
-    def _forms(
-        self, random: Random, name: str, body: Any, status: int, answer: dict[str, Any] | None
+    def _check_formats(
+        self, random: Random, name: str, body: Any, status: int, result: dict[str, Any] | None
     ) -> Iterator[str]:
         for form, share in (("csv", 0.1), ("npz", 0.1), ("svg", 0.01)):
             if random.random() >= share or (name == "evolution" and form != "csv"):
@@ -168,38 +168,38 @@ class Campaign:
             if reply.status != status:
                 why = _where(reply.defect) if reply.defect else reply.content[:200].decode()
                 yield f"{form} answers {reply.status} instead of {status} {why}"
-            elif answer:
-                yield from forms.READERS[form](answer, reply.content)
+            elif result:
+                yield from forms.READERS[form](result, reply.content)
 
-    def _scaled(self, name: str, body: Any, answer: Any, units: Units) -> Iterator[str]:
+    def _scaled(self, name: str, body: Any, result: Any, units: Units) -> Iterator[str]:
         changed = scaled(body, units)
         if not is_representable(changed):
             return
-        other = self._other(name, changed)
+        other = self._result_of(name, changed)
         if not other:
-            yield "no answer in other units"
+            yield "no result in other units"
             return
-        back = scaled_answer(other, Units(1 / units.length, 1 / units.force))
-        for each in laws.disagreements(name, answer, back):
+        back = scaled_result(other, Units(1 / units.length, 1 / units.force))
+        for each in laws.disagreements(name, result, back):
             yield f"in other units {each}"
 
-    def _equivalent(self, random: Random, name: str, body: Any, answer: Any) -> Iterator[str]:
+    def _equivalent(self, random: Random, name: str, body: Any, result: Any) -> Iterator[str]:
         """Yield disagreements with the inverse query, or with the history of the same loading."""
         if name == "normal" and "indentation_depth" in body["load"] and random.random() < 0.3:
-            other = self._other(name, body | {"load": {"normal_force": answer["normal_force"]}})
+            other = self._result_of(name, body | {"load": {"normal_force": result["normal_force"]}})
             if other:
-                yield from _differ("inverse", "indentation_depth", answer, other)
+                yield from _differ("inverse", "indentation_depth", result, other)
         if name == "tangential":
             if "tangential_force" in body["tangential"] and random.random() < 0.3:
-                shift = {"tangential_displacement": answer["tangential_displacement"]}
-                other = self._other(name, body | {"tangential": shift})
+                shift = {"tangential_displacement": result["tangential_displacement"]}
+                other = self._result_of(name, body | {"tangential": shift})
                 if other:
-                    yield from _differ("inverse", "tangential_force", answer, other)
+                    yield from _differ("inverse", "tangential_force", result, other)
             if random.random() < 0.5:
-                yield from self._monotonic(random, body, answer)
+                yield from self._monotonic(random, body, result)
 
-    def _monotonic(self, random: Random, body: Any, answer: Any) -> Iterator[str]:
-        if len(answer["normal_force"]) != 1:
+    def _monotonic(self, random: Random, body: Any, result: Any) -> Iterator[str]:
+        if len(result["normal_force"]) != 1:
             return
         (control,), (push,) = body["load"], body["tangential"]
         if "radius" in control + push:
@@ -212,14 +212,14 @@ class Campaign:
             return
         query = {key: value for key, value in body.items() if key not in {"load", "tangential"}}
         way = {"normal": {control: [load, load]}, "tangential": {push: [0.0, pushed]}}
-        other = self._other("history", query | {"history": way})
+        other = self._result_of("history", query | {"history": way})
         if not other:
             yield "no history of the same loading"
             return
         last = {key: values[-1:] for key, values in other.items() if isinstance(values, list)}
         last |= {"error_estimate": other["error_estimate"]}
-        limit = body["friction_coefficient"] * answer["normal_force"][0]
-        near_limit = abs(answer["tangential_force"][0]) > limit * (1 - 1e-14)
+        limit = body["friction_coefficient"] * result["normal_force"][0]
+        near_limit = abs(result["tangential_force"][0]) > limit * (1 - 1e-14)
         where = " at the onset of full slip" if near_limit else ""
         for each in (
             "contact_radius",
@@ -228,21 +228,21 @@ class Campaign:
             "dissipated_energy",
             "regime",
         ):
-            yield from _differ(f"monotonic history{where}", each, answer, last)
+            yield from _differ(f"monotonic history{where}", each, result, last)
         if push == "tangential_force":
             way = {"normal": {control: load}, "tangential": {push: abs(pushed)}, "count": 2}
-            other = self._other("history", query | {"cycles": way})
+            other = self._result_of("history", query | {"cycles": way})
             if other:
-                quarter = {"energy_per_cycle": 4 * np.array(answer["dissipated_energy"] * 2)}
+                quarter = {"energy_per_cycle": 4 * np.array(result["dissipated_energy"] * 2)}
                 yield from _differ(
                     f"four quarters{where}",
                     "energy_per_cycle",
-                    quarter | {"error_estimate": answer["error_estimate"]},
+                    quarter | {"error_estimate": result["error_estimate"]},
                     other,
                 )
 
     def _batch(self) -> None:
-        """Ask the last queries in one batch: each entry is the answer of its own."""
+        """Send the last queries in one batch: each entry equals the single response."""
         recent, self._recent = self._recent, []
         recent = [each for each in recent if each[2].status in {200, 422}]
         queries = [{"ask": name, "request": body} for name, body, _ in recent]
@@ -275,26 +275,26 @@ def _differ(label: str, quantity: str, one: Any, other: Any) -> Iterator[str]:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz.campaign", description=__doc__)
     parser.add_argument("--queries", type=int, default=2000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first query")
+    parser.add_argument("--first", type=int, default=0, help="index of the first query")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--report", type=Path, help="file for the classes of failures, as JSON")
     given = parser.parse_args()
     campaign = Campaign(given.seed)
     for index in range(given.first, given.first + given.queries):
-        campaign.ask(index)
+        campaign.run_query(index)
     entries = campaign.failures.entries()
     statuses = campaign.statuses
     total = sum(count for label, count in statuses.items() if len(label.split()) == 2)
     answered = sum(count for label, count in statuses.items() if label.endswith(" 200"))
-    if answered < ANSWERED * total:
-        entries.append({"label": f"only {answered} of {total} queries are answered", "count": 1})
+    if answered < SOLVED * total:
+        entries.append({"label": f"only {answered} of {total} queries have a result", "count": 1})
     if given.report:
-        told = {"statuses": statuses, "failures": entries, "slowest": campaign.slowest}
-        given.report.write_text(json.dumps(told, indent=1), "utf-8")
+        problem = {"statuses": statuses, "failures": entries, "slowest": campaign.slowest}
+        given.report.write_text(json.dumps(problem, indent=1), "utf-8")
     for entry in entries:
         sys.stdout.write(f"{entry['count']:6} {entry['label']}\n")
     sys.stdout.write(
-        f"{answered} of {total} queries answered, {len(entries)} classes of failures\n"
+        f"{answered} of {total} queries with a result, {len(entries)} classes of failures\n"
     )
     sys.stdout.write(f"{dict(sorted(statuses.items()))}\nslowest: {campaign.slowest}\n")
     return 1 if entries else 0

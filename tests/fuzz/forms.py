@@ -1,4 +1,4 @@
-"""One answer in several forms: by address, as CSV, as NumPy arrays and as a picture."""
+"""Results in other representations: GET, CSV, NumPy arrays and SVG."""
 
 import csv
 import io
@@ -13,37 +13,37 @@ import numpy as np
 from tests.fuzz import laws
 
 
-def _read_csv(answer: Mapping[str, Any], content: bytes) -> Iterator[str]:
+def _read_csv(result: Mapping[str, Any], content: bytes) -> Iterator[str]:
     rows = list(csv.DictReader(io.StringIO(content.decode(), newline="")))
-    for name, expected in laws.numbers(answer).items():
+    for name, expected in laws.numbers(result).items():
         if not rows or name not in rows[0]:
             continue
         column = np.array([float(row[name]) for row in rows])
-        wanted = np.where(np.isnan(expected), np.inf, expected)
-        has_rows = wanted.ndim == 2 or wanted.size == column.size
-        if has_rows and not np.array_equal(np.abs(column), np.abs(np.ravel(wanted))):
+        quantities = np.where(np.isnan(expected), np.inf, expected)
+        has_rows = quantities.ndim == 2 or quantities.size == column.size
+        if has_rows and not np.array_equal(np.abs(column), np.abs(np.ravel(quantities))):
             yield f"csv: {name} differs"
 
 
-def _read_arrays(answer: Mapping[str, Any], content: bytes) -> Iterator[str]:
+def _read_arrays(result: Mapping[str, Any], content: bytes) -> Iterator[str]:
     with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-        for name, expected in laws.numbers(answer).items():
-            wanted = np.where(np.isnan(expected), np.inf, expected)
-            if not np.array_equal(np.abs(archive[name]), np.abs(wanted)):
+        for name, expected in laws.numbers(result).items():
+            quantities = np.where(np.isnan(expected), np.inf, expected)
+            if not np.array_equal(np.abs(archive[name]), np.abs(quantities)):
                 yield f"npz: {name} differs"
 
 
-def _read_picture(_answer: Mapping[str, Any], content: bytes) -> Iterator[str]:
+def _read_picture(_result: Mapping[str, Any], content: bytes) -> Iterator[str]:
     tree = ET.fromstring(content)  # noqa: S314 -- our own
     if not tree.tag.endswith("svg") or re.search(rb'[dxy]="[^"]*\b(nan|inf)\b', content):
-        yield "svg: no picture"
+        yield "svg: invalid document"
 
 
 READERS: Final = {"csv": _read_csv, "npz": _read_arrays, "svg": _read_picture}
 
 
-def by_address(name: str, body: Mapping[str, Any]) -> str:
-    """Return the parameters of the same query by GET, or nothing where GET cannot ask it."""
+def get_parameters(name: str, body: Mapping[str, Any]) -> str:
+    """Return the parameters of the equivalent GET request, or None if there is none."""
     if name in {"history", "evolution"} or "history" in body:
         return ""
     given: dict[str, Any] = {}

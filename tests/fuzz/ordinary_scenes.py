@@ -1,8 +1,8 @@
 """Random queries of physically ordinary cases, in the units that engineers use.
 
-Every length, modulus and load is drawn in SI first, so that the parts of a query suit one another,
-and then converted. Most queries have an answer; a few exceed a bound (more tangential force than
-friction carries, a contact wider than the table) and must be rejected with a reason.
+All lengths, moduli and loads are first drawn in SI, so that they suit each other, and then
+converted. Most queries have a result; a few exceed a limit (friction, or the end of a table) and
+must be rejected with a reason.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ from tests.fuzz.units import UNITS, converted
 
 
 class Moduli(NamedTuple):
-    """A material as a query gives it, and the effective moduli in SI."""
+    """A material as it appears in a query, and its effective moduli in SI."""
 
     material: dict[str, Any]
     e_star: float
@@ -22,7 +22,7 @@ class Moduli(NamedTuple):
 
 
 def material(random: Random) -> Moduli:
-    """Return two bodies between soft rubber and diamond, or their effective moduli."""
+    """Return two bodies between soft rubber and diamond, or effective moduli."""
     bodies: list[Any] = []
     for _ in range(2):
         nu = random.choice((0.0, 0.3, 0.3, 0.5, random.uniform(0.0, 0.5)))
@@ -43,7 +43,7 @@ def material(random: Random) -> Moduli:
 
 
 class Contact(NamedTuple):
-    """A query without loads, in SI, with the depth and the force of its typical contact."""
+    """A query without loads, in SI, with typical depth and force."""
 
     query: dict[str, Any]
     case: Case
@@ -54,7 +54,7 @@ class Contact(NamedTuple):
 
 
 def contact(random: Random, kind: str | None = None) -> Contact:
-    """Return a profile, a material and a tolerance, with loads that suit them."""
+    """Return a profile, a material and a tolerance, with suitable loads."""
     case, moduli = profile(random, kind), material(random)
     query: dict[str, Any] = {"profile": case.profile, "material": moduli.material}
     if random.random() < 0.5:
@@ -68,7 +68,7 @@ def contact(random: Random, kind: str | None = None) -> Contact:
 
 
 def _several(random: Random, one: Callable[[], float]) -> float | list[float]:
-    """Return one value most often, and now and then a list."""
+    """Return one value in most cases, otherwise a list."""
     if random.random() < 0.6:
         return one()
     many = random.random() < 0.1
@@ -90,13 +90,13 @@ def _load(random: Random, scene: Contact, controls: tuple[str, ...]) -> dict[str
         return least + (typical - least) * (random.random() > 0.02) * spread(random, 0.3, 1.0)
 
     if control == "contact_radius" and shape["kind"] == "flat_punch":
-        # Its contact radius is no load, and rejected.
+        # Its contact radius is not a load and is rejected.
         control, one = random.choice(((control, one), ("normal_force", lambda: scene.force)))
     return {control: _several(random, one)}
 
 
-def _share(random: Random) -> float:
-    """Return a share of what friction carries: any, and the two ends of partial slip."""
+def _friction_fraction(random: Random) -> float:
+    """Return a fraction of the friction limit: any value, or either end of partial slip."""
     small = spread(random, 1e-12, 1e-3)
     share = random.choice((random.random(), random.random(), small, 1 - small, 0.0, 1.0))
     return share * random.choice((1, 1, 1, -1))
@@ -115,14 +115,24 @@ def _like(load: Mapping[str, Any], values: list[float]) -> float | list[float]:
 def _tangential(random: Random, scene: Contact, load: Mapping[str, Any]) -> dict[str, Any]:
     (control,) = load
     mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
-    pressed = _values(load)
+    normal_control = _values(load)
     if control == "normal_force" and random.random() < 0.7:
-        return {"tangential_force": _like(load, [mu * F * _share(random) for F in pressed])}
+        return {
+            "tangential_force": _like(
+                load, [mu * F * _friction_fraction(random) for F in normal_control]
+            )
+        }
     if control == "contact_radius" and random.random() < 0.5:
         b = scene.case.profile.get("flat_radius", 0.0)
-        return {"stick_radius": _like(load, [b + (a - b) * random.random() for a in pressed])}
+        return {
+            "stick_radius": _like(load, [b + (a - b) * random.random() for a in normal_control])
+        }
     longest = 1.2 * mu * ratio * scene.depth
-    return {"tangential_displacement": _like(load, [longest * _share(random) for _ in pressed])}
+    return {
+        "tangential_displacement": _like(
+            load, [longest * _friction_fraction(random) for _ in normal_control]
+        )
+    }
 
 
 def normal(random: Random, kind: str | None = None) -> dict[str, Any]:
@@ -144,22 +154,26 @@ def tangential(random: Random, kind: str | None = None) -> dict[str, Any]:
 
 
 def _history(random: Random, scene: Contact) -> dict[str, Any]:
-    """Return a history of any two controls, with its friction coefficient."""
+    """Return a history under any two controls, with its friction coefficient."""
     by_force, pushed_by_force = random.random() < 0.5, random.random() < 0.5
     mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
     straight = by_force == pushed_by_force
     count = random.randint(1, 8) if random.random() < 0.9 else random.randint(9, 40)
-    # Mixed control: the force between two depths is not known beforehand.
+    # Under mixed control the force between two depths is not known a priori.
     low, largest = (0.05, 1.0) if straight else (0.6, 0.4)
-    pressed: list[float] = []
-    pushed: list[float] = []
+    normal_control: list[float] = []
+    tangential_control: list[float] = []
     for i in range(count):
-        level = pressed[-1] if pressed and random.random() < 0.4 else random.uniform(low, 1.0)
+        level = (
+            normal_control[-1]
+            if normal_control and random.random() < 0.4
+            else random.uniform(low, 1.0)
+        )
         if straight and random.random() < 0.05:
             level = 0.0
-        share = 0.0 if i == 0 and not straight else largest * _share(random)
-        pressed.append(level)
-        pushed.append(share * (level if pushed_by_force and straight else low))
+        share = 0.0 if i == 0 and not straight else largest * _friction_fraction(random)
+        normal_control.append(level)
+        tangential_control.append(share * (level if pushed_by_force and straight else low))
     force_scale, depth_scale = scene.force, scene.depth
     normal_name, normal_scale = (
         ("normal_force", force_scale) if by_force else ("indentation_depth", depth_scale)
@@ -170,8 +184,8 @@ def _history(random: Random, scene: Contact) -> dict[str, Any]:
         else ("tangential_displacement", 1.2 * mu * ratio * depth_scale)
     )
     way: dict[str, Any] = {
-        "normal": {normal_name: [normal_scale * level for level in pressed]},
-        "tangential": {tangential_name: [tangential_scale * share for share in pushed]},
+        "normal": {normal_name: [normal_scale * level for level in normal_control]},
+        "tangential": {tangential_name: [tangential_scale * share for share in tangential_control]},
     }
     if random.random() < 0.5:
         way["samples_per_step"] = random.randint(1, 10)
@@ -179,31 +193,35 @@ def _history(random: Random, scene: Contact) -> dict[str, Any]:
 
 
 def history(random: Random, kind: str | None = None) -> dict[str, Any]:
-    """Return a query of a load history, straight or of mixed control."""
+    """Return a query of a load history, linear or under mixed control."""
     scene = contact(random, kind)
     return scene.query | _history(random, scene)
 
 
 def cycles(random: Random, kind: str | None = None) -> dict[str, Any]:
-    """Return a query of equal cycles, with the normal load held or in phase."""
+    """Return a query of identical cycles, with constant or in-phase normal load."""
     scene = contact(random, kind)
     mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
     by_force, pushed_by_force = random.random() < 0.5, random.random() < 0.5
     normal_name, mean = (
         ("normal_force", scene.force) if by_force else ("indentation_depth", scene.depth)
     )
-    swing: dict[str, Any] = {normal_name: mean}
+    normal_amplitude: dict[str, Any] = {normal_name: mean}
     lowest = 1.0
     if random.random() < 0.4:
         part = random.uniform(0.05, 0.5)
-        swing["amplitude"], lowest = mean * part, (1 - part) ** (1 if by_force else 3)
+        normal_amplitude["amplitude"], lowest = mean * part, (1 - part) ** (1 if by_force else 3)
     share = lowest * (spread(random, 1e-3, 1.0) if by_force else random.uniform(0.05, 0.5))
     name, amplitude = (
         ("tangential_force", mu * scene.force * share)
         if pushed_by_force
         else ("tangential_displacement", 1.2 * mu * ratio * scene.depth * share)
     )
-    way = {"normal": swing, "tangential": {name: amplitude}, "count": random.randint(1, 5)}
+    way = {
+        "normal": normal_amplitude,
+        "tangential": {name: amplitude},
+        "count": random.randint(1, 5),
+    }
     if random.random() < 0.5:
         way["samples_per_step"] = random.randint(1, 10)
     return scene.query | {"friction_coefficient": mu, "cycles": way}
@@ -224,7 +242,7 @@ def _radii(random: Random, scene: Contact) -> dict[str, Any]:
 
 
 def stress(random: Random, kind: str | None = None) -> dict[str, Any]:
-    """Return a query of fields: without friction, with it, or of a history's end."""
+    """Return a query of fields: frictionless, tangentially loaded, or at the end of a history."""
     scene = contact(random, kind)
     query = scene.query | _radii(random, scene)
     names = [*_NORMAL_FIELDS]
@@ -246,11 +264,11 @@ def stress(random: Random, kind: str | None = None) -> dict[str, Any]:
 def _oscillation(random: Random, scene: Contact, load: Mapping[str, Any]) -> dict[str, Any]:
     share = random.uniform(0.1, 0.95)
     mu, ratio = scene.friction, scene.moduli.e_star / scene.moduli.g_star
-    pressed = _values(load)
+    normal_control = _values(load)
     if "normal_force" in load and random.random() < 0.8:
-        return {"tangential_force": _like(load, [mu * F * share for F in pressed])}
+        return {"tangential_force": _like(load, [mu * F * share for F in normal_control])}
     amplitude = 0.7 * mu * ratio * scene.depth * share
-    return {"tangential_displacement": _like(load, [amplitude for _ in pressed])}
+    return {"tangential_displacement": _like(load, [amplitude for _ in normal_control])}
 
 
 def wear(random: Random, kind: str | None = None) -> dict[str, Any]:
@@ -281,7 +299,7 @@ def evolution(random: Random, kind: str | None = None) -> dict[str, Any]:
         "friction_coefficient": scene.friction,
         "load": load,
         "oscillation": _oscillation(random, scene, load),
-        # Volume per dissipated energy, from steel to a soft coating: 1e-15 to 1e-11 m³/J.
+        # Wear coefficients from steel to a soft coating: 1e-15 to 1e-11 m³/J.
         "wear_coefficient": spread(random, 1e-15, 1e-11),
         "cycles": sorted(spread(random, 1.0, 1e8) for _ in range(random.randint(1, 5))),
         "resolution": random.choice((8, 16, 24)),
@@ -300,7 +318,7 @@ QUERIES: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "wear": wear,
     "evolution": evolution,
 }
-"""The generators by name; `cycles` is asked as a history."""
+"""The generators by name; `cycles` uses the endpoint of histories."""
 
 _SHARES: Final = (24, 26, 18, 8, 16, 7, 1)
 

@@ -1,4 +1,4 @@
-"""Random profiles of all kinds, and tables as instruments measure them, in SI."""
+"""Random profiles of all kinds, and tables like measured ones, in SI."""
 
 from bisect import bisect_right
 from collections.abc import Callable
@@ -11,7 +11,7 @@ Height = Callable[[float], float]
 
 
 class Case(NamedTuple):
-    """A profile in SI, its height, and radii of contact that suit it."""
+    """A profile in SI, its height function, and suitable contact radii."""
 
     profile: dict[str, Any]
     height: Height
@@ -19,12 +19,12 @@ class Case(NamedTuple):
 
 
 def spread(random: Random, low: float, high: float) -> float:
-    """Return a number between the bounds, evenly distributed on a logarithmic scale."""
+    """Return a number between the bounds, uniform on a logarithmic scale."""
     return float(low * (high / low) ** random.random())
 
 
 def profile(random: Random, kind: str | None = None) -> Case:
-    """Return a profile of any of the fifteen kinds, between 1 µm and 1 m in size."""
+    """Return a profile of any kind, between 1 µm and 1 m in size."""
     kind = kind or random.choice((*_KINDS, "tabulated", "tabulated"))
     size = spread(random, 1e-6, 1.0) if random.random() < 0.2 else spread(random, 1e-3, 0.1)
     return (_tabulated if kind == "tabulated" else _analytical)(random, kind, size)
@@ -40,7 +40,7 @@ _KINDS: Final = (
 def _analytical(random: Random, kind: str, size: float) -> Case:
     R, t = size, spread(random, 3e-3, 1.0)
     b = R * spread(random, 1e-3, 1.0)
-    # From a slight contact to one that half-space theory just allows.
+    # From a light contact to the limit of the half-space approximation.
     a = R * spread(random, 1e-3, 0.5)
     near_flat = b * (1 + spread(random, 1e-4, 3.0))
     near_tip = R * t * spread(random, 0.05, 20.0)
@@ -102,7 +102,7 @@ def _analytical(random: Random, kind: str, size: float) -> Case:
         height_at_a = a * spread(random, 1e-4, 0.3)
         terms.append({"coefficient": height_at_a * a**-exponent, "exponent": exponent})
     if count > 1 and random.random() < 0.2:
-        # Fitted series have small terms of the opposite sign, and exponents that nearly coincide.
+        # Fitted series have small terms of opposite sign and nearly equal exponents.
         terms[-1]["coefficient"] *= -0.1
         terms[0]["exponent"] = terms[-1]["exponent"] * (1 + random.choice((0.0, 1e-6, 0.1)))
 
@@ -121,7 +121,7 @@ def _spherical_tip(r: float, t: float, R: float) -> float:
 
 
 def _tabulated(random: Random, _kind: str, size: float) -> Case:
-    """Return a table of a smooth, flat, kinked or noisy shape, as measured or as calculated."""
+    """Return a table of a smooth, flat, kinked or noisy shape, measured or calculated."""
     L = size * spread(random, 0.01, 1.0)
     h = L * spread(random, 1e-4, 0.3)
     flat = random.uniform(0.1, 0.7)
@@ -151,7 +151,7 @@ def _tabulated(random: Random, _kind: str, size: float) -> Case:
         places = sorted({*places, flat})
     heights = [shape(s) for s in places]
     if random.random() < 0.3:
-        # Measured heights scatter; a profile does not fall, so they are ordered.
+        # Measured heights scatter; they are sorted, since a profile never decreases.
         noise = spread(random, 1e-6, 1e-2) * heights[-1]
         heights = sorted([0.0, *(max(y + random.gauss(0, noise), 0.0) for y in heights[1:])])
     r, f = [L * s for s in places], [h * y for y in heights]

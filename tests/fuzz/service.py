@@ -1,4 +1,4 @@
-"""The application, asked in process and without sockets."""
+"""The application, called in process and without sockets."""
 
 import asyncio
 import json
@@ -19,16 +19,16 @@ PATHS: Final = {
     "evolution": "/v1/wear/evolution",
 }
 SECONDS: Final = 10.0
-"""Processor time that the service grants one request."""
+"""CPU time limit of one request."""
 
 
 class TooSlow(BaseException):
-    """A request took longer than the service grants."""
+    """The request exceeded the CPU time limit."""
 
 
 @dataclass(frozen=True)
 class Reply:
-    """Status, content and, of a defect, the traceback."""
+    """Status, content and, for an internal error, the traceback."""
 
     status: int
     content: bytes
@@ -36,14 +36,14 @@ class Reply:
 
 
 class Service:
-    """The application, asked without sockets; it computes everything in this process."""
+    """The application without sockets; it computes everything in this process."""
 
     def __init__(self) -> None:
         async def run(work: Callable[..., Any], *arguments: Any) -> Any:
             return work(*arguments)
 
         self._app = create_app()
-        # No other processes in a campaign.
+        # A campaign starts no other processes.
         self._app.state.workers.run_in_process = run
         self._loop = asyncio.new_event_loop()
         self._defects: list[BaseException] = []

@@ -1,4 +1,4 @@
-"""Unit systems, and queries and answers converted between them."""
+"""Unit systems, and conversion of queries and results."""
 
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
@@ -7,7 +7,7 @@ from tests.fuzz import laws
 
 
 class Units(NamedTuple):
-    """Numbers of one unit system per SI unit."""
+    """Units per SI unit of one unit system."""
 
     length: float
     force: float
@@ -45,7 +45,7 @@ def converted(part: Any, units: Units, name: str = "") -> Any:
         return part
     length, force = DIMENSIONS[name]
     value = part * units.length**length * units.force**force
-    # Tables are printed in decimal digits in any units.
+    # Tables have decimal digits in any units.
     return float(f"{value:.15g}") if name in {"r", "f", "breaks"} else value
 
 
@@ -89,10 +89,10 @@ _ANSWER_DIMENSIONS: Final = DIMENSIONS | {
 }
 
 
-def scaled_answer(answer: Mapping[str, Any], units: Units) -> dict[str, Any]:
-    """Return an answer in other units."""
-    found: dict[str, Any] = dict(answer)
-    for name, values in laws.numbers(answer).items():
+def scaled_result(result: Mapping[str, Any], units: Units) -> dict[str, Any]:
+    """Return a result in other units."""
+    found: dict[str, Any] = dict(result)
+    for name, values in laws.numbers(result).items():
         length, force = _ANSWER_DIMENSIONS.get(name, (0, 0))
         found[name] = values * units.length**length * units.force**force
     return found

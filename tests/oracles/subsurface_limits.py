@@ -1,6 +1,7 @@
-"""Stresses beneath the surface towards limits without closed form; to `subsurface_limits.json`.
+"""Reference subsurface stresses towards limits without a closed form.
 
-`python -m tests.oracles.subsurface_limits`: three minutes of two cores.
+`python -m tests.oracles.subsurface_limits` writes `subsurface_limits.json` in three minutes on two
+cores.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from tests.oracles.bank import DATA
 from tests.oracles.subsurface_generate import WORK_DIGITS, shape_of, tensor
 
 NU, FRICTION, COUNT = 0.3, 0.4, 30
-# Name, title and axis of a curve, its distances, and at a distance: profile, stick radius, r and z.
+# Name, title and axis of a curve, its distances, and for each distance: profile, stick radius, r
+# and z.
 CURVES: tuple[tuple[str, str, str, list[float], Any], ...] = (
     (
         "flat",
@@ -41,7 +43,7 @@ CURVES: tuple[tuple[str, str, str, list[float], Any], ...] = (
 
 
 def records(curve: int) -> str:
-    """Return one curve as JSON; the points lie in the plane y = 0, where r has no rounding."""
+    """Return one curve as JSON; the points lie in the plane y = 0, where r is exact."""
     mp.dps = WORK_DIGITS
     name, title, axis, distances, make = CURVES[curve]
     points = []

@@ -1,4 +1,4 @@
-"""Queries in an address are answered with the bytes of the request they stand for."""
+"""GET responses are identical to those of the equivalent POST requests."""
 
 import json
 import re
@@ -33,12 +33,12 @@ SAME = {
         {**BALL, **MODULI, **RANGE},
         {**REQUEST, "load": {"normal_force": np.linspace(1, 10, 50).tolist()}},
     ),
-    "equal ratios": (
+    "geometric spacing": (
         "normal",
         {**BALL, **MODULI, **RANGE, "scale": "log"},
         {**REQUEST, "load": {"normal_force": np.geomspace(1, 10, 50).tolist()}},
     ),
-    "a falling range": (
+    "decreasing range": (
         "normal",
         {**BALL, **MODULI, "indentation_depth_from": 1e-6, "indentation_depth_to": 0, "n": 2},
         {**REQUEST, "load": {"indentation_depth": [1e-6, 0.0]}},
@@ -195,9 +195,9 @@ SAME = {
 }
 
 
-def at(question: str, asked: Mapping[str, object] | None = None) -> str:
-    path = f"/v1/{'tangential/history' if question == 'history' else question}"
-    return f"{path}?{urlencode(asked)}" if asked else path
+def at(query: str, parameters: Mapping[str, object] | None = None) -> str:
+    path = f"/v1/{'tangential/history' if query == 'history' else query}"
+    return f"{path}?{urlencode(parameters)}" if parameters else path
 
 
 @pytest.mark.parametrize(
@@ -205,13 +205,13 @@ def at(question: str, asked: Mapping[str, object] | None = None) -> str:
 )
 @pytest.mark.parametrize("name", SAME)
 def test_get_returns_the_bytes_of_post(client: Client, name: str, form: str) -> None:
-    question, asked, request = SAME[name]
-    found = client.get(at(question, {**asked, "format": form}))
-    expected = client.post(f"{at(question)}?format={form}", request)
+    query, parameters, request = SAME[name]
+    computed = client.get(at(query, {**parameters, "format": form}))
+    expected = client.post(f"{at(query)}?format={form}", request)
     assert expected.status_code == 200
-    assert found.status_code == expected.status_code
-    assert found.headers["content-type"] == expected.headers["content-type"]
-    assert found.content == expected.content
+    assert computed.status_code == expected.status_code
+    assert computed.headers["content-type"] == expected.headers["content-type"]
+    assert computed.content == expected.content
 
 
 def test_chosen_members_are_returned_alone(client: Client) -> None:
@@ -233,7 +233,7 @@ def test_one_number_as_text_is_the_number_alone(client: Client, name: str) -> No
     assert re.fullmatch(r"[0-9.e-]+", text.text)
 
 
-REFUSED = {
+REJECTED = {
     "nothing": ("normal", {}, "kind"),
     "an unknown name": ("normal", {**NORMAL, "colour": "red"}, "colour"),
     "a name of another query": ("normal", {**NORMAL, "tangential_force": 1}, "tangential_force"),
@@ -370,14 +370,14 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize("name", REJECTED)
 def test_invalid_value_points_at_its_parameter(client: Client, name: str) -> None:
-    question, asked, pointer = REFUSED[name]
-    answer = client.get(at(question, asked))
-    assert answer.status_code == 422
-    assert answer.headers["content-type"] == "application/problem+json"
-    assert len(answer.content) <= 4096
-    assert f"/{pointer}" in [error["pointer"] for error in answer.json()["errors"]]
+    query, parameters, pointer = REJECTED[name]
+    response = client.get(at(query, parameters))
+    assert response.status_code == 422
+    assert response.headers["content-type"] == "application/problem+json"
+    assert len(response.content) <= 4096
+    assert f"/{pointer}" in [error["pointer"] for error in response.json()["errors"]]
 
 
 def test_unknown_format_is_not_acceptable(client: Client) -> None:
@@ -386,8 +386,8 @@ def test_unknown_format_is_not_acceptable(client: Client) -> None:
 
 
 def test_repeated_parameter_is_rejected(client: Client) -> None:
-    answer = client.get(at("normal", NORMAL) + "&radius=0.01")
-    assert answer.json()["errors"] == [{"pointer": "/radius", "detail": "is given twice"}]
+    response = client.get(at("normal", NORMAL) + "&radius=0.01")
+    assert response.json()["errors"] == [{"pointer": "/radius", "detail": "is given twice"}]
 
 
 @pytest.mark.parametrize(
@@ -395,44 +395,44 @@ def test_repeated_parameter_is_rejected(client: Client) -> None:
 )
 def test_number_of_a_spreadsheet_is_accepted(client: Client, written: str) -> None:
     plain = {name: value for name, value in NORMAL.items() if name != "e_star"}
-    answer = client.get(f"{at('normal', plain)}&e_star={written}")
-    assert answer.content == client.get(at("normal", NORMAL)).content
+    response = client.get(f"{at('normal', plain)}&e_star={written}")
+    assert response.content == client.get(at("normal", NORMAL)).content
 
 
-@pytest.mark.parametrize("question", PARAMETERS)
-def test_documented_parameters_have_a_result(client: Client, question: str) -> None:
-    get = DOCUMENT["paths"][at(question)]["get"]
+@pytest.mark.parametrize("query", PARAMETERS)
+def test_documented_parameters_have_a_result(client: Client, query: str) -> None:
+    get = DOCUMENT["paths"][at(query)]["get"]
     shown = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
-    assert shown == examples.PARAMETER_EXAMPLES[question]
-    assert client.get(at(question, shown)).status_code == 200
+    assert shown == examples.PARAMETER_EXAMPLES[query]
+    assert client.get(at(query, shown)).status_code == 200
 
 
-@pytest.mark.parametrize("question", PARAMETERS)
-def test_every_parameter_is_documented(question: str) -> None:
-    get = DOCUMENT["paths"][at(question)]["get"]
+@pytest.mark.parametrize("query", PARAMETERS)
+def test_every_parameter_is_documented(query: str) -> None:
+    get = DOCUMENT["paths"][at(query)]["get"]
     names = [each["name"] for each in get["parameters"]]
-    assert sorted(names) == sorted(PARAMETERS[question].model_fields)
+    assert sorted(names) == sorted(PARAMETERS[query].model_fields)
     assert all(each["in"] == "query" and each["description"] for each in get["parameters"])
     for each in get["parameters"]:
         if {"type": "number"} in each["schema"].get("anyOf", ()):
             assert re.search(r"\[([a-z0-9/*^()-]+|as the mean)\]$", each["description"])
 
 
-@pytest.mark.parametrize("question", PARAMETERS)
-def test_the_documentation_page_accepts_exponents(question: str) -> None:
+@pytest.mark.parametrize("query", PARAMETERS)
+def test_documented_number_pattern_accepts_exponents(query: str) -> None:
     # Swagger UI compares the text of a parameter of the one type number with a pattern of its own.
-    get = DOCUMENT["paths"][at(question)]["get"]
+    get = DOCUMENT["paths"][at(query)]["get"]
     assert all(
         each["schema"].get("type") not in {"number", "integer"} for each in get["parameters"]
     )
 
 
 def test_matching_etag_returns_304(client: Client) -> None:
-    answer = client.get(at("normal", NORMAL))
-    tag = answer.headers["etag"]
+    response = client.get(at("normal", NORMAL))
+    tag = response.headers["etag"]
     assert tag.startswith('W/"')
-    assert answer.headers["cache-control"] == "max-age=3600"
-    assert "accept" in answer.headers["vary"].lower()
+    assert response.headers["cache-control"] == "max-age=3600"
+    assert "accept" in response.headers["vary"].lower()
     for known in (tag, f'"other", {tag}', tag.removeprefix("W/"), "*"):
         headers = {"if-none-match": known}
         again = client.request("GET", at("normal", NORMAL), headers=headers)
@@ -451,9 +451,9 @@ def test_problem_is_not_cached(client: Client) -> None:
 
 
 def test_head_has_the_headers_of_get(client: Client) -> None:
-    answer, asked = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
-    assert asked.status_code == 200
-    assert asked.headers["etag"] == answer.headers["etag"]
+    get, head = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
+    assert head.status_code == 200
+    assert head.headers["etag"] == get.headers["etag"]
 
 
 def test_problem_without_pointers_has_none_for_parameters() -> None:
@@ -469,9 +469,9 @@ TEXTS = (
     | st.integers(-3, 40).map(str)
     | st.sampled_from(["log", "linear", "pressure", "pressure,slip", "csv", "npz", "cone", ""])
 )
-ADDRESSES = st.builds(
+QUERY_STRINGS = st.builds(
     lambda right, others: right | others,
-    st.sampled_from([{}, NORMAL, *(asked for _, asked, _ in SAME.values())]),
+    st.sampled_from([{}, NORMAL, *(parameters for _, parameters, _ in SAME.values())]),
     st.dictionaries(st.sampled_from([*NAMES, *ENDS, "n", "scale", "format"]), TEXTS, max_size=3),
 )
 
@@ -482,23 +482,25 @@ ADDRESSES = st.builds(
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
-@given(question=st.sampled_from(list(PARAMETERS)), asked=ADDRESSES)
+@given(query=st.sampled_from(list(PARAMETERS)), parameters=QUERY_STRINGS)
 def test_random_parameters_have_a_result_or_a_pointer(
-    client: Client, question: str, asked: dict[str, object]
+    client: Client, query: str, parameters: dict[str, object]
 ) -> None:
-    answer = client.get(at(question, asked))
-    assert answer.status_code in {200, 406, 422}
-    if answer.status_code == 422:
-        document = strict_json.loads(answer.content)
+    response = client.get(at(query, parameters))
+    assert response.status_code in {200, 406, 422}
+    if response.status_code == 422:
+        document = strict_json.loads(response.content)
         assert isinstance(document, dict)
-        known = PARAMETERS[question].fields
+        known = PARAMETERS[query].fields
         pointers = [error["pointer"].removeprefix("/") for error in document["errors"]]
         assert pointers
-        assert {*pointers} <= {*asked, *known, *ENDS, "n"}
+        assert {*pointers} <= {*parameters, *known, *ENDS, "n"}
 
 
 @pytest.mark.parametrize(
     "query_string", ["%", "%ff=%ff", "=", "&&", "a", "%00=1", "kind=%F0%9F%98%80", "kind", "?", "#"]
 )
-def test_random_query_string_is_no_internal_error(client: Client, query_string: str) -> None:
+def test_random_query_string_never_causes_an_internal_error(
+    client: Client, query_string: str
+) -> None:
     assert client.get(f"/v1/normal?{query_string}").status_code == 422

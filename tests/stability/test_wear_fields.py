@@ -39,7 +39,7 @@ def test_pressure_does_not_ripple(kind: str, name: str) -> None:
         assert np.abs(pressure[cycle] - true)[off].max() <= 1e-3 * true[off].max(), (cycle, c, a)
 
 
-# To ten times the tolerance of the integration.
+# Up to ten times the tolerance of the integration.
 @pytest.mark.parametrize(
     ("kind", "name"),
     [
