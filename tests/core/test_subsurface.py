@@ -376,7 +376,7 @@ def test_balance_of_forces_through_a_plane() -> None:
 @pytest.mark.parametrize("stick", [0.0, 0.6])
 @pytest.mark.parametrize("exponent", [1.01, 1.3, 2.0, 5.0])
 def test_tractions_at_the_origin(exponent: float, stick: float) -> None:
-    contact = sheared(Power(0.3, exponent), stick)
+    contact = tangential_contact(Power(0.3, exponent), stick)
     p = float(fields.pressure(contact.normal, [0.0])[0])
     tau = float(fields.shear_stress(contact, [0.0])[0])
     for body, sign in ((1, 1), (2, -1)):
