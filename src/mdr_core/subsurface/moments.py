@@ -121,7 +121,14 @@ def blocks(branches: Sequence[Smooth], span: Span, rtol: float, nearest: float) 
 
 
 def moments(root: Block, r: Array, z: Array, rtol: float) -> Array:
-    """Return the moments at radii r and depths z > 0 of shape (m,) [length], shape (7, m)."""
+    """Return the moments at points in the body, shape (7, m).
+
+    Parameters
+    ----------
+    root : blocks of g'.
+    r, z : radii and depths [length], z > 0, shape (m,).
+    rtol : tolerance of the blocks.
+    """
     total = np.zeros((KERNELS, r.size))
     waiting = [(root, np.arange(r.size))]
     while waiting:

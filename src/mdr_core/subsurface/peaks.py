@@ -20,9 +20,9 @@ _DIRECTIONS: Final = np.linspace(0, np.pi, 7)
 # Peaks of the first grid that are refined, and the points across a box around each.
 _PEAKS: Final = 3
 _ACROSS: Final = np.linspace(-1, 1, 7)
-# A round shrinks the boxes to the distance of these points. A smooth peak is missed by the square
-# of the last box's size.
+# A round shrinks the boxes to the distance of these points.
 _SHRINK: Final = 1 / 3
+# A smooth peak is missed by the square of the last box's size.
 _ROUNDS: Final = 8
 # Tolerance of the stresses.
 _RTOL: Final = 1e-7

@@ -15,14 +15,16 @@ from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid, Power
+from mdr_core.subsurface.foundation import shape_of
 from mdr_core.subsurface.peaks import MEASURES, largest
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
-# Refinements of the grid, and accuracy of the contact coordinate's logarithm, at the onset.
+# Refinements of the grid at the onset.
 _ROUNDS: Final = 5
+# Accuracy of the contact coordinate's logarithm there.
 _ONSET_RTOL: Final = 1e-6
 # Steps of that logarithm by which the onset is bracketed, and the largest distance.
 _STEP, _REACH = 2.0, 60.0
@@ -75,10 +77,9 @@ def yield_onset_force(
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
     limit = yield_strength if measure == "von_mises" else yield_strength / 2
-    loads = _loads(contact)
     options = {"measure": measure, "poissons_ratio": poissons_ratio, "body": body}
-    found = [_onset(loads, i, limit, options) for i in range(loads.coordinate.size)]
-    return np.array(found).reshape(loads.loaded.shape)
+    found = [_onset(case, limit, options) for case in _cases(contact)]
+    return np.array(found).reshape(shape_of(contact))
 
 
 def yielding(
@@ -97,26 +98,25 @@ def yielding(
     poissons_ratios : of the elastic bodies; empty if they are unknown, 0.3 is assumed then.
     yield_strength : of the softer body, in uniaxial tension [pressure].
     """
-    ratios, loads = poissons_ratios or (ASSUMED_RATIO,), _loads(contact)
-    normal, flags = loads.normal, np.zeros(loads.coordinate.shape, dtype=bool)
+    ratios, normal = poissons_ratios or (ASSUMED_RATIO,), _pressed(contact)
+    sheared = not isinstance(contact, NormalContact) and bool(np.any(contact.tangential_force))
     exponent: Parameter | None = {Cone: 1.0, Paraboloid: 2.0}.get(type(normal.profile))
     if isinstance(normal.profile, Power):
         exponent = normal.profile.exponent
-    if exponent is not None and not loads.ratio.any():
+    if exponent is not None and not sheared:
         factor = np.max([_similar(nu)(np.asarray(exponent)) for nu in ratios], axis=0)
-        shear = np.multiply(factor, normal.mean_pressure)
-        flags |= np.broadcast_to(2 * shear >= yield_strength, loads.loaded.shape).ravel()
-        flags &= loads.loaded.ravel()
+        where = normal.loaded & (2 * factor * normal.mean_pressure >= yield_strength)
     else:
-        keys = np.stack([loads.e_star, loads.friction, *loads.parameters.values()])
-        group = np.unique(keys, axis=1, return_inverse=True)[1].ravel()
-        for one in range(int(group.max(initial=-1)) + 1):
-            index = np.flatnonzero((group == one) & loads.loaded.ravel())
-            if index.size:
-                _mark(flags, index, loads, ratios, yield_strength)
-    if isinstance(contact, LoadHistory) and not flags[-1]:
-        flags[-1] = _reaches(contact.state, ratios, yield_strength)
-    where = flags.reshape(loads.loaded.shape)
+        cases = _cases(contact)
+        flags, groups = np.zeros(len(cases), dtype=bool), dict[tuple[float, ...], list[int]]()
+        for i, case in enumerate(cases):
+            if case.normal.loaded:
+                groups.setdefault(case.body, []).append(i)
+        for index in groups.values():
+            _mark(flags, index, cases, ratios, yield_strength)
+        if isinstance(contact, LoadHistory) and not flags[-1]:
+            flags[-1] = _reaches(contact.state, ratios, yield_strength)
+        where = flags.reshape(_ratio(contact).shape)
 
     def message() -> str:
         least = float(np.min(np.broadcast_to(normal.normal_force, where.shape)[where]))
@@ -125,72 +125,73 @@ def yielding(
     return Finding("yield", where, message)
 
 
-class _Loads(NamedTuple):
-    """Cases of a contact; arrays of shape (m,) but for `loaded`."""
+class _Case(NamedTuple):
+    """A contact under a single load."""
 
     normal: NormalContact
-    coordinate: Array
-    ratio: Array
+    ratio: float
     """|F_x|/(mu F_N) [1]."""
-    e_star: Array
-    friction: Array
-    parameters: dict[str, Array]
-    """Parameters of the profile that are arrays over the cases."""
-    loaded: Flags
-    """Of the shape of the loads."""
+    friction: float
+    body: tuple[float, ...]
+    """Friction, E* and parameters of the profile, by which cases differ beside their loads."""
 
-    def under(self, i: int, coordinate: float, ratio: float) -> _Contact:
-        """Return the contact of a case under another load."""
-        swept = {name: values[i] for name, values in self.parameters.items()}
-        profile = with_parameters(self.normal.profile, swept)
-        at = np.asarray(coordinate)
-        pressed = replace(self.normal, profile=profile, e_star=float(self.e_star[i]), coordinate=at)
+    def under(self, coordinate: float, ratio: float) -> _Contact:
+        """Return the contact under another load, of this contact coordinate and ratio."""
+        pressed = replace(self.normal, coordinate=np.asarray(coordinate))
         if ratio == 0:
             return pressed
         # The stresses depend on the ratio of the forces alone, not on G*.
-        g_star, friction = float(self.e_star[i]), float(self.friction[i])
+        moduli = self.normal.e_star, self.friction
         if ratio > _SLIDES:
-            beyond = 2 * friction * pressed.indentation_depth
-            return tangential.solve(pressed, g_star, friction, tangential_displacement=beyond)
-        force = ratio * (friction * pressed.normal_force)
-        return tangential.solve(pressed, g_star, friction, tangential_force=force)
+            beyond = 2 * self.friction * pressed.indentation_depth
+            return tangential.solve(pressed, *moduli, tangential_displacement=beyond)
+        force = ratio * (self.friction * pressed.normal_force)
+        return tangential.solve(pressed, *moduli, tangential_force=force)
 
 
-def _loads(contact: _Contact | LoadHistory) -> _Loads:
-    normal, friction, ratio = _pressed(contact), np.zeros(()), np.zeros(())
-    if not isinstance(contact, NormalContact):
-        start = contact.start if isinstance(contact, LoadHistory) else contact
-        friction = np.asarray(start.friction_coefficient)
-        limit = friction * normal.normal_force
-        slides = contact.regime == "full_slip"
-        force = np.abs(contact.tangential_force)
-        ratio = np.where(slides, 1.0, force / np.where(limit > 0, limit, 1.0))
-    swept = {name: normal.profile.parameters[name] for name in normal.profile.swept}
-    columns = normal.coordinate, ratio, normal.e_star, friction, *swept.values()
-    loaded, *wide = np.broadcast_arrays(normal.loaded, *columns)
-    flat = [np.ravel(part) for part in wide]
-    parameters = dict(zip(swept, flat[4:], strict=True))
-    return _Loads(normal, flat[0], flat[1], flat[2], flat[3], parameters, loaded)
+def _cases(contact: _Contact | LoadHistory) -> list[_Case]:
+    normal, names = _pressed(contact), _pressed(contact).profile.swept
+    start = contact.start if isinstance(contact, LoadHistory) else contact
+    friction = 0.0 if isinstance(start, NormalContact) else start.friction_coefficient
+    swept = [normal.profile.parameters[name] for name in names]
+    columns = normal.coordinate, _ratio(contact), friction, normal.e_star, *swept
+    found = []
+    for row in zip(*(part.ravel().tolist() for part in np.broadcast_arrays(*columns)), strict=True):
+        coordinate, ratio, *body = row
+        profile = with_parameters(normal.profile, dict(zip(names, body[2:], strict=True)))
+        own = replace(normal, profile=profile, e_star=body[1], coordinate=np.asarray(coordinate))
+        found.append(_Case(own, ratio, body[0], tuple(body)))
+    return found
+
+
+def _ratio(contact: _Contact | LoadHistory) -> Array:
+    """|F_x|/(mu F_N) under each load [1], of the shape of the loads."""
+    if isinstance(contact, NormalContact):
+        return np.zeros(contact.coordinate.shape)
+    start = contact.start if isinstance(contact, LoadHistory) else contact
+    limit = start.friction_coefficient * _pressed(contact).normal_force
+    ratio = np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0)
+    return np.where(contact.regime == "full_slip", 1.0, ratio)
 
 
 def _mark(
-    flags: Flags, index: Indices, loads: _Loads, ratios: tuple[float, ...], strength: float
+    flags: Flags, index: list[int], cases: list[_Case], ratios: tuple[float, ...], strength: float
 ) -> None:
     """Set the flags of cases that yield, which differ in load alone, by bisection of the loads."""
-    places = loads.coordinate[index], loads.ratio[index]
+    places = np.array([(float(cases[i].normal.coordinate), cases[i].ratio) for i in index]).T
 
-    def reaches(coordinate: float, ratio: float) -> bool:
-        return _reaches(loads.under(int(index[0]), coordinate, ratio), ratios, strength)
+    def reaches(place: Array) -> bool:
+        return _reaches(cases[index[0]].under(*place.tolist()), ratios, strength)
 
-    high, low = ([bound(part) for part in places] for bound in (np.max, np.min))
-    if not reaches(*high):
+    low, high = places.min(axis=1), places.max(axis=1)
+    if not reaches(high):
         return
-    if low == high or reaches(*low):
+    if np.array_equal(low, high) or reaches(low):
         flags[index] = True
         return
     order = np.argsort(places[0] if low[0] < high[0] else places[1], kind="stable")
-    for half in np.array_split(index[order], 2):
-        _mark(flags, half, loads, ratios, strength)
+    for half in np.array_split(order, 2):
+        _mark(flags, [index[i] for i in half], cases, ratios, strength)
 
 
 def _reaches(contact: _Contact | ContactState, ratios: tuple[float, ...], strength: float) -> bool:
@@ -213,12 +214,11 @@ def _similar(poissons_ratio: float) -> Any:
     return np.vectorize(factor, otypes=[float])
 
 
-def _onset(loads: _Loads, i: int, limit: float, options: dict[str, Any]) -> float:
+def _onset(case: _Case, limit: float, options: dict[str, Any]) -> float:
     """Normal force at which a measure reaches a limit, the ratio of the loads held constant."""
-    start, ratio = float(loads.coordinate[i]), float(loads.ratio[i])
-    if not loads.loaded.flat[i]:
+    profile, start, ratio = case.normal.profile, float(case.normal.coordinate), case.ratio
+    if not case.normal.loaded:
         raise InputError(("load",), "the onset of yield needs a load that is not zero")
-    profile = _pressed(loads.under(i, start, 0.0)).profile
     slips_from, ratios = (0.0 if ratio > _SLIDES else inf), (options["poissons_ratio"],)
     singular = [
         float(np.asarray(b))
@@ -230,11 +230,11 @@ def _onset(loads: _Loads, i: int, limit: float, options: dict[str, Any]) -> floa
         return 0.0
 
     def force(coordinate: float) -> float:
-        return float(_pressed(loads.under(i, coordinate, 0.0)).normal_force)
+        return float(_pressed(case.under(coordinate, 0.0)).normal_force)
 
     def excess(place: float) -> float:
         with np.errstate(all="ignore"):
-            contact = loads.under(i, exp(place), ratio)
+            contact = case.under(exp(place), ratio)
             value = float(largest(contact, rounds=_ROUNDS, **options).value)
         return log(value / limit) if value > 0 else nan
 
