@@ -1,5 +1,6 @@
 """The two-limit stress kernel of a table, int g'(x)/sqrt(x^2 - r^2) dx over an annulus."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -10,11 +11,11 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from mdr_core.abel.annulus import Annulus
-from mdr_core.abel.displacement import Branch
+from mdr_core.abel.displacement import Branch, Kernel
 from mdr_core.abel.multipole import FAR, Multipoles, add, at_nodes, multipoles, pairs
 from mdr_core.abel.panel_moments import far, near, scaled
 from mdr_core.abel.subpanels import LONGEST, fit_points, fitted
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.typing import Array, Chosen
 
 # Points in a panel that become masses.
@@ -22,6 +23,8 @@ _MASSES: Final = 16
 # Nodes of a block: interpolation leaves 7.3^-13 = 6e-12 of the block's part, and 1e-13 of the whole
 # in the bank of tables.
 _NODES: Final = 13
+# Gauss nodes in a panel of a displacement's integral: the root at its left edge leaves 3^-32.
+_POINTS_OF_DISPLACEMENT: Final = 16
 # Points of a panel that is expanded about another edge.
 _POINTS: Final = 24
 # Distance from the axis, over the first panel or the contact, within which a smooth stress is
@@ -71,6 +74,38 @@ class StressPanels:
             return np.asarray(polynomial.polyval(np.minimum(s / length, 1.0), row))
 
         return Branch(left, weight, right)
+
+    def annulus_integral(
+        self, low: float, width: float, below: Callable[[float], Array], kernel: Kernel
+    ) -> float:
+        """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, however narrow.
+
+        All panels at once, in tan(alpha/2), s = sqrt(r^2 - left^2) cos(alpha).
+        Source: notes, §7. Parameters: see `displacement.annulus_integral`.
+        """
+        r = low + width
+        first = int(np.searchsorted(self.edges[1:-1], low, side="right"))
+        last = int(np.searchsorted(self.edges[1:-1], r)) + 1
+        edges, length = self.edges[first : last + 1], self.length[first:last]
+        past = low - edges
+        past[:1] = below(float(edges[0]))
+        roots = np.sqrt(np.maximum(past + width, 0.0) * (r + edges))
+        s_r, root_high = roots[:-1], roots[1:]
+        inside = past[:-1] > 0
+        s_low = np.where(inside, np.sqrt(np.maximum(past, 0.0) * (low + edges))[:-1], 0.0)
+        root_low = np.where(inside, sqrt(width * (r + low)), s_r)
+        s_high = np.where(root_high > 0, length, s_r)
+        top = root_high / (s_high + s_r)
+        span = np.maximum(root_low / (s_low + s_r) - top, 0.0)
+        nodes, weights = composite_rule(_POINTS_OF_DISPLACEMENT, 1)
+        half = top[:, None] + span[:, None] * nodes
+        run = 2 / (1 + half * half)
+        s, root = s_r[:, None] * (run - 1), s_r[:, None] * (half * run)
+        x = np.hypot(edges[:-1, None], s)
+        u, value = np.minimum(s / length[:, None], 1.0), np.zeros_like(s)
+        for row in self.weight[first:last].T[::-1]:
+            value = value * u + row[:, None]
+        return float(span @ ((value * kernel(x, root) * root * run) @ weights))
 
     @cached_property
     def _rows(self) -> Array:

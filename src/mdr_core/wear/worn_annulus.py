@@ -124,13 +124,20 @@ class WornAnnulus:
             np.zeros_like(step),
             self.room,
             f"{self.profile.kind}'s worn annulus",
+            smooth=len(self.profile.branches) == 1,
         )
 
     def _integral(self, width: Array, kernel: Kernel) -> Array:
         """Return int_c^r g'(x) K dx."""
         if self.profile.slips_at_once:
             return np.zeros_like(width)
-        branches, result = self.profile.branches, np.empty_like(width)
+        panels, result = self.profile.panels(rtol), np.empty_like(width)
+        if panels is not None:
+            for i, (c, w) in enumerate(zip(self.stick.tolist(), width.tolist(), strict=True)):
+                below = self.chosen(np.array([i])).below
+                result[i] = panels.annulus_integral(c, w, below, kernel)
+            return result
+        branches = self.profile.branches
         for start in range(0, width.size, _BLOCK):
             part = np.arange(start, min(start + _BLOCK, width.size))
             some = self.chosen(part)
