@@ -68,10 +68,10 @@ def connection(port: int) -> Iterator[socket.socket]:
         yield made
 
 
-def ask(link: socket.socket, text: bytes, accept: str) -> float:
+def ask(link: socket.socket, text: bytes, accept: str, path: str = "stress") -> float:
     """Seconds from the first byte sent to the last one received."""
     head = (
-        f"POST /v1/stress HTTP/1.1\r\nHost: {wire_ratio.HOST}\r\nAccept: {accept}\r\n"
+        f"POST /v1/{path} HTTP/1.1\r\nHost: {wire_ratio.HOST}\r\nAccept: {accept}\r\n"
         f"Content-Type: application/json\r\nContent-Length: {len(text)}\r\n\r\n"
     ).encode()
     start = perf_counter()
