@@ -131,7 +131,7 @@ class WornAnnulus:
         """Return int_c^r g'(x) K dx."""
         if self.profile.slips_at_once:
             return np.zeros_like(width)
-        panels, result = self.profile.panels(rtol), np.empty_like(width)
+        panels, result = self.profile.panels(RTOL), np.empty_like(width)
         if panels is not None:
             for i, (c, w) in enumerate(zip(self.stick.tolist(), width.tolist(), strict=True)):
                 below = self.chosen(np.array([i])).below
