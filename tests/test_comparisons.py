@@ -20,12 +20,12 @@ def silently_absolute(source: str) -> Iterator[int]:
 
 
 def test_every_comparison_states_its_absolute_tolerance() -> None:
-    found = [
+    result = [
         f"{path.relative_to(TESTS)}:{line}"
         for path in sorted(TESTS.rglob("*.py"))
         for line in silently_absolute(path.read_text("utf-8"))
     ]
-    assert found == []
+    assert result == []
 
 
 def test_default_absolute_tolerance_is_detected() -> None:

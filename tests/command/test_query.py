@@ -123,8 +123,8 @@ def test_each_type_of_problem_has_its_exit_status(
     in_process: InProcess, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int, kind: str
 ) -> None:
     monkeypatch.setitem(QUERIES, "normal", QUERIES["normal"]._replace(solve=failing(error)))
-    found, out, err = in_process("normal", BODY)
-    assert (found, out) == (status, b"")
+    computed, out, err = in_process("normal", BODY)
+    assert (computed, out) == (status, b"")
     assert json.loads(err.splitlines()[-1])["type"] == f"urn:mdr:problem:{kind}"
 
 

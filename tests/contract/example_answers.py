@@ -44,14 +44,14 @@ def rounded(value: Any) -> Any:
 
 def answers(client: Client) -> dict[str, Any]:
     """Return the response to the first example of each operation, by its name."""
-    found = {}
+    result = {}
     for name, (path, examples) in EXAMPLES.items():
         body = next(iter(examples.values()))["value"]
-        found[name] = rounded(client.post(f"/v1/{path}", body).json())
+        result[name] = rounded(client.post(f"/v1/{path}", body).json())
     for name, parameters in PARAMETER_EXAMPLES.items():
         path = EXAMPLES[name][0]
-        found[f"get_{name}"] = rounded(client.get(f"/v1/{path}?{urlencode(parameters)}").json())
-    return found
+        result[f"get_{name}"] = rounded(client.get(f"/v1/{path}?{urlencode(parameters)}").json())
+    return result
 
 
 if __name__ == "__main__":

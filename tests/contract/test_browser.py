@@ -15,10 +15,10 @@ pytestmark = [pytest.mark.long, needs_chromium]
 
 def opened(visit: Visit, operation: str) -> Locator:
     visit.page.goto(f"{visit.address}docs")
-    found = visit.page.locator(f"#operations-{operation}")
-    found.locator(".opblock-summary-control").click()
-    found.locator(".try-out__btn").click()
-    return found
+    computed = visit.page.locator(f"#operations-{operation}")
+    computed.locator(".opblock-summary-control").click()
+    computed.locator(".try-out__btn").click()
+    return computed
 
 
 def executed(operation: Locator) -> Any:

@@ -50,7 +50,7 @@ def run(*command: str | Path, folder: Path) -> str:
 
 def untyped(text: str) -> list[str]:
     """Return annotations of classes and public functions that leave a type open."""
-    found = []
+    result = []
     for node in ast.walk(ast.parse(text)):
         annotations: list[ast.expr | None] = []
         if isinstance(node, ast.ClassDef):
@@ -63,8 +63,8 @@ def untyped(text: str) -> list[str]:
         }:
             arguments = [*node.args.args, *node.args.kwonlyargs]
             annotations = [node.returns, *(argument.annotation for argument in arguments)]
-        found += [ast.unparse(one) for one in annotations if one and "Any" in ast.unparse(one)]
-    return found
+        result += [ast.unparse(one) for one in annotations if one and "Any" in ast.unparse(one)]
+    return result
 
 
 def test_the_document_is_valid() -> None:
@@ -145,12 +145,12 @@ def test_openapi_typescript_is_typed_and_calls_every_endpoint(node: Path, addres
     options = ["--strict", "--target", "es2022", "--module", "nodenext", "--lib", "es2022,dom",
                "--noUncheckedIndexedAccess", "--skipLibCheck"]  # fmt: skip
     run(bin_ / "tsc", *options, "client.ts", folder=node)
-    found = json.loads(run("node", "client.js", address, folder=node))
-    assert found.pop("status") == 200
-    assert found.pop("kinds") == 15
+    result = json.loads(run("node", "client.js", address, folder=node))
+    assert result.pop("status") == 200
+    assert result.pop("kinds") == 15
     hertz = (9 * 10**2 / (16 * 0.01 * 1.15e11**2)) ** (1 / 3)
-    assert found["depth"] == pytest.approx(hertz, rel=1e-12, abs=0)
-    assert all(isinstance(value, float) and value > 0 for value in found.values())
+    assert result["depth"] == pytest.approx(hertz, rel=1e-12, abs=0)
+    assert all(isinstance(value, float) and value > 0 for value in result.values())
 
 
 def test_redocly_and_spectral_report_nothing(node: Path) -> None:

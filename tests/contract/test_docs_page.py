@@ -10,9 +10,9 @@ from tests.conftest import Client
 def test_every_url_on_the_page_is_served_here(client: Client) -> None:
     page = client.get("/docs")
     assert page.status_code == 200
-    found = re.findall(r'(?:src|href)="([^"]*)"', page.text)
-    assert len(found) == 5
-    for address in found:
+    result = re.findall(r'(?:src|href)="([^"]*)"', page.text)
+    assert len(result) == 5
+    for address in result:
         assert "//" not in address
         assert client.get(f"/{address}").status_code == 200
 

@@ -454,19 +454,19 @@ def test_every_example_has_a_textbook_reference() -> None:
     assert {*STRESS_TEXTBOOK, "rounded_punch"} == set(STRESS_EXAMPLES)
 
 
-def same(found: object, expected: object) -> None:
+def same(result: object, expected: object) -> None:
     """Compare numbers to twelve digits of the largest, all else exactly."""
     if isinstance(expected, list) and expected and isinstance(expected[0], list):
-        assert isinstance(found, list)
-        for one, other in zip(found, expected, strict=True):
+        assert isinstance(result, list)
+        for one, other in zip(result, expected, strict=True):
             same(one, other)
     elif isinstance(expected, list) and expected and not isinstance(expected[0], str):
-        assert found is not None
-        given = [inf if value is None else value for value in found]
+        assert result is not None
+        given = [inf if value is None else value for value in result]
         wanted = [inf if value is None else value for value in expected]
         assert given == pytest.approx(wanted, rel=1e-12, abs=0)
     else:
-        assert found == expected
+        assert result == expected
 
 
 @pytest.mark.parametrize(("path", "name", "query", "textbook"), CASES)
@@ -493,9 +493,9 @@ def test_example_gives_the_textbook_result(
 def test_wear_evolution_matches_its_limits(client: Client, name: str) -> None:
     document = client.post("/v1/wear/evolution", EVOLUTION_EXAMPLES[name]["value"]).json()
     for quantity, values in EVOLUTION_TEXTBOOK[name]().items():
-        for found, expected in zip(document[quantity], values, strict=True):
+        for result, expected in zip(document[quantity], values, strict=True):
             if expected is not None:
-                assert found == pytest.approx(expected, rel=2e-3, abs=0), quantity
+                assert result == pytest.approx(expected, rel=2e-3, abs=0), quantity
 
 
 def test_stresses_of_the_rounded_punch_integrate_to_its_forces(client: Client) -> None:

@@ -31,25 +31,25 @@ def examples(language: str, output: str) -> list[tuple[str, str]]:
 FOLLOWED = "/v1/wear/evolution"
 
 
-def same(found: object, shown: object, rel: float = 1e-12) -> None:
+def same(result: object, shown: object, rel: float = 1e-12) -> None:
     """Compare documents: numbers to twelve digits unless stated otherwise, all else exactly."""
     if isinstance(shown, dict):
-        assert isinstance(found, dict)
-        assert list(found) == list(shown)
+        assert isinstance(result, dict)
+        assert list(result) == list(shown)
         for name in shown:
             # Only the magnitude of an error estimate is reproducible.
             loose = name == "error_estimate" and rel > 1e-12
-            same(found[name], shown[name], 0.5 if loose else rel)
+            same(result[name], shown[name], 0.5 if loose else rel)
     elif isinstance(shown, list) and shown and isinstance(shown[0], list | dict):
-        assert isinstance(found, list)
-        for one, other in zip(found, shown, strict=True):
+        assert isinstance(result, list)
+        for one, other in zip(result, shown, strict=True):
             same(one, other, rel)
     elif isinstance(shown, float) or (
         isinstance(shown, list) and shown and isinstance(shown[0], float)
     ):
-        assert found == pytest.approx(shown, rel=rel, abs=0)
+        assert result == pytest.approx(shown, rel=rel, abs=0)
     else:
-        assert found == shown
+        assert result == shown
 
 
 def curl_response(client: Client, command: str) -> httpx.Response:
@@ -93,12 +93,12 @@ def test_curl_example_shows_the_response(client: Client, command: str, shown: st
 
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "csv"))
 def test_curl_example_shows_the_table(client: Client, command: str, shown: str) -> None:
-    found, expected = (
+    result, expected = (
         list(csv.reader(io.StringIO(text, newline="")))
         for text in (output_of(client, command), shown)
     )
-    assert found[0] == expected[0]
-    for one, other in zip(found[1:], expected[1:], strict=True):
+    assert result[0] == expected[0]
+    for one, other in zip(result[1:], expected[1:], strict=True):
         assert list(map(float, one)) == pytest.approx(list(map(float, other)), rel=1e-12, abs=0)
 
 

@@ -37,8 +37,8 @@ def assert_each(
     cases: Iterable[Mapping[str, Any]], failures_of: Callable[[Any], Iterable[str]]
 ) -> None:
     """Assert that no record of a batch fails; list every failure of every record."""
-    found = [f"{case['id']}: {failure}" for case in cases for failure in failures_of(case)]
-    assert not found, "\n" + "\n".join(found)
+    computed = [f"{case['id']}: {failure}" for case in cases for failure in failures_of(case)]
+    assert not computed, "\n" + "\n".join(computed)
 
 
 def profile_from(fields: Mapping[str, Any]) -> Profile:

@@ -160,7 +160,7 @@ def misses(scene: Scene) -> Iterator[Miss]:
     contact = normal.solve(scene.made, 1.0, contact_radius=EDGE)
     pushed = tangential.solve(contact, 1.0, 1.0, stick_radius=scene.stick)
     radii, rtol = scene.radii, scene.rtol
-    found = {
+    result = {
         "pressure": fields.pressure(contact, radii, rtol=rtol),
         "shear_stress": fields.shear_stress(pushed, radii, rtol=rtol),
         "slip": fields.slip(pushed, radii, rtol=rtol),
@@ -178,7 +178,7 @@ def misses(scene: Scene) -> Iterator[Miss]:
             "normal_displacement": slip_reference.displacement(at, r),
         }
         for quantity, truth in truths.items():
-            times = _relative_error(float(found[quantity][index]), truth) / max(rtol, BOUND)
+            times = _relative_error(float(result[quantity][index]), truth) / max(rtol, BOUND)
             if not times <= 1:
                 yield Miss(times, quantity, radius, scene)
 
@@ -192,14 +192,14 @@ def _relative_error(value: float, truth: mpf) -> float:
 
 def main(seconds: float = 300.0, seed: int = 1) -> int:
     draw, end, count = Draw(seed), time.monotonic() + seconds, 0
-    found: list[Miss] = []
+    result: list[Miss] = []
     while time.monotonic() < end:
-        found += misses(scene(draw))
+        result += misses(scene(draw))
         count += 1
-    for miss in sorted(found, key=lambda miss: -miss.times)[:20]:
+    for miss in sorted(result, key=lambda miss: -miss.times)[:20]:
         sys.stdout.write(f"{miss}\n")
-    sys.stdout.write(f"{count} scenes, {len(found)} results beyond their error limit\n")
-    return 1 if found else 0
+    sys.stdout.write(f"{count} scenes, {len(result)} results beyond their error limit\n")
+    return 1 if result else 0
 
 
 if __name__ == "__main__":

@@ -37,25 +37,25 @@ AROUND = np.array([0.0, 1e-9, 0.3, B * (1 - 1e-9), B, B * (1 + 1e-9), 0.9, END *
 def test_one_sided_even_weight() -> None:
     """F = x: sqrt(a^2 - r^2) - sqrt(b^2 - r^2)."""
     kept = AROUND.copy()
-    found = two_root_integral(lambda _, s: s, AROUND, END)
+    result = two_root_integral(lambda _, s: s, AROUND, END)
     low = np.sqrt(np.maximum(B - AROUND, 0) * (B + AROUND))
     exact = np.sqrt((END - AROUND) * (END + AROUND)) - low
-    assert found.shape == AROUND.shape
-    assert np.allclose(found, exact, rtol=1e-13, atol=0)
+    assert result.shape == AROUND.shape
+    assert np.allclose(result, exact, rtol=1e-13, atol=0)
     assert np.array_equal(AROUND, kept)
 
 
 def test_one_sided_pole() -> None:
     """F = x/s: arcsinh(s_a/k) below the break, arccosh(s_a/k) above, k^2 = |r^2 - b^2|."""
-    found = two_root_integral(lambda x, _: np.ones_like(x), AROUND, END, odd=True)
+    result = two_root_integral(lambda x, _: np.ones_like(x), AROUND, END, odd=True)
     k = np.sqrt(np.abs(AROUND - B) * (AROUND + B))
     top = np.sqrt((END - B) * (END + B))
     leg = np.sqrt((END - AROUND) * (END + AROUND))
     with np.errstate(divide="ignore"):
         below, above = np.arcsinh(top / k), np.arcsinh(leg / k)
     exact = np.where(AROUND < B, below, above)
-    assert np.isinf(found[AROUND == B]).all()
-    assert np.allclose(found, exact, rtol=1e-13, atol=0)
+    assert np.isinf(result[AROUND == B]).all()
+    assert np.allclose(result, exact, rtol=1e-13, atol=0)
 
 
 def test_one_sided_annulus_equals_difference() -> None:

@@ -37,7 +37,7 @@ def truth(slope: object, r: float) -> mpf:
 )
 def test_displacement_outside_the_contact(profile: Profile, slope: object) -> None:
     contact = normal.solve(profile, E_STAR, contact_radius=A)
-    found = fields.normal_displacement(contact, RADII)
-    for r, value in zip(RADII.tolist(), found.tolist(), strict=True):
+    result = fields.normal_displacement(contact, RADII)
+    for r, value in zip(RADII.tolist(), result.tolist(), strict=True):
         exact = truth(slope, r)
         assert abs(mpf(value) - exact) <= BOUND * exact, r

@@ -40,14 +40,14 @@ def computed(case: dict[str, Any], name: str) -> Any:
 
 def failures_of(case: dict[str, Any]) -> Iterator[str]:
     for name in FIELDS:
-        found = computed(case, name)
-        assert found.shape == (len(case["radius"]),)
+        result = computed(case, name)
+        assert result.shape == (len(case["radius"]),)
         for index, expected in enumerate(case["expected"][name]):
-            error = relative_error(float(found[index]), expected)
+            error = relative_error(float(result[index]), expected)
             bound = BOUND + allowance(case["condition"][name][index])
             if not error <= bound:
                 radius = case["radius"][index]
-                yield f"{name} at {radius!r}: {found[index]!r}, {error:.2e} > {bound:.2e}"
+                yield f"{name} at {radius!r}: {result[index]!r}, {error:.2e} > {bound:.2e}"
 
 
 @batched(CASES)
@@ -62,7 +62,7 @@ CONES = [case for case in CASES if case["profile"]["kind"] == "cone" and 0.0 in 
 def test_traction_is_finite_on_the_axis_of_a_cone(cases: list[dict[str, Any]]) -> None:
     for case in cases:
         index = case["radius"].index(0.0)
-        found = computed(case, "shear_stress")[index]
+        result = computed(case, "shear_stress")[index]
         bound = AXIS + allowance(case["condition"]["shear_stress"][index])
-        assert relative_error(float(found), case["expected"]["shear_stress"][index]) <= bound
+        assert relative_error(float(result), case["expected"]["shear_stress"][index]) <= bound
         assert np.isposinf(fields.pressure(solved(case).normal, [0.0]))

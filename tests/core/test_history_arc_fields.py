@@ -61,8 +61,8 @@ def stops(way: LoadHistory) -> list[float]:
     """Radii between which fields are smooth."""
     profile, state = way.start.profile, way.state
     breaks = profile.contact_radius(profile.coordinate_breaks)
-    found = [0.0, *map(float, profile.breaks), *breaks, *state.slip_fronts, state.contact_radius]
-    return sorted({float(stop) for stop in found if stop <= state.contact_radius})
+    result = [0.0, *map(float, profile.breaks), *breaks, *state.slip_fronts, state.contact_radius]
+    return sorted({float(stop) for stop in result if stop <= state.contact_radius})
 
 
 def single_arc(control: str) -> tuple[LoadHistory, float, float, float]:
@@ -115,8 +115,8 @@ def test_foundation_and_slip_of_one_arc_on_a_paraboloid(control: str) -> None:
         return rate * (last - x)
 
     expected = [float(MU * E * above(mpmath.mpf(at))) for at in r.tolist()]
-    found = fields.foundation_shear(way.state, r)
-    np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-13 * abs(expected[0]))
+    result = fields.foundation_shear(way.state, r)
+    np.testing.assert_allclose(result, expected, rtol=1e-11, atol=1e-13 * abs(expected[0]))
 
     def slipped(at: float) -> float:
         # Eq. (5.40) over the arc alone; everything inside it moves rigidly.
@@ -165,8 +165,8 @@ def test_slip_is_the_transform_of_the_foundation_slip(profile: Profile, control:
             turn = (NODES + 1) * np.pi / 2
             angle = low + (high - low) * (1 - np.cos(turn)) / 2
             step = WEIGHTS * np.pi / 2 * (high - low) / 2 * np.sin(turn)
-            found = carried(np.minimum(r * np.sin(angle), r)) - on_axis
-            expected += 2 / np.pi / G * float((step * found).sum())
+            result = carried(np.minimum(r * np.sin(angle), r)) - on_axis
+            expected += 2 / np.pi / G * float((step * result).sum())
         size = abs(on_axis) / G
         assert float(fields.slip(way.state, [r])[0]) == pytest.approx(
             expected, rel=1e-10, abs=1e-13 * size

@@ -87,9 +87,9 @@ def _precise() -> Any:
         yield
 
 
-def near(value: mpf, found: history.LoadHistory) -> Any:
-    assert found.error_estimate < _LARGEST_ERROR
-    return pytest.approx(float(value), rel=found.error_estimate, abs=0)
+def near(value: mpf, result: history.LoadHistory) -> Any:
+    assert result.error_estimate < _LARGEST_ERROR
+    return pytest.approx(float(value), rel=result.error_estimate, abs=0)
 
 
 @pytest.mark.long
@@ -110,7 +110,7 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
     goal = eta(a2)
     assert goal > shape.g(a1)
     c = shape.root(lambda x: eta(x) - goal, a1, turn)
-    found = history.solve(
+    result = history.solve(
         profile_from(PROFILES[name]),
         E_STAR,
         G_STAR,
@@ -119,7 +119,7 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
         tangential_displacement=[0.0, sign * float(shift) * COMPLIANCE],
     )
     carried = rate * shape.over(lambda x: 4 * x * x, a1, c) + i2 - shape.force(c)
-    assert sign * found.tangential_force[1] == near(MU * E_STAR * carried, found)
+    assert sign * result.tangential_force[1] == near(MU * E_STAR * carried, result)
 
     def stored(x: mpf) -> mpf:
         # int v^2 dx = -int x d(v^2), without a boundary term at the edge.
@@ -127,7 +127,7 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
         return 2 * x * v * (2 * x * rate if x < c else 1)
 
     square = shape.over(stored, a1, c) + shape.over(stored, c, a2)
-    assert found.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, found)
+    assert result.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, result)
 
     def lost(x: mpf) -> mpf:
         # Both behave like roots at the reversal: the front is as far below it as the load is above.
@@ -136,11 +136,11 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
 
     with mp.workdps(20):
         loss = shape.over(lost, turn * (1 + mpf(10) ** -9), a2)
-    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, found)
-    assert found.dissipation[0] == 0
-    assert found.regime.tolist() == ["stick", "partial_slip"]
+    assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
+    assert result.dissipation[0] == 0
+    assert result.regime.tolist() == ["stick", "partial_slip"]
     radius = float(c)
-    assert found.slip_fronts[-1] == pytest.approx(radius, rel=1e-9, abs=0)
+    assert result.slip_fronts[-1] == pytest.approx(radius, rel=1e-9, abs=0)
 
 
 @pytest.mark.long
@@ -158,7 +158,7 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
         return shape.force(x) - rate * (shape.g(x) - d1)
 
     c = shape.root(lambda x: shape.force(x) - eta(turn), shape.flat, a1)
-    found = history.solve(
+    result = history.solve(
         profile_from(PROFILES[name]),
         E_STAR,
         G_STAR,
@@ -167,7 +167,7 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
         tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
     )
     anchor = shape.g(turn) - shape.g(c) + rate * shape.over(lambda x: 1 / (2 * x), turn, a2)
-    assert sign * found.tangential_displacement[1] == near(COMPLIANCE * anchor, found)
+    assert sign * result.tangential_displacement[1] == near(COMPLIANCE * anchor, result)
 
     def lost(x: mpf) -> mpf:
         front = shape.root(lambda y: shape.force(y) - eta(x), shape.flat, a1)
@@ -175,8 +175,8 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
 
     with mp.workdps(20):
         loss = shape.over(lost, a1, turn)
-    assert found.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, found)
-    assert found.regime.tolist() == ["stick", "stick"]
+    assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
+    assert result.regime.tolist() == ["stick", "stick"]
 
 
 def random_path(name: str, control: str, steps: int, seed: int) -> dict[str, Any]:
@@ -221,10 +221,10 @@ def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
     width = np.diff(edges)
     shares = (edges[:-1, None] + width[:, None] * (1 + nodes) / 2).ravel()
     measure = (width[:, None] * weights / 2).ravel()
-    found = solve(name, **with_points(path, shares))
-    steps = len(found.step) // (shares.size + 1)
+    result = solve(name, **with_points(path, shares))
+    steps = len(result.step) // (shares.size + 1)
     force, moved = (
-        getattr(found, column).reshape(steps, -1)
+        getattr(result, column).reshape(steps, -1)
         for column in ("tangential_force", "tangential_displacement")
     )
     if control == "normal_force":
@@ -234,11 +234,11 @@ def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
         done = np.diff(ends, prepend=0.0)
         done -= moved[:, :-1] @ measure * np.diff(path["tangential_force"], prepend=0.0)
     ends = slice(shares.size, None, shares.size + 1)
-    balance = (found.tangential_energy + found.dissipated_energy)[ends]
+    balance = (result.tangential_energy + result.dissipated_energy)[ends]
     size = np.max(np.abs(balance))
     assert balance == pytest.approx(np.cumsum(done), rel=0, abs=2e-6 * size)
     plain = solve(name, **path)
-    bound = found.error_estimate + plain.error_estimate
+    bound = result.error_estimate + plain.error_estimate
     assert plain.error_estimate < _LARGEST_ERROR
     for column in (
         "tangential_force",
@@ -246,7 +246,7 @@ def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
         "tangential_energy",
         "dissipated_energy",
     ):
-        values = getattr(found, column)[ends]
+        values = getattr(result, column)[ends]
         largest = np.max(np.abs(values))
         assert getattr(plain, column) == pytest.approx(values, rel=0, abs=bound * largest), column
 
@@ -261,7 +261,7 @@ def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> 
     path = random_path(name, control, 12, 5)
     exact = solve(name, **path, rtol=1e-13)
     for rtol in (1e-3, 1e-6, 1e-9):
-        found = solve(name, **path, rtol=rtol)
+        result = solve(name, **path, rtol=rtol)
         for column in (
             "tangential_force",
             "tangential_displacement",
@@ -269,8 +269,8 @@ def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> 
             "dissipation",
         ):
             values = getattr(exact, column)
-            bound = found.error_estimate + exact.error_estimate
-            miss = np.max(np.abs(getattr(found, column) - values))
+            bound = result.error_estimate + exact.error_estimate
+            miss = np.max(np.abs(getattr(result, column) - values))
             assert miss <= bound * np.max(np.abs(values)), (column, rtol)
 
 
@@ -310,8 +310,8 @@ def test_cost_of_tolerance_and_load_steps(
     taken = []
     for steps, rtol in ((10, 1e-3), (10, 1e-10), (100, 1e-10)):
         counts.clear()
-        found = solve(name, **random_path(name, control, steps, 7), rtol=rtol)
-        assert found.dissipated_energy[-1] > 0
+        result = solve(name, **random_path(name, control, steps, 7), rtol=rtol)
+        assert result.dissipated_energy[-1] > 0
         taken.append((len(counts), sum(counts)))
     # Seven more digits, and ten times as many load steps.
     assert taken[1][1] <= 8 * taken[0][1]

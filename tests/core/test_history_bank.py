@@ -56,27 +56,27 @@ def input_error(case: dict[str, Any], name: str, index: int) -> float:
     return allowance(*(case[kind][name][index] for kind in ("condition", "condition_load")))
 
 
-def full_slip_error(case: dict[str, Any], index: int, found: history.LoadHistory) -> float:
+def full_slip_error(case: dict[str, Any], index: int, result: history.LoadHistory) -> float:
     """Error of the loss for an amplitude that rounding may move past the onset of full slip.
 
     Beyond the onset the loss grows by 4 mu F_N du. That is steep next to a flat, where the slip
     annulus before the onset is narrow and its loss is small. The stored condition number is that of
     partial slip.
     """
-    limit = case["friction_coefficient"] * float(np.max(found.normal_force))
+    limit = case["friction_coefficient"] * float(np.max(result.normal_force))
     if case["tangential_control"] == "tangential_force" or not (
-        float(np.max(np.abs(found.tangential_force))) >= limit * (1 - TOUCH)
+        float(np.max(np.abs(result.tangential_force))) >= limit * (1 - TOUCH)
     ):
         return 0.0
     loss = float(case["expected"]["energy_per_cycle"][index])
     return INPUT * 4 * limit * case["given"][index] / loss
 
 
-def cycle_failures(case: dict[str, Any], index: int, found: Iterable[float]) -> list[str]:
+def cycle_failures(case: dict[str, Any], index: int, result: Iterable[float]) -> list[str]:
     """Failures of one amplitude's loss and stiffness, for each method that computes them."""
     failures = []
     names = ("energy_per_cycle", "secant_stiffness")
-    for name, bound, value in zip(names, (ENERGY, bound_of(case)), found, strict=True):
+    for name, bound, value in zip(names, (ENERGY, bound_of(case)), result, strict=True):
         error = relative_error(value, case["expected"][name][index])
         allowed = bound + input_error(case, name, index)
         if not error <= allowed:
@@ -89,15 +89,15 @@ def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
     factor = OVERSTATED_TABLE if table else OVERSTATED
     for index, amplitude in enumerate(case["given"]):
         control = {case["control"]: case["load"], case["tangential_control"]: amplitude}
-        found = history.cycles(*material(case), **control, count=2)
-        assert found.energy_per_cycle.shape == found.secant_stiffness.shape == (2,)
+        result = history.cycles(*material(case), **control, count=2)
+        assert result.energy_per_cycle.shape == result.secant_stiffness.shape == (2,)
         for cycle in range(2):
-            pair = (found.energy_per_cycle[cycle], found.secant_stiffness[cycle])
+            pair = (result.energy_per_cycle[cycle], result.secant_stiffness[cycle])
             failures += cycle_failures(case, index, map(float, pair))
         names = ("energy_per_cycle", "secant_stiffness")
         allowed = [bound_of(case) + input_error(case, name, index) for name in names]
-        allowed.append(full_slip_error(case, index, found.history))
-        failures += overstated(found.history.error_estimate, allowed, factor)
+        allowed.append(full_slip_error(case, index, result.history))
+        failures += overstated(result.history.error_estimate, allowed, factor)
     return failures
 
 
@@ -114,10 +114,10 @@ def failures_of_sampled_cycle(case: dict[str, Any]) -> list[str]:
             case["control"]: case["load"],
             case["tangential_control"]: [0.0, amplitude, -amplitude, amplitude],
         }
-        found = history.solve(*material(case), **path, samples_per_step=3)
-        assert found.step.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3]
-        lost = float(np.sum(found.dissipation[6:]))
-        u, force = found.tangential_displacement, found.tangential_force
+        result = history.solve(*material(case), **path, samples_per_step=3)
+        assert result.step.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3]
+        lost = float(np.sum(result.dissipation[6:]))
+        u, force = result.tangential_displacement, result.tangential_force
         secant = float((force[11] - force[8]) / (u[11] - u[8]))
         failures += cycle_failures(case, index, (lost, secant))
     return failures
@@ -129,7 +129,7 @@ def test_loss_of_a_sampled_path_equals_that_of_the_cycle(cases: list[dict[str, A
 
 
 def failures_in_phase(case: dict[str, Any]) -> list[str]:
-    found = history.cycles(
+    result = history.cycles(
         *material(case),
         indentation_depth=case["mean"],
         normal_amplitude=case["swing"],
@@ -137,16 +137,16 @@ def failures_in_phase(case: dict[str, Any]) -> list[str]:
         count=3,
     )
     expected = case["expected"]
-    failures = overstated(found.history.error_estimate, [bound_of(case)], 50.0)
+    failures = overstated(result.history.error_estimate, [bound_of(case)], 50.0)
     top = case["mean"] + case["swing"]
-    limit = case["friction_coefficient"] * float(np.max(found.history.normal_force))
+    limit = case["friction_coefficient"] * float(np.max(result.history.normal_force))
     whole = limit * case["friction_coefficient"] * case["e_star"] / case["g_star"] * top
     for cycle in range(3):
         stiffness = expected["secant_stiffness"][cycle]
-        error = relative_error(float(found.secant_stiffness[cycle]), stiffness)
+        error = relative_error(float(result.secant_stiffness[cycle]), stiffness)
         if not error <= bound_of(case):
             failures.append(f"stiffness of cycle {cycle}: {error:.2e}")
-        lost, exact = float(found.energy_per_cycle[cycle]), expected["energy_per_cycle"][cycle]
+        lost, exact = float(result.energy_per_cycle[cycle]), expected["energy_per_cycle"][cycle]
         bound = (ENERGY + INPUT * case["condition"][cycle]) * float(exact) + TOUCH * whole
         miss = abs(Decimal(lost) - Decimal(exact))
         if not miss <= bound:
@@ -159,7 +159,7 @@ def test_normal_load_in_phase(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_in_phase)
 
 
-def scaled_errors(case: dict[str, Any], found: history.LoadHistory) -> dict[str, float]:
+def scaled_errors(case: dict[str, Any], result: history.LoadHistory) -> dict[str, float]:
     """Largest errors, each relative to the scale of its quantity."""
     expected = {
         name: np.array([float(value) for value in row]) for name, row in case["expected"].items()
@@ -175,7 +175,7 @@ def scaled_errors(case: dict[str, Any], found: history.LoadHistory) -> dict[str,
     }
     errors = {}
     for name, scale in scales.items():
-        difference = np.abs(getattr(found, name) - expected[name])
+        difference = np.abs(getattr(result, name) - expected[name])
         # Before the first contact both are zero.
         errors[name] = float(
             np.max(np.where(difference == 0, 0.0, difference) / np.maximum(scale, 1e-300))
@@ -188,17 +188,17 @@ def test_random_path(case: dict[str, Any]) -> None:
     controls = {
         name: np.array(case[name]) for name in ("indentation_depth", "tangential_displacement")
     }
-    found = history.solve(*material(case), **controls)
-    errors = scaled_errors(case, found)
+    result = history.solve(*material(case), **controls)
+    errors = scaled_errors(case, result)
     assert max(errors.values()) <= bound_of(case), errors
-    assert found.error_estimate >= errors["tangential_force"]
-    assert not overstated(found.error_estimate, [bound_of(case)], 50.0)
+    assert result.error_estimate >= errors["tangential_force"]
+    assert not overstated(result.error_estimate, [bound_of(case)], 50.0)
     touching = controls["indentation_depth"] > 0
-    assert np.array_equal(found.regime == "no_contact", ~touching)
+    assert np.array_equal(result.regime == "no_contact", ~touching)
     expected = [float(value) for value in case["expected"]["tangential_force"]]
-    limit = case["friction_coefficient"] * found.normal_force
+    limit = case["friction_coefficient"] * result.normal_force
     sliding = touching & (np.abs(expected) >= limit * (1 - 1e-13))
-    assert np.array_equal(found.regime == "full_slip", sliding)
+    assert np.array_equal(result.regime == "full_slip", sliding)
 
 
 @each(bank.load("history_paths")[::2])

@@ -60,9 +60,9 @@ class FirstLoading:
                 stiffness = 2 * self.at.g_star * self.at.a
                 factor = stiffness if other == "tangential_force" else 1 / stiffness
                 return float(mpf(given) * factor), 1.0, float(self.at.a)
-            found = slip.solve(self.at, control, given, energy=False)
-            rate = float(found.condition[other] + found.condition_load[other])
-            return float(found.values[other]), rate, float(found.c)
+            result = slip.solve(self.at, control, given, energy=False)
+            rate = float(result.condition[other] + result.condition_load[other])
+            return float(result.values[other]), rate, float(result.c)
 
     def displacement(self, force: float) -> float:
         return self._solve("tangential_force", force)[0]
@@ -89,7 +89,7 @@ def test_increased_normal_force_keeps_the_displacement(name: str, sign: int, rho
     extra = [sign * part * MU * (after - before) for part in steps]
     # Half-way between the start of first loading and full slip.
     beyond = sign * (abs(first) + MU * (after - before) + MU * after) / 2
-    found = solve(
+    result = solve(
         name,
         normal_force=[before, before, after, after, after, after],
         tangential_force=[0.0, first, first, *(first + step for step in extra), beyond],
@@ -98,12 +98,12 @@ def test_increased_normal_force_keeps_the_displacement(name: str, sign: int, rho
         FirstLoading(name, "normal_force", before),
         FirstLoading(name, "normal_force", after),
     )
-    u = found.tangential_displacement
+    u = result.tangential_displacement
     start = low.displacement(first)
     assert u[1] == near(start, rel=low.allowed(first))
     assert u[2] == near(u[1])
-    assert found.dissipation[2] == 0
-    assert found.regime[2] == "stick"
+    assert result.dissipation[2] == 0
+    assert result.regime[2] == "stick"
     for index, step in enumerate(extra):
         move = high.displacement(step)
         # The force increment is a difference of two prescribed forces.
@@ -117,14 +117,16 @@ def test_increased_normal_force_keeps_the_displacement(name: str, sign: int, rho
 def test_reduced_normal_force_ends_on_the_curve_of_the_reduced_force(name: str, sign: int) -> None:
     before, after = FORCES[name], FORCES[name] / 2
     force = sign * 0.8 * MU * after
-    found = solve(name, normal_force=[before, before, after], tangential_force=[0.0, force, force])
+    result = solve(name, normal_force=[before, before, after], tangential_force=[0.0, force, force])
     low = FirstLoading(name, "normal_force", after)
-    assert found.tangential_displacement[2] == near(low.displacement(force), rel=low.allowed(force))
+    assert result.tangential_displacement[2] == near(
+        low.displacement(force), rel=low.allowed(force)
+    )
     depth = FirstLoading(name, "normal_force", after).depth
-    assert found.indentation_depth[2] == near(depth)
+    assert result.indentation_depth[2] == near(depth)
     on = solve(name, normal_force=[after, after], tangential_force=[0.0, force])
-    assert found.state.depth == near(on.state.depth, rel=1e-11)
-    assert found.state.load == near(on.state.load, rel=1e-11)
+    assert result.state.depth == near(on.state.depth, rel=1e-11)
+    assert result.state.load == near(on.state.load, rel=1e-11)
 
 
 @every_shape
@@ -146,13 +148,13 @@ def test_oblique_loading_sticks(name: str, sign: int, share: float) -> None:
     assert list(ahead.regime[:5]) == ["stick"] * 5
     assert not ahead.dissipated_energy[:5].any()
     exact = mpf(first) / mpf(force) * sign
-    for found, direction in ((ahead, 1), (back, -1)):
+    for result, direction in ((ahead, 1), (back, -1)):
         left = FirstLoading(name, "normal_force", force, MU - direction * exact)
         move = left.displacement(step)
         # The slope carries the rounding error of the prescribed force.
         rounding = (left.allowed(step) + 8 * 2.0**-52 * abs(first) / step) * abs(move)
         expected = u[-1] + sign * direction * move
-        assert found.tangential_displacement[-1] == near(expected, rounding + 2e-15 * abs(u[-1]))
+        assert result.tangential_displacement[-1] == near(expected, rounding + 2e-15 * abs(u[-1]))
 
 
 @every_shape
@@ -160,10 +162,12 @@ def test_oblique_loading_sticks(name: str, sign: int, share: float) -> None:
 def test_oblique_loading_at_the_friction_limit(name: str, sign: int) -> None:
     """At tan(alpha) = mu every spring is at the friction limit, and none slips."""
     force = FORCES[name]
-    found = solve(name, normal_force=[force], tangential_force=[sign * MU * force])
-    assert found.tangential_displacement[0] == near(sign * MU * SHIFT * found.indentation_depth[0])
-    assert found.tangential_force[0] == near(sign * MU * force)
-    assert float(found.dissipated_energy[0]) == near(0.0, 1e-14 * MU * force * DEPTH)
+    result = solve(name, normal_force=[force], tangential_force=[sign * MU * force])
+    assert result.tangential_displacement[0] == near(
+        sign * MU * SHIFT * result.indentation_depth[0]
+    )
+    assert result.tangential_force[0] == near(sign * MU * force)
+    assert float(result.dissipated_energy[0]) == near(0.0, 1e-14 * MU * force * DEPTH)
 
 
 @every_shape
@@ -172,16 +176,16 @@ def test_oblique_loading_at_the_friction_limit(name: str, sign: int) -> None:
 def test_friction_limit_after_a_preload(name: str, sign: int, part: float) -> None:
     """New springs are at the friction limit from the start; slip of rounding-error size is zero."""
     for ulps in range(-4, 5):
-        found = solve(
+        result = solve(
             name,
             indentation_depth=[part * DEPTH, DEPTH],
             tangential_displacement=[0.0, sign * (1 - part) * MOST * (1 + ulps * 2.0**-52)],
             samples_per_step=4,
         )
-        bound = 64 * 2.0**-52 * MU * float(found.normal_force[-1]) * MOST
-        assert np.all(found.dissipated_energy <= bound), ulps
-        gained = found.normal_force[-1] - found.normal_force[3]
-        assert found.tangential_force[-1] == near(sign * MU * gained)
+        bound = 64 * 2.0**-52 * MU * float(result.normal_force[-1]) * MOST
+        assert np.all(result.dissipated_energy <= bound), ulps
+        gained = result.normal_force[-1] - result.normal_force[3]
+        assert result.tangential_force[-1] == near(sign * MU * gained)
 
 
 @every_shape
@@ -189,9 +193,9 @@ def test_friction_limit_after_a_preload(name: str, sign: int, part: float) -> No
 def test_oblique_displacement_slides_from_first_contact(name: str, sign: int) -> None:
     """Steeper than the friction limit: displacement ratio above mu E*/G*."""
     u = sign * 1.7 * MOST
-    found = solve(name, indentation_depth=[DEPTH], tangential_displacement=[u], samples_per_step=4)
-    assert found.tangential_force == near(sign * MU * found.normal_force)
-    assert list(found.regime) == ["full_slip"] * 4
+    result = solve(name, indentation_depth=[DEPTH], tangential_displacement=[u], samples_per_step=4)
+    assert result.tangential_force == near(sign * MU * result.normal_force)
+    assert list(result.regime) == ["full_slip"] * 4
     curve = FirstLoading(name, "indentation_depth", DEPTH)
     with mp.workdps(50):
         at = curve.at
@@ -200,7 +204,7 @@ def test_oblique_displacement_slides_from_first_contact(name: str, sign: int) ->
         excess = (abs(mpf(u)) / at.depth - at.shift) * at.mu * at.e_star
         # Energies of a table are sums over its knots.
         bound = 1e-11 if "table" in name else BOUND
-        assert float(found.dissipated_energy[-1]) == near(float(excess * squares), rel=bound)
+        assert float(result.dissipated_energy[-1]) == near(float(excess * squares), rel=bound)
 
 
 def _squares(at: slip.Setting) -> mpf:
@@ -218,16 +222,16 @@ def test_oblique_loading_after_a_preload(name: str, sign: int) -> None:
         FirstLoading(name, "normal_force", after),
     )
     gentle = sign * 0.7 * MU * (after - before)
-    found = solve(name, normal_force=[before, after], tangential_force=[0.0, gentle])
+    result = solve(name, normal_force=[before, after], tangential_force=[0.0, gentle])
     expected = SHIFT * 0.7 * MU * sign * (high.depth - low.depth)
     if name == "flat-punch":
         expected = sign * abs(gentle) / (2 * G_STAR * PROFILES[name]["radius"])
-    assert found.tangential_displacement[1] == near(expected)
-    assert found.dissipated_energy[1] == 0
-    assert found.regime[1] == "stick"
+    assert result.tangential_displacement[1] == near(expected)
+    assert result.dissipated_energy[1] == 0
+    assert result.regime[1] == "stick"
     steep = sign * 1.2 * MU * (after - before)
-    found = solve(name, normal_force=[before, after], tangential_force=[0.0, steep])
-    assert found.tangential_displacement[1] == near(
+    result = solve(name, normal_force=[before, after], tangential_force=[0.0, steep])
+    assert result.tangential_displacement[1] == near(
         high.displacement(steep), rel=high.allowed(steep)
     )
 
@@ -240,9 +244,9 @@ def test_unloading_and_reloading(name: str, sign: int, rho: float) -> None:
     force = FORCES[name]
     top = rho * MU * force
     points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
-    found = solve(name, normal_force=force, tangential_force=[sign * f for f in points])
+    result = solve(name, normal_force=force, tangential_force=[sign * f for f in points])
     curve = FirstLoading(name, "normal_force", force)
-    u = sign * found.tangential_displacement
+    u = sign * result.tangential_displacement
     high = curve.displacement(top)
     size = high * curve.allowed(top) * 3
     assert u[1] == near(high, size)
@@ -264,8 +268,10 @@ def test_unloading_and_reloading_by_displacement(name: str, sign: int, rho: floa
     curve = FirstLoading(name, "indentation_depth", DEPTH)
     top = rho * curve.most
     points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
-    found = solve(name, indentation_depth=DEPTH, tangential_displacement=[sign * u for u in points])
-    force = sign * found.tangential_force
+    result = solve(
+        name, indentation_depth=DEPTH, tangential_displacement=[sign * u for u in points]
+    )
+    force = sign * result.tangential_force
     high = curve.load(top)
     expected = [
         0.0,
@@ -310,9 +316,9 @@ def test_closed_inner_loop_erases_its_memory(name: str) -> None:
     )
     kept = len(rest) + 1
     for column in ("tangential_displacement", "tangential_energy"):
-        values = [getattr(found, column)[-kept:] for found in (short, long)]
+        values = [getattr(result, column)[-kept:] for result in (short, long)]
         assert values[1] == near(values[0], 1e-13 * np.max(np.abs(values[0]))), column
-    losses = [found.dissipation[-len(rest) :] for found in (short, long)]
+    losses = [result.dissipation[-len(rest) :] for result in (short, long)]
     assert losses[1] == near(losses[0], rel=1e-11)
     assert long.state.depth.shape == short.state.depth.shape
     assert long.state.depth == near(short.state.depth)
@@ -324,38 +330,38 @@ def test_closed_inner_loop_erases_its_memory(name: str) -> None:
 def test_separation_and_renewed_contact(name: str, sign: int) -> None:
     """Contact is re-established at the current displacement, here after a fifth of the step."""
     u = sign * 0.4 * MOST
-    found = solve(
+    result = solve(
         name,
         indentation_depth=[DEPTH, -DEPTH / 4, DEPTH],
         tangential_displacement=[u, 2 * u, -u],
         samples_per_step=20,
     )
-    gone = found.indentation_depth <= 0
-    assert list(found.regime[gone]) == ["no_contact"] * np.count_nonzero(gone)
+    gone = result.indentation_depth <= 0
+    assert list(result.regime[gone]) == ["no_contact"] * np.count_nonzero(gone)
     for column in ("normal_force", "tangential_force", "tangential_energy", "contact_radius"):
         if column != "contact_radius" or name in SHAPES[:3]:
-            assert not getattr(found, column)[gone].any(), column
+            assert not getattr(result, column)[gone].any(), column
     # From 2 u at first contact by -3 u in total, a fifth of it before contact.
     fresh = solve(name, indentation_depth=[DEPTH], tangential_displacement=[0.8 * -3 * u])
-    assert found.tangential_force[-1] == near(fresh.tangential_force[-1])
-    lost = found.dissipated_energy
+    assert result.tangential_force[-1] == near(fresh.tangential_force[-1])
+    lost = result.dissipated_energy
     assert lost[-1] - lost[gone][-1] == near(fresh.dissipated_energy[-1], 1e-13 * lost[-1])
-    assert not found.dissipation[gone][1:].any()
+    assert not result.dissipation[gone][1:].any()
 
 
 @every_shape
 def test_force_vanishes_and_grows_again(name: str) -> None:
     """The slip memory is erased; oblique loading restarts from the current displacement."""
     force, slope = FORCES[name], 0.5 * MU
-    found = solve(
+    result = solve(
         name,
         normal_force=[force, 0.0, force],
         tangential_force=[0.9 * MU * force, 0.0, slope * force],
     )
-    assert found.regime[1] == "no_contact"
-    move = found.tangential_displacement[2] - found.tangential_displacement[1]
-    assert move == near(slope * SHIFT * found.indentation_depth[2], rel=1e-11)
-    assert found.dissipation[2] == near(0.0, 1e-14 * MU * force * DEPTH)
+    assert result.regime[1] == "no_contact"
+    move = result.tangential_displacement[2] - result.tangential_displacement[1]
+    assert move == near(slope * SHIFT * result.indentation_depth[2], rel=1e-11)
+    assert result.dissipation[2] == near(0.0, 1e-14 * MU * force * DEPTH)
 
 
 @both_directions
@@ -364,19 +370,19 @@ def test_flat_punch_passes_from_full_stick_to_full_slip(sign: int) -> None:
     stiffness, bound = 2 * G_STAR * radius, MU * 2 * E_STAR * radius * DEPTH
     most = bound / stiffness
     points = np.array([0.0, 0.9, 1.5, 1.0, -0.4, -0.9, -2.0])
-    found = solve(
+    result = solve(
         "flat-punch",
         indentation_depth=DEPTH,
         tangential_displacement=sign * most * points,
     )
     # Full slip from 1 to 1.5, full stick down to -0.5, then full slip again.
     expected = np.array([0.0, 0.9, 1.0, 0.5, -0.9, -1.0, -1.0])
-    assert found.tangential_force == near(sign * bound * expected)
+    assert result.tangential_force == near(sign * bound * expected)
     lost = np.array([0.0, 0.0, 0.5, 0.5, 0.5, 0.9, 2.0]) * most * bound
-    assert found.dissipated_energy == near(lost)
+    assert result.dissipated_energy == near(lost)
     regimes = ["stick", "stick", "full_slip", "stick", "stick", "full_slip", "full_slip"]
-    assert list(found.regime) == regimes
-    assert found.slip_fronts.shape == (0,)
+    assert list(result.regime) == regimes
+    assert result.slip_fronts.shape == (0,)
 
 
 @shapes
@@ -384,19 +390,19 @@ def test_flat_punch_passes_from_full_stick_to_full_slip(sign: int) -> None:
 def test_long_sliding_distance_keeps_the_force(name: str, sign: int) -> None:
     """Sliding over a distance much larger than the depth must not cause cancellation."""
     far = sign * 2.0**40 * MOST
-    found = solve(
+    result = solve(
         name, indentation_depth=[DEPTH, DEPTH, DEPTH / 2], tangential_displacement=[0.0, far, far]
     )
-    assert found.tangential_force[1] == near(sign * MU * found.normal_force[1])
-    assert found.tangential_force[2] == near(sign * MU * found.normal_force[2])
-    assert found.indentation_depth.tolist() == [DEPTH, DEPTH, DEPTH / 2]
-    assert found.state.depth[-1] == near(DEPTH / 2)
+    assert result.tangential_force[1] == near(sign * MU * result.normal_force[1])
+    assert result.tangential_force[2] == near(sign * MU * result.normal_force[2])
+    assert result.indentation_depth.tolist() == [DEPTH, DEPTH, DEPTH / 2]
+    assert result.state.depth[-1] == near(DEPTH / 2)
 
 
 @shapes
 def test_cycles_retain_their_loop_under_force_control(name: str) -> None:
     force = FORCES[name]
-    found = history.cycles(
+    result = history.cycles(
         profile_from(PROFILES[name]),
         E_STAR,
         G_STAR,
@@ -406,10 +412,10 @@ def test_cycles_retain_their_loop_under_force_control(name: str) -> None:
         count=3,
         samples_per_step=2,
     )
-    assert found.history.tangential_force.shape == (2 * (2 + 2 * 3),)
-    assert found.energy_per_cycle == near([found.energy_per_cycle[0]] * 3)
-    total = np.sum(found.history.dissipation)
-    assert found.history.dissipated_energy[-1] == near(float(total))
+    assert result.history.tangential_force.shape == (2 * (2 + 2 * 3),)
+    assert result.energy_per_cycle == near([result.energy_per_cycle[0]] * 3)
+    total = np.sum(result.history.dissipation)
+    assert result.history.dissipated_energy[-1] == near(float(total))
 
 
 def test_force_beyond_friction_is_rejected_with_its_index() -> None:
@@ -491,8 +497,8 @@ def test_loss_of_a_cycle_on_a_rough_table(radii: list[float], heights: list[floa
             count=2,
         )
 
-    below, found, above = (cycles(factor) for factor in (1 - 1e-4, 1.0, 1 + 1e-4))
-    loss = float(found.energy_per_cycle[0])
+    below, result, above = (cycles(factor) for factor in (1 - 1e-4, 1.0, 1 + 1e-4))
+    loss = float(result.energy_per_cycle[0])
     beside = float(below.energy_per_cycle[0] + above.energy_per_cycle[0]) / 2
     assert loss == pytest.approx(beside, rel=1e-3, abs=0)
-    assert 0 <= found.energy_per_cycle[1] < 1e-12 * loss
+    assert 0 <= result.energy_per_cycle[1] < 1e-12 * loss

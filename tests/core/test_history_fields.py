@@ -59,8 +59,8 @@ def test_reversal_superposes_two_cattaneo_mindlin_fields() -> None:
     np.testing.assert_allclose(state.slip_fronts, [c, c2], rtol=1e-14)
     r = np.linspace(0, 0.99 * a, 37)
     expected = MU * E * (hertz(a, r) - hertz(c, r) - 2 * (hertz(a, r) - hertz(c2, r)))
-    found = fields.shear_stress(state, r)
-    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13 * MU * E * a)
+    result = fields.shear_stress(state, r)
+    np.testing.assert_allclose(result, expected, rtol=1e-12, atol=1e-13 * MU * E * a)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)
@@ -94,8 +94,8 @@ def test_slip_is_the_transform_of_the_foundation_slip(profile: Profile) -> None:
             return (float(fields.foundation_shear(state, [x])[0]) - carried) / G
 
         expected = 2 / np.pi * float(mpmath.quad(density, angles, maxdegree=6))
-        found = float(fields.slip(state, [r])[0])
-        assert found == pytest.approx(expected, rel=1e-9, abs=0)
+        result = float(fields.slip(state, [r])[0])
+        assert result == pytest.approx(expected, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=by_kind)

@@ -70,15 +70,15 @@ def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.LoadHisto
 @given(scenes(), paths)
 def test_friction_limit_and_slip_regime(scene: Scene, path: list[tuple[float, float]]) -> None:
     d, u, _ = controls(scene, path)
-    found = solve(scene, d, u, samples_per_step=5)
-    limit = MU * found.normal_force
+    result = solve(scene, d, u, samples_per_step=5)
+    limit = MU * result.normal_force
     size = np.max(limit, initial=0.0)
-    assert np.all(np.abs(found.tangential_force) <= limit + 1e-13 * size)
-    sliding = found.regime == "full_slip"
-    assert np.abs(found.tangential_force[sliding]) == near(limit[sliding], 1e-13 * size)
-    assert np.array_equal(found.regime == "no_contact", found.indentation_depth <= 0)
+    assert np.all(np.abs(result.tangential_force) <= limit + 1e-13 * size)
+    sliding = result.regime == "full_slip"
+    assert np.abs(result.tangential_force[sliding]) == near(limit[sliding], 1e-13 * size)
+    assert np.array_equal(result.regime == "no_contact", result.indentation_depth <= 0)
     for name in ("normal_force", "tangential_force", "tangential_energy", "elastic_energy"):
-        assert not getattr(found, name)[found.regime == "no_contact"].any(), name
+        assert not getattr(result, name)[result.regime == "no_contact"].any(), name
 
 
 @repeatable
@@ -87,22 +87,22 @@ def test_normal_problem_is_independent_of_tangential_loading(
     scene: Scene, path: list[tuple[float, float]]
 ) -> None:
     d, u, _ = controls(scene, path)
-    found = solve(scene, d, u)
+    result = solve(scene, d, u)
     alone = normal.solve(profile_from(scene[0]), E_STAR, indentation_depth=np.maximum(d, 0.0))
     touching = d > 0
     for name in ("normal_force", "contact_radius", "elastic_energy"):
-        assert getattr(found, name)[touching] == near(getattr(alone, name)[touching]), name
+        assert getattr(result, name)[touching] == near(getattr(alone, name)[touching]), name
 
 
 @repeatable
 @given(scenes(), paths)
 def test_dissipated_energy_never_decreases(scene: Scene, path: list[tuple[float, float]]) -> None:
-    found = solve(scene, *controls(scene, path)[:2], samples_per_step=5)
-    assert np.all(found.dissipation >= 0)
-    assert np.all(np.diff(found.dissipated_energy) >= 0)
-    assert np.all(found.tangential_energy >= 0)
-    total = found.dissipated_energy[-1]
-    assert np.cumsum(found.dissipation) == near(found.dissipated_energy, 1e-14 * total)
+    result = solve(scene, *controls(scene, path)[:2], samples_per_step=5)
+    assert np.all(result.dissipation >= 0)
+    assert np.all(np.diff(result.dissipated_energy) >= 0)
+    assert np.all(result.tangential_energy >= 0)
+    total = result.dissipated_energy[-1]
+    assert np.cumsum(result.dissipation) == near(result.dissipated_energy, 1e-14 * total)
 
 
 @repeatable
@@ -110,14 +110,14 @@ def test_dissipated_energy_never_decreases(scene: Scene, path: list[tuple[float,
 def test_repeated_loop_closes_and_dissipates(scene: Scene, loop: list[tuple[float, float]]) -> None:
     """Each load step clips the springs' loads. Clipping is idempotent: the second round repeats."""
     d, u, depth = controls(scene, loop * 3)
-    found = solve(scene, d, u)
+    result = solve(scene, d, u)
     count = len(loop)
-    size = MU * np.max(found.normal_force)
-    force, stored = found.tangential_force, found.tangential_energy
+    size = MU * np.max(result.normal_force)
+    force, stored = result.tangential_force, result.tangential_energy
     assert force[count : 2 * count] == near(force[2 * count :], 1e-12 * size)
     energy = size * SHIFT * depth
     assert stored[count : 2 * count] == near(stored[2 * count :], 1e-12 * energy)
-    lost = found.dissipation
+    lost = result.dissipation
     assert lost[count : 2 * count] == near(lost[2 * count :], 1e-12 * energy)
     # All work is dissipated, since the stored energy returns to its value.
     assert np.sum(lost[count : 2 * count]) >= 0
@@ -136,13 +136,13 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
         low, width = edges[:-1], np.diff(edges)
         at = (low[:, None] + width[:, None] * (NODES + 1) / 2).ravel()
         times = np.unique(np.concatenate([at, knots[1:]]))
-        found = solve(scene, np.interp(times, knots, all_d), np.interp(times, knots, all_u))
-        force = found.tangential_force[np.searchsorted(times, at)].reshape(-1, NODES.size)
+        result = solve(scene, np.interp(times, knots, all_d), np.interp(times, knots, all_u))
+        force = result.tangential_force[np.searchsorted(times, at)].reshape(-1, NODES.size)
         leg = np.minimum(low.astype(int), len(d) - 1)
         part = force @ WEIGHTS / 2 * width * (all_u[leg + 1] - all_u[leg])
         if last:
             total = np.append(0.0, np.cumsum(part))
-            return total[np.searchsorted(edges, knots[1:])], found
+            return total[np.searchsorted(edges, knots[1:])], result
         # The last coefficients of a smooth function are small; a kink leaves several large ones.
         rough = np.sum(np.abs(force @ LAST), axis=1) * width
         chosen = np.flatnonzero(rough > 1e-13 * np.max(np.abs(force)))
@@ -156,8 +156,8 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
 def test_work_is_stored_or_dissipated(scene: Scene, path: list[tuple[float, float]]) -> None:
     d, u, _ = controls(scene, path)
     done, _ = work(scene, d, u)
-    found = solve(scene, d, u)
-    balance = found.tangential_energy + found.dissipated_energy
+    result = solve(scene, d, u)
+    balance = result.tangential_energy + result.dissipated_energy
     assert balance == near(done, 1e-10 * np.max(np.abs(balance)), rel=0)
 
 

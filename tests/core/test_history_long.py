@@ -46,13 +46,13 @@ def random_path(seed: int, steps: int = STEPS) -> tuple[Array, Array]:
 @chosen
 def test_erasing_step_ends_on_the_curve_of_first_loading(name: str) -> None:
     d, u = random_path(3)
-    found = solve(name, indentation_depth=d, tangential_displacement=u)
+    result = solve(name, indentation_depth=d, tangential_displacement=u)
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
     # The path's own rounded double.
     exact = slip.solve(at, "tangential_displacement", float(u[BATCH - 1]), energy=False)
     expected = float(exact.values["tangential_force"])
-    returned = found.tangential_force[BATCH - 1 :: BATCH]
+    returned = result.tangential_force[BATCH - 1 :: BATCH]
     assert returned.size == STEPS // BATCH
     assert returned == pytest.approx(np.full(returned.size, expected), rel=1e-12, abs=0)
 
@@ -60,7 +60,7 @@ def test_erasing_step_ends_on_the_curve_of_first_loading(name: str) -> None:
 @chosen
 def test_results_after_an_erasing_step_are_independent_of_the_past(name: str) -> None:
     d, u = random_path(4, STEPS // 5)
-    found = solve(name, indentation_depth=d, tangential_displacement=u)
+    result = solve(name, indentation_depth=d, tangential_displacement=u)
     for batch in (1, 10, 19):
         part = slice(batch * BATCH, (batch + 1) * BATCH)
         fresh = solve(
@@ -70,9 +70,9 @@ def test_results_after_an_erasing_step_are_independent_of_the_past(name: str) ->
         )
         most = MATERIAL.mu * np.max(fresh.normal_force)
         expected = pytest.approx(fresh.tangential_force[2:], rel=0, abs=1e-12 * most)
-        assert found.tangential_force[part] == expected
+        assert result.tangential_force[part] == expected
         lost = pytest.approx(fresh.dissipation[2:], rel=1e-9, abs=1e-12 * most * MOST)
-        assert found.dissipation[part] == lost
+        assert result.dissipation[part] == lost
 
 
 def anchors(d: Array, u: Array, touch: Array) -> Array:
@@ -100,8 +100,8 @@ def test_final_state_equals_that_of_drift_free_springs(name: str) -> None:
     d[-1] = DEPTH / 2
     state = solve(name, indentation_depth=d, tangential_displacement=u).state
     touch = np.linspace(0.0, 0.999 * d[-1], 97) if name != "flat-punch" else np.zeros(1)
-    found = np.interp(touch, state.depth, state.load)
-    assert found == pytest.approx(anchors(d, u, touch), rel=0, abs=1e-12 * SIZE)
+    result = np.interp(touch, state.depth, state.load)
+    assert result == pytest.approx(anchors(d, u, touch), rel=0, abs=1e-12 * SIZE)
     assert state.depth.size <= 64
 
 

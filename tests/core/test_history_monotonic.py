@@ -75,14 +75,14 @@ def disagreements(
     pairs = [(by, along) for by in loads for along in full]
     # Pairs of prescribed displacements, or forces, come first.
     pairs = [pairs[i] for i in (0, 3, 1, 2)][:controls]
-    found = []
+    computed = []
     for by, along in pairs:
         pressed = normal.solve(profile, E_STAR, **{by: loads[by]})
         for ratio in ratios:
             if ratio <= 1 or along == "tangential_displacement":
                 monotonic = tangential.solve(pressed, G_STAR, MU, **{along: ratio * full[along]})
-                found += single_load_disagreements(profile, monotonic, by, along, ratio)
-    return found
+                computed += single_load_disagreements(profile, monotonic, by, along, ratio)
+    return computed
 
 
 def single_load_disagreements(
@@ -95,29 +95,29 @@ def single_load_disagreements(
     material = monotonic.normal.e_star, monotonic.g_star, monotonic.friction_coefficient
     way = history.solve(profile, *material, **points)
     case = f"{by} {pressed:.3g}, {along} {ratio:g} of full slip"
-    found = []
+    computed = []
     for name in ("tangential_force", "tangential_displacement", "dissipated_energy"):
         expected, result = float(getattr(monotonic, name)), float(getattr(way, name)[1])
         error = abs(result - expected) / abs(expected) if expected else abs(result)
         # Neither estimate includes the rounding error of the load where a displacement is the
         # result.
         if not error <= min(1e-9, max(way.error_estimate, monotonic.error_estimate)):
-            found.append(f"{case}: {name} {error:.1e}")
+            computed.append(f"{case}: {name} {error:.1e}")
     if way.regime[1] != str(monotonic.regime):
-        found.append(f"{case}: {way.regime[1]}, not {monotonic.regime}")
+        computed.append(f"{case}: {way.regime[1]}, not {monotonic.regime}")
     # Without a front the annulus is too narrow to resolve; at full slip the last bit decides.
     fronts = [*way.slip_fronts.tolist(), float(monotonic.normal.contact_radius)]
     if ratio < 1 and not np.isclose(fronts[0], float(monotonic.stick_radius), rtol=1e-9, atol=0.0):
-        found.append(f"{case}: stick radius {fronts[0]}, not {monotonic.stick_radius}")
+        computed.append(f"{case}: stick radius {fronts[0]}, not {monotonic.stick_radius}")
     if not (way.tangential_energy[0] == 0 and way.tangential_energy[1] > 0):
-        found.append(f"{case}: tangential energies {way.tangential_energy}")
+        computed.append(f"{case}: tangential energies {way.tangential_energy}")
     if ratio <= 1:
         given: Any = {by: pressed, along: pushed}
         loops = history.cycles(profile, *material, **given, count=2).energy_per_cycle
         quarter = float(monotonic.dissipated_energy)
         if not np.allclose(loops, 4 * quarter, rtol=1e-9, atol=0.0):
-            found.append(f"{case}: cycles {loops}, not {4 * quarter}")
-    return found
+            computed.append(f"{case}: cycles {loops}, not {4 * quarter}")
+    return computed
 
 
 @pytest.mark.every(2)
@@ -135,8 +135,8 @@ def test_single_load_on_tables_agrees_with_tangential_query(
     ratios = RATIOS if count < 100 else (1e-9, 1e-3, 0.2, 0.9, 1.0, 1.5)
     profile = table(count, interpolation, shape)
     controls = 4 if count < 100 else 2
-    found = [disagreements(profile, depth, ratios, controls) for depth in (0.028, 0.2)]
-    assert not found[0] + found[1]
+    computed = [disagreements(profile, depth, ratios, controls) for depth in (0.028, 0.2)]
+    assert not computed[0] + computed[1]
 
 
 @pytest.mark.parametrize(("count", "ratio"), [(41, 0.24), (101, 0.12)])
@@ -189,7 +189,7 @@ def test_dissipation_of_forces_past_a_break_and_down_to_the_axis(
     pushed = 0.4 * force * share
     contact = normal.solve(profile, 1.0, normal_force=force)
     once = float(tangential.solve(contact, 0.8, 0.4, tangential_force=pushed).dissipated_energy)
-    found = history.solve(
+    computed = history.solve(
         profile,
         1.0,
         0.8,
@@ -197,5 +197,5 @@ def test_dissipation_of_forces_past_a_break_and_down_to_the_axis(
         normal_force=[force] * 3,
         tangential_force=[0.0, pushed, -pushed],
     )
-    bound = found.error_estimate
-    assert found.dissipated_energy == pytest.approx([0.0, once, 3 * once], rel=bound, abs=0)
+    bound = computed.error_estimate
+    assert computed.dissipated_energy == pytest.approx([0.0, once, 3 * once], rel=bound, abs=0)

@@ -68,11 +68,11 @@ def random_path(seed: int, steps: int = 50) -> tuple[Array, Array]:
     return d, u
 
 
-def largest_difference(found: Any, reference: Any) -> float:
+def largest_difference(result: Any, reference: Any) -> float:
     """Largest difference, each relative to the largest value of its kind."""
     return max(
         float(
-            np.max(np.abs(getattr(found, name) - getattr(reference, name)))
+            np.max(np.abs(getattr(result, name) - getattr(reference, name)))
             / np.max(np.abs(getattr(reference, name)))
         )
         for name in NAMES
@@ -83,11 +83,11 @@ def largest_difference(found: Any, reference: Any) -> float:
 def test_fifty_load_steps_match_the_springs(name: str) -> None:
     d, u = random_path(1)
     assert np.any(d[5:-5] <= 0)
-    found = solve(name, indentation_depth=d, tangential_displacement=u)
+    result = solve(name, indentation_depth=d, tangential_displacement=u)
     errors = []
     for count in (SPRINGS // 100, SPRINGS // 10, SPRINGS):
         foundation = springs.foundation(PROFILES[name], float(np.max(d)), count)
-        errors.append(largest_difference(found, springs.simulate(foundation, MATERIAL, d, u)))
+        errors.append(largest_difference(result, springs.simulate(foundation, MATERIAL, d, u)))
     assert errors[-1] <= SPRING_ERROR, errors
     if name != "flat-punch":
         # The difference is the error of the springs and converges accordingly, by up to a hundred.
@@ -98,15 +98,15 @@ def test_fifty_load_steps_match_the_springs(name: str) -> None:
 @pytest.mark.parametrize("name", ["paraboloid", "truncated-cone"])
 def test_samples_within_a_load_step_match_the_springs(name: str) -> None:
     d, u = random_path(3, 20)
-    found = solve(name, indentation_depth=d, tangential_displacement=u, samples_per_step=4)
+    result = solve(name, indentation_depth=d, tangential_displacement=u, samples_per_step=4)
     at = np.arange(1, 81) / 4
     fine_d = np.interp(at, np.arange(21), np.append(0.0, d))
     fine_u = np.interp(at, np.arange(21), np.append(0.0, u))
-    assert found.indentation_depth == pytest.approx(fine_d, rel=1e-13, abs=1e-15)
-    assert found.tangential_displacement == pytest.approx(fine_u, rel=1e-13, abs=1e-15)
+    assert result.indentation_depth == pytest.approx(fine_d, rel=1e-13, abs=1e-15)
+    assert result.tangential_displacement == pytest.approx(fine_u, rel=1e-13, abs=1e-15)
     foundation = springs.foundation(PROFILES[name], float(np.max(d)), SPRINGS)
     assert (
-        largest_difference(found, springs.simulate(foundation, MATERIAL, fine_d, fine_u))
+        largest_difference(result, springs.simulate(foundation, MATERIAL, fine_d, fine_u))
         <= SPRING_ERROR
     )
 
@@ -121,9 +121,9 @@ def test_state_matches_each_spring(name: str) -> None:
         foundation = springs.foundation(PROFILES[name], float(np.max(d)), 2000)
         load = springs.simulate(foundation, MATERIAL, d, u).load
         inside = foundation.touch < d[-1]
-        found = np.interp(foundation.touch[inside], state.depth, state.load)
+        result = np.interp(foundation.touch[inside], state.depth, state.load)
         size = MATERIAL.mu * MATERIAL.e_star * DEPTH
-        assert found == pytest.approx(load[inside], rel=1e-12, abs=1e-13 * size)
+        assert result == pytest.approx(load[inside], rel=1e-12, abs=1e-13 * size)
         assert state.depth[0] == 0
         assert state.depth[-1] == state.indentation_depth
         assert state.indentation_depth == pytest.approx(d[-1], rel=1e-14, abs=0)
@@ -168,19 +168,19 @@ def test_springs_reproduce_the_prescribed_forces(name: str, normal: str, tangent
     foundation = springs.foundation(PROFILES[name], DEPTH, 20_000)
     errors = []
     for samples in (8, 32):
-        found = solve(name, **controls, samples_per_step=samples)
+        result = solve(name, **controls, samples_per_step=samples)
         ends = slice(samples - 1, None, samples)
         for control, given in controls.items():
-            assert getattr(found, control)[ends] == pytest.approx(given, rel=1e-12, abs=0), control
+            assert getattr(result, control)[ends] == pytest.approx(given, rel=1e-12, abs=0), control
         reference = springs.simulate(
-            foundation, MATERIAL, found.indentation_depth, found.tangential_displacement
+            foundation, MATERIAL, result.indentation_depth, result.tangential_displacement
         )
-        errors.append(largest_difference(found, reference))
+        errors.append(largest_difference(result, reference))
         line = np.arange(1, 4 * samples + 1) / samples
         for control, given in controls.items():
             straight = np.interp(line, np.arange(5), np.append(0.0, given))
             size = np.max(np.abs(straight))
-            assert getattr(found, control) == pytest.approx(straight, rel=1e-11, abs=1e-12 * size)
+            assert getattr(result, control) == pytest.approx(straight, rel=1e-11, abs=1e-12 * size)
             borne = getattr(reference, control, straight)
             assert borne == pytest.approx(straight, rel=0, abs=size / samples)
     # The error of a chord is of second order in its length.

@@ -43,7 +43,7 @@ TARGETS = np.array([0.0, 1e-12, 0.3, 1.9999999, 2.0000001, 2.01, 7.0, 3e4])
 def test_inverse_from_any_start(name: str, start: float, end: float) -> None:
     function, slope, inverse = CASES[name]
     low, high = np.zeros(TARGETS.size), np.full(TARGETS.size, end)
-    found = invert(
+    result = invert(
         function,
         lambda s, value: s * slope(s) / value,
         TARGETS,
@@ -54,8 +54,8 @@ def test_inverse_from_any_start(name: str, start: float, end: float) -> None:
     )
     root = inverse(TARGETS)
     condition = np.maximum(function(root) / (root * slope(root)), 1.0)
-    assert np.all(np.abs(found - root) <= 4e-15 * root * np.fmax(condition, 1.0))
-    assert found[0] == 0
+    assert np.all(np.abs(result - root) <= 4e-15 * root * np.fmax(condition, 1.0))
+    assert result[0] == 0
 
 
 def test_bracket_encloses_the_root_for_wrong_slopes() -> None:
@@ -67,11 +67,11 @@ def test_bracket_encloses_the_root_for_wrong_slopes() -> None:
         return s * s * s
 
     one = np.ones(1)
-    found = invert(
+    result = invert(
         cube, lambda _s, _value: np.full(1, 1e-3), 8 * one, 3 * one, one / 8, 64 * one, "cube"
     )
     # The last step, at most 1e-10, is a Newton step and is as wrong as the slope.
-    assert found[0] == pytest.approx(2.0, rel=1e-10, abs=0)
+    assert result[0] == pytest.approx(2.0, rel=1e-10, abs=0)
     low, high = 1 / 8, 64.0
     for (s,) in seen:
         assert low * (1 - 1e-10) <= s <= high * (1 + 1e-10)

@@ -89,8 +89,8 @@ def test_slip_moment_of_a_narrow_and_of_a_wide_annulus(
         with mpmath.workdps(DIGITS):
             exact = slip_moment(terms, mpmath.mpf(a), mpmath.mpf(c))
         ends = (number(one) for one in (a, a - c, c))
-        found = float(slip_energy.slip_moment(series(*terms), *ends))
-        assert found == pytest.approx(float(exact), rel=1e-13, abs=0)
+        result = float(slip_energy.slip_moment(series(*terms), *ends))
+        assert result == pytest.approx(float(exact), rel=1e-13, abs=0)
 
 
 def slip_moment(terms: tuple[tuple[float, float], ...], a: mpmath.mpf, c: mpmath.mpf) -> mpmath.mpf:
@@ -125,8 +125,8 @@ def test_largest_admissible_cancellation(exponents: tuple[float, float, float]) 
         )
     terms = log_terms(zip((1.0, float(p), float(q)), exponents, strict=True))
     assert first_negative_radius(terms) == np.inf
-    found = 1 + cancellation(terms, 0.0)
-    assert float(worst) * 0.999 <= found <= float(worst) * 2
+    result = 1 + cancellation(terms, 0.0)
+    assert float(worst) * 0.999 <= result <= float(worst) * 2
 
 
 @pytest.mark.every(3)
@@ -136,13 +136,13 @@ def test_displacement_outside_a_series_of_small_and_large_powers(rtol: float) ->
     a, radii = 1.0, np.array([1.0, 1.001, 1.5, 4.0])
     contact = normal.solve(series(*MIXED), 1.0, contact_radius=a)
     with counted() as count:
-        found = fields.normal_displacement(contact, radii, rtol=rtol)
+        result = fields.normal_displacement(contact, radii, rtol=rtol)
     with mpmath.workdps(30):
         exact = [
             2 / mpmath.pi * mpmath.fsum(c * kappa(n) * outer(n, mpmath.mpf(r)) for c, n in MIXED)
             for r in radii
         ]
-    np.testing.assert_allclose(found, [float(value) for value in exact], rtol=rtol)
+    np.testing.assert_allclose(result, [float(value) for value in exact], rtol=rtol)
     assert count.integrand < 10_000 * radii.size
 
 

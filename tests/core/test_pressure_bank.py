@@ -35,9 +35,9 @@ def allowed(case: dict[str, Any], index: int) -> float:
 def failures_of(case: dict[str, Any]) -> Iterator[str]:
     load = {case["control"]: case["load"]}
     contact = solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
-    found = fields.pressure(contact, case["radius"], rtol=1e-13)
+    result = fields.pressure(contact, case["radius"], rtol=1e-13)
     for index, (radius, expected) in enumerate(zip(case["radius"], case["expected"], strict=True)):
-        error = relative_error(float(found[index]), expected)
+        error = relative_error(float(result[index]), expected)
         bound = BOUND + allowed(case, index)
         if not error <= bound:
             yield f"r = {radius!r}: {error:.2e} > {bound:.2e}"

@@ -27,9 +27,9 @@ def failures_of(case: dict[str, Any]) -> Iterator[str]:
     profile = profile_from(case["profile"])
     derived = case["profile"]["kind"] in DERIVED_BREAK
     for name in ("f", "df", "g", "dg"):
-        found = getattr(profile, name)(x)
+        result = getattr(profile, name)(x)
         for index, expected in enumerate(case[name]):
-            error = relative_error(float(found[index]), expected)
+            error = relative_error(float(result[index]), expected)
             bound = BOUND + (allowance(case[f"condition_{name}"][index]) if derived else 0.0)
             if not error <= bound:
                 yield f"{name} at {x[index]!r}: {error:.2e} > {bound:.2e}"

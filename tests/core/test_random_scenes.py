@@ -15,5 +15,5 @@ CASES = 8
 def test_fields_meet_the_tolerance(seed: int) -> None:
     draw = Draw(seed)
     for _ in range(CASES):
-        found = [str(miss) for miss in misses(scene(draw))]
-        assert not found, found
+        result = [str(miss) for miss in misses(scene(draw))]
+        assert not result, result

@@ -181,24 +181,24 @@ def test_small_loads_on_a_table_with_a_sharp_flat(force: float) -> None:
     # The contact edge then differs from the flat's edge by less than the rounding error of either.
     r, f = np.array([0.0, 0.5, 0.7, 1.0, 1.4]), np.array([0.0, 0.0, 0.06, 0.15, 0.27])
     table = profiles.Tabulated(r, f, breaks=(0.5,))
-    found = normal.solve(table, 1.0, normal_force=force)
+    result = normal.solve(table, 1.0, normal_force=force)
     # A truncated cone: g = t x arccos(b/x) and F_N/E* = t (a^2 arccos(b/a) + b s) beyond b.
-    s = float(found.coordinate)
+    s = float(result.coordinate)
     phi = np.arctan2(s, 0.5)
     a = np.hypot(0.5, s)
     assert 0.3 * (a * a * phi + 0.5 * s) == pytest.approx(force, rel=1e-13, abs=0)
-    assert float(found.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13, abs=0)
+    assert float(result.indentation_depth) == pytest.approx(0.3 * a * phi, rel=1e-13, abs=0)
 
 
 def test_traction_of_a_power_near_the_axis() -> None:
     """Near the axis the kernel becomes constant."""
     contact = normal.solve(profiles.Power(1.0, 1.7), 1.0, contact_radius=1.0)
     tangential_load = tangential.solve(contact, 1.0, 0.3, stick_radius=0.5)
-    found = fields.shear_stress(tangential_load, [0.0, 1e-50, 1e-40, 1e-30])
+    result = fields.shear_stress(tangential_load, [0.0, 1e-50, 1e-40, 1e-30])
     # Eq. (5.70) at r = 0: (mu E* n kappa C/pi) (1 - c^(n - 1))/(n - 1).
     n, kappa = 1.7, float(np.sqrt(np.pi) * gamma(1.85) / gamma(1.35))
     expected = 0.3 * n * kappa / np.pi * (1 - 0.5 ** (n - 1)) / (n - 1)
-    np.testing.assert_allclose(found, expected, rtol=1e-13)
+    np.testing.assert_allclose(result, expected, rtol=1e-13)
 
 
 @pytest.mark.parametrize("ratio", [2e8, 1e18])
@@ -206,8 +206,10 @@ def test_far_field_is_that_of_a_point_force(ratio: float) -> None:
     """F_N/(pi E* r); the next term is (a/r)^2. Rounding once moved nodes past the equator."""
     contact = normal.solve(profiles.Ellipsoid(1e-10, 2.6), 3.0, indentation_depth=1e-9)
     r = ratio * float(contact.contact_radius)
-    found = float(fields.normal_displacement(contact, [r])[0])
-    assert found == pytest.approx(float(contact.normal_force) / (3.0 * np.pi * r), rel=1e-13, abs=0)
+    result = float(fields.normal_displacement(contact, [r])[0])
+    assert result == pytest.approx(
+        float(contact.normal_force) / (3.0 * np.pi * r), rel=1e-13, abs=0
+    )
 
 
 def test_loss_with_a_steep_flank() -> None:
@@ -245,10 +247,10 @@ def test_incipient_slip_of_a_contact_that_ends_at_a_break(profile: profiles.Prof
     a = float(profile.breaks[0])
     contact = normal.solve(profile, 1.0, contact_radius=a)
     force = 1e-200 * float(contact.normal_force)
-    found = tangential.solve(contact, 0.8, 0.5, tangential_force=force)
+    result = tangential.solve(contact, 0.8, 0.5, tangential_force=force)
     slope = float(profile.dg(np.array([a * (1 - 2e-16)]))[0])
-    assert float(found.slip_width) == pytest.approx(force / (a * slope), rel=1e-14, abs=0)
-    stress = float(fields.shear_stress(found, [0.0])[0])
+    assert float(result.slip_width) == pytest.approx(force / (a * slope), rel=1e-14, abs=0)
+    stress = float(fields.shear_stress(result, [0.0])[0])
     assert stress == pytest.approx(force / (2 * np.pi * a * a), rel=1e-10, abs=0)
 
 
@@ -276,9 +278,9 @@ def test_pressure_on_the_axis_of_a_small_tip(
 def test_slip_near_the_axis_in_full_slip() -> None:
     """In full slip everything slips by u_x - mu (E*/G*) d; the pole at R is far away."""
     contact = normal.solve(profiles.SphericalTipCone(1e5, 1e16), 1.0, indentation_depth=1.1)
-    found = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
+    result = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
     lag = 3.0 - 0.5 / 0.8 * 1.1
-    assert fields.slip(found, [0.0, 1e-50]) == pytest.approx(-lag, rel=1e-14, abs=0)
+    assert fields.slip(result, [0.0, 1e-50]) == pytest.approx(-lag, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize("slope", [3.0, 30.0, 300.0])
@@ -295,10 +297,10 @@ def test_displacement_outside_a_steep_spherical_tip_cone(slope: float) -> None:
     with mpmath.workdps(40):
         slips = [float(slip_reference.slip(at, mpmath.mpf(0.05), mpmath.mpf(r))) for r in inside]
         beside = [float(slip_reference.displacement(at, mpmath.mpf(r))) for r in outside]
-    found = fields.slip(tangential_contact, inside, rtol=1e-12)
-    np.testing.assert_allclose(found, slips, rtol=1e-11)
-    found = fields.normal_displacement(contact, outside, rtol=1e-12)
-    np.testing.assert_allclose(found, beside, rtol=1e-11)
+    result = fields.slip(tangential_contact, inside, rtol=1e-12)
+    np.testing.assert_allclose(result, slips, rtol=1e-11)
+    result = fields.normal_displacement(contact, outside, rtol=1e-12)
+    np.testing.assert_allclose(result, beside, rtol=1e-11)
 
 
 @pytest.mark.parametrize("rtol", [1e-7, 1e-9, 1e-10, 1e-11, 1e-12])
@@ -311,10 +313,10 @@ def test_shear_stress_of_a_narrow_annulus_meets_the_tolerance(gap: float, rtol: 
     tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
     places = [0.0, 0.34, 0.9, b - 0.1 * gap, 1 - 0.7 * gap, 1 - 0.2 * gap]
     # One by one, since neighbouring radii would share a rule.
-    found = [fields.shear_stress(tangential_contact, [r], rtol=rtol).item() for r in places]
+    result = [fields.shear_stress(tangential_contact, [r], rtol=rtol).item() for r in places]
     shape, ends = shape_of(given), (mpmath.mpf(1), mpmath.mpf(c))
     with mpmath.workdps(reference.QUAD_DIGITS):
-        for r, tau in zip(map(mpmath.mpf, places), found, strict=True):
+        for r, tau in zip(map(mpmath.mpf, places), result, strict=True):
             parts = [reference.pressure(shape, r, end) for end in ends if r < end]
             exact = parts[0] - sum(parts[1:])
             # The width of the annulus carries its own rounding error.
@@ -343,10 +345,10 @@ def test_traction_with_stick_edge_next_to_a_break(given: dict[str, Any], b: floa
         radii = [c * (1 + part * gap) for part in (-3.0, -1.5, -0.3, -0.001, 0.001, 1.0)]
         contact = normal.solve(profile, 1.0, contact_radius=1.0)
         tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
-        found = fields.shear_stress(tangential_contact, radii, rtol=1e-12)
+        result = fields.shear_stress(tangential_contact, radii, rtol=1e-12)
         with mpmath.workdps(40):
             exact = [slip_reference.traction(at, mpmath.mpf(c), mpmath.mpf(r)) for r in radii]
-        np.testing.assert_allclose(found, [float(tau) for tau in exact], rtol=1e-11)
+        np.testing.assert_allclose(result, [float(tau) for tau in exact], rtol=1e-11)
 
 
 @pytest.mark.parametrize("part", [0.1, 1.4])
@@ -361,14 +363,14 @@ def test_stresses_of_a_contact_edge_next_to_its_tip(part: float) -> None:
         tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
         radii = [0.0, 0.1, 0.3 * (1 - 20 * gap), 0.3 * (1 - gap), 0.3 * (1 + gap / 3)]
         setting = slip_reference.setting(given, "contact_radius", a, at)
-        for stick, found in (
+        for stick, result in (
             (0.0, fields.pressure(contact, radii, rtol=1e-12)),
             (c, fields.shear_stress(tangential_contact, radii, rtol=1e-12)),
         ):
             with mpmath.workdps(40):
                 edge = mpmath.mpf(stick)
                 exact = [slip_reference.traction(setting, edge, mpmath.mpf(r)) for r in radii]
-            np.testing.assert_allclose(found, [float(value) for value in exact], rtol=1e-11)
+            np.testing.assert_allclose(result, [float(value) for value in exact], rtol=1e-11)
 
 
 def test_polyline_after_arcs_has_no_negative_segment() -> None:

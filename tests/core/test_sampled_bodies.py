@@ -93,5 +93,5 @@ def test_error_order_of_a_smooth_table(body: Body, intervals: int) -> None:
         return mp.quad(lambda t: body.source(x * mp.sin(t)), [0, mp.pi / 2], maxdegree=4) / x
 
     pressure = mp.quad(slope_over_x, [0, leg], maxdegree=4) / mp.pi
-    found = fields.pressure(contact, [R])[0]
-    assert abs(found - float(pressure)) <= step**OF_PRESSURE * float(contact.mean_pressure)
+    result = fields.pressure(contact, [R])[0]
+    assert abs(result - float(pressure)) <= step**OF_PRESSURE * float(contact.mean_pressure)

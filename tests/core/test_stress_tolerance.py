@@ -57,11 +57,11 @@ def reference_kernel(name: str, stick: float | None) -> tuple[mpf, ...]:
     """(1/pi) int g'/sqrt(x^2 - r^2) dx over max(r, c) < x < 1 at the checked radii."""
     shape, c = shape_of((PROFILES | POWERS)[name]), mpf(stick or 0.0)
     with mp.workdps(reference.QUAD_DIGITS):
-        found = []
+        result = []
         for r in check_radii(name, stick or 0.0).tolist():
             whole = reference.pressure(shape, mpf(r), mpf(1))
-            found.append(whole - reference.pressure(shape, mpf(r), c) if r < c else whole)
-        return tuple(found)
+            result.append(whole - reference.pressure(shape, mpf(r), c) if r < c else whole)
+        return tuple(result)
 
 
 def largest_error(name: str, stick: float | None, rtol: float) -> float:

@@ -50,12 +50,12 @@ def test_hertz_on_the_axis(nu: float) -> None:
     contact = normal_contact(Paraboloid(2.0))
     peak = float(contact.maximum_pressure)
     z = np.concatenate([[0.0], np.logspace(-13, 2, 50)])
-    found = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
+    result = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
     radial = -(1 + nu) * (1 - z * np.arctan2(1, z)) + 0.5 / (1 + z * z)
-    assert np.abs(found.zz / peak + 1 / (1 + z * z)).max() < 1e-13
-    assert np.abs(found.xx / peak - radial).max() < 1e-13
-    assert np.abs(found.yy / peak - radial).max() < 1e-13
-    assert np.abs(found.maximum_shear - np.abs(found.zz - found.xx) / 2).max() < 1e-13 * peak
+    assert np.abs(result.zz / peak + 1 / (1 + z * z)).max() < 1e-13
+    assert np.abs(result.xx / peak - radial).max() < 1e-13
+    assert np.abs(result.yy / peak - radial).max() < 1e-13
+    assert np.abs(result.maximum_shear - np.abs(result.zz - result.xx) / 2).max() < 1e-13 * peak
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
@@ -63,35 +63,35 @@ def test_sliding_sphere_on_the_surface(nu: float) -> None:
     """Hamilton 1983: sigma_xx = -mu p_0 pi (4 + nu) x/8 inside the contact, due to the traction."""
     contact, x = tangential_contact(Paraboloid(2.0), 0.0), np.linspace(-1, 1, 41)
     peak = float(contact.normal.maximum_pressure)
-    found = stress(contact, x, 0.0, 0.0, poissons_ratio=nu, body=2, rtol=EXACT)
+    result = stress(contact, x, 0.0, 0.0, poissons_ratio=nu, body=2, rtol=EXACT)
     alone = stress(contact.normal, x, 0.0, 0.0, poissons_ratio=nu, rtol=EXACT)
-    by_traction = (found.xx - alone.xx) / (FRICTION * peak)
+    by_traction = (result.xx - alone.xx) / (FRICTION * peak)
     assert np.abs(by_traction + pi * (4 + nu) / 8 * x).max() < 2e-13
-    across = (found.yy - alone.yy) / (FRICTION * peak)
+    across = (result.yy - alone.yy) / (FRICTION * peak)
     assert np.abs(across + 3 * pi * nu / 8 * x).max() < 2e-13
 
 
 def test_cone_on_the_axis() -> None:
     """Sneddon 1948: sigma_zz on the axis is -p_m [arcsinh(1/z) + ...]."""
     contact, z, nu = normal_contact(Cone(0.2)), np.logspace(-8, 2, 40), 0.3
-    found = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
+    result = stress(contact, 0.0, 0.0, z, poissons_ratio=nu, rtol=EXACT)
     slope = E_STAR / pi * (pi / 2 * 0.2)
     # int_0^1 x/(x^2 + z^2) dx and int_0^1 2 x z^2/(x^2 + z^2)^2 dx.
     first = np.log1p(1 / (z * z)) / 2
     trace = -2 * (1 + nu) * slope * first
     vertical = -slope * (first + 1 / (1 + z * z))
     largest = np.abs(vertical).max()
-    assert np.abs(found.zz - vertical).max() < 1e-13 * largest
-    assert np.abs(3 * found.mean_stress - trace).max() < 1e-13 * largest
+    assert np.abs(result.zz - vertical).max() < 1e-13 * largest
+    assert np.abs(3 * result.mean_stress - trace).max() < 1e-13 * largest
 
 
 def test_flat_punch() -> None:
     """Sneddon 1946: sigma_zz = -p_m (1 + 3 z^2)/(2 (1 + z^2)^2) on the axis."""
     contact, z = normal_contact(FlatPunch(1.0)), np.linspace(0, 5, 30)
-    found = stress(contact, 0.0, 0.0, z, poissons_ratio=0.3)
+    result = stress(contact, 0.0, 0.0, z, poissons_ratio=0.3)
     mean = float(contact.mean_pressure)
     expected = -mean * (1 + 3 * z * z) / (2 * np.square(1 + z * z))
-    assert np.abs(found.zz - expected).max() < 1e-14 * mean
+    assert np.abs(result.zz - expected).max() < 1e-14 * mean
     edge = stress(contact, 1.0, 0.0, 0.0, poissons_ratio=0.3)
     assert np.isinf(edge.von_mises)
     assert np.isinf(edge.maximum_shear)
@@ -140,11 +140,11 @@ def test_point_force_in_the_far_field(profile: Profile) -> None:
     for far in (1e6, 1e9):
         x, y, z = far * rng.normal(size=(3, 30))
         z = np.abs(z)
-        found = np.array(stress(contact, x, y, z, poissons_ratio=0.3, body=2, rtol=EXACT))
+        result = np.array(stress(contact, x, y, z, poissons_ratio=0.3, body=2, rtol=EXACT))
         forces = float(contact.normal.normal_force), float(contact.tangential_force)
         expected = point_force(x, y, z, 0.3, *forces)
         # The next term is smaller by (a/r)^2.
-        assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+        assert np.abs(result - expected).max() < 1e-11 * np.abs(expected).max()
 
 
 POINTS = np.array([[0.3, 0.2, 0.6], [-0.9, 0.4, 0.5], [1.4, -0.3, 0.7], [0.05, 0.0, 1.2]])
@@ -186,8 +186,8 @@ def test_superposed_point_forces(profile: Profile) -> None:
         contact = tangential_contact(profile, 0.7)
     stops = [0.0, 1.0] if isinstance(profile, FlatPunch) else [0.0, 0.5, 0.7, 1.0]
     expected = superposed(contact.normal, contact, stops)
-    found = np.array(stress(contact, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
-    assert np.abs(found - expected).max() < 2e-10 * np.abs(found).max()
+    result = np.array(stress(contact, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
+    assert np.abs(result - expected).max() < 2e-10 * np.abs(result).max()
 
 
 TABLE = Tabulated(np.linspace(0, 1.4, 29), np.linspace(0, 1.4, 29) ** 2 / 4)
@@ -225,13 +225,13 @@ def test_tables_that_are_exact(flat: float, count: int) -> None:
     x, z = rng.uniform(-1.6, 1.6, 400), 10 ** rng.uniform(-12, 1, 400)
     x[:100] = rng.choice([0.0, 0.7, 1.0], 100) + rng.choice([-1, 1], 100) * z[:100]
     z[100:150] = 0.0
-    found, expected = (
+    result, expected = (
         np.array(
             stress(tangential_contact(one, 0.7), x, 0.1 * x, z, poissons_ratio=0.3, rtol=EXACT)
         )
         for one in (table, body)
     )
-    assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+    assert np.abs(result - expected).max() < 1e-11 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("name", PATHS)
@@ -246,9 +246,9 @@ def test_end_of_a_history_by_superposed_point_forces(profile: Profile, name: str
         breaks = profile.r[1:20].tolist()
     stops = sorted({0.0, 1.0, *fronts, *breaks})
     expected = superposed(contact, history.state, stops)
-    found = np.array(stress(history.state, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
+    result = np.array(stress(history.state, *POINTS.T, poissons_ratio=0.3, body=2, rtol=EXACT)).T
     assert fronts
-    assert np.abs(found - expected).max() < 1e-8 * np.abs(found).max()
+    assert np.abs(result - expected).max() < 1e-8 * np.abs(result).max()
 
 
 @pytest.mark.parametrize("profile", [Paraboloid(2.0), RoundedPunch(0.5, 2.0), FlatPunch(1.0)])
@@ -261,10 +261,10 @@ def test_end_of_a_monotonic_history_is_the_tangential_contact(profile: Profile) 
     x, z = np.linspace(-1.4, 1.4, 29), np.array([0.0, 1e-9, 0.1, 0.8])[:, None]
     for body in (1, 2):
         given = {"poissons_ratio": 0.3, "body": body, "rtol": EXACT}
-        found, expected = (
+        result, expected = (
             np.array(stress(one, x, 0.2, z, **given)) for one in (history.state, once)
         )
-        assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+        assert np.abs(result - expected).max() < 1e-11 * np.abs(expected).max()
     peaks = [float(largest(one, poissons_ratio=0.3).value) for one in (history.state, once)]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-5, abs=0)
 
@@ -273,10 +273,10 @@ def test_end_of_a_monotonic_history_is_the_tangential_contact(profile: Profile) 
 def test_tractions_at_the_end_of_a_history(name: str) -> None:
     contact, history = at_end(RoundedPunch(0.5, 2.0), name)
     r = np.concatenate([np.linspace(0, 1.5, 61), [1 - 1e-9], history.slip_fronts])
-    found = stress(history.state, r, 0.0, 0.0, poissons_ratio=0.3, body=2, rtol=EXACT)
+    result = stress(history.state, r, 0.0, 0.0, poissons_ratio=0.3, body=2, rtol=EXACT)
     p, tau = fields.pressure(contact, r), fields.shear_stress(history.state, r)
-    assert np.abs(found.zz + p).max() < 1e-9 * p.max()
-    assert np.abs(found.xz + tau).max() < 1e-9 * p.max()
+    assert np.abs(result.zz + p).max() < 1e-9 * p.max()
+    assert np.abs(result.xz + tau).max() < 1e-9 * p.max()
 
 
 def test_residual_stress_after_the_tangential_force_is_removed() -> None:
@@ -289,7 +289,7 @@ def test_residual_stress_after_the_tangential_force_is_removed() -> None:
     c, b = (1 - 0.6) ** (1 / 3), (1 - 0.3) ** (1 / 3)
     assert history.slip_fronts == pytest.approx([c, b], rel=1e-12, abs=0)
     place = np.array([0.3, 0.5, 0.9, 1.1]), 0.1, np.array([[0.0], [0.3]])
-    found = np.array(stress(history.state, *place, poissons_ratio=0.3, body=2, rtol=EXACT))
+    result = np.array(stress(history.state, *place, poissons_ratio=0.3, body=2, rtol=EXACT))
 
     def of(radius: float) -> np.ndarray:
         one = normal.solve(Paraboloid(2.0), E_STAR, contact_radius=radius)
@@ -300,7 +300,7 @@ def test_residual_stress_after_the_tangential_force_is_removed() -> None:
     alone = np.array(stress(contact, *place, poissons_ratio=0.3, rtol=EXACT))
     # The force returned to zero by slip of the opposite sign.
     residual = of(1.0) - 2 * of(b) + of(c)
-    assert np.abs(found - alone + residual).max() < 1e-12 * np.abs(alone).max()
+    assert np.abs(result - alone + residual).max() < 1e-12 * np.abs(alone).max()
     separated = load_history.solve(
         Paraboloid(2.0),
         E_STAR,
@@ -323,11 +323,11 @@ def test_tractions_on_the_surface(profile: Profile, stick: float) -> None:
     for angle in (0.0, 2.1):
         x, y = r * np.cos(angle), r * np.sin(angle)
         for body, sign in ((1, -1), (2, 1)):
-            found = stress(contact, x, y, 0.0, poissons_ratio=0.3, body=body, rtol=EXACT)
+            result = stress(contact, x, y, 0.0, poissons_ratio=0.3, body=body, rtol=EXACT)
             largest = p.max()
-            assert np.abs(found.zz + p).max() < 1e-12 * largest
-            assert np.abs(found.xz + sign * tau).max() < 1e-12 * largest
-            assert np.abs(found.yz).max() < 1e-12 * largest
+            assert np.abs(result.zz + p).max() < 1e-12 * largest
+            assert np.abs(result.xz + sign * tau).max() < 1e-12 * largest
+            assert np.abs(result.yz).max() < 1e-12 * largest
 
 
 def test_equilibrium() -> None:
@@ -341,8 +341,8 @@ def test_equilibrium() -> None:
     def along(axis: int) -> StressTensor:
         moved = place[:, None, :] + np.zeros((3, 6, 20))
         moved[axis] += steps[:, None]
-        found = stress(contact, *moved, poissons_ratio=0.2, body=2, rtol=EXACT)
-        return StressTensor(*(rule @ part for part in found))
+        result = stress(contact, *moved, poissons_ratio=0.2, body=2, rtol=EXACT)
+        return StressTensor(*(rule @ part for part in result))
 
     dx, dy, dz = (along(axis) for axis in range(3))
     size = np.abs(np.array([dx, dy, dz])).max()
@@ -363,12 +363,12 @@ def test_balance_of_forces_through_a_plane() -> None:
         run = ((high - low) / 2 * weights).ravel() * depth / np.cos(t) ** 2
         r = depth * np.tan(t)
         x, y = r[:, None] * np.cos(angle), r[:, None] * np.sin(angle)
-        found = stress(contact, x, y, depth, poissons_ratio=0.3, body=2, rtol=EXACT)
+        result = stress(contact, x, y, depth, poissons_ratio=0.3, body=2, rtol=EXACT)
         area = (r * run)[:, None] * 2 * pi / angle.size
-        assert (found.zz * area).sum() == pytest.approx(
+        assert (result.zz * area).sum() == pytest.approx(
             -float(contact.normal.normal_force), rel=1e-9, abs=0
         )
-        assert (found.xz * area).sum() == pytest.approx(
+        assert (result.xz * area).sum() == pytest.approx(
             -float(contact.tangential_force), rel=1e-9, abs=0
         )
 
@@ -380,9 +380,9 @@ def test_tractions_at_the_origin(exponent: float, stick: float) -> None:
     p = float(fields.pressure(contact.normal, [0.0])[0])
     tau = float(fields.shear_stress(contact, [0.0])[0])
     for body, sign in ((1, 1), (2, -1)):
-        found = stress(contact, 0.0, 0.0, 0.0, poissons_ratio=0.3, body=body)
+        result = stress(contact, 0.0, 0.0, 0.0, poissons_ratio=0.3, body=body)
         expected = [-0.8 * p, -0.8 * p, -p, 0.0, sign * tau, 0.0]
-        assert np.abs(np.array(found) - expected).max() < 1e-12 * p
+        assert np.abs(np.array(result) - expected).max() < 1e-12 * p
         if exponent >= 2:
             beside = stress(contact, 1e-14, 0.0, 0.0, poissons_ratio=0.3, body=body)
             assert np.abs(np.array(beside) - expected).max() < 1e-11 * p
@@ -391,18 +391,18 @@ def test_tractions_at_the_origin(exponent: float, stick: float) -> None:
 def test_shapes_of_loads_and_points() -> None:
     contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=[0.1, 0.2, 0.4])
     x, z = np.linspace(-1, 1, 5), np.linspace(0, 1, 4)
-    found = stress(contact, x, 0.0, z[:, None], poissons_ratio=0.3)
-    assert found.zz.shape == found.von_mises.shape == found.maximum_shear.shape == (3, 4, 5)
-    assert found.principal.shape == (3, 4, 5, 3)
+    result = stress(contact, x, 0.0, z[:, None], poissons_ratio=0.3)
+    assert result.zz.shape == result.von_mises.shape == result.maximum_shear.shape == (3, 4, 5)
+    assert result.principal.shape == (3, 4, 5, 3)
     one = normal.solve(Paraboloid(2.0), E_STAR, normal_force=0.2)
     alone = stress(one, x, 0.0, z[:, None], poissons_ratio=0.3)
-    assert np.array_equal(alone.xx, found.xx[1])
+    assert np.array_equal(alone.xx, result.xx[1])
 
 
 def test_no_load_gives_no_stress() -> None:
     contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=0.0)
-    found = stress(contact, [0.0, 1.0], 0.0, [0.0, 1.0], poissons_ratio=0.3)
-    assert not np.any(np.array(found))
+    result = stress(contact, [0.0, 1.0], 0.0, [0.0, 1.0], poissons_ratio=0.3)
+    assert not np.any(np.array(result))
 
 
 @pytest.mark.parametrize("exponent", [-50, 50])
@@ -410,9 +410,9 @@ def test_any_unit_of_length(exponent: int) -> None:
     unit = 10.0**exponent
     small = normal.solve(Paraboloid(2.0 * unit), E_STAR, contact_radius=unit)
     x, z = np.array([0.0, 0.3, 1.0, 1.7]), np.array([0.0, 1e-6, 0.4, 3.0])
-    found = stress(small, x * unit, 0.0, z * unit, poissons_ratio=0.3, rtol=EXACT)
+    result = stress(small, x * unit, 0.0, z * unit, poissons_ratio=0.3, rtol=EXACT)
     expected = stress(normal_contact(Paraboloid(2.0)), x, 0.0, z, poissons_ratio=0.3, rtol=EXACT)
-    assert np.abs(np.array(found) - np.array(expected)).max() < 1e-13 * np.abs(expected.zz).max()
+    assert np.abs(np.array(result) - np.array(expected)).max() < 1e-13 * np.abs(expected.zz).max()
 
 
 @pytest.mark.parametrize(("x", "z"), [(np.nan, 0.0), (0.0, -1e-30), (np.inf, 0.0)])

@@ -26,10 +26,10 @@ def test_stress_tensor(case: dict[str, Any], rtol: float) -> None:
     )
     points = np.array(case["points"]).T
     expected = np.array([[float(value) for value in row] for row in case["expected"]]).T
-    found = np.array(
+    result = np.array(
         stress(contact, *points, poissons_ratio=case["poissons_ratio"], body=2, rtol=rtol)
     )
-    error = np.abs(found - expected).max() / np.abs(expected).max()
+    error = np.abs(result - expected).max() / np.abs(expected).max()
     assert error < min(error_estimate(contact, *points, rtol=rtol), rtol + 1e-12)
     if rtol == 1e-10:
         assert error < 1e-11

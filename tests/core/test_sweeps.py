@@ -52,8 +52,8 @@ def test_varying_scalar_becomes_an_array() -> None:
     def least(_profile: Profile, part: Array) -> tuple[Array]:
         return (np.asarray(part.min() // BLOCK),)
 
-    (found,) = in_blocks(least, Paraboloid(1.0), (values,))
-    assert np.array_equal(found, values // BLOCK)
+    (result,) = in_blocks(least, Paraboloid(1.0), (values,))
+    assert np.array_equal(result, values // BLOCK)
 
 
 def test_parameter_grid_equals_its_flattened_copy() -> None:
@@ -219,7 +219,7 @@ def test_dissipated_energy_of_a_sweep_is_bit_identical_to_single_cases(kind: str
     force = LOADS["normal_force"]
     sweep = normal.solve(profile(**named), MODULI, normal_force=force)
     tangential_contact = FRICTION * force * np.abs(PART)
-    found = tangential.solve(sweep, SHEAR_MODULI, FRICTION, tangential_force=tangential_contact)
+    result = tangential.solve(sweep, SHEAR_MODULI, FRICTION, tangential_force=tangential_contact)
     for i in range(FEW):
         own = profile(**{name: float(values[i]) for name, values in named.items()})
         alone = tangential.solve(
@@ -228,7 +228,7 @@ def test_dissipated_energy_of_a_sweep_is_bit_identical_to_single_cases(kind: str
             float(FRICTION[i]),
             tangential_force=float(tangential_contact[i]),
         )
-        assert found.dissipated_energy[i] == alone.dissipated_energy, i
+        assert result.dissipated_energy[i] == alone.dissipated_energy, i
 
 
 EVERY = {
@@ -256,13 +256,13 @@ def test_nonpositive_force_is_rejected_for_scalars(kind: str, amount: float) -> 
 def test_sweep_over_all_regimes_equals_single_cases() -> None:
     contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
     loads = np.linspace(-2.0, 2.0, MANY)
-    found = tangential.solve(contact, 0.9e11, 0.3, tangential_displacement=loads * 1e-6)
+    result = tangential.solve(contact, 0.9e11, 0.3, tangential_displacement=loads * 1e-6)
     one = normal.solve(Paraboloid(0.01), E_STAR, normal_force=10.0)
     for i in (0, BLOCK - 1, BLOCK, MANY // 2, MANY - 1):
         alone = tangential.solve(one, 0.9e11, 0.3, tangential_displacement=loads[i] * 1e-6)
-        assert found.regime[i] == alone.regime
+        assert result.regime[i] == alone.regime
         for name in (*TANGENTIAL, "dissipated_energy"):
-            assert getattr(found, name)[i] == getattr(alone, name), name
+            assert getattr(result, name)[i] == getattr(alone, name), name
 
 
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
@@ -317,11 +317,11 @@ def test_dissipated_energy_of_a_sweep_equals_that_of_single_cases(
         tangential_load = tangential.solve(contact, 0.9, 0.3, tangential_force=0.1 * numbers[1])
         return tangential_load.dissipated_energy
 
-    found = lost(kind(*parameters), e_star, force)
+    result = lost(kind(*parameters), e_star, force)
     columns = np.broadcast_arrays(*parameters, e_star, force)
     for i, numbers in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
         own = kind(*numbers[: len(parameters)])
-        assert found[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14, abs=0)
+        assert result[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14, abs=0)
 
 
 def test_prescribed_stick_radius_below_a_computed_edge_in_blocks() -> None:

@@ -31,12 +31,12 @@ def worst_pressure(r: np.ndarray, kind: Any, a: float, radii: list[float]) -> fl
     """Largest error of p relative to the transform of the interpolant, at each radius."""
     f = sphere(r)
     contact = solve(Tabulated(r, f, kind), 1.0, contact_radius=a, rtol=1e-11)
-    found = fields.pressure(contact, radii, rtol=1e-11)
+    result = fields.pressure(contact, radii, rtol=1e-11)
     with mp.workdps(TABLE_DIGITS):
         exact = Table({"r": r.tolist(), "f": f.tolist(), "interpolation": kind})
         truth = [exact.pressure(mpf(x), mpf(a)) for x in radii]
         return max(
-            float(abs(mpf(float(p)) / true - 1)) for p, true in zip(found, truth, strict=True)
+            float(abs(mpf(float(p)) / true - 1)) for p, true in zip(result, truth, strict=True)
         )
 
 
@@ -117,14 +117,14 @@ def test_displacements_of_a_table() -> None:
     r = np.linspace(0, END, 200)
     profile = Tabulated(r, sphere(r))
     inside = np.linspace(0.01, EDGE, 50)
-    found = profile.slip_kernel(np.zeros_like(inside), inside, 1e-6)
-    assert found == pytest.approx(sphere(inside), rel=1e-6, abs=0)
+    result = profile.slip_kernel(np.zeros_like(inside), inside, 1e-6)
+    assert result == pytest.approx(sphere(inside), rel=1e-6, abs=0)
     contact = solve(Tabulated(r, r * r / 2), 1.0, contact_radius=EDGE)
     outside = EDGE * (1 + np.geomspace(1e-6, 10, 50))
     leg = np.sqrt((outside - EDGE) * (outside + EDGE))
     expected = (2 * EDGE**2 - outside**2) * np.arcsin(EDGE / outside) + EDGE * leg
-    found = fields.normal_displacement(contact, outside, rtol=1e-6)
-    assert found == pytest.approx(expected / np.pi, rel=1e-6, abs=0)
+    result = fields.normal_displacement(contact, outside, rtol=1e-6)
+    assert result == pytest.approx(expected / np.pi, rel=1e-6, abs=0)
 
 
 @pytest.mark.parametrize("points", [3, 4, 5, 40])
@@ -169,8 +169,8 @@ def test_traction_on_the_axis_of_a_sticking_tip(c: float) -> None:
     """The stress is finite if slip does not reach a tip: for a cone, (1/2) ln(a/c)."""
     contact = solve(Tabulated([0, 0.5, 1.5], [0, 0.5, 1.5], "linear"), 1.0, contact_radius=1.0)
     tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
-    found = fields.shear_stress(tangential_contact, [0.0])
-    assert found[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT, abs=0)
+    result = fields.shear_stress(tangential_contact, [0.0])
+    assert result[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT, abs=0)
 
 
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
@@ -182,10 +182,10 @@ def test_stick_edge_next_to_a_node(kind: Any, place: float) -> None:
     contact = solve(Tabulated(r, sphere(r), kind), 1.0, contact_radius=EDGE, rtol=1e-11)
     tangential_contact = tangential.solve(contact, 1.0, 1.0, stick_radius=float(c))
     radii = [0.3 * c, c * (1 - 1e-2), c * (1 - 1e-6), c * (1 + 1e-6), 0.47]
-    found = fields.shear_stress(tangential_contact, radii, rtol=1e-11)
+    result = fields.shear_stress(tangential_contact, radii, rtol=1e-11)
     with mp.workdps(TABLE_DIGITS):
         exact = Table({"r": r.tolist(), "f": sphere(r).tolist(), "interpolation": kind})
-        for x, value in zip(map(mpf, radii), found, strict=True):
+        for x, value in zip(map(mpf, radii), result, strict=True):
             true = exact.pressure(x, mpf(EDGE))
             true -= exact.pressure(x, mpf(float(c))) if x < c else 0
             assert abs(mpf(float(value)) / true - 1) <= INTERPOLANT
@@ -225,9 +225,9 @@ def test_tables_in_other_units_have_the_same_digits(kind: Any) -> None:
     f = np.round(np.log1p(r * r), 5)
     exact = solve(Tabulated(tuple(r), tuple(f), kind), 1.0, contact_radius=0.2)
     for unit in (2.0**-20, 2.0**10, 2.0**20):
-        found = solve(
+        result = solve(
             Tabulated(tuple(unit * r), tuple(unit * f), kind), 1.0, contact_radius=0.2 * unit
         )
-        assert float(found.indentation_depth) == unit * float(exact.indentation_depth)
-        assert float(found.normal_force) == unit**2 * float(exact.normal_force)
-        assert float(found.maximum_pressure) == float(exact.maximum_pressure)
+        assert float(result.indentation_depth) == unit * float(exact.indentation_depth)
+        assert float(result.normal_force) == unit**2 * float(exact.normal_force)
+        assert float(result.maximum_pressure) == float(exact.maximum_pressure)

@@ -56,9 +56,9 @@ def test_results_are_those_of_the_interpolant(cases: list[dict[str, Any]]) -> No
 
 def field_failures(case: dict[str, Any]) -> Iterator[str]:
     radii, profile = np.array(case["radius"]), profile_from(case["profile"])
-    found = {name: getattr(profile, name)(radii) for name in ("f", "df", "g", "dg")}
-    found["pressure"] = fields.pressure(solved(case), radii, rtol=1e-12)
-    for name, values in found.items():
+    result = {name: getattr(profile, name)(radii) for name in ("f", "df", "g", "dg")}
+    result["pressure"] = fields.pressure(solved(case), radii, rtol=1e-12)
+    for name, values in result.items():
         # Near the axis a table has no relative accuracy, since its slope there is rounding error.
         largest = max(abs(float(value)) for value in case[name])
         for r, value, expected in zip(radii, values, case[name], strict=True):
@@ -79,11 +79,11 @@ def smooth_failures(case: dict[str, Any]) -> Iterator[str]:
             error = relative_error(float(getattr(contact, name)), expected)
             if not error <= SMOOTH:
                 yield f"{name}: {error:.2e}"
-    found = fields.pressure(contact, radii, rtol=1e-12)
+    result = fields.pressure(contact, radii, rtol=1e-12)
     truth = np.array([float(p) for p in case["truth_pressure"]])
     # Inside the first panel the interpolant's tip has a nonzero slope, and p a weak logarithm.
     seen = radii > case["profile"]["r"][1]
-    error = np.max(np.abs(found - truth)[seen]) / np.max(truth)
+    error = np.max(np.abs(result - truth)[seen]) / np.max(truth)
     if not error <= SMOOTH:
         yield f"pressure: {error:.2e}"
 

@@ -30,12 +30,12 @@ def solved(case: dict[str, Any]) -> tangential.TangentialContact:
 
 
 def failures_of(case: dict[str, Any]) -> list[str]:
-    found = solved(case)
+    result = solved(case)
     table = case["profile"]["kind"] == "tabulated"
     bound = TABLE if table else BOUND
     failures, allowed = [], [bound]
     for name, row in case["expected"].items():
-        values = getattr(found, name)
+        values = getattr(result, name)
         assert values.shape == (len(row),)
         for index, expected in enumerate(row):
             conditions = (case["condition"][name][index], case["condition_load"][name][index])
@@ -47,11 +47,13 @@ def failures_of(case: dict[str, Any]) -> list[str]:
                 expected,
                 bound,
                 by_inputs,
-                found.error_estimate,
+                result.error_estimate,
             )
-    failures += overstated(found.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED)
-    if list(found.regime) != case["regime"]:
-        failures.append(f"regime is {found.regime}")
+    failures += overstated(
+        result.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED
+    )
+    if list(result.regime) != case["regime"]:
+        failures.append(f"regime is {result.regime}")
     return failures
 
 
@@ -63,11 +65,11 @@ def test_results_and_error_estimates(cases: list[dict[str, Any]]) -> None:
 @batched(bank.load("tangential")[::7])
 def test_single_load_equals_one_of_many(cases: list[dict[str, Any]]) -> None:
     for case in cases:
-        found = solved(case)
+        result = solved(case)
         alone = solved({**case, "given": case["given"][0]})
         for name in case["expected"]:
             value = getattr(alone, name)
             assert value.shape == ()
             # The same steps, possibly summed in a different order.
-            expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-14, abs=0)
+            expected = pytest.approx(float(getattr(result, name)[0]), rel=1e-14, abs=0)
             assert float(value) == expected, (case["id"], name)

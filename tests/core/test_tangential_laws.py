@@ -66,33 +66,33 @@ def knots(low: float, high: float, *between: float) -> list[float]:
     return [low, *sorted({x for x in between if low < x < high}), high]
 
 
-def values(found: TangentialContact) -> list[float]:
-    return [float(getattr(found, name)) for name in ANSWERS]
+def values(result: TangentialContact) -> list[float]:
+    return [float(getattr(result, name)) for name in ANSWERS]
 
 
 @repeatable
 @given(scenes(), ratio)
 def test_traction_integrates_to_the_force(scene: Scene, rho: float) -> None:
-    found = at_ratio(*scene, rho)
+    result = at_ratio(*scene, rho)
 
     def ring(r: Array) -> Array:
-        return 2 * pi * r * fields.shear_stress(found, r, rtol=1e-12)
+        return 2 * pi * r * fields.shear_stress(result, r, rtol=1e-12)
 
-    c = float(found.stick_radius)
+    c = float(result.stick_radius)
     carried = integral(ring, knots(0.0, scene[1], break_radius(scene[0]), c))
-    assert carried == near(float(found.tangential_force), rel=1e-7)
+    assert carried == near(float(result.tangential_force), rel=1e-7)
 
 
 @repeatable
 @given(scenes(), ratio)
 def test_foundation_integrates_to_the_force(scene: Scene, rho: float) -> None:
-    found = at_ratio(*scene, rho)
-    c = float(found.stick_radius)
+    result = at_ratio(*scene, rho)
+    c = float(result.stick_radius)
     carried = 2 * integral(
-        lambda x: fields.foundation_shear(found, x),
+        lambda x: fields.foundation_shear(result, x),
         knots(0.0, scene[1], break_radius(scene[0]), c),
     )
-    assert carried == near(float(found.tangential_force), rel=1e-8)
+    assert carried == near(float(result.tangential_force), rel=1e-8)
 
 
 @repeatable
@@ -100,13 +100,13 @@ def test_foundation_integrates_to_the_force(scene: Scene, rho: float) -> None:
 def test_slip_grows_with_the_force(scene: Scene, ratios: list[float]) -> None:
     contact = at_radius(*scene)
     force = np.sort(ratios) * (MU * contact.normal_force)
-    found = solve_tangential(contact, tangential_force=force)
-    assert np.all(found.stick_radius >= 0)
-    assert np.all(found.stick_radius <= contact.contact_radius)
+    result = solve_tangential(contact, tangential_force=force)
+    assert np.all(result.stick_radius >= 0)
+    assert np.all(result.stick_radius <= contact.contact_radius)
     rounding = 1e-13
-    assert np.all(np.diff(found.stick_radius) <= rounding * found.stick_radius[:-1])
+    assert np.all(np.diff(result.stick_radius) <= rounding * result.stick_radius[:-1])
     for name in ("tangential_displacement", "slip_width", "dissipated_energy"):
-        answer = getattr(found, name)
+        answer = getattr(result, name)
         assert np.all(np.diff(answer) >= -rounding * answer[:-1]), name
         assert np.all(answer >= 0), name
 
@@ -116,19 +116,19 @@ def test_slip_grows_with_the_force(scene: Scene, ratios: list[float]) -> None:
 @given(scenes())
 def test_smallest_tangential_loads(rho: float, scene: Scene) -> None:
     """The product of two lengths underflows at such loads."""
-    found = at_ratio(*scene, rho)
-    assert str(found.regime) == "partial_slip"
-    slope = float(found.normal.profile.dg(np.array([scene[1]]))[0])
+    result = at_ratio(*scene, rho)
+    assert str(result.regime) == "partial_slip"
+    slope = float(result.normal.profile.dg(np.array([scene[1]]))[0])
     # At a kink g' has two limits, of which `dg` returns the upper one.
     assume(np.isfinite(slope))
-    width = float(found.tangential_force) / (2 * MU * E_STAR * scene[1] * slope)
-    assert float(found.slip_width) == near(width, rel=1e-11)
-    shift = float(found.tangential_force) / (2 * G_STAR * scene[1])
-    assert float(found.tangential_displacement) == near(shift, rel=1e-12)
-    assert float(found.dissipated_energy) >= 0
-    stress = fields.shear_stress(found, [0.0, 0.5 * scene[1]], rtol=1e-12)
+    width = float(result.tangential_force) / (2 * MU * E_STAR * scene[1] * slope)
+    assert float(result.slip_width) == near(width, rel=1e-11)
+    shift = float(result.tangential_force) / (2 * G_STAR * scene[1])
+    assert float(result.tangential_displacement) == near(shift, rel=1e-12)
+    assert float(result.dissipated_energy) >= 0
+    stress = fields.shear_stress(result, [0.0, 0.5 * scene[1]], rtol=1e-12)
     # A ring of force F_x at the edge.
-    assert stress[0] == near(float(found.tangential_force) / (2 * pi * scene[1] ** 2))
+    assert stress[0] == near(float(result.tangential_force) / (2 * pi * scene[1] ** 2))
 
 
 @repeatable
@@ -140,11 +140,11 @@ def test_traction_is_a_superposition_of_pressures(scene: Scene, stick: float, pl
     blunt = fields_["kind"] in {"rounded_punch", "truncated_cone", "truncated_paraboloid"}
     c = b + (a - b) * stick if blunt else a * stick
     contact = at_radius(fields_, a)
-    found = solve_tangential(contact, stick_radius=c)
+    result = solve_tangential(contact, stick_radius=c)
     r = np.array([a * place])
     outer = fields.pressure(contact, r, rtol=1e-12)
     inner = fields.pressure(at_radius(fields_, c), r, rtol=1e-12)
-    stress = fields.shear_stress(found, r, rtol=1e-12)
+    stress = fields.shear_stress(result, r, rtol=1e-12)
     if np.isfinite(outer[0]) and np.isfinite(inner[0]):
         assert stress[0] == near(MU * (outer - inner)[0], 0.0, 1e-11 * MU * outer[0])
 
@@ -152,13 +152,13 @@ def test_traction_is_a_superposition_of_pressures(scene: Scene, stick: float, pl
 @repeatable
 @given(scenes(), st.floats(0.05, 0.8))
 def test_stiffness_is_the_derivative_of_the_force(scene: Scene, rho: float) -> None:
-    found = at_ratio(*scene, rho)
-    u = float(found.tangential_displacement)
+    result = at_ratio(*scene, rho)
+    u = float(result.tangential_displacement)
 
     def stiffness(at: Array) -> Array:
-        return solve_tangential(found.normal, tangential_displacement=at).tangential_stiffness
+        return solve_tangential(result.normal, tangential_displacement=at).tangential_stiffness
 
-    ends = solve_tangential(found.normal, tangential_displacement=[u, 1.1 * u]).tangential_force
+    ends = solve_tangential(result.normal, tangential_displacement=[u, 1.1 * u]).tangential_force
     work = integral(stiffness, [u, 1.1 * u])
     # Where the step crosses a break, c(u) has a kink; the error is that of the rule.
     assert ends[1] - ends[0] == near(work, rel=1e-5)
@@ -171,9 +171,9 @@ def test_controls_are_equivalent(scene: Scene, rho: float) -> None:
     for name in ANSWERS[:3]:
         again = solve_tangential(first.normal, **{name: getattr(first, name)})
         for other, value in zip(ANSWERS, values(first), strict=True):
-            found = float(getattr(again, other))
+            result = float(getattr(again, other))
             # At c near b or near a, c is ill-conditioned: one part in a hundred here.
-            assert found == near(value, rel=1e-9), (name, other)
+            assert result == near(value, rel=1e-9), (name, other)
 
 
 @repeatable
@@ -192,14 +192,14 @@ def test_reversed_direction_is_the_mirror_image(scene: Scene, rho: float) -> Non
     assert np.all(fields.shear_stress(right, r) >= 0)
 
 
-def stored(found: TangentialContact, b: float) -> float:
+def stored(result: TangentialContact, b: float) -> float:
     """Energy q_x^2/(2 G*) of the tangential springs."""
-    c, a = float(found.stick_radius), float(found.normal.contact_radius)
+    c, a = float(result.stick_radius), float(result.normal.contact_radius)
     outer = integral(
-        lambda x: fields.foundation_shear(found, x) ** 2,
+        lambda x: fields.foundation_shear(result, x) ** 2,
         knots(c, a, b),
     )
-    held = float(fields.foundation_shear(found, [0.5 * c])[0])
+    held = float(fields.foundation_shear(result, [0.5 * c])[0])
     return (outer + held**2 * c) / G_STAR
 
 
@@ -207,19 +207,19 @@ def stored(found: TangentialContact, b: float) -> float:
 @given(scenes(), st.floats(0.2, 0.97))
 def test_dissipated_energy_is_work_minus_stored_energy(scene: Scene, rho: float) -> None:
     fields_, radius = scene
-    found = at_ratio(fields_, radius, rho)
-    u = float(found.tangential_displacement)
+    result = at_ratio(fields_, radius, rho)
+    u = float(result.tangential_displacement)
 
     def force(at: Array) -> Array:
-        return solve_tangential(found.normal, tangential_displacement=at).tangential_force
+        return solve_tangential(result.normal, tangential_displacement=at).tangential_force
 
     middle = []
     b = break_radius(fields_)
-    if float(found.stick_radius) < b < radius:
-        middle = [float(solve_tangential(found.normal, stick_radius=b).tangential_displacement)]
+    if float(result.stick_radius) < b < radius:
+        middle = [float(solve_tangential(result.normal, stick_radius=b).tangential_displacement)]
     work = integral(force, knots(0.0, u, *middle))
-    lost = float(found.dissipated_energy)
-    assert lost == near(work - stored(found, b), 0.0, 1e-8 * work)
+    lost = float(result.dissipated_energy)
+    assert lost == near(work - stored(result, b), 0.0, 1e-8 * work)
 
 
 @repeatable
@@ -250,14 +250,14 @@ def test_results_scale_with_units(
 def test_zero_force_gives_full_stick(scene: Scene) -> None:
     contact = at_radius(*scene)
     for name in ANSWERS[:2]:
-        found = solve_tangential(contact, **{name: 0.0})
-        assert str(found.regime) == "stick"
-        assert values(found) == [0.0, 0.0, scene[1], 0.0, 2 * G_STAR * scene[1], 0.0]
-    found = solve_tangential(contact, stick_radius=scene[1])
-    assert str(found.regime) == "stick"
-    assert values(found)[:4] == [0.0, 0.0, scene[1], 0.0]
-    assert not fields.shear_stress(found, [0.0, scene[1] / 2]).any()
-    assert not fields.slip(found, [0.0, scene[1] / 2, scene[1]]).any()
+        result = solve_tangential(contact, **{name: 0.0})
+        assert str(result.regime) == "stick"
+        assert values(result) == [0.0, 0.0, scene[1], 0.0, 2 * G_STAR * scene[1], 0.0]
+    result = solve_tangential(contact, stick_radius=scene[1])
+    assert str(result.regime) == "stick"
+    assert values(result)[:4] == [0.0, 0.0, scene[1], 0.0]
+    assert not fields.shear_stress(result, [0.0, scene[1] / 2]).any()
+    assert not fields.slip(result, [0.0, scene[1] / 2, scene[1]]).any()
 
 
 @repeatable
@@ -266,20 +266,20 @@ def test_limiting_force_gives_full_slip(scene: Scene) -> None:
     contact = at_radius(*scene)
     bound = MU * contact.normal_force
     most = MU * E_STAR / G_STAR * float(contact.indentation_depth)
-    found = solve_tangential(contact, tangential_force=bound)
+    result = solve_tangential(contact, tangential_force=bound)
     sliding = solve_tangential(contact, tangential_displacement=2.5 * most)
-    for one, u in ((found, most), (sliding, 2.5 * most)):
+    for one, u in ((result, most), (sliding, 2.5 * most)):
         assert str(one.regime) == "full_slip"
         assert float(one.tangential_force) == near(float(bound), rel=1e-15)
         assert float(one.tangential_displacement) == near(u, rel=1e-14)
         assert float(one.stick_radius) == 0
         assert float(one.slip_width) == scene[1]
         assert float(one.tangential_stiffness) == 0
-    extra = float(sliding.dissipated_energy) - float(found.dissipated_energy)
+    extra = float(sliding.dissipated_energy) - float(result.dissipated_energy)
     assert extra == near(1.5 * most * float(bound), rel=1e-11)
     r = np.array([0.1, 0.6, 0.97]) * scene[1]
     pressure = fields.pressure(contact, r, rtol=1e-12)
-    assert fields.shear_stress(found, r, rtol=1e-12) == near(MU * pressure, rel=1e-11)
+    assert fields.shear_stress(result, r, rtol=1e-12) == near(MU * pressure, rel=1e-11)
 
 
 @repeatable
@@ -287,10 +287,10 @@ def test_limiting_force_gives_full_slip(scene: Scene) -> None:
 def test_slip_with_zero_stick_radius_is_the_shape(scene: Scene) -> None:
     """With c = 0, Eq. (5.40) transforms g back to f."""
     contact = at_radius(*scene)
-    found = solve_tangential(contact, tangential_force=MU * contact.normal_force)
+    result = solve_tangential(contact, tangential_force=MU * contact.normal_force)
     r = np.array([0.2, 0.7, 0.98]) * scene[1]
     shape = contact.profile.f(r)
-    moved = fields.slip(found, r, rtol=1e-12)
+    moved = fields.slip(result, r, rtol=1e-12)
     assert moved == near(-MU * E_STAR / G_STAR * shape, rel=1e-11)
 
 
@@ -358,8 +358,8 @@ def test_exactly_one_load_is_required() -> None:
 def test_slip_does_not_enter_a_flat() -> None:
     contact = normal.solve(RoundedPunch(0.6, 2.0), E_STAR, contact_radius=0.9)
     bound = MU * float(contact.normal_force)
-    found = solve_tangential(contact, tangential_force=np.array([0.1, 0.999, 1 - 1e-12]) * bound)
-    assert np.all(found.stick_radius >= 0.6)
+    result = solve_tangential(contact, tangential_force=np.array([0.1, 0.999, 1 - 1e-12]) * bound)
+    assert np.all(result.stick_radius >= 0.6)
     edge = solve_tangential(contact, stick_radius=0.6)
     assert float(edge.tangential_force) == near(bound, rel=1e-15)
     assert float(solve_tangential(contact, stick_radius=0.0).tangential_force) == near(bound)
@@ -372,13 +372,15 @@ def test_slip_does_not_enter_a_flat() -> None:
 def test_flat_punch_passes_from_full_stick_to_full_slip() -> None:
     contact = normal.solve(FlatPunch(0.5), E_STAR, normal_force=2.0)
     bound = MU * 2.0
-    found = solve_tangential(contact, tangential_force=np.array([0.0, 0.5, 1 - 1e-9, -1.0]) * bound)
-    assert list(found.regime) == ["stick", "stick", "stick", "full_slip"]
-    assert list(found.stick_radius) == [0.5, 0.5, 0.5, 0.0]
+    result = solve_tangential(
+        contact, tangential_force=np.array([0.0, 0.5, 1 - 1e-9, -1.0]) * bound
+    )
+    assert list(result.regime) == ["stick", "stick", "stick", "full_slip"]
+    assert list(result.stick_radius) == [0.5, 0.5, 0.5, 0.0]
     stiffness = 2 * G_STAR * 0.5
-    assert found.tangential_displacement == near(found.tangential_force / stiffness)
-    assert list(found.tangential_stiffness) == [stiffness] * 3 + [0.0]
-    assert not found.dissipated_energy.any()
+    assert result.tangential_displacement == near(result.tangential_force / stiffness)
+    assert list(result.tangential_stiffness) == [stiffness] * 3 + [0.0]
+    assert not result.dissipated_energy.any()
     most = bound / stiffness
     sliding = solve_tangential(contact, tangential_displacement=-3 * most)
     assert float(sliding.tangential_force) == near(-bound, rel=1e-15)
@@ -392,35 +394,35 @@ def test_zero_normal_load_has_no_friction(profile: Any) -> None:
     assert str(still.regime) == "stick"
     moving = solve_tangential(contact, tangential_displacement=[0.0, 1e-3, -1e-3])
     assert list(moving.regime) == ["stick", "full_slip", "full_slip"]
-    for found in (still, moving):
+    for result in (still, moving):
         for name in ("tangential_force", "dissipated_energy"):
-            assert not getattr(found, name).any(), name
+            assert not getattr(result, name).any(), name
     with pytest.raises(InputError):
         solve_tangential(contact, tangential_force=1e-300)
 
 
 def test_tangential_loads_broadcast_with_the_normal_ones() -> None:
     contact = normal.solve(Paraboloid(1.0), E_STAR, normal_force=[1.0, 2.0])
-    found = solve_tangential(contact, tangential_force=[0.1, 0.3])
+    result = solve_tangential(contact, tangential_force=[0.1, 0.3])
     for index, (n, f) in enumerate(((1.0, 0.1), (2.0, 0.3))):
         one = solve_tangential(
             normal.solve(Paraboloid(1.0), E_STAR, normal_force=n), tangential_force=f
         )
         for name in ANSWERS:
-            assert getattr(found, name).shape == (2,)
-            assert float(getattr(found, name)[index]) == float(getattr(one, name)), name
+            assert getattr(result, name).shape == (2,)
+            assert float(getattr(result, name)[index]) == float(getattr(one, name)), name
     wide = solve_tangential(
         normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0), stick_radius=[0.0, 0.1]
     )
     assert wide.tangential_force.shape == wide.slip_width.shape == (2,)
-    stress = fields.shear_stress(found, [0.0, 0.1, 0.2])
+    stress = fields.shear_stress(result, [0.0, 0.1, 0.2])
     assert stress.shape == (2, 3)
 
 
 def test_grid_is_graded_and_shared() -> None:
     contact = normal.solve(RoundedPunch(0.6, 2.0), E_STAR, contact_radius=[0.7, 0.9])
-    found = solve_tangential(contact, stick_radius=[0.65, 0.7])
-    points = fields.grid(found, 200)
+    result = solve_tangential(contact, stick_radius=[0.65, 0.7])
+    points = fields.grid(result, 200)
     assert points[0] == 0
     assert points[-1] == near(1.35)
     assert np.all(np.diff(points) > 0)

@@ -37,7 +37,7 @@ def bodies(*poissons_ratios: float) -> Material:
     return from_bodies([*elastic, RIGID][:2])
 
 
-def found(
+def warnings_of(
     contact: normal.NormalContact, material: Material, **given: Any
 ) -> dict[str, validity.Finding]:
     return {f.code: f for f in validity.findings(contact, material, **given) if np.any(f.where)}
@@ -48,13 +48,13 @@ def test_infinite_deviatoric_stress() -> None:
     rubber, steel = bodies(0.5), bodies(0.3)
     for profile in (Cone(0.01), TruncatedCone(0.5, 0.01)):
         contact = normal.solve(profile, rubber.e_star, contact_radius=1.0)
-        assert found(contact, rubber) == {}
-        assert set(found(contact, rubber, slips_from=0.8)) == set()
-        assert set(found(contact, rubber, slips_from=0.0)) == {"plastic"}
-        assert set(found(contact, steel)) == {"plastic"}
+        assert warnings_of(contact, rubber) == {}
+        assert set(warnings_of(contact, rubber, slips_from=0.8)) == set()
+        assert set(warnings_of(contact, rubber, slips_from=0.0)) == {"plastic"}
+        assert set(warnings_of(contact, steel)) == {"plastic"}
     for profile in (Power(1e-3, 0.9), FlatPunch(1.0)):
         sharper = normal.solve(profile, rubber.e_star, normal_force=1e-3)
-        assert set(found(sharper, rubber)) == {"plastic"}
+        assert set(warnings_of(sharper, rubber)) == {"plastic"}
 
 
 def first_order_error(slope: Any, pressure: Any, k: float) -> float:
@@ -109,12 +109,14 @@ def test_half_space_error() -> None:
 )
 def test_steep_slopes_exceed_the_half_space_limit(material: Material, slope: float) -> None:
     contact = normal.solve(Paraboloid(1.0), material.e_star, contact_radius=[slope * 0.98, slope])
-    assert "half_space" not in found(replace(contact, coordinate=contact.coordinate[:1]), material)
+    assert "half_space" not in warnings_of(
+        replace(contact, coordinate=contact.coordinate[:1]), material
+    )
     steep = normal.solve(Paraboloid(1.0), material.e_star, contact_radius=[0.01, slope * 1.02])
-    said = found(steep, material)["half_space"]
-    assert said.where.tolist() == [False, True]
-    assert "error of 1" in said.message()
-    assert ("0.3 assumed" in said.message()) == (material.dundurs_beta is None)
+    warning = warnings_of(steep, material)["half_space"]
+    assert warning.where.tolist() == [False, True]
+    assert "error of 1" in warning.message()
+    assert ("0.3 assumed" in warning.message()) == (material.dundurs_beta is None)
 
 
 def test_contact_without_material_assumes_the_worst_case() -> None:
@@ -129,23 +131,23 @@ def test_contact_without_material_assumes_the_worst_case() -> None:
 def test_moduli_of_real_bodies_are_accepted(nu: float, other: float | None) -> None:
     real = bodies(nu) if other is None else bodies(nu, other)
     contact = normal.solve(Paraboloid(1.0), real.e_star, contact_radius=0.01)
-    assert found(contact, Material(real.e_star, real.g_star), g_star=real.g_star) == {}
+    assert warnings_of(contact, Material(real.e_star, real.g_star), g_star=real.g_star) == {}
 
 
 @pytest.mark.parametrize(("ratio", "possible"), [(0.74, 0), (0.76, 1), (1.49, 1), (1.51, 0)])
 def test_impossible_moduli_are_rejected(ratio: float, possible: int) -> None:
     contact = normal.solve(Paraboloid(1.0), ratio, contact_radius=0.01)
-    said = found(contact, Material(ratio, 1.0), g_star=1.0)
-    assert list(said) == ([] if possible else ["impossible_moduli"])
+    warning = warnings_of(contact, Material(ratio, 1.0), g_star=1.0)
+    assert list(warning) == ([] if possible else ["impossible_moduli"])
 
 
 def test_elastic_similarity_warning() -> None:
     alike, unlike = bodies(0.3, 0.3), bodies(0.2)
     contact = normal.solve(Paraboloid(1.0), alike.e_star, contact_radius=0.01)
-    assert found(contact, alike, g_star=alike.g_star) == {}
-    assert list(found(contact, unlike, g_star=unlike.g_star)) == ["elastic_similarity"]
+    assert warnings_of(contact, alike, g_star=alike.g_star) == {}
+    assert list(warnings_of(contact, unlike, g_star=unlike.g_star)) == ["elastic_similarity"]
     # Without friction there is no coupling.
-    assert found(contact, unlike) == {}
+    assert warnings_of(contact, unlike) == {}
 
 
 @pytest.mark.parametrize(

@@ -78,12 +78,12 @@ def worn(
     return evolution.solve(held, G_STAR, MU, wear_coefficient=WEAR, cycles=cycles, **load, **given)
 
 
-def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
+def ring_integral(result: evolution.WearEvolution, cycle: int) -> float:
     """2 pi int h r dr by independent quadrature, split at the kinks of h."""
     ends = [
-        float(found.stick_radius[0]),
-        float(found.stick_radius[cycle]),
-        float(found.contact_radius[cycle]),
+        float(result.stick_radius[0]),
+        float(result.stick_radius[cycle]),
+        float(result.contact_radius[cycle]),
     ]
     nodes, weights = leggauss(80)
     total = 0.0
@@ -92,7 +92,7 @@ def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
         angle = pi / 4 * (1 + nodes)
         r = low + (high - low) * np.sin(angle) ** 2
         step = (high - low) * np.sin(2 * angle) * pi / 4
-        total += float((weights * step * 2 * pi * r * found.worn_depth(r)[cycle]).sum())
+        total += float((weights * step * 2 * pi * r * result.worn_depth(r)[cycle]).sum())
     return total
 
 
@@ -101,10 +101,10 @@ def ring_integral(found: evolution.WearEvolution, cycle: int) -> float:
 @pytest.mark.parametrize("kind", PROFILES)
 def test_initial_wear_follows_the_friction_work(kind: str, control: str, resolution: int) -> None:
     """Reference: dissipated energy of a cycle from the closed forms of partial slip."""
-    found = worn(kind, control, cycles=(0.0,))
-    step = 1e-6 * found.initial.cycle_unit
+    result = worn(kind, control, cycles=(0.0,))
+    step = 1e-6 * result.initial.cycle_unit
     early = worn(kind, control, cycles=(step,), resolution=resolution)
-    work = 4 * float(found.initial.tangential_contact.dissipated_energy)
+    work = 4 * float(result.initial.tangential_contact.dissipated_energy)
     expected = pytest.approx(WEAR * work * step, rel=1e-4 if resolution == 24 else 1e-6, abs=0)
     assert early.worn_volume[0] == expected
 
@@ -112,32 +112,32 @@ def test_initial_wear_follows_the_friction_work(kind: str, control: str, resolut
 @pytest.mark.every(2)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
-    found = worn(kind, control)
-    lost = WEAR * found.dissipated_energy
-    assert found.worn_volume == pytest.approx(lost, rel=1e-4, abs=0)
-    assert found.worn_volume == pytest.approx(lost, rel=2 * found.error_estimate, abs=0)
+    result = worn(kind, control)
+    lost = WEAR * result.dissipated_energy
+    assert result.worn_volume == pytest.approx(lost, rel=1e-4, abs=0)
+    assert result.worn_volume == pytest.approx(lost, rel=2 * result.error_estimate, abs=0)
     for cycle in (2, 4, 7):
-        assert ring_integral(found, cycle) == pytest.approx(
-            found.worn_volume[cycle], rel=1e-3, abs=0
+        assert ring_integral(result, cycle) == pytest.approx(
+            result.worn_volume[cycle], rel=1e-3, abs=0
         )
 
 
-def limiting(found: evolution.WearEvolution) -> limit.LimitingWear:
-    tangential_contact = found.initial.tangential_contact
-    held = found.initial.held.displacement
+def limiting(result: evolution.WearEvolution) -> limit.LimitingWear:
+    tangential_contact = result.initial.tangential_contact
+    held = result.initial.held.displacement
     name = "tangential_displacement" if held else "tangential_force"
     return limit.solve(
-        found.initial.contact, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
+        result.initial.contact, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
     )
 
 
-def distance(found: evolution.WearEvolution) -> float:
+def distance(result: evolution.WearEvolution) -> float:
     """Largest distance of the last profile from the limiting one, relative to the depth."""
-    r = np.linspace(0.0, 1.5 * float(found.contact_radius[-1]), 400)
-    r = r[r < 0.99 * float(np.asarray(found.initial.contact.profile.domain))]
-    exact = np.asarray(limiting(found).worn_depth(r))
-    gap = np.abs(found.worn_depth(r)[-1] - exact).max()
-    return float(gap / found.indentation_depth[-1])
+    r = np.linspace(0.0, 1.5 * float(result.contact_radius[-1]), 400)
+    r = r[r < 0.99 * float(np.asarray(result.initial.contact.profile.domain))]
+    exact = np.asarray(limiting(result).worn_depth(r))
+    gap = np.abs(result.worn_depth(r)[-1] - exact).max()
+    return float(gap / result.indentation_depth[-1])
 
 
 @pytest.mark.every(5)
@@ -145,66 +145,66 @@ def distance(found: evolution.WearEvolution) -> float:
 @pytest.mark.parametrize("control", CONTROLS[:2])
 @pytest.mark.parametrize("kind", PROFILES)
 def test_final_profile_is_the_limiting_profile(kind: str, control: str, part: float) -> None:
-    found = worn(kind, control, part)
-    assert distance(found) <= 1e-4
-    exact = limiting(found)
-    assert found.contact_radius[-1] == pytest.approx(float(exact.wear_radius), rel=1e-4, abs=0)
-    assert found.indentation_depth[-1] == pytest.approx(
+    result = worn(kind, control, part)
+    assert distance(result) <= 1e-4
+    exact = limiting(result)
+    assert result.contact_radius[-1] == pytest.approx(float(exact.wear_radius), rel=1e-4, abs=0)
+    assert result.indentation_depth[-1] == pytest.approx(
         float(exact.indentation_depth), rel=1e-4, abs=0
     )
-    assert found.normal_force[-1] == pytest.approx(float(exact.normal_force), rel=1e-4, abs=0)
-    assert found.worn_volume[-1] == pytest.approx(float(exact.worn_volume), rel=1e-3, abs=0)
-    assert "limit_reached" in {notice.code for notice in found.warnings}
+    assert result.normal_force[-1] == pytest.approx(float(exact.normal_force), rel=1e-4, abs=0)
+    assert result.worn_volume[-1] == pytest.approx(float(exact.worn_volume), rel=1e-3, abs=0)
+    assert "limit_reached" in {notice.code for notice in result.warnings}
 
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
 def test_distance_from_the_limit_decreases_with_resolution(control: str) -> None:
-    found = [distance(worn("cone", control, 0.9, resolution=n, rtol=1e-8)) for n in (8, 16, 32)]
-    for coarse, fine in pairwise(found):
+    result = [distance(worn("cone", control, 0.9, resolution=n, rtol=1e-8)) for n in (8, 16, 32)]
+    for coarse, fine in pairwise(result):
         assert fine < max(coarse / 4, 2e-7)
 
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
 def test_limiting_state_is_stationary(control: str) -> None:
     """The pressure outside the stick zone is zero, and so is the wear of further cycles."""
-    found = worn("paraboloid", control)
-    r = np.linspace(float(found.stick_radius[-1]), float(found.contact_radius[-1]), 50)[1:]
-    pressure = found.pressure(r)
+    result = worn("paraboloid", control)
+    r = np.linspace(float(result.stick_radius[-1]), float(result.contact_radius[-1]), 50)[1:]
+    pressure = result.pressure(r)
     assert pressure[-1].max() <= 1e-5 * pressure[0].max()
-    assert found.worn_volume[-1] == found.worn_volume[-2]
+    assert result.worn_volume[-1] == result.worn_volume[-2]
 
 
 @pytest.mark.every(2)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_wear_never_adds_material(kind: str, control: str) -> None:
     cycles = (0.0, *np.geomspace(1.0, 1e7, 22).tolist())
-    found = worn(kind, control, cycles=cycles)
-    c, a = float(found.stick_radius[0]), float(found.contact_radius[-1])
+    result = worn(kind, control, cycles=cycles)
+    c, a = float(result.stick_radius[0]), float(result.contact_radius[-1])
     r = c + (a - c) * np.linspace(-0.5, 1.2, 300)
-    depth = found.worn_depth(r[r > 0])
+    depth = result.worn_depth(r[r > 0])
     assert np.all(np.diff(depth, axis=0) >= 0)
     assert np.all(depth >= 0)
     assert np.all(depth[:, r[r > 0] < c] == 0)
-    assert np.all(found.pressure(r[r > 0]) >= 0)
+    assert np.all(result.pressure(r[r > 0]) >= 0)
     noise = 1e-5
     for name in ("worn_volume", "contact_radius", "stick_radius", "indentation_depth"):
-        answer = getattr(found, name)
+        answer = getattr(result, name)
         assert np.all(np.diff(answer) >= -noise * answer[-1]), name
     if control == CONTROLS[0]:
-        assert np.all(np.diff(found.normal_force) <= noise * found.normal_force[0])
+        assert np.all(np.diff(result.normal_force) <= noise * result.normal_force[0])
     else:
-        assert np.all(found.normal_force == found.normal_force[0])
+        assert np.all(result.normal_force == result.normal_force[0])
 
 
 @pytest.mark.parametrize("control", CONTROLS[:2])
 def test_worn_depth_has_a_single_maximum(control: str) -> None:
     """From the stick edge it increases to one maximum, then decreases to the contact edge."""
     cycles = tuple(np.geomspace(10.0, 1e5, 25).tolist())
-    found = worn("paraboloid", control, cycles=cycles)
+    result = worn("paraboloid", control, cycles=cycles)
     for row, c, a in zip(
-        found.worn_depth(0.3 + np.linspace(0.0, 1.4, 2000)),
-        found.stick_radius,
-        found.contact_radius,
+        result.worn_depth(0.3 + np.linspace(0.0, 1.4, 2000)),
+        result.stick_radius,
+        result.contact_radius,
         strict=True,
     ):
         r = 0.3 + np.linspace(0.0, 1.4, 2000)
@@ -216,18 +216,18 @@ def test_worn_depth_has_a_single_maximum(control: str) -> None:
 
 @pytest.mark.parametrize("control", CONTROLS)
 def test_pressure_integrates_to_the_force(control: str) -> None:
-    found = worn("paraboloid", control, resolution=48)
+    result = worn("paraboloid", control, resolution=48)
     nodes, weights = leggauss(120)
     for cycle in (0, 2, 3):
-        c, a = float(found.stick_radius[cycle]), float(found.contact_radius[cycle])
+        c, a = float(result.stick_radius[cycle]), float(result.contact_radius[cycle])
         carried = 0.0
         for low, high in ((0.0, c), (c, a)):
             angle = pi / 4 * (1 + nodes)
             r = low + (high - low) * np.sin(angle) ** 2
             step = (high - low) * np.sin(2 * angle) * pi / 4
-            carried += float((weights * step * 2 * pi * r * found.pressure(r)[cycle]).sum())
+            carried += float((weights * step * 2 * pi * r * result.pressure(r)[cycle]).sum())
         assert carried == pytest.approx(
-            found.normal_force[cycle], rel=2e-3 if cycle else 1e-6, abs=0
+            result.normal_force[cycle], rel=2e-3 if cycle else 1e-6, abs=0
         )
 
 
@@ -235,20 +235,20 @@ def test_pressure_integrates_to_the_force(control: str) -> None:
 @pytest.mark.parametrize("control", CONTROLS)
 def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:
     """a - c grows by a half; depth and stick edge change to second order only."""
-    found = worn("paraboloid", control, part)
-    width = float(found.initial.tangential_contact.slip_width)
-    grown = (found.contact_radius - found.stick_radius)[-1] / width
+    result = worn("paraboloid", control, part)
+    width = float(result.initial.tangential_contact.slip_width)
+    grown = (result.contact_radius - result.stick_radius)[-1] / width
     assert grown == pytest.approx(1.5, rel=max(1e-4, part), abs=0)
-    assert found.stick_radius[-1] - found.stick_radius[0] <= 2 * width**2 + 1e-9 * width
-    assert found.error_estimate <= 0.02
+    assert result.stick_radius[-1] - result.stick_radius[0] <= 2 * width**2 + 1e-9 * width
+    assert result.error_estimate <= 0.02
 
 
 def test_zero_cycles_is_the_initial_state() -> None:
-    found = worn("paraboloid", CONTROLS[0])
+    result = worn("paraboloid", CONTROLS[0])
     r = np.array([0.0, 0.3, 0.74, 0.8, 0.95, 1.3])
-    assert np.array_equal(found.pressure(r)[0], fields.pressure(found.initial.contact, r))
-    assert np.array_equal(found.profile(r)[0], found.initial.contact.profile.f(r))
-    assert found.contact_radius[0] == pytest.approx(1.0, rel=1e-14, abs=0)
+    assert np.array_equal(result.pressure(r)[0], fields.pressure(result.initial.contact, r))
+    assert np.array_equal(result.profile(r)[0], result.initial.contact.profile.f(r))
+    assert result.contact_radius[0] == pytest.approx(1.0, rel=1e-14, abs=0)
 
 
 EXPLICIT_GRID = 360
@@ -257,10 +257,10 @@ EXPLICIT_GRID = 360
 @pytest.mark.parametrize("control", CONTROLS)
 def test_agreement_with_the_explicit_scheme(control: str) -> None:
     """The error of the explicit scheme is of the order of its spacing, 1.8 a/360."""
-    found = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
+    result = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
     r = np.arange(EXPLICIT_GRID) * (1.8 / EXPLICIT_GRID)
     scene = Scene(r, r * r / 2, E_STAR, G_STAR, MU, WEAR)
-    tangential_contact, contact = found.initial.tangential_contact, found.initial.contact
+    tangential_contact, contact = result.initial.tangential_contact, result.initial.contact
     force, moved = float(contact.normal_force), float(tangential_contact.tangential_displacement)
     held = {
         CONTROLS[0]: Controls(depth=float(contact.indentation_depth), displacement=moved),
@@ -269,15 +269,15 @@ def test_agreement_with_the_explicit_scheme(control: str) -> None:
         ),
         CONTROLS[2]: Controls(normal_force=force, displacement=moved),
     }[control]
-    states = scene.run(held, found.cycles.tolist())
-    depth = found.worn_depth(r)
+    states = scene.run(held, result.cycles.tolist())
+    depth = result.worn_depth(r)
     for cycle, state in enumerate(states):
         gap = np.abs(state.profile - r * r / 2 - depth[cycle]).max()
-        assert gap <= 8e-3 * found.indentation_depth[cycle]
-        assert state.worn_volume == pytest.approx(found.worn_volume[cycle], rel=1.5e-2, abs=0)
-        assert state.depth == pytest.approx(found.indentation_depth[cycle], rel=4e-3, abs=0)
-        assert state.contact_radius == pytest.approx(found.contact_radius[cycle], rel=6e-3, abs=0)
-        assert state.stick_radius == pytest.approx(found.stick_radius[cycle], rel=6e-3, abs=0)
+        assert gap <= 8e-3 * result.indentation_depth[cycle]
+        assert state.worn_volume == pytest.approx(result.worn_volume[cycle], rel=1.5e-2, abs=0)
+        assert state.depth == pytest.approx(result.indentation_depth[cycle], rel=4e-3, abs=0)
+        assert state.contact_radius == pytest.approx(result.contact_radius[cycle], rel=6e-3, abs=0)
+        assert state.stick_radius == pytest.approx(result.stick_radius[cycle], rel=6e-3, abs=0)
 
 
 @pytest.mark.every(2)
@@ -289,12 +289,12 @@ def test_error_within_estimate(kind: str, control: str) -> None:
     c, a = float(truth.stick_radius[0]), float(truth.contact_radius[-1])
     r = c + (a - c) * np.linspace(0.0, 1.0, 200)
     for resolution in (8, 14, 24):
-        found = worn(kind, control, 0.5, cycles=cycles, resolution=resolution)
-        gap = np.abs(found.worn_depth(r) - truth.worn_depth(r)).max(axis=1)
+        result = worn(kind, control, 0.5, cycles=cycles, resolution=resolution)
+        gap = np.abs(result.worn_depth(r) - truth.worn_depth(r)).max(axis=1)
         errors = {"worn_depth": (gap / truth.indentation_depth).max()}
         for name in ("worn_volume", "indentation_depth", "normal_force", "contact_radius"):
-            errors[name] = np.abs(getattr(found, name) / getattr(truth, name) - 1).max()
-        assert max(errors.values()) <= found.error_estimate, (resolution, errors)
+            errors[name] = np.abs(getattr(result, name) / getattr(truth, name) - 1).max()
+        assert max(errors.values()) <= result.error_estimate, (resolution, errors)
 
 
 def test_cost_is_independent_of_the_number_of_cycles(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -370,19 +370,19 @@ def test_no_wear_without_slip() -> None:
     punch = normal.solve(FlatPunch(1.0), E_STAR, normal_force=1.0)
     ball = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
     for contact, amplitude in ((punch, 0.1), (ball, 0.0)):
-        found = evolution.solve(
+        result = evolution.solve(
             contact, G_STAR, MU, wear_coefficient=1.0, cycles=[0, 1e6],
             tangential_displacement=amplitude,
         )  # fmt: skip
         r = np.array([0.0, 0.5, 0.9, 1.5])
-        assert not found.worn_depth(r).any()
-        assert not found.worn_volume.any()
-        assert not found.dissipated_energy.any()
-        assert np.all(found.stick_radius == 1.0)
-        assert np.all(found.contact_radius == 1.0)
-        assert np.all(found.normal_force == float(contact.normal_force))
-        assert np.array_equal(found.pressure(r)[1], fields.pressure(contact, r))
-        assert found.error_estimate < 1e-11
+        assert not result.worn_depth(r).any()
+        assert not result.worn_volume.any()
+        assert not result.dissipated_energy.any()
+        assert np.all(result.stick_radius == 1.0)
+        assert np.all(result.contact_radius == 1.0)
+        assert np.all(result.normal_force == float(contact.normal_force))
+        assert np.array_equal(result.pressure(r)[1], fields.pressure(contact, r))
+        assert result.error_estimate < 1e-11
 
 
 @pytest.mark.parametrize(
@@ -432,8 +432,8 @@ def test_contact_beyond_the_profile_is_rejected_with_its_cycle() -> None:
 
 
 def test_radius_beyond_the_profile_is_rejected() -> None:
-    found = worn("sphere", CONTROLS[0])
-    for field in (*map(partial(getattr, found), evolution.FIELDS), found.field_error_estimate):
+    result = worn("sphere", CONTROLS[0])
+    for field in (*map(partial(getattr, result), evolution.FIELDS), result.field_error_estimate):
         with pytest.raises(InputError) as caught:
             field([0.0, 2.4, 2.6])
         assert caught.value.path == ("radius", 2)

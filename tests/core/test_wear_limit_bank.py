@@ -49,12 +49,12 @@ def solved(case: dict[str, Any], given: Any = None) -> limit.LimitingWear:
 
 
 def failures_of(case: dict[str, Any]) -> list[str]:
-    found = solved(case)
+    result = solved(case)
     table = case["profile"]["kind"] == "tabulated"
     bound = TABLE if table else BOUND
     failures, allowed = [], [bound]
     for name, row in case["expected"].items():
-        values = getattr(found, name)
+        values = getattr(result, name)
         assert values.shape == (len(row),)
         for index, expected in enumerate(row):
             by_inputs = allowance(case["condition"][name][index])
@@ -65,11 +65,13 @@ def failures_of(case: dict[str, Any]) -> list[str]:
                 expected,
                 bound,
                 by_inputs,
-                found.error_estimate,
+                result.error_estimate,
             )
-    failures += overstated(found.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED)
-    assert set(found.regime) == {"partial_slip"}
-    depends = "path_dependent" in {notice.code for notice in found.warnings}
+    failures += overstated(
+        result.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED
+    )
+    assert set(result.regime) == {"partial_slip"}
+    depends = "path_dependent" in {notice.code for notice in result.warnings}
     assert depends == (case["equation"] == "(5.90)")
     return failures
 
@@ -83,9 +85,9 @@ def field_failures(case: dict[str, Any]) -> Iterator[str]:
     real = case["profile"]["kind"] in EXPONENTS
     doubt = INPUT + (profile_from(case["profile"]).rounding if real else 0.0)
     for fields in case["fields"]:
-        found = solved(case, case["given"][fields["index"]])
+        result = solved(case, case["given"][fields["index"]])
         for name, row in fields["expected"].items():
-            values = getattr(found, name)(fields["radius"])
+            values = getattr(result, name)(fields["radius"])
             assert values.shape == (len(row),)
             for index, expected in enumerate(row):
                 error = relative_error(float(values[index]), expected)
@@ -103,10 +105,10 @@ def test_fields(cases: list[dict[str, Any]]) -> None:
 @batched(CASES[::5])
 def test_single_amplitude_equals_one_of_many(cases: list[dict[str, Any]]) -> None:
     for case in cases:
-        found, alone = solved(case), solved(case, case["given"][0])
+        result, alone = solved(case), solved(case, case["given"][0])
         for name in case["expected"]:
             value = getattr(alone, name)
             assert value.shape == ()
             # The same steps, possibly summed in a different order.
-            expected = pytest.approx(float(getattr(found, name)[0]), rel=1e-13, abs=0)
+            expected = pytest.approx(float(getattr(result, name)[0]), rel=1e-13, abs=0)
             assert float(value) == expected, (case["id"], name)

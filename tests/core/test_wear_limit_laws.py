@@ -256,9 +256,9 @@ def test_fields_do_not_depend_on_the_tolerance(profile: Profile) -> None:
     """A looser one saves nothing, and `error_estimate` does not contain it."""
     force = float(normal.solve(profile, E_STAR, contact_radius=1.0).normal_force)
     radius = np.linspace(0.0, 1.2, 40)
-    found = []
+    result = []
     for rtol in (1e-3, 1e-13):
         contact = normal.solve(profile, E_STAR, normal_force=force, rtol=rtol)
         worn = limit.solve(contact, G_STAR, MU, tangential_force=0.4 * MU * force)
-        found.append((worn.worn_depth(radius), worn.pressure(radius)))
-    assert np.array_equal(found[0], found[1])
+        result.append((worn.worn_depth(radius), worn.pressure(radius)))
+    assert np.array_equal(result[0], result[1])

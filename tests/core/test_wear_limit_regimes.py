@@ -49,9 +49,9 @@ RESULTS = (
 
 
 def values(wear: limit.LimitingWear) -> dict[str, Any]:
-    found = {name: getattr(wear, name) for name in RESULTS}
-    assert not any(np.isnan(value).any() for value in found.values())
-    return found
+    result = {name: getattr(wear, name) for name in RESULTS}
+    assert not any(np.isnan(value).any() for value in result.values())
+    return result
 
 
 @pytest.mark.parametrize("load", [{"indentation_depth": 0.3}, {"normal_force": 0.3}])
@@ -61,16 +61,16 @@ def test_no_wear_without_slip(profile: Profile, load: dict[str, Any], name: str)
     # A flat punch is in full stick up to full slip.
     sizes = [0.0, 1e-3] if profile.kind == "flat_punch" else [0.0, 0.0]
     wear = worn(profile, load, {name: sizes})
-    first, found = wear.first.normal, values(wear)
+    first, result = wear.first.normal, values(wear)
     assert list(wear.regime) == ["stick", "stick"]
     assert codes(wear) - codes_of(first) == {"no_wear"}
     for edge in ("stick_radius", "wear_radius"):
-        assert list(found[edge]) == [float(first.contact_radius)] * 2
-    assert list(found["worn_volume"]) == [0.0, 0.0]
-    assert list(found["normal_force"]) == pytest.approx(
+        assert list(result[edge]) == [float(first.contact_radius)] * 2
+    assert list(result["worn_volume"]) == [0.0, 0.0]
+    assert list(result["normal_force"]) == pytest.approx(
         [float(first.normal_force)] * 2, rel=1e-14, abs=0
     )
-    assert list(found[name]) == sizes
+    assert list(result[name]) == sizes
     r = [0.0, 0.3, 0.69]
     assert (wear.worn_depth(r) == 0).all()
     assert (wear.limiting_profile(r) == wear.initial_profile(r)).all()
@@ -85,14 +85,14 @@ def test_constant_depth_in_full_slip_wears_to_separation() -> None:
     """f = d at the outer radius: r^2 = 2 R d, V = pi R d^2."""
     d = 0.3
     wear = worn(Paraboloid(R), {"indentation_depth": d}, {"tangential_displacement": [0.1, 0.5]})
-    found = values(wear)
+    result = values(wear)
     assert list(wear.regime) == ["partial_slip", "full_slip"]
     assert {"contact_lost", "singular"} <= codes(wear)
-    assert found["stick_radius"][1] == 0
-    assert found["wear_radius"][1] == pytest.approx((2 * R * d) ** 0.5, rel=1e-15, abs=0)
-    assert found["worn_volume"][1] == pytest.approx(np.pi * R * d * d, rel=1e-14, abs=0)
-    assert (found["normal_force"][1], found["tangential_force"][1]) == (0.0, 0.0)
-    assert (found["indentation_depth"][1], found["tangential_displacement"][1]) == (d, 0.5)
+    assert result["stick_radius"][1] == 0
+    assert result["wear_radius"][1] == pytest.approx((2 * R * d) ** 0.5, rel=1e-15, abs=0)
+    assert result["worn_volume"][1] == pytest.approx(np.pi * R * d * d, rel=1e-14, abs=0)
+    assert (result["normal_force"][1], result["tangential_force"][1]) == (0.0, 0.0)
+    assert (result["indentation_depth"][1], result["tangential_displacement"][1]) == (d, 0.5)
     r = np.array([0.0, 1e-9, 0.5, 0.8])
     assert wear.limiting_profile(r)[1] == pytest.approx([d] * 4, rel=1e-15, abs=0)
     assert (wear.pressure(r)[1] == 0).all()
@@ -119,14 +119,14 @@ def test_other_shapes_in_full_slip(profile: Profile, radius: float, volume: floa
 def test_wear_under_a_constant_force_in_full_slip_is_unbounded(profile: Profile) -> None:
     for amplitude in ({"tangential_force": [0.1, 0.15]}, {"tangential_displacement": [0.01, 9.0]}):
         wear = worn(profile, {"normal_force": 0.3}, amplitude)
-        found = values(wear)
+        result = values(wear)
         assert wear.regime[1] == "full_slip"
         assert "endless_wear" in codes(wear)
         for name in ("wear_radius", "indentation_depth", "worn_volume"):
-            assert np.isposinf(found[name][1])
-            assert np.isfinite(found[name][0])
-        assert (found["stick_radius"][1], found["normal_force"][1]) == (0.0, 0.3)
-        assert found["tangential_force"][1] == pytest.approx(0.15, rel=1e-15, abs=0)
+            assert np.isposinf(result[name][1])
+            assert np.isfinite(result[name][0])
+        assert (result["stick_radius"][1], result["normal_force"][1]) == (0.0, 0.3)
+        assert result["tangential_force"][1] == pytest.approx(0.15, rel=1e-15, abs=0)
         r = [0.0, 0.3]
         assert np.isposinf(wear.limiting_profile(r)[1]).all()
         assert (wear.pressure(r)[1] == 0).all()
@@ -137,10 +137,10 @@ def test_wear_under_a_constant_force_in_full_slip_is_unbounded(profile: Profile)
 @pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
 def test_no_wear_without_load(profile: Profile, control: str) -> None:
     wear = worn(profile, {control: [0.0, 0.2]}, {"tangential_displacement": 0.01})
-    found = values(wear)
+    result = values(wear)
     assert wear.regime[0] == "stick"
-    assert (found["worn_volume"][0], found["normal_force"][0]) == (0.0, 0.0)
-    assert found["worn_volume"][1] > 0
+    assert (result["worn_volume"][0], result["normal_force"][0]) == (0.0, 0.0)
+    assert result["worn_volume"][1] > 0
 
 
 def test_limit_at_constant_depth_and_force_is_the_largest_stick_zone() -> None:

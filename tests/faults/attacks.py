@@ -115,17 +115,17 @@ def requesting(text: bytes | tuple[bytes, ...], clients: int) -> Attack:
 
     async def attack(port: int, seconds: float) -> Counter[int]:
         end = time.monotonic() + seconds
-        found: Counter[int] = Counter()
+        result: Counter[int] = Counter()
 
         async def keep_sending(index: int) -> None:
             client = Client(port)
             while time.monotonic() < end:
-                found.update(await once(client, index))
+                result.update(await once(client, index))
                 index += 1
             await client.close()
 
         await asyncio.gather(*(keep_sending(number) for number in numbers))
-        return found
+        return result
 
     return attack
 
@@ -133,18 +133,18 @@ def requesting(text: bytes | tuple[bytes, ...], clients: int) -> Attack:
 def repeated(once: Callable[[int], Awaitable[Counter[int]]], clients: int) -> Attack:
     async def attack(port: int, seconds: float) -> Counter[int]:
         end = time.monotonic() + seconds
-        found: Counter[int] = Counter()
+        result: Counter[int] = Counter()
 
         async def keep_on() -> None:
             while time.monotonic() < end:
                 try:
-                    found.update(await once(port))
+                    result.update(await once(port))
                 except ConnectionError:
-                    found[0] += 1
+                    result[0] += 1
                     await asyncio.sleep(0.1)
 
         await asyncio.gather(*(keep_on() for _ in range(clients)))
-        return found
+        return result
 
     return attack
 
@@ -154,17 +154,17 @@ async def slow_readers(port: int, seconds: float) -> Counter[int]:
     end = time.monotonic() + seconds
 
     async def one() -> Counter[int]:
-        found: Counter[int] = Counter()
+        result: Counter[int] = Counter()
         while time.monotonic() < end:
             with suppress(ConnectionError):
                 reader, writer = await asyncio.open_connection(HOST, port, limit=1024)
                 writer.write(LARGEST)
                 status = statuses(await reader.read(100))
-                found += status
+                result += status
                 # A rejected client tries again; the others keep their connections.
                 await asyncio.sleep(end - time.monotonic() if status[200] else 0.5)
                 writer.close()
-        return found
+        return result
 
     return sum(await asyncio.gather(*(one() for _ in range(20))), Counter())
 
@@ -174,15 +174,15 @@ async def slow_headers(port: int, seconds: float) -> Counter[int]:
     end = time.monotonic() + seconds
 
     async def one(number: int) -> Counter[int]:
-        found: Counter[int] = Counter()
+        result: Counter[int] = Counter()
         await asyncio.sleep(number / 500)
         while time.monotonic() < end:
             try:
-                found += await keep_open(*await asyncio.open_connection(HOST, port))
+                result += await keep_open(*await asyncio.open_connection(HOST, port))
             except ConnectionError:
-                found[0] += 1
+                result[0] += 1
                 await asyncio.sleep(1.0)
-        return found
+        return result
 
     async def keep_open(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> Counter[int]:
         writer.write(b"GET / HTTP/1.1\r\n")
@@ -225,8 +225,8 @@ ATTACKS: dict[str, Attack] = {
 
 
 def main(name: str, port: int, seconds: float) -> None:
-    found = asyncio.run(ATTACKS[name](port, seconds))
-    sys.stdout.write(json.dumps(dict(sorted(found.items()))))
+    result = asyncio.run(ATTACKS[name](port, seconds))
+    sys.stdout.write(json.dumps(dict(sorted(result.items()))))
 
 
 if __name__ == "__main__":

@@ -50,7 +50,7 @@ class Row:
     """One row of the table."""
 
     what: str
-    found: str
+    result: str
     bound: str
     right: bool
 
@@ -63,14 +63,14 @@ async def beside(attack: str, port: int, seconds: float) -> AsyncIterator[Counte
     """Run an attack within the context; yield its statuses, which are complete on exit."""
     command = [sys.executable, "-m", "tests.faults.attacks", attack, str(port), str(seconds)]
     attackers = await asyncio.create_subprocess_exec(*command, stdout=asyncio.subprocess.PIPE)
-    found: Counter[str] = Counter()
+    result: Counter[str] = Counter()
     # Wait for the start of Python.
     await asyncio.sleep(1.5)
     try:
-        yield found
+        yield result
     finally:
         detail, _ = await attackers.communicate()
-        found.update(json.loads(detail))
+        result.update(json.loads(detail))
 
 
 async def small_queries(port: int, seconds: float) -> list[float]:
@@ -108,7 +108,7 @@ def small_queries_during(attack: str, *, seconds: float = 14.0, bounded: bool = 
         idle = percentile(await small_queries(port, 5.0), 0.99)
         before = server.memory_info().rss
         watching = asyncio.create_task(largest_memory(server))
-        async with beside(attack, port, seconds + 25.0) as found:
+        async with beside(attack, port, seconds + 25.0) as result:
             times = await small_queries(port, seconds)
             watching.cancel()
             growth = (await watching - before) / MEBIBYTE
@@ -122,7 +122,7 @@ def small_queries_during(attack: str, *, seconds: float = 14.0, bounded: bool = 
             Row(
                 f"small query during {attack}",
                 f"p50 {1e3 * percentile(times, 0.5):.2f} ms, p99 {1e3 * p99:.2f} ms, "
-                f"{len(times)} requests; idle p99 {1e3 * idle:.2f} ms; {dict(found)}",
+                f"{len(times)} requests; idle p99 {1e3 * idle:.2f} ms; {dict(result)}",
                 "p99 <= 25 ms and 10 × idle",
                 p99 <= most,
             ),
@@ -153,7 +153,7 @@ async def hostile(port: int, _server: psutil.Process) -> list[Row]:
                 counts[name, (await client.ask(text)).status] += 1
                 await asyncio.sleep(pause)
 
-    async with beside("expensive queries, 2 clients", port, 42.0) as found:
+    async with beside("expensive queries, 2 clients", port, 42.0) as result:
         end = time.monotonic() + 40.0
         long = [ask("long", LONGER, 0.5, end) for _ in range(4)]
         await asyncio.gather(*long, ask("small", SMALL, 0.05, end))
@@ -164,7 +164,7 @@ async def hostile(port: int, _server: psutil.Process) -> list[Row]:
         statuses = {status: count for (what, status), count in counts.items() if what == name}
         rows.append(
             Row(
-                f"{name} queries during two connections with the most expensive:  {dict(found)}",
+                f"{name} queries during two connections with the most expensive:  {dict(result)}",
                 f"{100 * share:.0f} % answered, {statuses}",
                 f">= {100 * least:.0f} %",
                 share >= least,
@@ -308,28 +308,28 @@ async def mutated(port: int, _server: psutil.Process) -> list[Row]:
 
 
 def mutation(body: bytes, rng: random.Random) -> bytes:
-    found = bytearray(body)
+    result = bytearray(body)
     for _ in range(rng.choice([1, 1, 1, 2, 4])):
-        at = rng.randrange(len(found))
+        at = rng.randrange(len(result))
         way = rng.randrange(6)
         if way == 0:
-            found[at] = rng.randrange(256)
+            result[at] = rng.randrange(256)
         elif way == 1:
-            del found[at : at + rng.choice([1, 2, 8])]
+            del result[at : at + rng.choice([1, 2, 8])]
         elif way == 2:
-            found[at:at] = bytes([rng.randrange(256)])
+            result[at:at] = bytes([rng.randrange(256)])
         elif way == 3:
-            found[at:at] = found[at : at + rng.choice([1, 4, 16])]
+            result[at:at] = result[at : at + rng.choice([1, 4, 16])]
         elif way == 4:
             # Replacing a digit by another often leaves a valid query.
-            digits = [n for n, byte in enumerate(found) if chr(byte).isdigit()]
+            digits = [n for n, byte in enumerate(result) if chr(byte).isdigit()]
             if digits:
-                found[rng.choice(digits)] = ord(rng.choice("0123456789"))
+                result[rng.choice(digits)] = ord(rng.choice("0123456789"))
         else:
-            found[at : at + 1] = rng.choice([b"1e999", b"NaN", b"-0.0", b"1e-320", b"null", b"[]"])
-        if not found:
-            found += b"0"
-    return bytes(found)
+            result[at : at + 1] = rng.choice([b"1e999", b"NaN", b"-0.0", b"1e-320", b"null", b"[]"])
+        if not result:
+            result += b"0"
+    return bytes(result)
 
 
 def fault_of(body: bytes) -> str | None:
@@ -409,7 +409,7 @@ def main(names: list[str]) -> int:
             )
             for row in rows:
                 mark = "  " if row.right else "! "
-                say(f"{mark}{row.what}\n      {row.found}\n      bound: {row.bound}")
+                say(f"{mark}{row.what}\n      {row.result}\n      bound: {row.bound}")
                 missed += not row.right
             say(f"    ({name}: {time.monotonic() - started:.0f} s)")
     return 1 if missed else 0

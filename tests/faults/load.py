@@ -70,11 +70,11 @@ class Client:
 
 @asynccontextmanager
 async def clients(port: int, count: int) -> AsyncIterator[list[Client]]:
-    found = [Client(port) for _ in range(count)]
+    result = [Client(port) for _ in range(count)]
     try:
-        yield found
+        yield result
     finally:
-        for client in found:
+        for client in result:
             await client.close()
 
 

@@ -162,10 +162,10 @@ def test_valid_request_id_is_returned(
         connection.request("GET", path, headers={"X-Request-Id": given})
         response = connection.getresponse()
         response.read()
-        found = response.getheader("x-request-id")
-        assert found is not None
-        assert (found == given) == kept
-        assert kept or re.fullmatch("[0-9a-f]{16}", found)
+        result = response.getheader("x-request-id")
+        assert result is not None
+        assert (result == given) == kept
+        assert kept or re.fullmatch("[0-9a-f]{16}", result)
         assert response.getheader("x-content-type-options") == "nosniff"
         assert response.getheader("access-control-allow-origin") is None
 

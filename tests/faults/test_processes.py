@@ -56,28 +56,28 @@ def ask(port: int, path: str, query: object) -> tuple[int, bytes]:
 
 def computing(server: int) -> list[psutil.Process]:
     """Return the compute processes of a server."""
-    found = []
+    computed = []
     for process in psutil.Process(server).children(recursive=True):
         try:
             if any("compute_process" in each for each in process.cmdline()):
-                found.append(process)
+                computed.append(process)
         except psutil.Error:
             continue
-    return found
+    return computed
 
 
 def busy(server: int) -> psutil.Process:
     """Return a compute process once it is computing."""
-    found: list[psutil.Process] = []
+    computed: list[psutil.Process] = []
 
     def is_busy() -> bool:
         before = {each: sum(each.cpu_times()[:2]) for each in computing(server)}
         time.sleep(0.05)
-        found[:] = [each for each, spent in before.items() if sum(each.cpu_times()[:2]) > spent]
-        return bool(found)
+        computed[:] = [each for each, spent in before.items() if sum(each.cpu_times()[:2]) > spent]
+        return bool(computed)
 
     wait_for(is_busy)
-    return found[0]
+    return computed[0]
 
 
 def wait_for(condition: Callable[[], bool]) -> None:
@@ -117,11 +117,11 @@ def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time()
             process.send_signal(signal.SIGTERM)
             told = time.monotonic()
             wait_for(lambda: not is_served(port))
-            found = [each.result() for each in answers]
+            computed = [each.result() for each in answers]
         process.communicate(timeout=60)
         assert time.monotonic() - told < 41 + PATIENCE
     assert process.returncode == 0
-    assert found == [expected] * 8
+    assert computed == [expected] * 8
     assert expected[0] == 200
     assert not any(child.is_running() for child in children)
 
@@ -134,10 +134,10 @@ def test_killed_compute_process_loses_its_own_request_only() -> None:
         pool, answers = requests(port, 4)
         with pool:
             busy(process.pid).kill()
-            found = [each.result() for each in answers]
-        assert sorted(status for status, _ in found) == [200, 200, 200, 503]
-        assert b"urn:mdr:problem:process-lost" in min(found, key=lambda each: len(each[1]))[1]
-        assert [each for each in found if each[0] == 200] == [expected] * 3
+            computed = [each.result() for each in answers]
+        assert sorted(status for status, _ in computed) == [200, 200, 200, 503]
+        assert b"urn:mdr:problem:process-lost" in min(computed, key=lambda each: len(each[1]))[1]
+        assert [each for each in computed if each[0] == 200] == [expected] * 3
         assert ask(port, "/v1/tangential", LONGER) == expected
         assert ask(port, "/v1/normal", SMALL)[0] == 200
         wait_for(lambda: len(computing(process.pid)) == 2)
@@ -209,10 +209,10 @@ def test_stopped_compute_processes_are_replaced(state: str) -> None:
             assert status == 503
             assert time.monotonic() - began < 15.0
         answers += [pool.submit(ask, port, "/v1/tangential", LONGER)]
-        found = [each.result() for each in answers]
+        computed = [each.result() for each in answers]
         pool.shutdown()
-        assert all(each == expected or each[0] == 503 for each in found)
-        assert found[-1] == expected
+        assert all(each == expected or each[0] == 503 for each in computed)
+        assert computed[-1] == expected
         wait_for(lambda: gauge(port, "mdr_compute_processes") == 2.0)
         assert len(computing(process.pid)) == 2
         assert not set(computing(process.pid)) & set(stopped)

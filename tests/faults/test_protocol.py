@@ -64,9 +64,9 @@ class Served:
         with self.connect() as client:
             sender = threading.Thread(target=send_all, args=(client, pieces))
             sender.start()
-            found = read(client, number)
+            result = read(client, number)
             sender.join()
-        return found
+        return result
 
 
 def send_all(client: socket.socket, pieces: tuple[bytes, ...]) -> bool:
@@ -97,17 +97,17 @@ class Received:
 
 
 def read(client: socket.socket, number: int) -> list[tuple[int, bytes]]:
-    found = []
+    result = []
     stream = client.makefile("rb")
     stream.close = lambda: None  # type: ignore[method-assign]  # for the next response
     for _ in range(number):
         try:
             response = http.client.HTTPResponse(Received(stream), method="POST")  # type: ignore[arg-type]
             response.begin()
-            found.append((response.status, response.read()))
+            result.append((response.status, response.read()))
         except (ConnectionError, http.client.HTTPException):
             break
-    return found
+    return result
 
 
 def is_closed(client: socket.socket) -> bool:
@@ -164,8 +164,8 @@ def test_headers_are_limited_in_bytes_and_number(
     text = post(headers=headers)
     # At once, and in pieces that end inside names and values.
     for pieces in ([text], [text[n : n + 1021] for n in range(0, len(text), 1021)]):
-        ((found, body),) = served.responses(*pieces)
-        assert found == status
+        ((result, body),) = served.responses(*pieces)
+        assert result == status
         if status == 431:
             document = json.loads(body)
             assert document["type"] == "urn:mdr:problem:headers-too-large"
@@ -193,17 +193,17 @@ def test_long_url_is_rejected(served: Served) -> None:
 )
 def test_unterminated_header_is_rejected_once_it_is_too_long(served: Served, head: bytes) -> None:
     endless = b"\r\n" if head == b"\r\n" else b"a"
-    found = served.responses(head, *[endless * 2**19] * 100, number=2)
-    assert [status for status, _ in found] == [431]
+    result = served.responses(head, *[endless * 2**19] * 100, number=2)
+    assert [status for status, _ in result] == [431]
 
 
 def test_trailers_within_the_limits_are_ignored(served: Served) -> None:
     trailers = b"X-Request-Id: trailer\r\nContent-Type: text/plain\r\n"
-    found = served.responses(chunked(trailers=trailers) + GET, number=2)
-    assert [status for status, _ in found] == [200, 200]
-    assert found[0] == served.responses(post())[0]
-    found = served.responses(chunked(trailers=b"X: a\r\n" * 20_000) + GET, number=2)
-    assert 200 not in [status for status, _ in found[1:]]
+    result = served.responses(chunked(trailers=trailers) + GET, number=2)
+    assert [status for status, _ in result] == [200, 200]
+    assert result[0] == served.responses(post())[0]
+    result = served.responses(chunked(trailers=b"X: a\r\n" * 20_000) + GET, number=2)
+    assert 200 not in [status for status, _ in result[1:]]
 
 
 @pytest.mark.parametrize(
@@ -220,16 +220,16 @@ def test_trailers_within_the_limits_are_ignored(served: Served) -> None:
     ids=["words", "TLS", "HTTP/2", "CONNECT", "not ASCII", "two lengths", "chunk"],
 )
 def test_malformed_request_is_rejected_with_a_problem(served: Served, text: bytes) -> None:
-    found = served.responses(text, number=2)
-    assert [status for status, _ in found] == [400]
-    assert json.loads(found[0][1])["type"] == "urn:mdr:problem:malformed-http"
+    result = served.responses(text, number=2)
+    assert [status for status, _ in result] == [400]
+    assert json.loads(result[0][1])["type"] == "urn:mdr:problem:malformed-http"
 
 
 def test_pipelined_requests_are_answered_in_order(served: Served) -> None:
-    found = served.responses((post() + GET) * 8, number=16)
+    result = served.responses((post() + GET) * 8, number=16)
     single = served.responses(post())[0]
-    assert found[::2] == [single] * 8
-    assert [status for status, _ in found[1::2]] == [200] * 8
+    assert result[::2] == [single] * 8
+    assert [status for status, _ in result[1::2]] == [200] * 8
 
 
 def test_flood_of_pipelined_requests_is_disconnected(served: Served) -> None:
@@ -237,8 +237,8 @@ def test_flood_of_pipelined_requests_is_disconnected(served: Served) -> None:
 
 
 def test_malformed_request_after_another_gets_its_own_response(served: Served) -> None:
-    found = served.responses(GET + b"NONSENSE\r\n\r\n", number=2)
-    assert [status for status, _ in found] in ([], [200])
+    result = served.responses(GET + b"NONSENSE\r\n\r\n", number=2)
+    assert [status for status, _ in result] in ([], [200])
 
 
 @pytest.mark.parametrize("offer", [UPGRADE, b"Connection: upgrade\r\nUpgrade: websocket\r\n"])
@@ -278,8 +278,8 @@ def test_responses_are_independent_of_request_fragmentation(served: Served) -> N
         whole = b"".join(texts)
         cuts = sorted(rng.sample(range(1, len(whole)), rng.choice([0, 1, 5, 40])))
         pieces = [whole[begin:end] for begin, end in pairwise([0, *cuts, len(whole)])]
-        found = served.responses(*pieces, number=6)
-        assert [status for status, _ in found] == [kinds[text] for text in texts]
+        result = served.responses(*pieces, number=6)
+        assert [status for status, _ in result] == [kinds[text] for text in texts]
 
 
 def test_100_continue_is_sent(served: Served) -> None:
@@ -310,10 +310,10 @@ def test_slow_request_is_rejected(served: Served, pieces: list[bytes], name: str
         for piece in pieces:
             client.sendall(piece)
             time.sleep(0.05)
-        found = read(client, 3)
+        result = read(client, 3)
         assert time.monotonic() - began < PATIENCE / 2
         assert is_closed(client)
-    status, body = found[-1]
+    status, body = result[-1]
     assert status == 408
     assert json.loads(body)["type"] == f"urn:mdr:problem:{name}"
 

@@ -31,14 +31,14 @@ DIMENSIONS: Final[Mapping[str, tuple[int, int]]] = {
 def converted(part: Any, units: Units, name: str = "") -> Any:
     """Return a query, or a part of it, in other units."""
     if isinstance(part, dict):
-        found = {key: converted(value, units, key) for key, value in part.items()}
+        computed = {key: converted(value, units, key) for key, value in part.items()}
         if "coefficient" in part:
             # A coefficient has the dimension length^(1 - exponent).
-            found["coefficient"] *= units.length ** (1 - part["exponent"])
+            computed["coefficient"] *= units.length ** (1 - part["exponent"])
         if "amplitude" in part:
             (control,) = part.keys() & {"indentation_depth", "normal_force"}
-            found["amplitude"] = converted(part["amplitude"], units, control)
-        return found
+            computed["amplitude"] = converted(part["amplitude"], units, control)
+        return computed
     if isinstance(part, list):
         return [converted(each, units, name) for each in part]
     if name not in DIMENSIONS:
@@ -64,7 +64,7 @@ def is_representable(part: Any) -> bool:
 
 def scaled(body: Any, units: Units) -> Any:
     """Return the query in units that are powers of two."""
-    found = converted({key: value for key, value in body.items() if key != "profile"}, units)
+    computed = converted({key: value for key, value in body.items() if key != "profile"}, units)
     table = body["profile"].get("kind") == "tabulated"
     shape = converted(body["profile"], units)
     if table:
@@ -73,7 +73,7 @@ def scaled(body: Any, units: Units) -> Any:
             for key in ("r", "f", "breaks")
             if key in body["profile"]
         }
-    return found | {"profile": shape}
+    return computed | {"profile": shape}
 
 
 _ANSWER_DIMENSIONS: Final = DIMENSIONS | {
@@ -91,8 +91,8 @@ _ANSWER_DIMENSIONS: Final = DIMENSIONS | {
 
 def scaled_result(result: Mapping[str, Any], units: Units) -> dict[str, Any]:
     """Return a result in other units."""
-    found: dict[str, Any] = dict(result)
+    computed: dict[str, Any] = dict(result)
     for name, values in laws.numbers(result).items():
         length, force = _ANSWER_DIMENSIONS.get(name, (0, 0))
-        found[name] = values * units.length**length * units.force**force
-    return found
+        computed[name] = values * units.length**length * units.force**force
+    return computed

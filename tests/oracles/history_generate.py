@@ -181,12 +181,12 @@ def cycle_record(scene: Scene, normal: str, control: str) -> Record:
         near = _setting(scene, normal, mpf(load) * (1 + NUDGE))
         for ratio in ratios:
             given = float(mpf(ratio) * most)
-            found = loop(at, control, mpf(given))
+            result = loop(at, control, mpf(given))
             nudged = loop(at, control, mpf(given) * (1 + NUDGE))
             moved = loop(near, control, mpf(given))
             record["given"].append(given)
             for index, name in enumerate(("energy_per_cycle", "secant_stiffness")):
-                value = found[index]
+                value = result[index]
                 record["expected"][name].append(digits(value))
                 for kind, other in (("condition", nudged), ("condition_load", moved)):
                     rate = (other[index] / value - 1) / NUDGE if value else mpf(0)
@@ -206,10 +206,10 @@ def _losses(
     scene: Scene, mean: mpf, normal_amplitude: mpf, amplitude: mpf
 ) -> tuple[list[mpf], list[mpf]]:
     path = _wave(mean, normal_amplitude, amplitude)
-    found = history(scene.profile, path, scene.material)
+    result = history(scene.profile, path, scene.material)
     steps = range(1, len(path) - 1, 2)
-    lost = [found[i + 2].dissipated_energy - found[i].dissipated_energy for i in steps]
-    forces = [[found[i + k].tangential_force for k in (0, 1, 2)] for i in steps]
+    lost = [result[i + 2].dissipated_energy - result[i].dissipated_energy for i in steps]
+    forces = [[result[i + k].tangential_force for k in (0, 1, 2)] for i in steps]
     return lost, [(max(f) - min(f)) / (2 * amplitude) for f in forces]
 
 
@@ -270,7 +270,7 @@ def path_record(scene: Scene, legs: int) -> Record:
     most = scene.material.mu * scene.material.e_star / scene.material.g_star * depth
     ident = f"path-{scene.family}-5.8-{legs}-{scene.scale}"
     path = random_path(ident, legs, depth, most)
-    found = history(scene.profile, path, scene.material)
+    result = history(scene.profile, path, scene.material)
     names = ("normal_force", "tangential_force", "tangential_energy", "dissipated_energy")
     return {
         "id": ident,
@@ -278,7 +278,7 @@ def path_record(scene: Scene, legs: int) -> Record:
         **scene.common(),
         "indentation_depth": [d for d, _ in path],
         "tangential_displacement": [u for _, u in path],
-        "expected": {name: [digits(getattr(one, name)) for one in found] for name in names},
+        "expected": {name: [digits(getattr(one, name)) for one in result] for name in names},
     }
 
 

@@ -105,20 +105,20 @@ def fronts(path: Path, material: Material) -> list[mpf]:
     def branches(w: mpf) -> Branches:
         return follow(w, path, material).branches
 
-    found = [mpf(0)]
+    result = [mpf(0)]
     waiting = [(floor, top - floor)]
     while waiting:
         low, high = waiting.pop()
         if branches(low) == branches(high):
             continue
         if high - low <= floor:
-            found.append((low + high) / 2)
+            result.append((low + high) / 2)
             continue
         middle = (low + high) / 2
         waiting += [(middle, high), (low, middle)]
-        if len(found) > MOST:
+        if len(result) > MOST:
             raise ArithmeticError("a branch depends on rounding error")
-    return [*found, top]
+    return [*result, top]
 
 
 @dataclass(frozen=True)

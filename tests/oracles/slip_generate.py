@@ -237,8 +237,8 @@ def prescribed_value(at: Setting, task: Task, target: Any) -> float | None:
             c = reference.stick_radius(at, "tangential_force", force)
         if task.tangential == "stick_radius":
             return _inside(at, task, float(c))
-        found = reference.values(at, c, energy=False)[task.tangential]
-        return task.sign * float(found)
+        computed = reference.values(at, c, energy=False)[task.tangential]
+        return task.sign * float(computed)
 
 
 def _inside(at: Setting, task: Task, c: float) -> float | None:
@@ -320,9 +320,9 @@ def _append(
     record["regime"].append("full_slip" if sliding else "stick" if whole else "partial_slip")
     for name, row in record["expected"].items():
         row.append(digits(answers[name]))
-        for kind, found in conditions.items():
+        for kind, computed in conditions.items():
             # Without partial slip the results are proportional to the prescribed value.
-            record[kind][name].append(condition(found.get(name, mpf(2))))
+            record[kind][name].append(condition(computed.get(name, mpf(2))))
 
 
 @dataclass(frozen=True)
@@ -525,12 +525,12 @@ Row = dict[str, tuple[mpf, mpf]]
 
 
 def _flat_field_rows(at: Setting, task: Task, job: FieldTask) -> Callable[[mpf], Row]:
-    found = reference.flat_answer(at, task.tangential, job.given)
+    computed = reference.flat_answer(at, task.tangential, job.given)
     a = at.a
 
     def row(r: mpf) -> Row:
         edge = mp.pi * mp.sqrt((a - r) * (a + r)) if r < a else mp.inf
-        held = at.g_star * found["tangential_displacement"]
+        held = at.g_star * computed["tangential_displacement"]
         stress = mp.inf if r == a else held / edge if r < a else mpf(0)
         outside = 2 / mp.pi * at.depth * mp.asin(a / r) if r > a else at.depth
         inside = 1 if r <= a else 0

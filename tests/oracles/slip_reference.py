@@ -336,7 +336,7 @@ class Answer:
 def values(at: Setting, c: mpf, *, energy: bool = True) -> dict[str, mpf]:
     """Return the results of partial slip with stick radius c, 0 <= c <= a."""
     body = at.body
-    found = {
+    result = {
         "tangential_force": at.mu * at.e_star * (at.n - body.force(c)),
         "tangential_displacement": at.shift * (at.depth - body.g(c)),
         "stick_radius": c,
@@ -345,8 +345,8 @@ def values(at: Setting, c: mpf, *, energy: bool = True) -> dict[str, mpf]:
     }
     if energy:
         factor = 2 * (at.mu * at.e_star) ** 2 / at.g_star
-        found["dissipated_energy"] = factor * overlap(at, c) if c < at.a else mpf(0)
-    return found
+        result["dissipated_energy"] = factor * overlap(at, c) if c < at.a else mpf(0)
+    return result
 
 
 def gradients(at: Setting, c: mpf) -> dict[str, tuple[mpf, mpf]]:
@@ -376,11 +376,11 @@ def solve(at: Setting, control: str, given: float, *, energy: bool = True) -> An
         if c == at.a:
             zero = values(at, c, energy=energy)
             return Answer(c, zero, {}, {}, {})
-        found, slopes = values(at, c, energy=energy), gradients(at, c)
+        result, slopes = values(at, c, energy=energy), gradients(at, c)
         own_a, own_c = slopes[control]
-        own = found[control]
+        own = result[control]
         condition, condition_load = {}, {}
-        for name, value in found.items():
+        for name, value in result.items():
             to_a, to_c = slopes[name]
             condition[name] = abs(to_c / own_c * own / value)
             total = to_a - to_c * own_a / own_c
@@ -392,8 +392,8 @@ def solve(at: Setting, control: str, given: float, *, energy: bool = True) -> An
         }
         if given < 0:
             for name in CONTROLS[:2]:
-                found[name] = -found[name]
-        return Answer(c, found, condition, condition_load, rates)
+                result[name] = -result[name]
+        return Answer(c, result, condition, condition_load, rates)
 
 
 def flat_answer(at: Setting, control: str, given: float) -> dict[str, mpf]:
@@ -415,10 +415,10 @@ def full_slip(at: Setting, displacement: float) -> dict[str, mpf]:
     """Return the results beyond u_max: in full slip, the excess work is dissipated."""
     with mp.workdps(WORK_DIGITS):
         edge = at.body.b if at.body.blunt else mpf(0)
-        found = values(at, edge)
+        result = values(at, edge)
         force, reach = at.mu * at.e_star * at.n, at.shift * at.depth
         sign = 1 if displacement > 0 else -1
-        lost = found["dissipated_energy"] + force * (abs(mpf(displacement)) - reach)
+        lost = result["dissipated_energy"] + force * (abs(mpf(displacement)) - reach)
         answers = (sign * force, mpf(displacement), mpf(0), at.a, mpf(0), lost)
         return dict(zip(OUTPUTS, answers, strict=True))
 

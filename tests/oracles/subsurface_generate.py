@@ -66,16 +66,16 @@ def rule() -> tuple[list[mpf], list[mpf]]:
 
 def stops(low: mpf, high: mpf, centre: mpf, near: mpf) -> list[mpf]:
     """Panel ends in [low, high] that double away from `centre` and quadruple from 0."""
-    found = {low, high}
+    result = {low, high}
     distance = near / 4
     while distance < 4 * high:
-        found |= {centre - distance, centre + distance}
+        result |= {centre - distance, centre + distance}
         distance *= 2
     place = high
     while place > mpf(10) ** -18:
-        found.add(place)
+        result.add(place)
         place /= 4
-    return sorted(x for x in found if low <= x <= high)
+    return sorted(x for x in result if low <= x <= high)
 
 
 def kernels(x: mpf, r: mpf, z: mpf) -> list[mpf]:

@@ -61,8 +61,8 @@ def records(curve: int) -> str:
                 "expected": [mp.nstr(value, 20) for value in values],
             }
         )
-    found = {"name": name, "title": title, "distance": axis, "distances": distances}
-    return json.dumps({**found, "points": points}, ensure_ascii=False)
+    result = {"name": name, "title": title, "distance": axis, "distances": distances}
+    return json.dumps({**result, "points": points}, ensure_ascii=False)
 
 
 def main() -> None:

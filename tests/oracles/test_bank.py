@@ -80,7 +80,7 @@ def conditions(record: Any, key: str = "") -> Iterator[float]:
 
 
 def test_ill_conditioned_results_are_counted() -> None:
-    found = {
+    result = {
         name: sum(
             INPUT * condition > LARGEST_ALLOWANCE
             for record in bank.load(name)
@@ -88,7 +88,7 @@ def test_ill_conditioned_results_are_counted() -> None:
         )
         for name in bank.NAMES
     }
-    assert {name: count for name, count in found.items() if count} == ILL_CONDITIONED
+    assert {name: count for name, count in result.items() if count} == ILL_CONDITIONED
 
 
 def sample(name: str, count: int) -> list[bank.Record]:

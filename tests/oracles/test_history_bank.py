@@ -93,9 +93,9 @@ def test_stored_cycles_equal_the_closed_form(record: bank.Record) -> None:
 )
 def test_stored_paths_equal_single_springs(record: bank.Record) -> None:
     path = zip(record["indentation_depth"], record["tangential_displacement"], strict=True)
-    found = history(record["profile"], list(path), material(record))
+    result = history(record["profile"], list(path), material(record))
     with mp.workdps(slip.WORK_DIGITS):
         for name, row in record["expected"].items():
             assert all(
-                same(stored, getattr(one, name)) for stored, one in zip(row, found, strict=True)
+                same(stored, getattr(one, name)) for stored, one in zip(row, result, strict=True)
             ), name

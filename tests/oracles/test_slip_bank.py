@@ -27,8 +27,8 @@ def test_every_kind_is_covered_by_every_control() -> None:
 
 def test_every_regime_and_direction_is_covered() -> None:
     records = bank.load("tangential")
-    found = {regime for record in records for regime in record["regime"]}
-    assert found == {"stick", "partial_slip", "full_slip"}
+    result = {regime for record in records for regime in record["regime"]}
+    assert result == {"stick", "partial_slip", "full_slip"}
     signs = {value > 0 for record in records for value in record["given"]}
     assert signs == {True, False}
     assert {r["tags"]["scale"] for r in records} >= {"nm-TPa", "km-kPa"}
@@ -78,11 +78,11 @@ def test_stored_fields_equal_the_reference(record: bank.Record) -> None:
     index = random.Random(record["id"]).randrange(len(record["radius"]))
     with mp.workdps(reference.WORK_DIGITS):
         r, sign = mpf(record["radius"][index]), 1 if record["given"] > 0 else -1
-        found = {
+        result = {
             "shear_stress": sign * at.mu * reference.traction(at, answer.c, r),
             "slip": sign * reference.slip(at, answer.c, r),
             "normal_displacement": reference.displacement(at, r),
         }
-        for name, value in found.items():
+        for name, value in result.items():
             stored = mpf(record["expected"][name][index])
             assert value == stored or mp.almosteq(stored, value, STORED), name

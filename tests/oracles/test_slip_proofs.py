@@ -71,12 +71,12 @@ def test_stick_radius_of_a_power(profile: Profile, rho: str) -> None:
         n = at.body.shape.equivalent_terms[0][1]
         power = mp.log1p(-mpf(rho)) / (n + 1)
     force = mpf(rho) * at.mu * at.e_star * at.n
-    found = reference.values(at, reference.stick_radius(at, "tangential_force", force))
+    result = reference.values(at, reference.stick_radius(at, "tangential_force", force))
     with mp.workdps(60):
-        assert same(found["stick_radius"], at.a * mp.exp(power))
-        assert same(found["slip_width"], -at.a * mp.expm1(power))
+        assert same(result["stick_radius"], at.a * mp.exp(power))
+        assert same(result["slip_width"], -at.a * mp.expm1(power))
         most = (n + 1) * at.mu * at.e_star * at.n / (2 * n * at.g_star * at.a)
-        assert same(found["tangential_displacement"], -most * mp.expm1(n * power))
+        assert same(result["tangential_displacement"], -most * mp.expm1(n * power))
 
 
 @pytest.mark.parametrize("name", CHOSEN)
@@ -119,7 +119,7 @@ def test_energy_equals_direct_quadrature(name: str) -> None:
 def test_energy_of_monomials_is_free_of_cancellation(name: str) -> None:
     at = setting_of(PROFILES[name], 0.5)
     for c in (at.a * (1 - mpf(10) ** -16), at.a / 1000):
-        found = reference.overlap(at, c)
+        result = reference.overlap(at, c)
         with mp.workdps(reference.WORK_DIGITS):
             base, width = at.body.g(c), at.a - c
 
@@ -128,7 +128,7 @@ def test_energy_of_monomials_is_free_of_cancellation(name: str) -> None:
                 return (at.depth - g) * (g - base) / at.depth**2  # noqa: B023 -- as above
 
             plain = width * at.depth**2 * at.body.integrate(density, mpf(0), mpf(1))
-            assert same(found, plain)
+            assert same(result, plain)
 
 
 @pytest.mark.parametrize("name", CHOSEN)

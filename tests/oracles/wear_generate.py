@@ -113,8 +113,8 @@ def _table_tasks(turn: int) -> Iterator[Task]:
             turn += 1
             tags = {"family": f"table-{scene.name}", "regime": f"{scene.radii[0]:g}", "scale": "1"}
             material = Material(1.0, 0.8, 0.3)
-            found = setting(scene.profile, "contact_radius", scene.radii[0], material)
-            load = found.depth if pair[0] == "indentation_depth" else found.n
+            result = setting(scene.profile, "contact_radius", scene.radii[0], material)
+            load = result.depth if pair[0] == "indentation_depth" else result.n
             task = _task(turn, pair, tags, scene.profile, material, float(load))
             yield task if short else replace(task, places=(THIN,))
 
@@ -161,12 +161,12 @@ def perturbed(task: Task, given: float) -> tuple[Limit, ...]:
         far = 1 + mpf(10) ** -reference.NUDGE_DIGITS
         exact = mpf(task.load), mpf(given)
         inputs = (exact, (exact[0] * far, exact[1]), (exact[0], exact[1] * far))
-    near, found = None, []
+    near, result = None, []
     for load, amplitude in inputs:
         query = task.profile, task.control, load, task.material, task.amplitude, amplitude
-        found.append(reference.solve(*query, near))
-        near = found[0].width
-    return tuple(found)
+        result.append(reference.solve(*query, near))
+        near = result[0].width
+    return tuple(result)
 
 
 def _condition(values: list[mpf], own: mpf) -> float | None:
@@ -195,14 +195,14 @@ def record_of(task: Task) -> Record | None:
             if "profile's end" in str(error) or "no stick zone" in str(error):
                 continue
             raise
-        found = [reference.answers(limit) for limit in limits]
-        if not representable(*(float(value) for value in found[0].values())):
+        result = [reference.answers(limit) for limit in limits]
+        if not representable(*(float(value) for value in result[0].values())):
             continue
-        edges = _condition([answer["stick_radius"] for answer in found], mpf(0))
+        edges = _condition([answer["stick_radius"] for answer in result], mpf(0))
         if edges is None or edges > MOST_CONDITION:
             continue
         for name in OUTPUTS:
-            values = [answer[name] for answer in found]
+            values = [answer[name] for answer in result]
             rows["expected"][name].append(digits(values[0]))
             rows["condition"][name].append(_condition(values, mpf(0)))
         if given or place >= PLACES[2]:

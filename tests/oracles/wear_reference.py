@@ -236,7 +236,7 @@ def solve(profile: Mapping[str, Any], control: str, load: mpf, material: Materia
 def answers(limit: Limit) -> dict[str, mpf]:
     with mp.workdps(WORK_DIGITS):
         at, c, r = limit.at, limit.c, limit.c + limit.width
-        found = (
+        result = (
             c,
             limit.width,
             r,
@@ -246,7 +246,7 @@ def answers(limit: Limit) -> dict[str, mpf]:
             2 * at.g_star * c * at.shift * limit.step,
             _volume(at, c, limit.step, r),
         )
-        return dict(zip(OUTPUTS, found, strict=True))
+        return dict(zip(OUTPUTS, result, strict=True))
 
 
 def pressure(limit: Limit, r: mpf) -> mpf:

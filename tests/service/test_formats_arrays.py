@@ -32,18 +32,18 @@ def with_infinity(value: object) -> object:
 def test_arrays_are_bit_identical_to_json(
     client: Client, path: str, query: dict[str, object]
 ) -> None:
-    found = arrays(ask(client, path, query, NPZ))
+    result = arrays(ask(client, path, query, NPZ))
     document = client.post(path, query).json()
-    assert list(found) == list(document)
+    assert list(result) == list(document)
     warnings = document.pop("warnings")
-    warning_array = found.pop("warnings")
+    warning_array = result.pop("warnings")
     assert warning_array.dtype.names == ("code", "message")
     assert [
         dict(zip(warning_array.dtype.names, each, strict=True)) for each in warning_array.tolist()
     ] == warnings
     for name, values in document.items():
-        assert found[name].tolist() == with_infinity(values), name
-        assert found[name].dtype.kind in {"f", "i", "U"}
+        assert result[name].tolist() == with_infinity(values), name
+        assert result[name].dtype.kind in {"f", "i", "U"}
 
 
 def test_fields_are_arrays_by_load_and_radius(client: Client) -> None:
@@ -53,11 +53,11 @@ def test_fields_are_arrays_by_load_and_radius(client: Client) -> None:
         "radius": [0.0, 1e-5],
         "quantities": ["pressure"],
     }
-    found = arrays(ask(client, "/v1/stress", query, NPZ))
-    assert found["pressure"].shape == (3, 2)
-    assert found["pressure"].dtype == np.float64
-    assert found["radius"].shape == (2,)
-    assert found["method"].shape == found["error_estimate"].shape == ()
+    result = arrays(ask(client, "/v1/stress", query, NPZ))
+    assert result["pressure"].shape == (3, 2)
+    assert result["pressure"].dtype == np.float64
+    assert result["radius"].shape == (2,)
+    assert result["method"].shape == result["error_estimate"].shape == ()
 
 
 def test_repeated_query_has_identical_bytes(client: Client) -> None:

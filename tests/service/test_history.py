@@ -191,8 +191,8 @@ def test_fields_at_the_end_equal_the_core(client: Client, kind: str, load_path: 
     end = normal.solve(PROFILES[kind][1], E_STAR, indentation_depth=depth)
     for names, source in ((OF_NORMAL, end), (OF_SHEAR, expected.state)):
         for name in names:
-            found = getattr(fields, name)(source, RADII).tolist()
-            assert document[name] == [[r if abs(r) < float("inf") else None for r in found]], name
+            result = getattr(fields, name)(source, RADII).tolist()
+            assert document[name] == [[r if abs(r) < float("inf") else None for r in result]], name
 
 
 def test_single_load_as_a_history_has_identical_fields(client: Client) -> None:

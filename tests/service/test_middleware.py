@@ -81,13 +81,16 @@ async def echo(request: Request) -> Response:
 def test_long_response_is_sent_in_chunks() -> None:
     async def test() -> None:
         app = application(long_response)
-        found = await Connection(app).run()
-        assert found.body == TEXT
-        pieces = [len(message["body"]) for message in found.sent[1:]]
+        result = await Connection(app).run()
+        assert result.body == TEXT
+        pieces = [len(message["body"]) for message in result.sent[1:]]
         assert max(pieces) == LONG
         # The server waits until the client has read most of it before it accepts the last message.
         assert pieces[-1] == 0
-        assert [message.get("more_body", False) for message in found.sent[1:]][-2:] == [True, False]
+        assert [message.get("more_body", False) for message in result.sent[1:]][-2:] == [
+            True,
+            False,
+        ]
         assert app.state.transfers._total == 0
 
     asyncio.run(test())
@@ -100,9 +103,9 @@ def test_long_response_is_rejected_while_others_are_sent() -> None:
         slow.reading.clear()
         sending = asyncio.create_task(slow.run())
         await asyncio.sleep(0)
-        found = await Connection(app).run()
-        assert (found.status, found.problem) == (503, "busy")
-        assert (b"retry-after", b"1") in found.sent[0]["headers"]
+        result = await Connection(app).run()
+        assert (result.status, result.problem) == (503, "busy")
+        assert (b"retry-after", b"1") in result.sent[0]["headers"]
         slow.reading.set()
         await sending
         assert slow.body == TEXT
@@ -145,8 +148,8 @@ def test_long_body_is_rejected_while_others_are_received() -> None:
         first.receive = wait  # type: ignore[method-assign]
         receiving = asyncio.create_task(first.run())
         await asyncio.sleep(0)
-        found = await Connection(app, "POST", TEXT, **json_type).run()
-        assert (found.status, found.problem) == (503, "busy")
+        result = await Connection(app, "POST", TEXT, **json_type).run()
+        assert (result.status, result.problem) == (503, "busy")
         # Short bodies are not counted.
         assert (await Connection(app, "POST", b"{}", **json_type).run()).body == b"{}"
         arrived.set()
@@ -169,10 +172,10 @@ def test_long_body_is_rejected_while_others_are_received() -> None:
 def test_body_is_rejected_by_type_and_length(
     body: bytes, headers: dict[str, str], status: int
 ) -> None:
-    found = asyncio.run(Connection(application(echo, 2**30), "POST", body, **headers).run())
-    assert found.status == status
+    result = asyncio.run(Connection(application(echo, 2**30), "POST", body, **headers).run())
+    assert result.status == status
     # The rest of the body is not read.
-    assert ((b"connection", b"close") in found.sent[0]["headers"]) == (status == 413)
+    assert ((b"connection", b"close") in result.sent[0]["headers"]) == (status == 413)
 
 
 def test_client_that_disconnects_gets_no_response() -> None:
@@ -188,12 +191,12 @@ def test_request_in_flight_at_the_end_of_shutdown_is_rejected(*, responding: boo
         return Response()
 
     async def test() -> None:
-        found = Connection(application(long_response if responding else wait))
+        result = Connection(application(long_response if responding else wait))
         if responding:
-            found.reading.clear()
-        task = asyncio.create_task(found.run())
+            result.reading.clear()
+        task = asyncio.create_task(result.run())
         await asyncio.sleep(0.01)
-        found.reading.set()
+        result.reading.set()
         task.cancel()
         if responding:
             # The server then closes the connection.
@@ -201,7 +204,7 @@ def test_request_in_flight_at_the_end_of_shutdown_is_rejected(*, responding: boo
                 await task
         else:
             await task
-            assert (found.status, found.problem) == (503, "stopping")
+            assert (result.status, result.problem) == (503, "stopping")
 
     asyncio.run(test())
 
@@ -219,8 +222,8 @@ def test_internal_error_is_a_problem_unless_the_response_has_begun() -> None:
     async def interrupted(_request: Request) -> Response:
         return Interrupted()
 
-    found = asyncio.run(Connection(application(broken)).run())
-    assert (found.status, found.problem) == (500, "internal-error")
-    assert b"secret" not in found.body
+    result = asyncio.run(Connection(application(broken)).run())
+    assert (result.status, result.problem) == (500, "internal-error")
+    assert b"secret" not in result.body
     with pytest.raises(RuntimeError):
         asyncio.run(Connection(application(interrupted)).run())

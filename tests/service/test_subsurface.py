@@ -37,8 +37,8 @@ NAMES = [
 def result_of(client: Client, query: dict[str, Any]) -> dict[str, Any]:
     response = client.post(PATH, query)
     assert response.status_code == 200, response.content
-    found: dict[str, Any] = response.json()
-    return found
+    result: dict[str, Any] = response.json()
+    return result
 
 
 def pointers(client: Client, query: dict[str, Any]) -> list[str]:
@@ -49,22 +49,22 @@ def pointers(client: Client, query: dict[str, Any]) -> list[str]:
 
 def test_hertz_on_the_axis(client: Client) -> None:
     """Johnson, Eqs. (3.45), (4.10): stresses on the axis, their maximum, and the onset of yield."""
-    found = result_of(client, AXIS)
+    result = result_of(client, AXIS)
     modulus = 210e9 / (2 * (1 - 0.3**2))
     a = (0.75 * 10.0 * 0.01 / modulus) ** (1 / 3)
     peak = 1.5 * 10.0 / (np.pi * a * a)
     s = np.array(AXIS["z"]) / a
     vertical = -peak / (1 + s * s)
     radial = -peak * (1.3 * (1 - s * np.arctan2(1, s)) - 0.5 / (1 + s * s))
-    assert np.ravel(found["stress_zz"]) == pytest.approx(vertical, rel=1e-10, abs=0)
-    assert np.ravel(found["stress_xx"]) == pytest.approx(radial, rel=0, abs=1e-10 * peak)
+    assert np.ravel(result["stress_zz"]) == pytest.approx(vertical, rel=1e-10, abs=0)
+    assert np.ravel(result["stress_xx"]) == pytest.approx(radial, rel=0, abs=1e-10 * peak)
     difference = np.abs(vertical - radial)
-    assert np.ravel(found["von_mises"]) == pytest.approx(difference, rel=0, abs=1e-10 * peak)
-    largest = found["largest"]["maximum_shear"]
+    assert np.ravel(result["von_mises"]) == pytest.approx(difference, rel=0, abs=1e-10 * peak)
+    largest = result["largest"]["maximum_shear"]
     assert largest["value"][0] / peak == pytest.approx(0.310, abs=5e-4)
     assert largest["z"][0] / a == pytest.approx(0.481, abs=1e-3)
     # p_0 = 1.613 Y, and F_N grows with the cube of p_0.
-    for force in found["yield_onset_force"].values():
+    for force in result["yield_onset_force"].values():
         onset = peak * (force[0] / 10.0) ** (1 / 3)
         assert onset / 1e9 == pytest.approx(1.613, abs=1e-3)
 
@@ -72,14 +72,14 @@ def test_hertz_on_the_axis(client: Client) -> None:
 @pytest.mark.parametrize("factor", [0.99, 1.01])
 def test_yield_warning_starts_at_the_onset(client: Client, factor: float) -> None:
     onset = result_of(client, AXIS)["yield_onset_force"]["tresca"][0]
-    found = result_of(client, AXIS | {"load": {"normal_force": [factor * onset, 0.5 * onset]}})
-    codes = [notice["code"] for notice in found["warnings"]]
+    result = result_of(client, AXIS | {"load": {"normal_force": [factor * onset, 0.5 * onset]}})
+    codes = [notice["code"] for notice in result["warnings"]]
     assert codes == (["yield"] if factor > 1 else [])
 
 
 def test_response_equals_the_core(client: Client) -> None:
     principal = ["principal_1", "principal_2", "principal_3"]
-    found = result_of(client, MAP | {"quantities": NAMES + principal})
+    result = result_of(client, MAP | {"quantities": NAMES + principal})
     contact = tangential.solve(
         normal.solve(Paraboloid(2.0), 3.0, contact_radius=[0.1, 0.2]), 2.5, 0.3, stick_radius=0.05
     )
@@ -87,12 +87,12 @@ def test_response_equals_the_core(client: Client) -> None:
     tensor = subsurface.stress(contact, x, 0.01, z, poissons_ratio=0.3, body=2)
     for name in NAMES:
         expected = getattr(tensor, name.removeprefix("stress_"))
-        assert np.array_equal(np.array(found[name]), expected)
+        assert np.array_equal(np.array(result[name]), expected)
     for name, expected in zip(principal, np.moveaxis(tensor.principal, -1, 0)[::-1], strict=True):
-        assert np.array_equal(np.array(found[name]), expected)
-    assert found["error_estimate"] < 1e-10
-    assert "largest" not in found
-    assert "yield_onset_force" not in found
+        assert np.array_equal(np.array(result[name]), expected)
+    assert result["error_estimate"] < 1e-10
+    assert "largest" not in result
+    assert "yield_onset_force" not in result
 
 
 def test_bodies_use_their_poissons_ratio(client: Client) -> None:
@@ -106,19 +106,19 @@ def test_bodies_use_their_poissons_ratio(client: Client) -> None:
 
 def test_default_points_cover_the_contact(client: Client) -> None:
     query = {key: value for key, value in MAP.items() if key not in ("x", "z")}
-    found = result_of(client, query | {"points": 7})
-    assert found["x"][0] == -found["x"][-1] == pytest.approx(-0.3, rel=1e-14, abs=0)
-    assert (found["z"][0], found["z"][-1]) == (0.0, found["x"][-1])
-    assert np.shape(found["von_mises"]) == (2, 7, 7)
+    result = result_of(client, query | {"points": 7})
+    assert result["x"][0] == -result["x"][-1] == pytest.approx(-0.3, rel=1e-14, abs=0)
+    assert (result["z"][0], result["z"][-1]) == (0.0, result["x"][-1])
+    assert np.shape(result["von_mises"]) == (2, 7, 7)
 
 
 def test_infinite_stress_is_null_with_a_warning(client: Client) -> None:
     cone = MAP | {"profile": {"kind": "cone", "slope": 0.05}, "y": 0.0, "largest": True}
-    found = result_of(client, cone | {"quantities": ["stress_zz", "von_mises", "stress_xy"]})
+    result = result_of(client, cone | {"quantities": ["stress_zz", "von_mises", "stress_xy"]})
     for name in ("stress_zz", "von_mises", "stress_xy"):
-        assert found[name][0][0][1] is None
-    assert found["largest"]["von_mises"]["value"] == [None, None]
-    assert "singular" in {warning["code"] for warning in found["warnings"]}
+        assert result[name][0][0][1] is None
+    assert result["largest"]["von_mises"]["value"] == [None, None]
+    assert "singular" in {warning["code"] for warning in result["warnings"]}
 
 
 def test_formats(client: Client) -> None:

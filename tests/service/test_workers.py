@@ -161,12 +161,12 @@ def test_process_is_reused(shared: Shared) -> None:
 
 def test_errors_return_from_the_process(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
-        found = await error_of(pool.run_in_process(wrong))
-        assert found.type == problems.INVALID_REQUEST
-        assert found.errors == (("/load/normal_force/3", "is wrong"),)
+        result = await error_of(pool.run_in_process(wrong))
+        assert result.type == problems.INVALID_REQUEST
+        assert result.errors == (("/load/normal_force/3", "is wrong"),)
         assert (await error_of(pool.run_in_process(inaccurate))).type == problems.ACCURACY
-        found = await error_of(pool.run_in_process(refused))
-        assert (found.type, found.errors) == (problems.NOT_ACCEPTABLE, (("/load", "why"),))
+        result = await error_of(pool.run_in_process(refused))
+        assert (result.type, result.errors) == (problems.NOT_ACCEPTABLE, (("/load", "why"),))
         with pytest.raises(DefectError, match="a bug"):
             await pool.run_in_process(broken)
         assert ready_processes() == 1
@@ -181,8 +181,8 @@ def test_large_result_needs_room_in_memory(shared: Shared) -> None:
         assert await pool.run_in_process(bytes, 2**22) == bytes(2**22)
         assert record.response == 2**22
         start_record()
-        found = await error_of(pool.run_in_process(bytes, 2**18))
-        assert (found.type, found.retry_after) == (problems.BUSY, 1)
+        result = await error_of(pool.run_in_process(bytes, 2**18))
+        assert (result.type, result.retry_after) == (problems.BUSY, 1)
         # The process is not affected, and small results need no room in memory.
         assert await pool.run_in_process(bytes, 2**15) == bytes(2**15)
         assert ready_processes() == 1
@@ -199,8 +199,8 @@ def test_standard_output_of_the_process_is_not_mistaken_for_a_result(shared: Sha
 
 def test_terminated_process_loses_its_own_computation_only(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
-        found = await error_of(pool.run_in_process(kill_itself))
-        assert (found.type, found.retry_after) == (problems.LOST, 1)
+        result = await error_of(pool.run_in_process(kill_itself))
+        assert (result.type, result.retry_after) == (problems.LOST, 1)
         assert ready_processes() == 0
         assert await pool.run_in_process(own_process) != os.getpid()
         assert ready_processes() == 1
@@ -224,9 +224,9 @@ def test_query_is_rejected_when_the_queue_is_full(shared: Shared, tmp_path: Path
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
             tasks.start_soon(pool.run_in_process, own_process)
             await anyio.sleep(1.1)
-            found = await error_of(pool.run_in_process(own_process))
+            result = await error_of(pool.run_in_process(own_process))
             # The first query in the queue has waited this long.
-            assert (found.type, found.retry_after) == (problems.BUSY, 2)
+            assert (result.type, result.retry_after) == (problems.BUSY, 2)
             release(tmp_path / "go")
 
     shared(test)
@@ -252,9 +252,9 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
     async def test(pool: WorkerPool) -> None:
         first = await pool.run_in_process(own_process)
         began = time.monotonic()
-        found = await error_of(pool.run_in_process(sleep_for, 60.0))
+        result = await error_of(pool.run_in_process(sleep_for, 60.0))
         assert time.monotonic() - began < PATIENCE
-        assert found.type == problems.TIME_EXCEEDED
+        assert result.type == problems.TIME_EXCEEDED
         assert not process_exists(first)
         assert await pool.run_in_process(own_process) != first
         assert ready_processes() == 1
@@ -295,8 +295,8 @@ def test_process_stopped_while_computing_is_replaced_after_the_time_limit() -> N
 
 def test_process_that_fails_to_start_is_restarted(tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
-        found = await error_of(pool.run_in_process(own_process))
-        assert (found.type, found.retry_after) == (problems.LOST, 1)
+        result = await error_of(pool.run_in_process(own_process))
+        assert (result.type, result.retry_after) == (problems.LOST, 1)
         assert ready_processes() == 0
         (tmp_path / "live").touch()
         await wait_for(lambda: ready_processes() == 1)

@@ -77,8 +77,8 @@ def fine(kind: str, name: str) -> dict[str, np.ndarray]:
     """Scalars, and fields at `RADII`, on the finest nodes."""
     run = worn(kind, name, 96, 1e-8)
     radius = RADII * run.contact_radius.max()
-    found = {scalar: np.asarray(getattr(run, scalar)) for scalar in evolution.SCALARS}
-    return found | {field: getattr(run, field)(radius) for field in evolution.FIELDS}
+    result = {scalar: np.asarray(getattr(run, scalar)) for scalar in evolution.SCALARS}
+    return result | {field: getattr(run, field)(radius) for field in evolution.FIELDS}
 
 
 def stored(kind: str, name: str) -> dict[str, np.ndarray]:
@@ -89,12 +89,12 @@ def stored(kind: str, name: str) -> dict[str, np.ndarray]:
 
 
 def main() -> None:
-    found = {
+    result = {
         f"{kind}/{name}/{each}": values
         for kind, name in PAIRS
         for each, values in fine(kind, name).items()
     }
-    np.savez_compressed(STORED, **found)
+    np.savez_compressed(STORED, **result)
 
 
 if __name__ == "__main__":

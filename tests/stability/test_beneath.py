@@ -115,10 +115,10 @@ def beneath(
     """The errors at points of some contact, whose exact stresses are given."""
     ours, naive, bound = [], [], []
     for contact, place, exact in points:
-        found = stress(contact, *place, poissons_ratio=NU, body=2, rtol=RTOL)
+        result = stress(contact, *place, poissons_ratio=NU, body=2, rtol=RTOL)
         with np.errstate(all="ignore"):
             plain = plain_gauss(contact, place)
-        for errors, values in ((ours, np.array(found)), (naive, plain)):
+        for errors, values in ((ours, np.array(result)), (naive, plain)):
             errors.append(np.abs(values - exact).max() / np.abs(exact).max())
         bound.append(error_estimate(contact, *place, rtol=RTOL))
     naive_formula = "100 nodes of Gauss–Legendre"

@@ -52,8 +52,8 @@ def test_error_within_estimate(name: str, control: str) -> None:
     }
     for push, limit in limits.items():
         for part in FRACTIONS:
-            found = tangential.solve(contact, 1.0, MU, **{push: limit * part})
+            result = tangential.solve(contact, 1.0, MU, **{push: limit * part})
             exact = solve(at, push, limit * part, energy=False).values
             for answer, truth in exact.items():
-                error = abs(mpf(float(getattr(found, answer))) / truth - 1)
-                assert error <= found.error_estimate, (push, part, answer)
+                error = abs(mpf(float(getattr(result, answer))) / truth - 1)
+                assert error <= result.error_estimate, (push, part, answer)

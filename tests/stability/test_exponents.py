@@ -75,11 +75,11 @@ def force(name: str, exponents: Array) -> Curve:
 def stick(name: str, exponents: Array) -> Curve:
     """a - c at 1e-4 of full slip: 1 - (1 - rho)^(1/(n+1))."""
     rho = 1e-4
-    found = [
+    result = [
         tangential.solve(one, 1.0, 1.0, tangential_force=rho * float(one.normal_force))
         for one in contacts(exponents, contact_radius=A)
     ]
-    given = [float(one.tangential_force / one.normal.normal_force) for one in found]
+    given = [float(one.tangential_force / one.normal.normal_force) for one in result]
 
     def exact(n: mpf, ratio: mpf) -> mpf:
         return -mpf(A) * mp.expm1(mp.log1p(-ratio) / (n + 1))
@@ -92,7 +92,7 @@ def stick(name: str, exponents: Array) -> Curve:
         "a − a (1 − ρ)^(1/(n+1))",
         distances,
         (
-            [float(one.slip_width) for one in found],
+            [float(one.slip_width) for one in result],
             attempt(lambda n, q: A - A * (1 - q) ** (1 / (n + 1)), exponents, given),
             references(exact, exponents, given),
         ),

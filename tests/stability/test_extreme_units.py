@@ -42,12 +42,12 @@ def scaled(kind: str, unit: float) -> dict[str, Any]:
 
 def force(kind: str) -> Curve:
     """F_N at prescribed depth."""
-    found, truth, conditions = [], [], []
+    result, truth, conditions = [], [], []
     for unit in UNITS:
         shape, load, e_star = scaled(kind, unit), DEPTH * unit, MODULUS / unit
         exact = state(shape, "indentation_depth", load, e_star)
         contact = normal.solve(profile_from(shape), e_star, indentation_depth=load, rtol=RTOL)
-        found.append(float(contact.normal_force))
+        result.append(float(contact.normal_force))
         truth.append(exact.values["normal_force"])
         conditions.append(float(exact.condition["normal_force"]))
 
@@ -65,7 +65,7 @@ def force(kind: str) -> Curve:
         "unit of length",
         "brentq of g(a) = d",
         UNITS,
-        (found, attempt(naive, UNITS), truth),
+        (result, attempt(naive, UNITS), truth),
         CLOSED + ROUNDING * np.array(conditions),
     )
 

@@ -88,8 +88,8 @@ def field_error(
     usual = field(source, fields.grid(contact, 60))
     largest = float(np.max(np.abs(usual[np.isfinite(usual)])))
     exact = [truths[name](mpf(r)) for r in radii.tolist()]
-    found = field(source, radii, rtol=RTOL).tolist()
-    errors = [abs(value - r) for value, r in zip(found, exact, strict=True) if isfinite(r)]
+    result = field(source, radii, rtol=RTOL).tolist()
+    errors = [abs(value - r) for value, r in zip(result, exact, strict=True) if isfinite(r)]
     return float(max(errors)) / largest
 
 

@@ -107,7 +107,7 @@ def traction() -> Curve:
     widths = steps(0.5, 1e-16, 40)
     contact = normal.solve(Cone(SLOPE), 1.0, indentation_depth=np.pi / 2 * SLOPE, rtol=RTOL)
     moved = widths * (np.pi / 2 * SLOPE)
-    found = tangential.solve(contact, 1.0, 1.0, tangential_displacement=moved)
+    result = tangential.solve(contact, 1.0, 1.0, tangential_displacement=moved)
     full = np.pi / 2 * SLOPE
     a, r = float(contact.contact_radius), 0.3
 
@@ -124,7 +124,7 @@ def traction() -> Curve:
         "p(r; a) − p(r; c)",
         widths,
         (
-            np.ravel(fields.shear_stress(found, [r], rtol=RTOL)),
+            np.ravel(fields.shear_stress(result, [r], rtol=RTOL)),
             attempt(
                 lambda u: SLOPE / 2 * (np.arccosh(a / r) - np.arccosh((a - u / full) / r)),
                 moved,
@@ -142,7 +142,7 @@ def rounded_punch() -> Curve:
     contact = normal.solve(RoundedPunch(0.8, 2.0), 1.0, contact_radius=1.0, rtol=RTOL)
     force = float(contact.normal_force)
     given = RATIOS * (MU * force)
-    found = tangential.solve(contact, 1.0, MU, tangential_force=given)
+    result = tangential.solve(contact, 1.0, MU, tangential_force=given)
     at = setting(PUNCH, "contact_radius", 1.0, Material(mpf(1), mpf(1), mpf(MU)))
     truth = [annulus(at, value) for value in given]
 
@@ -156,7 +156,7 @@ def rounded_punch() -> Curve:
         LABEL,
         "a − c, c by brentq from F(c)",
         RATIOS,
-        (found.slip_width, attempt(naive, given), truth),
+        (result.slip_width, attempt(naive, given), truth),
     )
 
 
@@ -187,5 +187,5 @@ def test_incipient_slip(name: str) -> None:
 
 
 def test_error_within_estimate() -> None:
-    found = hertz_contact()
-    assert found.error_estimate >= max(float(width().ours.max()), float(energy().ours.max()))
+    result = hertz_contact()
+    assert result.error_estimate >= max(float(width().ours.max()), float(energy().ours.max()))

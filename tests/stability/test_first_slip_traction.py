@@ -116,8 +116,8 @@ def test_narrow_annulus(name: str, relative: float) -> None:
         # The edge follows from the coordinate; the radius must lie inside by more than rounding
         # error.
         r = np.array(sorted({p for p in places if p < a * (1 - 4 * EPS)}))
-        found = kernel(profile, coordinate, width, r)
-        for radius, value in zip(r, found, strict=True):
+        result = kernel(profile, coordinate, width, r)
+        for radius, value in zip(r, result, strict=True):
             check(
                 truth.kernel,
                 tuple(map(mpf, (coordinate, width, float(radius)))),

@@ -50,7 +50,7 @@ def after_random_steps() -> Curve:
     ours, naive = [], []
     for count in COUNTS:
         path = np.concatenate([walk[:count], [turn, back]])
-        found = history.solve(
+        result = history.solve(
             Cone(SLOPE),
             1.0,
             1.0,
@@ -58,7 +58,7 @@ def after_random_steps() -> Curve:
             indentation_depth=np.full(path.size, DEPTH),
             tangential_displacement=path,
         )
-        ours.append(float(found.tangential_force[-1]))
+        ours.append(float(result.tangential_force[-1]))
         naive.append(float(springs(path[-SHORT:], np.float32)[-1]))
     with mp.workdps(40):
         exact = cone_force(mpf(turn)) - 2 * cone_force((mpf(turn) - mpf(back)) / 2)
@@ -77,7 +77,7 @@ def energy_of_cycles() -> Curve:
     """N cycles under constant normal force dissipate N times the Mindlin-Deresiewicz loss."""
     force, part = 1.25, 0.6
     given = part * MU * force
-    found = history.cycles(
+    result = history.cycles(
         Paraboloid(BIG),
         1.0,
         1.0,
@@ -86,7 +86,7 @@ def energy_of_cycles() -> Curve:
         tangential_force=given,
         count=int(COUNTS[-1]),
     )
-    lost = np.cumsum(found.energy_per_cycle)[COUNTS - 1]
+    lost = np.cumsum(result.energy_per_cycle)[COUNTS - 1]
 
     def loop(rest: float, a: float) -> float:
         braces = 1 - rest ** (5 / 3) - 5 / 6 * (1 - rest) * (1 + rest ** (2 / 3))
@@ -126,7 +126,7 @@ def small_amplitude() -> Curve:
     for ratio in ratios:
         first = 0.5 * MU * DEPTH
         path = np.array([0.0, first, -first, first * ratio, 0.0])
-        found = history.solve(
+        result = history.solve(
             Cone(SLOPE),
             1.0,
             1.0,
@@ -134,7 +134,7 @@ def small_amplitude() -> Curve:
             indentation_depth=np.full(path.size, DEPTH),
             tangential_displacement=path,
         )
-        ours.append(float(found.tangential_force[3] - found.tangential_force[4]))
+        ours.append(float(result.tangential_force[3] - result.tangential_force[4]))
         forces = springs(path)
         naive.append(float(forces[3] - forces[4]))
         with mp.workdps(60):

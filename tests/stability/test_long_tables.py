@@ -35,14 +35,14 @@ def trapezoids(r: Array, f: Array, weight: int) -> float:
 @cache
 def references() -> list[dict[str, mpf]]:
     """Exact depth and force of each table's interpolant."""
-    found = []
+    result = []
     with mp.workdps(40):
         for count in SIZES:
             r, f = points(int(count))
             exact = Table({"r": list(r), "f": list(f), "interpolation": "cubic", "breaks": ()})
             answers = {"indentation_depth": exact.g(mpf(A)), "normal_force": exact.force(mpf(A))}
-            found.append(answers)
-    return found
+            result.append(answers)
+    return result
 
 
 def over_sizes(answer: str) -> Curve:

@@ -85,7 +85,7 @@ def naive_annulus(u: float) -> tuple[float, float]:
 
 def of_limit(end: str, answer: str) -> Curve:
     given = amplitudes(end)
-    found = limits(end)
+    result = limits(end)
 
     def exact(u: mpf) -> mpf:
         with mp.workdps(120):
@@ -105,7 +105,7 @@ def of_limit(end: str, answer: str) -> Curve:
         "u_x/u_x,max" if end == "thin" else "1 − u_x/u_x,max",
         formula,
         INCIPIENT_SLIP if end == "thin" else NEAR_FULL_SLIP,
-        (getattr(found, answer), attempt(naive, given), references(exact, given)),
+        (getattr(result, answer), attempt(naive, given), references(exact, given)),
         # Near full slip the stick radius is ill-conditioned with respect to the amplitude.
         10 * CLOSED + ROUNDING / rest,
     )
@@ -127,8 +127,8 @@ def worn() -> evolution.WearEvolution:
 
 def to_the_limit() -> Curve:
     """Worn volume against the number of cycles, up to the limiting state."""
-    found = worn()
-    number = found.cycles[1:]
+    result = worn()
+    number = result.cycles[1:]
     with mp.workdps(60):
         c, outer = annulus(mpf(0.5 * FULL))
         last = volume(c, outer, mp)
@@ -142,16 +142,16 @@ def to_the_limit() -> Curve:
         "1/cycles",
         "N times the wear of the first cycle",
         1 / number,
-        (found.worn_volume[1:], float(each) * WEAR * number, [last] * number.size),
+        (result.worn_volume[1:], float(each) * WEAR * number, [last] * number.size),
         np.where(settled, 1e-3, 1.0),
     )
 
 
 CURVES = {
     "width, thin": partial(of_limit, "thin", "wear_width"),
-    "width, brink": partial(of_limit, "brink", "wear_width"),
+    "width, onset": partial(of_limit, "onset", "wear_width"),
     "volume, thin": partial(of_limit, "thin", "worn_volume"),
-    "volume, brink": partial(of_limit, "brink", "worn_volume"),
+    "volume, onset": partial(of_limit, "onset", "worn_volume"),
     "cycles": to_the_limit,
 }
 
@@ -168,21 +168,21 @@ def test_naive_formula_fails(name: str) -> None:
 
 def test_worn_volume_follows_archard() -> None:
     """Archard's law: V = K W at any number of cycles."""
-    found = worn()
-    balance = found.worn_volume[1:] / (WEAR * found.dissipated_energy[1:]) - 1
-    assert np.abs(balance).max() <= found.error_estimate
-    assert np.all(np.diff(found.worn_volume) >= 0)
+    result = worn()
+    balance = result.worn_volume[1:] / (WEAR * result.dissipated_energy[1:]) - 1
+    assert np.abs(balance).max() <= result.error_estimate
+    assert np.all(np.diff(result.worn_volume) >= 0)
 
 
 def test_initial_wear_is_proportional_to_cycles() -> None:
-    found, big, mu = worn(), mpf(BIG), mpf(MU)
+    result, big, mu = worn(), mpf(BIG), mpf(MU)
     # g(c) = d - u_x/mu, Eq. (5.80).
     a, c = mp.sqrt(big), mp.sqrt(big * (1 - mpf(0.5 * FULL) / mu))
     each = 16 * mu**2 / (15 * big**2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)
-    assert found.worn_volume[1] == pytest.approx(float(each) * WEAR, rel=1e-3, abs=0)
+    assert result.worn_volume[1] == pytest.approx(float(each) * WEAR, rel=1e-3, abs=0)
 
 
 def test_error_of_the_limit_within_estimate() -> None:
-    for end in ("thin", "brink"):
+    for end in ("thin", "onset"):
         worst = max(of_limit(end, name).ours.max() for name in ("wear_width", "worn_volume"))
         assert limits(end).error_estimate >= worst, end

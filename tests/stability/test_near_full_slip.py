@@ -41,7 +41,7 @@ def hertz() -> Curve:
     limit = MU * FORCE
     given = representable_loads(limit)
     contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
-    found = tangential.solve(contact, 1.0, MU, tangential_force=given)
+    result = tangential.solve(contact, 1.0, MU, tangential_force=given)
 
     def exact(force: mpf) -> mpf:
         return mp.cbrt(3 * mpf(BIG) / 4 * (mpf(FORCE) - force / mpf(MU)))
@@ -52,12 +52,12 @@ def hertz() -> Curve:
 
     margin = 1 - given / limit
     return curve(
-        "brink-hertz",
+        "full-slip-hertz",
         "Hertz contact: stick radius near full slip",
         LABEL,
         "brentq of F_x(c) = F_x",
         margin,
-        (found.stick_radius, attempt(naive, given), references(exact, given)),
+        (result.stick_radius, attempt(naive, given), references(exact, given)),
         CLOSED + ROUNDING / (3 * margin),
     )
 
@@ -67,20 +67,20 @@ def displacement() -> Curve:
     limit = MU * pi / 2 * SLOPE
     given = representable_loads(limit)
     contact = normal.solve(Cone(SLOPE), 1.0, contact_radius=1.0, rtol=RTOL)
-    found = tangential.solve(contact, 1.0, MU, tangential_displacement=given)
+    result = tangential.solve(contact, 1.0, MU, tangential_displacement=given)
 
     def exact(u: mpf) -> mpf:
         return 1 - u / (mpf(MU) * mp.pi / 2 * mpf(SLOPE))
 
     margin = np.array([float(value) for value in references(exact, given)])
     return curve(
-        "brink-cone",
+        "full-slip-cone",
         "cone: stick radius near full slip",
         "1 − u_x/u_x,max",
         "brentq of u_x(c) = u_x",
         margin,
         (
-            found.stick_radius,
+            result.stick_radius,
             attempt(lambda u: brentq(lambda c: limit * (1 - c) - u, 0.0, 1.0), given),
             references(exact, given),
         ),
@@ -95,17 +95,17 @@ def dissipation_near_full_slip(
     contact = normal.solve(profile, 1.0, contact_radius=1.0, rtol=RTOL)
     first = fields_.get("flat_radius", 0.0)
     given = first + (1 - first) * places if first else places
-    found = tangential.solve(contact, 1.0, MU, stick_radius=given)
+    result = tangential.solve(contact, 1.0, MU, stick_radius=given)
     at = setting(fields_, "contact_radius", 1.0, Material(1.0, 1.0, MU))
     truth = [solve(at, "stick_radius", c).values["dissipated_energy"] for c in given]
     energy = np.vectorize(lambda c: midpoints(profile, c))
     return curve(
-        f"brink-{name}",
+        f"full-slip-{name}",
         f"dissipated energy of a {name.replace('-', ' ')} near full slip",
         "c/a" if not first else "(c − b)/(a − b)",
         "midpoint rule over 1000 springs",
         places,
-        (found.dissipated_energy, energy(given), truth),
+        (result.dissipated_energy, energy(given), truth),
         1e-12,
     )
 
@@ -151,21 +151,21 @@ def test_error_estimate_includes_load_rounding_near_full_slip(margin: float) -> 
     """Near full slip, the estimate of a single load covers the rounding error of that load."""
     contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
     force = MU * FORCE * (1 - margin)
-    found = tangential.solve(contact, 1.0, MU, tangential_force=force)
+    result = tangential.solve(contact, 1.0, MU, tangential_force=force)
     with mp.workdps(40):
         exact = mp.cbrt(3 * mpf(BIG) / 4 * (mpf(FORCE) - mpf(force) / mpf(MU)))
-        error = float(abs(mpf(float(found.stick_radius)) / exact - 1))
-    assert error <= found.error_estimate <= 1e-11 + 100 * ROUNDING / margin
+        error = float(abs(mpf(float(result.stick_radius)) / exact - 1))
+    assert error <= result.error_estimate <= 1e-11 + 100 * ROUNDING / margin
 
 
 def test_traction_with_vanishing_stick_zone() -> None:
     """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) down to the smallest significant c."""
     contact = normal.solve(Paraboloid(BIG), 1.0, contact_radius=1.0, rtol=RTOL)
     for c in steps(0.1, 1e-140, 30):
-        found = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
+        result = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
         r = np.array([0.0, 0.5, 0.999999, 1.0, 1.5]) * c
         exact = references(_traction, r, np.full(r.shape, c))
-        there = fields.shear_stress(found, r, rtol=RTOL)
+        there = fields.shear_stress(result, r, rtol=RTOL)
         assert there == pytest.approx([float(value) for value in exact], rel=CLOSED, abs=0)
 
 

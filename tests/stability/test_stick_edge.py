@@ -170,7 +170,7 @@ def test_near_the_stick_edge(name: str) -> None:
 
 def test_at_the_stick_edge() -> None:
     for profile in (Paraboloid(BIG), Cone(SLOPE), Sphere(BIG)):
-        found = tangential_contact(profile)
-        assert fields.slip(found, [C])[0] == 0
-        beside = fields.shear_stress(found, [C * (1 - ROUNDING), C, C * (1 + ROUNDING)], rtol=RTOL)
+        result = tangential_contact(profile)
+        assert fields.slip(result, [C])[0] == 0
+        beside = fields.shear_stress(result, [C * (1 - ROUNDING), C, C * (1 + ROUNDING)], rtol=RTOL)
         assert beside == pytest.approx(np.full(3, beside[1]), rel=1e-6, abs=0)

@@ -13,24 +13,24 @@ from tests.stability.fine_wear import PAIRS, RADII, fine, stored, worn
 @pytest.mark.parametrize("resolution", [16, 24, 32, 48, 64])
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
 def test_error_within_estimate(kind: str, name: str, resolution: int) -> None:
-    found, exact = worn(kind, name, resolution), stored(kind, name)
+    result, exact = worn(kind, name, resolution), stored(kind, name)
     for scalar in evolution.SCALARS:
-        value = getattr(found, scalar)
-        assert np.abs(value / exact[scalar] - 1).max() <= found.error_estimate, scalar
+        value = getattr(result, scalar)
+        assert np.abs(value / exact[scalar] - 1).max() <= result.error_estimate, scalar
     radius = RADII * exact["contact_radius"].max()
     for field in evolution.FIELDS:
-        value = getattr(found, field)(radius)
+        value = getattr(result, field)(radius)
         error = np.abs(value - exact[field]).max() / np.abs(value).max()
-        assert error <= found.field_error_estimate(radius, [field]), field
+        assert error <= result.field_error_estimate(radius, [field]), field
 
 
 @pytest.mark.every(5)
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
 def test_pressure_does_not_ripple(kind: str, name: str) -> None:
     """Excludes 2 % of a at the edges; relative to the largest pressure of each cycle."""
-    found, exact = worn(kind, name, 48), stored(kind, name)
+    result, exact = worn(kind, name, 48), stored(kind, name)
     radius = RADII * exact["contact_radius"].max()
-    pressure = found.pressure(radius)
+    pressure = result.pressure(radius)
     for cycle, (c, a) in enumerate(
         zip(exact["stick_radius"], exact["contact_radius"], strict=True)
     ):
@@ -50,6 +50,6 @@ def test_pressure_does_not_ripple(kind: str, name: str) -> None:
     ],
 )
 def test_stored_reference_is_reproduced(kind: str, name: str) -> None:
-    found, exact = fine(kind, name), stored(kind, name)
+    result, exact = fine(kind, name), stored(kind, name)
     for each, values in exact.items():
-        assert np.abs(found[each] - values).max() <= 1e-7 * np.abs(values).max(), each
+        assert np.abs(result[each] - values).max() <= 1e-7 * np.abs(values).max(), each

@@ -83,10 +83,10 @@ def _profile(random: Random, kind: str) -> Row:
             "profile.r": [step * i for i in range(6)],
             "profile.f": [scale * step * i * i for i in range(6)],
         }
-    found = {f"profile.{name}": _power(random, *ends) for name, ends in PARAMETERS[kind].items()}
+    computed = {f"profile.{name}": _power(random, *ends) for name, ends in PARAMETERS[kind].items()}
     if kind == "power" and random.random() < 0.5:
-        found["profile.exponent"] = random.choice([0.5, 1.0, 1.5, 2.0, 3.0])
-    return found
+        computed["profile.exponent"] = random.choice([0.5, 1.0, 1.5, 2.0, 3.0])
+    return computed
 
 
 def _power(random: Random, low: float, high: float) -> float:

@@ -94,8 +94,8 @@ def test_fields_have_the_types_of_the_request_models() -> None:
         "load.normal_force": "number",
         "rtol": "number",
     }
-    found = {name: field("tangential", name) for name in names}
-    assert {name: each and each.type for name, each in found.items()} == names
+    result = {name: field("tangential", name) for name in names}
+    assert {name: each and each.type for name, each in result.items()} == names
     unknown = ("profile.colour", "profile.terms.x.exponent", "profile.terms.01.exponent", "load")
     assert not [
         name
@@ -116,9 +116,9 @@ def test_fields_have_the_types_of_the_request_models() -> None:
     ],
 )
 def test_axis_includes_both_ends(text: str, values: list[float]) -> None:
-    found = axis("load.normal_force", text)
-    assert found == pytest.approx(values, rel=1e-15, abs=0)
-    assert [found[0], found[-1]] == [values[0], values[-1]]
+    result = axis("load.normal_force", text)
+    assert result == pytest.approx(values, rel=1e-15, abs=0)
+    assert [result[0], result[-1]] == [values[0], values[-1]]
 
 
 @pytest.mark.parametrize(
@@ -137,18 +137,18 @@ def test_grid_equals_the_table_of_its_cases(folder: Path) -> None:
     grid = ("--grid", "profile.radius=1e-3:1e-1:3:log")
     options = ("normal", "--template", "ball.json", *grid, "--chunk", "5")
     assert run(*options, "--out", "result.parquet") == 0
-    found = pq.read_table(folder / "result.parquet")
+    result = pq.read_table(folder / "result.parquet")
     force = axis("", "1:10:4").repeat(3)
     radius = np.tile(axis("", "1e-3:1e-1:3:log"), 4)
-    assert found["load.normal_force"].to_pylist() == force.tolist()
-    assert found["profile.radius"].to_pylist() == radius.tolist()
+    assert result["load.normal_force"].to_pylist() == force.tolist()
+    assert result["profile.radius"].to_pylist() == radius.tolist()
     constants = {k: v for k, v in flat(BALL).items() if not k.startswith("load.")}
     rows = [
         {**constants, "profile.radius": R, "load.normal_force": F}
         for R, F in zip(radius.tolist(), force.tolist(), strict=True)
     ]
     expected = swept("normal", rows)
-    assert found.select([*QUANTITIES["normal"], "warning", "error"]).to_pylist() == expected
+    assert result.select([*QUANTITIES["normal"], "warning", "error"]).to_pylist() == expected
 
 
 def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
@@ -171,8 +171,8 @@ def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
     options = ("tangential", "--table", "cases.csv", "--keep", "label")
     assert run(*options, "--out", "result.csv") == 0
     with Path("result.csv").open(newline="") as file:
-        found = list(csv.DictReader(file))
-    for i, (row, expected) in enumerate(zip(found, swept("tangential", rows), strict=True)):
+        result = list(csv.DictReader(file))
+    for i, (row, expected) in enumerate(zip(result, swept("tangential", rows), strict=True)):
         assert row["label"] == f"no. {i}"
         for name, value in expected.items():
             if isinstance(value, float):
@@ -180,9 +180,9 @@ def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
             else:
                 assert row[name] == (value or ""), name
     for row in (2, 4, 5):
-        assert found[row]["material.e_star"] == ""
-        assert found[row]["error"].startswith("/material/e_star ")
-    assert float(found[6]["material.e_star"]) == 1e9
+        assert result[row]["material.e_star"] == ""
+        assert result[row]["error"].startswith("/material/e_star ")
+    assert float(result[6]["material.e_star"]) == 1e9
 
 
 @pytest.mark.usefixtures("folder")
@@ -311,10 +311,10 @@ def test_empty_cells_of_a_term_below_another_are_an_error_of_their_case() -> Non
 def test_numbers_of_every_column_type_are_read(column: "pa.Array[Any]") -> None:
     constants = {name: value for name, value in HERTZ.items() if name != "material.e_star"}
     spec = Spec("normal", constants, ("contact_radius",))
-    found = vectorized.solve(spec, pa.record_batch({"material.e_star": column})).to_pylist()
+    result = vectorized.solve(spec, pa.record_batch({"material.e_star": column})).to_pylist()
     rows = [HERTZ | {"material.e_star": e_star} for e_star in (1e11, 2e11)]
     expected = [row["contact_radius"] for row in swept("normal", rows)]
-    assert [row["contact_radius"] for row in found] == expected
+    assert [row["contact_radius"] for row in result] == expected
     assert None not in expected
 
 
@@ -374,12 +374,12 @@ def test_symbolic_link_is_followed(folder: Path) -> None:
 def test_parquet_metadata_records_the_provenance() -> None:
     assert run("normal", "--template", "ball.json", "--out", "a.parquet") == 0
     metadata = pq.read_metadata("a.parquet").metadata
-    found = json.loads(metadata[b"mdr"])
-    assert found["query"] == "normal"
-    assert found["constants"] == {k: v for k, v in flat(BALL).items() if not k.startswith("load")}
-    assert found["input"] == {"load.normal_force": "1:10:4"}
-    assert found["versions"].keys() == {"mdr", "numpy", "scipy", "pyarrow"}
-    assert "consistent system" in found["units"]
+    result = json.loads(metadata[b"mdr"])
+    assert result["query"] == "normal"
+    assert result["constants"] == {k: v for k, v in flat(BALL).items() if not k.startswith("load")}
+    assert result["input"] == {"load.normal_force": "1:10:4"}
+    assert result["versions"].keys() == {"mdr", "numpy", "scipy", "pyarrow"}
+    assert "consistent system" in result["units"]
 
 
 def test_checkpoint_of_another_sweep_is_rejected(tmp_path: Path) -> None:

@@ -41,9 +41,9 @@ def test_warnings_are_per_case_near_full_slip(client: Client) -> None:
     ratios = [i / 400 for i in range(400)] + [1 - 10**-k for k in range(2, 12)]
     rows = [row | {"tangential.tangential_force": 3.0 * ratio} for ratio in ratios]
     Random(4).shuffle(rows)
-    found = swept("tangential", rows)
-    assert found == [served(client, "tangential", row) for row in rows]
-    assert 0 < sum(each["warning"] is not None for each in found) < 10
+    computed = swept("tangential", rows)
+    assert computed == [served(client, "tangential", row) for row in rows]
+    assert 0 < sum(each["warning"] is not None for each in computed) < 10
 
 
 STEEL = {
@@ -108,10 +108,10 @@ def with_invalid_rows(step: int, count: int) -> list[Row]:
 def test_invalid_rows_leave_all_other_rows_unchanged(client: Client) -> None:
     count = 100 * len(INVALID)
     rows = with_invalid_rows(100, count)
-    found = swept("tangential", rows)
-    assert sum(row["error"] is not None for row in found) == len(INVALID)
-    assert [row["error"] is None for row in found] == [bool(i % 100) for i in range(count)]
-    assert found == [served(client, "tangential", row) for row in rows]
+    computed = swept("tangential", rows)
+    assert sum(row["error"] is not None for row in computed) == len(INVALID)
+    assert [row["error"] is None for row in computed] == [bool(i % 100) for i in range(count)]
+    assert computed == [served(client, "tangential", row) for row in rows]
 
 
 @pytest.mark.parametrize("invalid", INVALID)
@@ -132,8 +132,8 @@ def test_table_without_a_valid_row(client: Client, rows: int) -> None:
 def test_maxima_of_stresses_equal_those_of_the_core(kind: str) -> None:
     names = ("contact_radius", "maximum_pressure", "maximum_shear_stress")
     rows = random_cases(kind, "tangential", 12, seed=4)
-    found = vectorized.solve(Spec("tangential", {}, names), table(rows)).to_pylist()
-    for row, result in zip(rows, found, strict=True):
+    computed = vectorized.solve(Spec("tangential", {}, names), table(rows)).to_pylist()
+    for row, result in zip(rows, computed, strict=True):
         if result["error"]:
             continue
         query: Any = QUERIES["tangential"].model.model_validate(nested(row))
