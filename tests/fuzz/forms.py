@@ -20,7 +20,7 @@ def _read_csv(result: Mapping[str, Any], content: bytes) -> Iterator[str]:
             continue
         column = np.array([float(row[name]) for row in rows])
         quantities = np.where(np.isnan(expected), np.inf, expected)
-        has_rows = quantities.ndim == 2 or quantities.size == column.size
+        has_rows = quantities.ndim > 1 or quantities.size == column.size
         if has_rows and not np.array_equal(np.abs(column), np.abs(np.ravel(quantities))):
             yield f"csv: {name} differs"
 
@@ -44,7 +44,7 @@ READERS: Final = {"csv": _read_csv, "npz": _read_arrays, "svg": _read_picture}
 
 def get_parameters(name: str, body: Mapping[str, Any]) -> str:
     """Return the parameters of the equivalent GET request, or None if there is none."""
-    if name in {"history", "evolution"} or "history" in body:
+    if name in {"history", "evolution", "subsurface"} or "history" in body:
         return ""
     given: dict[str, Any] = {}
     for key, value in body.items():

@@ -19,19 +19,30 @@ _ESTIMATE_OF_WEAR: Final = 0.3
 """Largest error estimate of wear over the cycles, at the coarsest resolution."""
 _NULL_CODES: Final = frozenset({"singular", "endless_wear"})
 _NOT_NUMBERS: Final = frozenset(
-    {"method", "error_estimate", "field_error_estimate", "warnings", "regime", "step"}
+    {
+        *("method", "error_estimate", "field_error_estimate", "search_error_estimate"),
+        *("warnings", "regime", "step"),
+    }
 )
-_SIGNED: Final = frozenset({"slip", "shear_stress", "foundation_shear", "normal_displacement"})
+_SIGNED: Final = frozenset(
+    {
+        *("slip", "shear_stress", "foundation_shear", "normal_displacement"),
+        *("x", "y", "mean_stress", "principal_1", "principal_2", "principal_3"),
+        *("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz"),
+    }
+)
 _PATH: Final = frozenset({"tangential_force", "tangential_displacement"})
 
 
 def numbers(result: Result) -> dict[str, Array]:
-    """Return the numerical members of a result, with `null` as NaN."""
-    return {
-        name: np.array(values, dtype=float)
-        for name, values in result.items()
-        if name not in _NOT_NUMBERS
-    }
+    """Return the numerical members of a result, and of its members, with `null` as NaN."""
+    arrays: dict[str, Array] = {}
+    for name, values in result.items():
+        if isinstance(values, Mapping):
+            arrays |= {f"{name}.{part}": each for part, each in numbers(values).items()}
+        elif name not in _NOT_NUMBERS:
+            arrays[name] = np.array(values, dtype=float)
+    return arrays
 
 
 def tolerance(result: Result) -> float:
@@ -50,11 +61,11 @@ def violations(name: str, query: Mapping[str, Any], result: Result) -> Iterator[
         yield "error_estimate out of range"
     near = tolerance(result)
     for quantity, values in arrays.items():
-        is_signed = quantity in _SIGNED | _PATH or (
+        is_signed = quantity.rpartition(".")[2] in _SIGNED | _PATH or (
             quantity == "indentation_depth" and name == "history"
         )
         largest = np.nanmax(np.abs(values), initial=0.0)
-        floor = near * largest if values.ndim == 2 else 0.0
+        floor = near * largest if values.ndim > 1 else 0.0
         if not is_signed and np.any(values < -floor):
             yield f"negative {quantity}"
     if "regime" in result and "normal_force" in arrays and "tangential_force" in arrays:
@@ -175,6 +186,33 @@ def _evolution(
         yield "worn volume is not K times the dissipated energy"
 
 
+def _subsurface(
+    _query: Mapping[str, Any], result: Result, arrays: dict[str, Array], near: float
+) -> Iterator[str]:
+    scale = _largest_stress(result)
+    if {"principal_1", "principal_2", "principal_3"} <= arrays.keys():
+        ordered = np.stack([arrays[f"principal_{number}"] for number in (1, 2, 3)])
+        if np.any(np.diff(ordered, axis=0) > 0):
+            yield "principal stresses out of order"
+    if {"von_mises", "maximum_shear"} <= arrays.keys():
+        mises, shear = arrays["von_mises"], arrays["maximum_shear"]
+        if np.any(mises > (2 + near) * shear + near * scale):
+            yield "von Mises stress above twice the largest shear stress"
+        if np.any(mises < (np.sqrt(3) - near) * shear - near * scale):
+            yield "von Mises stress below the root of 3 times the largest shear stress"
+    for measure in ("von_mises", "maximum_shear"):
+        if measure in arrays and f"largest.{measure}.value" in arrays:
+            peak = arrays[f"largest.{measure}.value"] * (1 + result["search_error_estimate"])
+            if np.any(np.nanmax(arrays[measure], initial=0.0, axis=(1, 2)) > peak + near * scale):
+                yield f"{measure} above its largest value"
+
+
+def _largest_stress(result: Result) -> float:
+    """Return the largest stress of a response, to which the errors of all are relative."""
+    stresses = [values for values in numbers(result).values() if values.ndim == 3]
+    return max(float(np.nanmax(np.abs(values), initial=0.0)) for values in stresses)
+
+
 _LAWS: Final = {
     "normal": _normal,
     "tangential": _tangential,
@@ -182,6 +220,7 @@ _LAWS: Final = {
     "stress": _stress,
     "wear": _wear,
     "evolution": _evolution,
+    "subsurface": _subsurface,
 }
 
 _RELATIVE_TO_LARGEST: Final = frozenset({"history", "stress", "evolution", "wear"})
@@ -200,11 +239,18 @@ def disagreements(name: str, one: Result, other: Result, more: float = 0.0) -> I
         return
     for quantity in left.keys() & right.keys():
         a, b = left[quantity], right[quantity]
+        if quantity.startswith("largest.") and not quantity.endswith(".value"):
+            # The place of a flat maximum is inaccurate.
+            continue
+        searched = one["search_error_estimate"] if "." in quantity else 0.0
         if a.shape != b.shape or np.any(np.isnan(a) != np.isnan(b)):
             yield f"{quantity}: different shape"
             continue
         scale = np.maximum(np.abs(a), np.abs(b))
-        if name in _RELATIVE_TO_LARGEST and scale.size:
+        relative_to_largest = name in _RELATIVE_TO_LARGEST or quantity in {"x", "z"}
+        if relative_to_largest and scale.size:
             scale = np.nanmax(scale, initial=0.0)
-        if np.any(np.abs(a - b) > (near + of_fields * (a.ndim == 2)) * scale):
+        if name == "subsurface" and a.ndim == 3:
+            scale = max(_largest_stress(one), _largest_stress(other))
+        if np.any(np.abs(a - b) > (near + searched + of_fields * (a.ndim == 2)) * scale):
             yield f"{quantity} differs"

@@ -241,23 +241,59 @@ def _radii(random: Random, scene: Contact) -> dict[str, Any]:
     return {"radius": [end * random.random() for _ in range(count)]}
 
 
+def _any_load(random: Random, scene: Contact) -> dict[str, Any]:
+    """Return a normal load, without friction or with it, or a history."""
+    sort = random.choice(("normal", "tangential", "history"))
+    if sort == "history":
+        return _history(random, scene)
+    load = _load(random, scene, ("indentation_depth", "normal_force", "contact_radius"))
+    if sort == "normal":
+        return {"load": load}
+    pushed = _tangential(random, scene, load)
+    return {"load": load, "friction_coefficient": scene.friction, "tangential": pushed}
+
+
 def stress(random: Random, kind: str | None = None) -> dict[str, Any]:
     """Return a query of fields: frictionless, tangentially loaded, or at the end of a history."""
     scene = contact(random, kind)
     query = scene.query | _radii(random, scene)
-    names = [*_NORMAL_FIELDS]
-    controls = ("indentation_depth", "normal_force", "contact_radius")
-    sort = random.choice(("normal", "tangential", "history"))
-    if sort == "history":
-        query |= _history(random, scene)
-    else:
-        query["load"] = _load(random, scene, controls)
-    if sort == "tangential":
-        query["friction_coefficient"] = scene.friction
-        query["tangential"] = _tangential(random, scene, query["load"])
-    if sort != "normal":
-        names += _SHEAR_FIELDS
+    loaded = _any_load(random, scene)
+    names = [*_NORMAL_FIELDS, *(_SHEAR_FIELDS if "friction_coefficient" in loaded else ())]
+    query |= loaded
     query["quantities"] = random.sample(names, random.randint(1, len(names)))
+    return query
+
+
+_STRESSES: Final = (
+    *("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz"),
+    *("von_mises", "maximum_shear", "principal_1", "principal_2", "principal_3", "mean_stress"),
+)
+
+
+def subsurface(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of stresses beneath the surface, of any load; a few search their peaks."""
+    scene = contact(random, kind)
+    query = scene.query | {"body": random.choice((1, 2))}
+    query["material"].pop("yield_strength", None)
+    if "bodies" not in query["material"]:
+        query["material"]["poissons_ratio"] = random.choice((0.0, 0.3, 0.5, random.random() / 2))
+    query |= _any_load(random, scene)
+    if random.random() < 0.5:
+        query["points"] = random.randint(2, 12)
+    else:
+        far = 3.0 * scene.case.radius
+        count = random.randint(1, 6), random.randint(1, 6)
+        query["x"] = [
+            far * random.uniform(-1, 1) * (random.random() > 0.1) for _ in range(count[0])
+        ]
+        query["z"] = [far * random.random() ** 3 * (random.random() > 0.2) for _ in range(count[1])]
+        if random.random() < 0.3:
+            query["y"] = far * random.uniform(-1, 1)
+    query["quantities"] = random.sample(_STRESSES, random.randint(1, len(_STRESSES)))
+    if random.random() < 0.03:
+        query["largest"] = True
+    if random.random() < 0.01 and "load" in query and scene.case.profile["kind"] != "tabulated":
+        query["material"]["yield_strength"] = scene.moduli.e_star * spread(random, 1e-4, 1e-1)
     return query
 
 
@@ -317,10 +353,11 @@ QUERIES: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "stress": stress,
     "wear": wear,
     "evolution": evolution,
+    "subsurface": subsurface,
 }
 """The generators by name; `cycles` uses the endpoint of histories."""
 
-_SHARES: Final = (24, 26, 18, 8, 16, 7, 1)
+_SHARES: Final = (24, 26, 18, 8, 16, 7, 1, 4)
 
 
 def query(random: Random) -> tuple[str, dict[str, Any]]:

@@ -15,6 +15,7 @@ PATHS: Final = {
     "tangential": "/v1/tangential",
     "history": "/v1/tangential/history",
     "stress": "/v1/stress",
+    "subsurface": "/v1/subsurface",
     "wear": "/v1/wear",
     "evolution": "/v1/wear/evolution",
 }

@@ -18,7 +18,7 @@ UNITS: Final = (Units(1.0, 1.0), Units(1e3, 1.0), Units(1e6, 1e3))
 
 DIMENSIONS: Final[Mapping[str, tuple[int, int]]] = {
     **dict.fromkeys(("radius", "height", "flat_radius", "rounding_radius"), (1, 0)),
-    **dict.fromkeys(("tip_radius", "cap_radius", "r", "f", "breaks"), (1, 0)),
+    **dict.fromkeys(("tip_radius", "cap_radius", "r", "f", "breaks", "x", "y", "z"), (1, 0)),
     **dict.fromkeys(("indentation_depth", "contact_radius", "stick_radius"), (1, 0)),
     "tangential_displacement": (1, 0),
     **dict.fromkeys(("normal_force", "tangential_force"), (0, 1)),
@@ -86,13 +86,20 @@ _ANSWER_DIMENSIONS: Final = DIMENSIONS | {
     **dict.fromkeys(("wear_radius", "initial_profile", "limiting_profile"), (1, 0)),
     **dict.fromkeys(("worn_depth", "profile"), (1, 0)),
     "worn_volume": (3, 0),
+    **dict.fromkeys(("von_mises", "maximum_shear", "mean_stress", "value"), (-2, 1)),
+    **{f"stress_{name}": (-2, 1) for name in ("xx", "yy", "zz", "xy", "xz", "yz")},
+    **{f"principal_{number}": (-2, 1) for number in (1, 2, 3)},
+    **{f"yield_onset_force.{name}": (0, 1) for name in ("tresca", "von_mises")},
 }
 
 
 def scaled_result(result: Mapping[str, Any], units: Units) -> dict[str, Any]:
     """Return a result in other units."""
-    computed: dict[str, Any] = dict(result)
+    computed: dict[str, Any] = {
+        name: value for name, value in result.items() if not isinstance(value, Mapping)
+    }
     for name, values in laws.numbers(result).items():
-        length, force = _ANSWER_DIMENSIONS.get(name, (0, 0))
+        own = name if name in _ANSWER_DIMENSIONS else name.rpartition(".")[2]
+        length, force = _ANSWER_DIMENSIONS.get(own, (0, 0))
         computed[name] = values * units.length**length * units.force**force
     return computed

@@ -121,6 +121,15 @@ def test_infinite_stress_is_null_with_a_warning(client: Client) -> None:
     assert "singular" in {warning["code"] for warning in result["warnings"]}
 
 
+def test_infinite_largest_stress_is_warned_about_where_no_point_shows_it(client: Client) -> None:
+    punch = {"kind": "truncated_cone", "flat_radius": 0.1, "slope": 0.05}
+    given = MAP | {"profile": punch, "x": [0.0], "z": [0.05], "largest": True}
+    found = client.post(PATH, given | {"tangential": {"stick_radius": 0.1}}).json()
+    assert found["von_mises"][1][0][0] > 0
+    assert found["largest"]["von_mises"]["value"][1] is None
+    assert "singular" in {warning["code"] for warning in found["warnings"]}
+
+
 def test_formats(client: Client) -> None:
     given = MAP | {"quantities": ["von_mises", "stress_xy"], "largest": True}
     numbers = result_of(client, given)

@@ -70,6 +70,9 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
             measure: _by_load(subsurface.largest(loaded, measure, **body)._asdict(), query.loads)
             for measure in subsurface.MEASURES
         }
+        if any(np.isinf(peak["value"]).any() for peak in more["largest"].values()):
+            message = "the largest stress is infinite: see its place in `largest`"
+            warnings.append(Notice("singular", message))
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
         onset = {
             criterion: subsurface.yield_onset_force(
