@@ -254,7 +254,7 @@ def test_cycle_is_the_area_of_its_curve() -> None:
 
             def density(x: mpf) -> mpf:
                 virgin = at.mu * at.e_star * (at.n - at.body.force(x))
-                return virgin * at.full_slip_displacement * at.body.dg(x)
+                return virgin * at.shift * at.body.dg(x)
 
             area = mp.quad(density, [c, at.a])
         assert mp.almosteq(lost, 8 * area - 4 * force * mpf(amplitude), mpf(10) ** -30)
