@@ -27,20 +27,70 @@ class Command:
 
     summary: str
     module: str
+    example: str = ""
+    """Command line that the help shows."""
 
 
+_STEEL: Final = "--kind paraboloid --radius 0.01 --e-star 1.15e11"
+_SHEARED: Final = f"{_STEEL} --g-star 9.5e10 --friction-coefficient 0.3"
 COMMANDS: Final = {
-    "normal": Command("solve a frictionless normal contact", "mdr_command.query"),
-    "tangential": Command("solve a contact with friction", "mdr_command.query"),
-    "history": Command("solve a load history", "mdr_command.query"),
-    "stress": Command("compute stresses and displacements over the radius", "mdr_command.query"),
-    "subsurface": Command("compute stresses beneath the surface and yield", "mdr_command.query"),
-    "wear": Command("compute the limiting state of fretting wear", "mdr_command.query"),
-    "evolution": Command("integrate fretting wear over the cycles", "mdr_command.query"),
-    "sweep": Command("run a parameter study over a table or a grid", "mdr_sweep.command"),
-    "serve": Command("start the HTTP service", "mdr_command.serve"),
-    "openapi": Command("print the OpenAPI document of the HTTP service", "mdr_command.openapi"),
+    "normal": Command(
+        "solve a frictionless normal contact",
+        "mdr_command.query",
+        f"mdr normal {_STEEL} --normal-force 10",
+    ),
+    "tangential": Command(
+        "solve a contact with friction",
+        "mdr_command.query",
+        f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",
+    ),
+    "history": Command(
+        "solve a load history", "mdr_command.query", "mdr history request.json -o history.json"
+    ),
+    "stress": Command(
+        "compute stresses and displacements over the radius",
+        "mdr_command.query",
+        f"mdr stress {_STEEL} --normal-force 10 --quantities pressure --points 50 --format csv",
+    ),
+    "subsurface": Command(
+        "compute stresses beneath the surface and yield",
+        "mdr_command.query",
+        "mdr subsurface request.json --format npz -o stresses.npz",
+    ),
+    "wear": Command(
+        "compute the limiting state of fretting wear",
+        "mdr_command.query",
+        f"mdr wear {_SHEARED} --normal-force 10 --tangential-force 2",
+    ),
+    "evolution": Command(
+        "integrate fretting wear over the cycles",
+        "mdr_command.query",
+        "mdr evolution - < request.json > evolution.json",
+    ),
+    "sweep": Command(
+        "run a parameter study over a table or a grid",
+        "mdr_sweep.command",
+        "mdr sweep normal --template ball.json --grid load.normal_force=1:100:1000:log --out a.csv",
+    ),
+    "profiles": Command("list the kinds of profile", "mdr_command.profiles", "mdr profiles"),
+    "serve": Command(
+        "start the HTTP service", "mdr_command.serve", "mdr serve --host 127.0.0.1 --port 8000"
+    ),
+    "openapi": Command(
+        "print the OpenAPI document of the HTTP service",
+        "mdr_command.openapi",
+        "mdr openapi > openapi.json",
+    ),
+    "completion": Command(
+        "print a script that completes commands in a shell",
+        "mdr_command.completion",
+        "mdr completion bash > ~/.local/share/bash-completion/completions/mdr",
+    ),
 }
+
+
+# In place of a command: the arguments of all of them.
+_ALL: Final = "*"
 
 
 def main(given: Sequence[str] | None = None) -> int:
@@ -79,11 +129,24 @@ def _parser(chosen: str, module: Module | None) -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", title="commands")
     for name, command in COMMANDS.items():
-        own = commands.add_parser(name, help=command.summary, description=command.summary)
+        own = commands.add_parser(
+            name,
+            help=command.summary,
+            description=command.summary,
+            epilog=f"example:\n  {command.example}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         own.set_defaults(command=name)
         if module and name == chosen:
             module.declare(own)
+        elif chosen == _ALL:
+            _loaded(command).declare(own)
     return parser
+
+
+def complete_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands with all their arguments."""
+    return _parser(_ALL, None)
 
 
 class _Version(argparse.Action):

@@ -4,18 +4,21 @@ import argparse
 import logging
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from mdr_command import flags
 from mdr_command.exit_status import ExitStatus
 from mdr_command.progress import ProgressBar
+from mdr_core.errors import InputError
 from mdr_core.wear import evolution
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import parse, respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
+from mdr_service.query_parameters import Parameters
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.wear import EvolutionQuery
 from mdr_service.serializers import FORMATS, json
@@ -34,7 +37,6 @@ def declare(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         nargs="?",
-        default=_STANDARD_INPUT,
         help="request in JSON, as the service accepts it; - for standard input (default)",
     )
     parser.add_argument(
@@ -43,35 +45,54 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="|".join(FORMATS),
         help="format of the response (default: json)",
     )
-    parser.epilog = (
-        "A problem document is written to standard error, with the exit status "
-        f"{ExitStatus.INVALID_INPUT}, or {ExitStatus.ACCURACY_NOT_REACHABLE} if rtol cannot be "
-        "reached."
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="file for the response (default: standard output)",
+    )
+    flags.declare(parser, parser.get_default("command"))
+    parser.description = (
+        f"{parser.description}\n\nA problem document goes to standard error, with the exit status "
+        f"{ExitStatus.INVALID_INPUT},\nor {ExitStatus.ACCURACY_NOT_REACHABLE} if rtol cannot "
+        "be reached."
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the response to standard output and return the exit status."""
+    """Write the response and return the exit status."""
     try:
-        text = _read(arguments.file)
+        content = _content(arguments)
     except OSError as error:
         return _fail(f"{arguments.file}: {error.strerror}", ExitStatus.INVALID_INPUT)
-    try:
-        content = _respond(arguments.command, text, arguments.format)
     except problems.FAILURES as error:
         return _report(problems.to_problem(error))
     except Exception:
         _logger.exception("internal error")
         return _report(problems.INTERNAL_ERROR)
     try:
-        _write(content)
+        _write(content, arguments.output)
     except BrokenPipeError:
         raise
     except OSError as error:
+        if arguments.output:
+            return _fail(f"{arguments.output}: {error.strerror}", ExitStatus.OUTPUT_FAILED)
         # Python would try once more to write the rest on exit, and print a traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _fail(f"standard output: {error.strerror}", ExitStatus.OUTPUT_FAILED)
     return ExitStatus.OK
+
+
+def _content(arguments: argparse.Namespace) -> bytes:
+    """Return the response to the request, which a file or options give."""
+    parameters = flags.parameters(arguments)
+    if parameters is None:
+        query = parse(QUERIES[arguments.command].model, _read(arguments.file or _STANDARD_INPUT))
+        return _respond(arguments.command, query, (), arguments.format)
+    if arguments.file:
+        raise InputError(("file",), "does not go with options: give one of them")
+    return _by_parameters(arguments.command, parameters, arguments.format)
 
 
 def _read(file: str) -> bytes:
@@ -82,11 +103,20 @@ def _read(file: str) -> bytes:
     return sys.stdin.buffer.read()
 
 
-def _respond(name: str, text: bytes, format_: str) -> bytes:
+def _respond(name: str, query: Query, members: Sequence[str], format_: str) -> bytes:
     media_type = content_negotiation.media_type(format_, "*/*")
-    query = parse(QUERIES[name].model, text)
     with _progress(query) as progress:
-        return respond(name, query, media_type, (), **progress)
+        return respond(name, query, media_type, members, **progress)
+
+
+def _by_parameters(name: str, parameters: Parameters, format_: str) -> bytes:
+    """Return the response to a request by options; its problems point at the options."""
+    members = parameters.answers.split(",") if parameters.answers else ()
+    query = parameters.query()
+    try:
+        return _respond(name, query, members, format_)
+    except problems.FAILURES as error:
+        raise parameters.pointed(problems.to_problem(error)) from None
 
 
 @contextmanager
@@ -99,7 +129,10 @@ def _progress(query: Query) -> Iterator[dict[str, ProgressBar]]:
         yield {"progress": bar}
 
 
-def _write(content: bytes) -> None:
+def _write(content: bytes, file: Path | None) -> None:
+    if file:
+        file.write_bytes(content)
+        return
     sys.stdout.buffer.write(content)
     if sys.stdout.isatty() and not content.endswith(b"\n"):
         sys.stdout.buffer.write(b"\n")

@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, Literal
 
 from mdr_service import problems
 from mdr_service.serializers import FORMATS
 
+Format = Literal["json", "csv", "npz", "txt", "svg", "png", "pdf"]
+FORMAT: Final = "Format of the response; overrides `Accept`"
 _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 

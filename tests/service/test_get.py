@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mdr_service import problems
-from mdr_service.api.parameters import PARAMETERS
+from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import examples
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Awaitable, Callable, Sequence
 from functools import partial
 from inspect import signature
-from typing import Annotated, Any, ClassVar, Final, Literal, get_args
+from typing import Annotated, Any, ClassVar, Final, get_args
 
 from fastapi import APIRouter, Body, Depends, Query, Request
 from fastapi.routing import APIRoute
@@ -13,7 +13,7 @@ from starlette.responses import Response
 
 from mdr_service import cost, problems
 from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES
-from mdr_service.content_negotiation import media_type
+from mdr_service.content_negotiation import FORMAT, Format, media_type
 from mdr_service.dispatch import parse, respond, respond_to_text
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
@@ -36,8 +36,6 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.serializers import FORMATS, json
 from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES, AT_ONCE_SECONDS
 
-Format = Literal["json", "csv", "npz", "txt", "svg", "png", "pdf"]
-FORMAT: Final = "Format of the response; overrides `Accept`"
 _ANY: Final = "*/*"
 # Bound; the longest query has about forty.
 _MAX_PARAMETERS: Final = 100

@@ -1,0 +1,22 @@
+"""``mdr completion``: completion of the command line in a shell."""
+
+import argparse
+import sys
+from importlib import import_module
+from typing import Final
+
+import shtab
+
+_SHELLS: Final = ("bash", "zsh", "tcsh")
+
+
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Declare the shell."""
+    parser.add_argument("shell", choices=_SHELLS, help="shell for which to print the script")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the script and return the exit status."""
+    parser = import_module("mdr_command.__main__").complete_parser()
+    sys.stdout.write(shtab.complete(parser, arguments.shell) + "\n")
+    return 0

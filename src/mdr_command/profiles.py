@@ -1,0 +1,24 @@
+"""``mdr profiles``: the kinds of profile, with their formulas and fields."""
+
+import argparse
+import sys
+
+from mdr_core.profiles import KINDS
+from mdr_service.schemas.profiles import MODELS
+
+
+def declare(_parser: argparse.ArgumentParser) -> None:
+    """Declare no arguments."""
+
+
+def run(_arguments: argparse.Namespace) -> int:
+    """Print a table of the kinds and return the exit status."""
+    rows = [("kind", "fields", "f(r)")]
+    for model in MODELS:
+        kind = model.model_json_schema()["properties"]["kind"]["const"]
+        fields = ", ".join(name for name in model.model_fields if name != "kind")
+        rows.append((kind, fields, KINDS[kind].formula))
+    widths = [max(len(row[column]) for row in rows) for column in (0, 1)]
+    for kind, fields, formula in rows:
+        sys.stdout.write(f"{kind:{widths[0]}}  {fields:{widths[1]}}  {formula}\n")
+    return 0

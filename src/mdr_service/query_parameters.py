@@ -1,0 +1,229 @@
+"""Queries by parameters: numbers, at most one range, and names separated by commas.
+
+Each parameter stands for a field of the request, whose schema describes it. The request is then
+validated like any other; an error in it is reported for the parameter.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Final, Literal
+
+import numpy as np
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    SkipValidation,
+    ValidationError,
+    create_model,
+)
+from pydantic_core import PydanticCustomError
+
+from mdr_core.errors import InputError
+from mdr_service import problems
+from mdr_service.content_negotiation import FORMAT, Format
+from mdr_service.problems import ServiceError
+from mdr_service.queries import QUERIES
+from mdr_service.schemas import contacts
+from mdr_service.schemas.flat import leaves, nested
+from mdr_service.schemas.load_paths import HistoryQuery
+from mdr_service.schemas.profiles import MODELS
+from mdr_service.schemas.quantities import quantity
+from mdr_service.settings import SETTINGS
+
+# JSON numbers, and a leading plus, which spreadsheets write.
+_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_WHOLE: Final = re.compile(r"\d{1,9}", re.ASCII)
+_SPACINGS: Final[Mapping[str, Any]] = {"linear": np.linspace, "log": np.geomspace}
+# Kinds of profile that consist of numbers.
+_KINDS: Final = tuple(
+    model.model_json_schema()["properties"]["kind"]["const"]
+    for model in MODELS
+    if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
+)
+
+
+def _number(text: str) -> float:
+    # The framework reads a plus sign in a URL as a space.
+    if not _NUMBER.fullmatch(text := text.replace(" ", "+")):
+        raise PydanticCustomError("number", "must be a number, like 0.01 or 1.1e11")
+    if np.isinf(value := float(text)):
+        raise PydanticCustomError("number", "is out of the range of double precision")
+    return value
+
+
+def _whole(text: str) -> int:
+    if not _WHOLE.fullmatch(text):
+        raise PydanticCustomError("whole", "must be a whole number of at most nine digits")
+    return int(text)
+
+
+# A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
+_Number = Annotated[float, BeforeValidator(_number)] | None
+_Whole = Annotated[int, BeforeValidator(_whole)] | None
+_Length = Annotated[int, Field(ge=2, le=SETTINGS.max_loads), BeforeValidator(_whole)] | None
+# By the type of the field in JSON.
+_TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
+_LOADS: Final = frozenset({"load", "tangential", "oscillation"})
+_RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude"}
+_CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
+_Described = tuple[str, str, Any, str]
+"""Name, field of the request, type and description of a parameter."""
+
+
+# Parameters of the response, to which a problem can point.
+_RESPONSE: Final = {"answers": "answers"}
+
+
+class Parameters(BaseModel):
+    """Parameters of a URL that stand for a request."""
+
+    model_config = ConfigDict(extra="forbid")
+    model: ClassVar[type[contacts.Query]]
+    """Model of the request."""
+    fields: ClassVar[Mapping[str, str]]
+    """Field of the request by the parameter that stands for it, or for an end of its range."""
+
+    n: _Length = quantity("1", "Number of values in a range, including both ends", default=None)
+    scale: Literal["linear", "log"] | None = Field(
+        default=None, description="Spacing of a range, linear by default"
+    )
+    # An unknown format is not acceptable (406), as for POST, rather than invalid.
+    format: SkipValidation[Format | None] = Field(default=None, description=FORMAT)
+    answers: str | None = Field(
+        default=None, description="Members of the response, separated by commas; by default all"
+    )
+
+    def query(self) -> contacts.Query:
+        """Return the request; raise InputError or ServiceError that points at a parameter."""
+        given = self.model_dump(exclude_unset=True, exclude={"n", "scale", "format", "answers"})
+        self._join_range(given)
+        values = {self.fields[name]: value for name, value in given.items()}
+        bodies = {f"material.bodies.{index}" for index in "01"}
+        named = {body for body in bodies if any(field.startswith(body) for field in values)}
+        if named:
+            values |= dict.fromkeys(bodies - named, "rigid")
+        if isinstance(values.get("radius"), float):
+            values["radius"] = [values["radius"]]
+        if "quantities" in values:
+            values["quantities"] = values["quantities"].split(",")
+        request = nested(values)
+        for group in ("material", "load", "oscillation", "cycles"):
+            if group in self.model.model_fields:
+                request.setdefault(group, {})
+        try:
+            return self.model.model_validate(request)
+        except ValidationError as error:
+            raise self.pointed(problems.from_validation(error)) from None
+
+    def pointed(self, error: ServiceError) -> ServiceError:
+        """Return the failure of the request with pointers to the parameters."""
+        errors = [
+            (problems.pointer([self._parameter(place[1:].replace("/", "."))]), detail)
+            for place, detail in error.errors
+        ]
+        return ServiceError(error.type, error.detail, errors, error.retry_after)
+
+    def _join_range(self, given: dict[str, Any]) -> None:
+        """Replace the ends of a range by its values."""
+        ends = [name for name in given if name.endswith(("_from", "_to"))]
+        if not ends:
+            for name in self.model_fields_set & {"n", "scale"}:
+                raise InputError((name,), "goes with a range")
+            return
+        name = ends[0].rpartition("_")[0]
+        start, stop = f"{name}_from", f"{name}_to"
+        if name in given:
+            raise InputError((name,), f"does not go with {start} and {stop}")
+        for end in ends:
+            if end not in {start, stop}:
+                raise InputError((end,), "only one range can be given; POST takes any lists")
+            if self.scale == "log" and given[end] <= 0:
+                raise InputError((end,), "must be greater than 0 on a logarithmic scale")
+        for part in (start, stop, "n"):
+            if part not in self.model_fields_set:
+                raise InputError((part,), "is needed for a range")
+        # Between ends out of bounds numbers can overflow; the ends are then rejected.
+        with np.errstate(all="ignore"):
+            spaced = _SPACINGS[self.scale or "linear"](given.pop(start), given.pop(stop), self.n)
+        given[name] = spaced.tolist()
+
+    def _parameter(self, place: str) -> str:
+        """Return the parameter that stands for a place in the request.
+
+        For a group it is the first one that is given, or could be; in a range the end at fault.
+        """
+        inside = [
+            name
+            for name, field in self.fields.items()
+            if f"{place}.".startswith(f"{field}.") or f"{field}.".startswith(f"{place}.")
+        ]
+        given = [name for name in inside if name in self.model_fields_set]
+        index = place.rpartition(".")[2]
+        after_first = index.isdecimal() and index != "0"
+        at_end = after_first and given[:1] and given[0].endswith("_from")
+        return given[1] if at_end else next(iter(given or inside), "")
+
+
+def _described(model: type[contacts.Query]) -> Iterator[_Described]:
+    """Yield the parameters that stand for a request, without the ends of ranges."""
+    found = leaves(model.model_json_schema())
+    # Of load paths only cycles consist of numbers.
+    loads = _CYCLES if model is HistoryQuery else _LOADS
+    # Members of groups come before what all queries have.
+    for field, leaf in sorted(found, key=lambda each: "." not in each[0]):
+        group, _, name = field.rpartition(".")
+        type_, text = _TYPES.get(leaf["type"]), leaf.get("description", "")
+        dimension = _dimension(text)
+        if field == "profile.kind":
+            text = "Kind of profile; POST takes series and tables as well"
+            yield name, field, Literal[_KINDS], text
+        elif field == "radius":
+            text = f"Radius r of the fields; `radius` is that of the profile {dimension}"
+            yield "r", field, _Number, text
+        elif field == "quantities":
+            text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
+            yield name, field, str | None, text
+        elif group == "material.bodies.#":
+            for body in (1, 2):
+                text = f"`{name}` of body {body}, rigid if absent {dimension}"
+                yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
+        elif type_ and group in {"", "profile", "material", *loads}:
+            if group == "profile":
+                text = f"`{name}` of the profile, see GET /v1/profiles {dimension}"
+            yield _RENAMED.get(field, name), field, type_, text
+
+
+def _with_ends(described: Iterable[_Described]) -> Iterator[_Described]:
+    """Yield parameters, and the ends of the ranges of those that are loads or radii."""
+    for name, field, type_, text in described:
+        yield name, field, type_, text
+        if field == "radius" or field.partition(".")[0] in _LOADS:
+            for end, which in (("from", "First"), ("to", "Last")):
+                meaning = f"{which} of `n` values of `{name}` {_dimension(text)}"
+                yield f"{name}_{end}", field, type_, meaning
+
+
+def _dimension(description: str) -> str:
+    return description[description.rfind("[") :]
+
+
+def _parameters(model: type[contacts.Query]) -> type[Parameters]:
+    """Return the parameters that stand for a request."""
+    described = list(_with_ends(_described(model)))
+    definitions: dict[str, Any] = {
+        name: (type_, Field(default=... if name == "kind" else None, description=text))
+        for name, _, type_, text in described
+    }
+    title = model.__name__.replace("Query", "Parameters")
+    made = create_model(title, __base__=Parameters, **definitions)
+    made.model, made.fields = model, {name: field for name, field, *_ in described} | _RESPONSE
+    return made
+
+
+PARAMETERS: Final = {
+    name: _parameters(QUERIES[name].model)
+    for name in ("normal", "tangential", "history", "stress", "wear")
+}
+"""Parameters of the queries that consist of numbers, by query."""

@@ -1,0 +1,84 @@
+"""Requests by options, files for responses, the list of profiles, and completion."""
+
+import json
+import shlex
+from pathlib import Path
+
+import pytest
+
+from mdr_command import __main__ as command
+from mdr_command.__main__ import COMMANDS, main
+from mdr_core.profiles import KINDS
+
+Capture = pytest.CaptureFixture[str]
+OPTIONS = ["--kind", "paraboloid", "--radius", "0.01", "--e-star", "1.15e11"]
+REQUEST = {
+    "profile": {"kind": "paraboloid", "radius": 0.01},
+    "material": {"e_star": 1.15e11},
+    "load": {"normal_force": 10.0},
+}
+
+
+def test_options_give_the_bytes_of_the_request(tmp_path: Path) -> None:
+    file, by_file, by_options = (tmp_path / name for name in ("request.json", "a", "b"))
+    file.write_text(json.dumps(REQUEST), "utf-8")
+    assert main(["normal", str(file), "-o", str(by_file)]) == 0
+    assert main(["normal", *OPTIONS, "--normal-force", "10", "-o", str(by_options)]) == 0
+    assert by_file.read_bytes() == by_options.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer"),
+    [
+        (["--normal-force", "-1"], "/normal_force"),
+        (["--normal-force", "ten"], "/normal_force"),
+        (["--normal-force", "1", "--slope", "1"], "/slope"),
+        ([], "/indentation_depth"),
+    ],
+)
+def test_problems_point_at_the_option(given: list[str], pointer: str, capsys: Capture) -> None:
+    assert main(["normal", *OPTIONS, *given]) == 2
+    problem = json.loads(capsys.readouterr().err)
+    assert problem["errors"][0]["pointer"] == pointer
+
+
+def test_a_file_and_options_exclude_each_other(capsys: Capture) -> None:
+    assert main(["normal", "request.json", *OPTIONS, "--normal-force", "1"]) == 2
+    assert "/file" in capsys.readouterr().err
+
+
+def test_a_response_that_cannot_be_written_is_named(tmp_path: Path, capsys: Capture) -> None:
+    target = str(tmp_path / "missing" / "a.json")
+    assert main(["normal", *OPTIONS, "--normal-force", "1", "-o", target]) == 4
+    assert capsys.readouterr().err == f"mdr: {target}: No such file or directory\n"
+
+
+def test_profiles_lists_every_kind(capsys: Capture) -> None:
+    assert main(["profiles"]) == 0
+    _, *rows = capsys.readouterr().out.splitlines()
+    assert {row.split()[0] for row in rows} == set(KINDS)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+def test_completion_knows_commands_and_options(shell: str, capsys: Capture) -> None:
+    assert main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    assert all(name in script for name in COMMANDS)
+    assert "friction-coefficient" in script
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_help_shows_an_example(name: str, capsys: Capture) -> None:
+    with pytest.raises(SystemExit):
+        main([name, "--help"])
+    assert f"example:\n  {COMMANDS[name].example}\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "example", [one.example for one in COMMANDS.values() if "--kind" in one.example]
+)
+def test_examples_of_options_run(example: str, capsys: Capture) -> None:
+    program, *given = shlex.split(example)
+    assert program == "mdr"
+    assert command.main(given) == 0
+    assert capsys.readouterr().out
