@@ -90,7 +90,8 @@ def invert(
             close = np.abs(residual) <= _CLOSE
             short = close & (size <= where(known, longest, _SMALLEST_STEP))
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-            usable = ((proposed > low) & (proposed < high)) | last
+            # On a level of a rough table the residual would creep.
+            usable = ((proposed > low) & (proposed < high) & (slope != 0)) | last
             moved = proposed if usable.all() else where(usable, proposed, _middle(low, high))
             moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), np.inf)
             # A converged root stays: it does not depend on how long the others take.

@@ -234,3 +234,22 @@ def test_contact_radius_on_a_level_has_the_load_of_its_inner_end(control: str, s
             a, c = float(contacts[1].contact_radius), float(level.stick_radius)
             assert float(level.slip_width) == pytest.approx(a - c, rel=0, abs=1e-14)
             assert (share > 0) == (float(level.slip_width) > 0)
+
+
+def test_slip_front_jumps_across_a_level() -> None:
+    """On a level the width of the slip annulus grows without a force."""
+    rng = np.random.default_rng(1)
+    r = np.linspace(0.0, 1.0, 200)
+    f = np.sort(np.append(0.0, np.maximum(r[1:] ** 2 + 1e-3 * rng.normal(size=199), 0.0)))
+    body = Tabulated(tuple(r), tuple(f))
+    inner, outer = body.resolved.levels[:-1].T
+    within = outer < body.domain
+    # So far beyond each level that a push just crosses it, and one that does not.
+    contact = solve(body, 1.0, contact_radius=outer[within] * (1 + 6e-4))
+    for share in (0.97, 0.99, 1.01, 1.03):
+        level = solve(body, 1.0, contact_radius=inner[within])
+        force = 0.3 * share * (contact.normal_force - level.normal_force)
+        pushed = tangential.solve(contact, 0.8, 0.3, tangential_force=force)
+        assert pushed.tangential_force == pytest.approx(force, rel=1e-9, abs=0)
+        beyond = pushed.stick_radius > outer[within] * (1 - 1e-9)
+        assert (beyond == (share < 1)).all()
