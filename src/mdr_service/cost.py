@@ -34,8 +34,8 @@ _START: Final[dict[type[Query], float]] = {
 }
 # ... of each load, load with friction or sample, load with wear, number of cycles, ...
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
-# ... normal load of a table, whose largest pressure is searched for, ...
-_SEARCH = 5e-6
+# ... normal load of a table with a flat, whose largest pressure is searched for, ...
+_SEARCH = 1e-5
 # ... value over the radius, and of drawing a picture.
 _VALUE, _PICTURE = 2.5e-7, 0.3
 # Multiples of these for profiles without closed inverses, per term of a series, for tables.
@@ -82,7 +82,8 @@ def seconds(query: BaseModel) -> float:
     else:
         with_friction = query.has("friction_coefficient")
         evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
-        if isinstance(query.profile, TabulatedProfile) and isinstance(query, NormalQuery):
+        flat = isinstance(query.profile, TabulatedProfile) and query.profile.f[1:2] == [0.0]
+        if flat and isinstance(query, NormalQuery):
             evaluated += _SEARCH * query.load.count
     root: float = scale**0.25
     return scale * evaluated + root * integrated + _yielding(query)

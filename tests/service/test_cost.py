@@ -13,7 +13,7 @@ from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.schemas import examples
 from mdr_service.schemas.batch import BatchQuery
-from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.contacts import NormalQuery, Query
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from mdr_service.workers import AT_ONCE_SECONDS
@@ -150,3 +150,13 @@ def test_every_number_of_a_response_counts() -> None:
     }
     with pytest.raises(InputError, match="loads times radii times quantities"):
         QUERIES["stress"].solve(query("stress", value))
+
+
+@pytest.mark.parametrize("control", ["normal_force", "contact_radius"])
+def test_most_loads_on_a_smooth_table_are_accepted(control: str) -> None:
+    """They take less than a second: the largest pressure is at the axis."""
+    r = [i / 199 for i in range(200)]
+    table = {"kind": "tabulated", "r": r, "f": [x * x / 2 for x in r]}
+    loads = {control: [1e-3] * SETTINGS.max_loads}
+    query = {"profile": table, "material": {"e_star": 1.0}, "load": loads}
+    assert cost.require_feasible(NormalQuery.model_validate(query), "application/json") < 5.0
