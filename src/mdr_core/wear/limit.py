@@ -146,7 +146,8 @@ class LimitingWear(Results):
         endless, width = self.stuck.endless, self.wear_width
         flat = (np.ravel(part) for part in (np.where(endless, 0.0, width), self.stuck.step))
         volume = self.annulus.worn_volume(*flat).reshape(width.shape)
-        return np.where(endless, inf, volume)
+        # Without slip there is no annulus; on the axis its integral is undefined.
+        return np.where(endless, inf, np.where(width > 0, volume, 0.0))
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
