@@ -144,10 +144,12 @@ class LimitingWear(Results):
         Source: notes, §9.
         """
         endless, width = self.stuck.endless, self.wear_width
-        flat = (np.ravel(part) for part in (np.where(endless, 0.0, width), self.stuck.step))
-        volume = self.annulus.worn_volume(*flat).reshape(width.shape)
-        # Without slip there is no annulus; on the axis its integral is undefined.
-        return np.where(endless, inf, np.where(width > 0, volume, 0.0))
+        volume, flat = np.zeros(width.size), np.ravel(width)
+        # Without slip there is no annulus.
+        some = np.flatnonzero((flat > 0) & ~np.ravel(endless))
+        step = np.ravel(self.stuck.step)[some]
+        volume[some] = self.annulus.chosen(some).worn_volume(flat[some], step)
+        return np.where(endless, inf, volume.reshape(width.shape))
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
