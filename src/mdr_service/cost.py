@@ -32,6 +32,8 @@ _START: Final[dict[type[Query], float]] = {
     WearQuery: 1e-3,
     EvolutionQuery: 1e-3,
 }
+# ... of the step from one load to many, for which arrays take the place of single numbers, ...
+_ARRAYS: Final = 2e-4
 # ... of each load, load with friction or sample, load with wear, number of cycles, ...
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
 # ... normal load of a table with a flat, whose largest pressure is searched for, ...
@@ -39,7 +41,7 @@ _SEARCH = 1e-5
 # ... value over the radius, and of drawing a picture.
 _VALUE, _PICTURE = 2.5e-7, 0.3
 # Multiples of these for profiles without closed inverses, per term of a series, for tables.
-_IMPLICIT, _TERM, _TABLE = 10.0, 4.0, 80.0
+_IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
 # Of each nonlinear load step, and of each node of an evolution, besides its least number of nodes.
 # Of these, of cycles and of stresses and slip only the fourth root of the multiples is taken.
@@ -82,6 +84,7 @@ def seconds(query: BaseModel) -> float:
     else:
         with_friction = query.has("friction_coefficient")
         evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
+        evaluated += _ARRAYS if query.loads > 1 else 0.0
         flat = isinstance(query.profile, TabulatedProfile) and query.profile.f[1:2] == [0.0]
         if flat and isinstance(query, NormalQuery):
             evaluated += _SEARCH * query.load.count
@@ -107,7 +110,9 @@ def _yielding(query: Query) -> float:
 def _point(query: Query) -> float:
     """Return the expected time of the stress at a point."""
     each = _POINT_OF_TABLE if isinstance(query.profile, TabulatedProfile) else _POINT
-    return 2 * each if query.has("friction_coefficient") else each
+    # A traction of its own, in two segments; at the end of a load path, in more of them.
+    tractions = 2 if query.has("friction_coefficient") else 1
+    return each * tractions * (3 if query.has("history") else 1)
 
 
 def require_feasible(query: BaseModel, media_type: str) -> float:

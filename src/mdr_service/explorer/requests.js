@@ -8,9 +8,16 @@ export class Refusal extends Error {
   }
 }
 
-async function post(path, body, accept, signal) {
+async function post(path, body, accept) {
   const headers = { "content-type": "application/json", accept };
-  const response = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+  const send = () => fetch(path, { method: "POST", headers, body: JSON.stringify(body) });
+  let response = await send();
+  if (response.status === 503) {
+    // The service is busy and says for how long.
+    const seconds = Number(response.headers.get("retry-after") ?? 1);
+    await new Promise((done) => setTimeout(done, 1000 * seconds));
+    response = await send();
+  }
   if (response.ok) return response;
   const problem = await response.json().catch(() => ({ title: `The service answered ${response.status}` }));
   throw new Refusal(problem);
