@@ -261,8 +261,9 @@ def _stick(
         late = coordinate
         if not early.all():
             goal = where(early, 0.0, rest * total)
-            # Else from the power that rises as the function does at the edge.
-            start = coordinate * np.power(rest, total / (coordinate * first))
+            # Else from the power that rises as the function does at the edge; `np.power` rounds
+            # single numbers otherwise than arrays.
+            start = coordinate * np.exp(total / (coordinate * first) * np.log(rest))
             closed = inverse(profile, goal)
             start = where(start > 0, start, coordinate)
             late = _root(profile, functions, goal, start) if closed is None else closed
