@@ -1,21 +1,22 @@
 """Reference subsurface stresses towards limits without a closed form.
 
-`python -m tests.oracles.subsurface_limits` writes `subsurface_limits.json` in three minutes on two
-cores.
+`python -m tests.oracles.subsurface_limits` writes `tests/stability/beneath.json`, which takes three
+minutes on two cores.
 """
 
 from __future__ import annotations
 
 import json
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
 
-from tests.oracles.bank import DATA
 from tests.oracles.subsurface_generate import WORK_DIGITS, shape_of, tensor
 
+STORED = Path(__file__).parents[1] / "stability" / "beneath.json"
 NU, FRICTION, COUNT = 0.3, 0.4, 30
 # Name, title and axis of a curve, its distances, and for each distance: profile, stick radius, r
 # and z.
@@ -69,7 +70,7 @@ def main() -> None:
     with ProcessPoolExecutor(2) as pool:
         lines = list(pool.map(records, range(len(CURVES)), chunksize=1))
     content = "[\n" + ",\n".join(lines) + "\n]\n"
-    (DATA / "subsurface_limits.json").write_text(content, encoding="utf-8")
+    STORED.write_text(content, encoding="utf-8")
 
 
 if __name__ == "__main__":

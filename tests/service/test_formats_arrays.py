@@ -92,7 +92,7 @@ def test_unknown_format_is_rejected_with_the_available_formats(client: Client, n
     assert response.status_code == 406
     assert response.json()["detail"] == (
         "available formats: json (application/json), csv (text/csv), npz (application/x-npz), "
-        "svg (image/svg+xml)"
+        "txt (text/plain), svg (image/svg+xml), png (image/png), pdf (application/pdf)"
     )
 
 

@@ -16,8 +16,7 @@ from mdr_core.subsurface import error_estimate, stress
 from mdr_core.subsurface.stress import Rings, _normal, _tangential
 from mdr_core.tangential import TangentialContact
 from tests.core.comparison import profile_from
-from tests.oracles.bank import DATA
-from tests.oracles.subsurface_limits import FRICTION, NU
+from tests.oracles.subsurface_limits import FRICTION, NU, STORED
 from tests.stability.curves import RTOL, Array, Curve, steps
 
 if TYPE_CHECKING:
@@ -26,10 +25,7 @@ if TYPE_CHECKING:
     from mdr_core.normal import NormalContact
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(100)
-STORED = {
-    stored["name"]: stored
-    for stored in json.loads((DATA / "subsurface_limits.json").read_text(encoding="utf-8"))
-}
+STORED = {stored["name"]: stored for stored in json.loads(STORED.read_text(encoding="utf-8"))}
 BALL, CONE = Paraboloid(2.0), Cone(0.2)
 #: Digits that the closed moments need where r is 1e-12 and they lose r^4.
 CLOSED_DIGITS = 150
