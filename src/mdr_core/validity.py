@@ -133,11 +133,12 @@ def of_normal_contact(
 
     def size() -> str:
         steepest = float(np.max(slope))
+        square = steepest * steepest
         assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if beta is None else ""
         return (
             f"the half-space approximation has an estimated error of "
             f"{_per_cent(float(np.max(error)))}: {_per_cent(radial * steepest)} by the neglected "
-            f"radial displacement{assumed}, and of order {_per_cent(steepest**2)} by the slope "
+            f"radial displacement{assumed}, and of order {_per_cent(square)} by the slope "
             f"{steepest:.2g} at the contact edge"
         )
 

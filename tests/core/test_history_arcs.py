@@ -94,8 +94,7 @@ def near(value: mpf, result: history.LoadHistory) -> Any:
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("sign", [1, -1])
-def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> None:
+def test_normal_force_and_displacement_grow_together(name: str) -> None:
     """Springs in first contact follow the arc, up to where it is as steep as the friction limit."""
     shape = Shape(name)
     a1, a2 = (shape.radius(part * DEPTH) for part in (0.3, 1.0))
@@ -110,16 +109,7 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
     goal = eta(a2)
     assert goal > shape.g(a1)
     c = shape.root(lambda x: eta(x) - goal, a1, turn)
-    result = history.solve(
-        profile_from(PROFILES[name]),
-        E_STAR,
-        G_STAR,
-        MU,
-        normal_force=[float(i1) * E_STAR, float(i2) * E_STAR],
-        tangential_displacement=[0.0, sign * float(shift) * COMPLIANCE],
-    )
     carried = rate * shape.over(lambda x: 4 * x * x, a1, c) + i2 - shape.force(c)
-    assert sign * result.tangential_force[1] == near(MU * E_STAR * carried, result)
 
     def stored(x: mpf) -> mpf:
         # int v^2 dx = -int x d(v^2), without a boundary term at the edge.
@@ -127,7 +117,6 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
         return 2 * x * v * (2 * x * rate if x < c else 1)
 
     square = shape.over(stored, a1, c) + shape.over(stored, c, a2)
-    assert result.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, result)
 
     def lost(x: mpf) -> mpf:
         # Both behave like roots at the reversal: the front is as far below it as the load is above.
@@ -136,17 +125,26 @@ def test_normal_force_and_displacement_grow_together(name: str, sign: int) -> No
 
     with mp.workdps(20):
         loss = shape.over(lost, turn * (1 + mpf(10) ** -9), a2)
-    assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
-    assert result.dissipation[0] == 0
-    assert result.regime.tolist() == ["stick", "partial_slip"]
-    radius = float(c)
-    assert result.slip_fronts[-1] == pytest.approx(radius, rel=1e-9, abs=0)
+    for sign in (1, -1):
+        result = history.solve(
+            profile_from(PROFILES[name]),
+            E_STAR,
+            G_STAR,
+            MU,
+            normal_force=[float(i1) * E_STAR, float(i2) * E_STAR],
+            tangential_displacement=[0.0, sign * float(shift) * COMPLIANCE],
+        )
+        assert sign * result.tangential_force[1] == near(MU * E_STAR * carried, result)
+        assert result.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, result)
+        assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
+        assert result.dissipation[0] == 0
+        assert result.regime.tolist() == ["stick", "partial_slip"]
+        assert result.slip_fronts[-1] == pytest.approx(float(c), rel=1e-9, abs=0)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("sign", [1, -1])
-def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
+def test_depth_and_tangential_force_grow_together(name: str) -> None:
     """Initial slip, then stick from where the arc is no steeper than the friction limit."""
     shape = Shape(name)
     a1, a2 = (shape.radius(part * DEPTH) for part in (0.5, 1.0))
@@ -158,16 +156,7 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
         return shape.force(x) - rate * (shape.g(x) - d1)
 
     c = shape.root(lambda x: shape.force(x) - eta(turn), shape.flat, a1)
-    result = history.solve(
-        profile_from(PROFILES[name]),
-        E_STAR,
-        G_STAR,
-        MU,
-        indentation_depth=[float(d1), float(d2)],
-        tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
-    )
     anchor = shape.g(turn) - shape.g(c) + rate * shape.over(lambda x: 1 / (2 * x), turn, a2)
-    assert sign * result.tangential_displacement[1] == near(COMPLIANCE * anchor, result)
 
     def lost(x: mpf) -> mpf:
         front = shape.root(lambda y: shape.force(y) - eta(x), shape.flat, a1)
@@ -175,8 +164,18 @@ def test_depth_and_tangential_force_grow_together(name: str, sign: int) -> None:
 
     with mp.workdps(20):
         loss = shape.over(lost, a1, turn)
-    assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
-    assert result.regime.tolist() == ["stick", "stick"]
+    for sign in (1, -1):
+        result = history.solve(
+            profile_from(PROFILES[name]),
+            E_STAR,
+            G_STAR,
+            MU,
+            indentation_depth=[float(d1), float(d2)],
+            tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
+        )
+        assert sign * result.tangential_displacement[1] == near(COMPLIANCE * anchor, result)
+        assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
+        assert result.regime.tolist() == ["stick", "stick"]
 
 
 def random_path(name: str, control: str, steps: int, seed: int) -> dict[str, Any]:
@@ -213,7 +212,7 @@ controls = pytest.mark.parametrize("control", ["normal_force", "indentation_dept
 @pytest.mark.parametrize("name", KINDS)
 def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
     """int F_x du up to the end of each load step, by Gauss quadrature on many panels per step."""
-    path = random_path(name, control, 6, 3)
+    path = random_path(name, control, 4, 3)
     nodes, weights = leggauss(8)
     panels = 200
     # Panels cluster at both ends of a load step, where F_x behaves like a root.

@@ -29,6 +29,7 @@ LOADED = "kind=cone&slope=0.1&e_star=1&g_star=1&normal_force=1"
 PARAMETERS = {
     "/v1/normal": LOADED,
     "/v1/tangential": f"{LOADED}&friction_coefficient=0.3&tangential_force=0.1",
+    "/v1/tangential/history": f"{LOADED}&friction_coefficient=0.3&tangential_force=0.1",
     "/v1/stress": f"{LOADED}&points=20&quantities=pressure",
     "/v1/wear": f"{LOADED}&friction_coefficient=0.3&tangential_force=0.1",
 }

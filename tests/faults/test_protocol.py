@@ -291,7 +291,7 @@ def test_100_continue_is_sent(served: Served) -> None:
         assert read(client, 1)[0][0] == 200
 
 
-@pytest.mark.usefixtures("hasty")
+@pytest.mark.usefixtures("short_timeouts")
 @pytest.mark.parametrize(
     ("pieces", "name"),
     [
@@ -318,7 +318,7 @@ def test_slow_request_is_rejected(served: Served, pieces: list[bytes], name: str
     assert json.loads(body)["type"] == f"urn:mdr:problem:{name}"
 
 
-@pytest.mark.usefixtures("hasty")
+@pytest.mark.usefixtures("short_timeouts")
 def test_early_response_closes_a_connection_with_an_endless_body(served: Served) -> None:
     with served.connect() as client:
         client.sendall(b"POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
@@ -326,7 +326,7 @@ def test_early_response_closes_a_connection_with_an_endless_body(served: Served)
         wait_for(lambda: send_all(client, (b"a",)))
 
 
-@pytest.mark.usefixtures("hasty")
+@pytest.mark.usefixtures("short_timeouts")
 def test_slow_response_is_not_a_request_timeout(served: Served) -> None:
     query = next(iter(examples.EVOLUTION_EXAMPLES.values()))["value"] | {"resolution": 96}
     body = json.dumps(query).encode()

@@ -324,7 +324,7 @@ def test_wear_limit_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear", query, WearAnswer)
 
 
-@partial(with_examples, examples=25)
+@partial(with_examples, examples=12)
 @given(query=wear_queries())
 def test_wear_evolution_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear/evolution", query, EvolutionAnswer)
