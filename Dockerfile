@@ -1,20 +1,19 @@
-# The bases are pinned by tag. A digest would pin them for good: whoever can ask the registry adds it.
+# Base images are pinned by tag.
 FROM python:3.11.15-bookworm AS build
 
-# Linked without the symbols for a debugger, which are most of a compiled module. (CFLAGS would take
-# the place of Python's own flags.)
+# Strip debug symbols, which are most of a compiled module. (CFLAGS would replace Python's own flags.)
 ENV LDFLAGS=-Wl,--strip-debug \
     PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1
 RUN ["python", "-m", "venv", "/app"]
 WORKDIR /build
 
-# What seldom changes comes first, so that it is seldom built again.
+# Dependencies change rarely: a layer of their own is rebuilt rarely.
 COPY requirements.lock ./
 RUN ["/app/bin/pip", "install", "--require-hashes", "--requirement", "requirements.lock"]
 
-# The project goes in as a wheel; what built it, compiler and all, stays behind. Nor is the service
-# in need of its libraries' own tests, a seventh of their size.
+# Install the project as a wheel, without build tools and without the tests of the libraries, a
+# seventh of their size.
 COPY pyproject.toml setup.py README.md LICENSE ./
 COPY src ./src
 RUN /app/bin/pip wheel --no-deps --no-build-isolation --wheel-dir dist . \
@@ -27,20 +26,20 @@ FROM python:3.11.15-slim-bookworm
 
 COPY --from=build /app /app
 
-# Nothing is written but the list of fonts that Matplotlib keeps, and that in memory: the root may be
-# read-only. The modules are compiled already. More BLAS threads than cores would wait for each other.
+# Only Matplotlib's font cache is written, in memory, so that the root can be read-only. More BLAS
+# threads than cores would wait for each other.
 ENV PATH="/app/bin:$PATH" \
     MPLCONFIGDIR=/dev/shm/matplotlib \
     OPENBLAS_NUM_THREADS=1 \
     PYTHONDONTWRITEBYTECODE=1 \
     PYTHONUNBUFFERED=1
 
-# A number, for the platforms that insist on a user other than root and cannot look up a name.
+# By number: some platforms verify that the user is not root without looking up the name.
 USER 10001:10001
 WORKDIR /app
 EXPOSE 8000
 
-# Without curl, which the base lacks, and without urllib, which would ask a proxy if there is one.
+# The base image has no curl, and urllib would use a proxy.
 HEALTHCHECK --interval=30s --timeout=5s --start-period=20s --retries=3 \
     CMD ["python", "-c", "from http.client import HTTPConnection as C; c = C('127.0.0.1', 8000, timeout=4); c.request('HEAD', '/health/live'); raise SystemExit(c.getresponse().status != 200)"]
 
