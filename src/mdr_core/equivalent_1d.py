@@ -18,6 +18,7 @@ from mdr_core.elementwise import broadcast, full, is_number, number, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
+from mdr_core.profiles.power_functions import raised
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import first_index
@@ -261,9 +262,8 @@ def _stick(
         late = coordinate
         if not early.all():
             goal = where(early, 0.0, rest * total)
-            # Else from the power that rises as the function does at the edge; `np.power` rounds
-            # single numbers otherwise than arrays.
-            start = coordinate * np.exp(total / (coordinate * first) * np.log(rest))
+            # Else from the power that rises as the function does at the edge.
+            start = coordinate * raised(rest, total / (coordinate * first))
             closed = inverse(profile, goal)
             start = where(start > 0, start, coordinate)
             late = _root(profile, functions, goal, start) if closed is None else closed
