@@ -18,6 +18,6 @@ PICTURES: Final = frozenset(picture.MEDIA_TYPES.values())
 """Media types of plots."""
 WRITE: Final[Mapping[str, Callable[[Any], bytes]]] = {
     **{module.MEDIA_TYPE: module.write for module in (json, csv, npz, text)},
-    **{media_type: partial(picture.write, media_type=media_type) for media_type in PICTURES},
+    **{each: partial(picture.write, name=name) for name, each in picture.MEDIA_TYPES.items()},
 }
 """Functions by the media type that they write."""

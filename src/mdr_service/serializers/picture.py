@@ -55,13 +55,13 @@ _METADATA: Final = {
 }
 
 
-def write(plot: Plot | Map, media_type: str) -> bytes:
-    """Return the picture; equal plots give identical bytes."""
+def write(plot: Plot | Map, name: str) -> bytes:
+    """Return the picture in a format of `MEDIA_TYPES`; equal plots give identical bytes."""
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
 
     if isinstance(plot, Map):
-        return _write_map(plot, media_type)
+        return _write_map(plot, name)
     count = len(plot.panels)
     height = 0.9 + (_SINGLE if count == 1 else _PANEL * count)
     with _lock, mpl.rc_context(_STYLE):
@@ -74,10 +74,10 @@ def write(plot: Plot | Map, media_type: str) -> bytes:
         axes[-1].set_xlabel(f"{plot.x_label}   (in the units of the request)")
         _label(axes[0], plot.marks)
         _legend(axes[0], plot)
-        return _save(figure, media_type)
+        return _save(figure, name)
 
 
-def _write_map(plot: Map, media_type: str) -> bytes:
+def _write_map(plot: Map, name: str) -> bytes:
     """Draw contours, and beside them the values on the axis."""
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
@@ -103,12 +103,11 @@ def _write_map(plot: Map, media_type: str) -> bytes:
         right.plot(on_axis, plot.depth)
         right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
         left.invert_yaxis()
-        return _save(figure, media_type)
+        return _save(figure, name)
 
 
-def _save(figure: "Figure", media_type: str) -> bytes:
+def _save(figure: "Figure", name: str) -> bytes:
     content = io.BytesIO()
-    name = next(name for name, each in MEDIA_TYPES.items() if each == media_type)
     figure.savefig(content, format=name, metadata=_METADATA[name])
     return content.getvalue()
 
