@@ -31,5 +31,5 @@ SOURCES: Final = {
         "Friction, Springer 2015, chapter 5"
     ),
     "contactmechanics": "L. Pastewka et al., ContactMechanics, test_reference_solutions.py",
-    "ring-elements": "Numerical solution of its own, with bounds: verification/ring_elements.py",
+    "ring-elements": "Independent numerical solution, with bounds: verification/ring_elements.py",
 }

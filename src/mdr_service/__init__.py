@@ -1,1 +1,1 @@
-"""HTTP service for :mod:`mdr_core`, without physics of its own."""
+"""HTTP service for :mod:`mdr_core`, which holds all physics."""

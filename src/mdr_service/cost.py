@@ -110,7 +110,7 @@ def _yielding(query: Query) -> float:
 def _point(query: Query) -> float:
     """Return the expected time of the stress at a point."""
     each = _POINT_OF_TABLE if isinstance(query.profile, TabulatedProfile) else _POINT
-    # A traction of its own, in two segments; at the end of a load path, in more of them.
+    # The traction has two segments, and more at the end of a load path.
     tractions = 2 if query.has("friction_coefficient") else 1
     return each * tractions * (3 if query.has("history") else 1)
 

@@ -1,6 +1,6 @@
 """The two-root rule: integrals of F(x)/sqrt(x^2 - r^2) over an annulus.
 
-F has a root of its own at a break b. The substitution
+F itself has a root at a break b. The substitution
 
     x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y
 

@@ -29,7 +29,7 @@ _HALF: Final = 0.5
 # Nodes on every piece, and the least power to integrate: a table's polynomial with the factor.
 _NODES: Final = 24
 _DEGREE: Final = 14.0
-# Tolerance of the foundation's load, which has none of its own.
+# Tolerance of the foundation's load, for which no tolerance is requested.
 _RTOL: Final = 1e-13
 
 

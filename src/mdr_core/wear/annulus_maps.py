@@ -19,7 +19,7 @@ from mdr_core.typing import Array, Indices
 # Grading of the nodes, by the table in notes, §11: the distance from the stick edge grows by about
 # exp(STRETCH) over the nodes ...
 STRETCH: Final = 5.0
-# ... and the last part 1/EDGE of b^2 next to the contact's edge has nodes of its own.
+# ... and the last part 1/EDGE of b^2 next to the contact's edge has separate nodes.
 EDGE: Final = 50.0
 # Nodes of a local polynomial: with six the error at 48 nodes is 10 times larger, with ten the same.
 _STENCIL: Final = 8

@@ -124,7 +124,7 @@ class WearEvolution(Results, WornSurface):
                 values, others = (getattr(run, name)(block) for run in (self, self.coarse))
                 difference = max(difference, _largest(values, others))
                 if name == "pressure" and self.initial.held.stick_moves:
-                    # It is singular at an edge whose position has an error of its own.
+                    # It is singular at an edge whose position is inexact.
                     shifted = block * (1 + self.error_estimate)
                     moved = self.pressure(np.minimum(shifted, self.initial.contact.profile.domain))
                     difference = max(difference, _largest(values, moved))

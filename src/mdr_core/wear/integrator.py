@@ -18,7 +18,7 @@ _ABSOLUTE: Final = 0.01
 # Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
 # less, a growing stick zone takes it back before it counts.
 _LEAST: Final = 0.01
-# The wear of the first cycles has a tolerance of its own in each such factor of cycles.
+# The wear of the first cycles has a separate tolerance in each such factor of cycles.
 _DECADE: Final = 10.0
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
@@ -109,7 +109,7 @@ def integrate(
     vector, now, stopped = model.start, 0.0, [inf, inf, inf]
     steps, states = [vector], []
     for halt in _halts(cycles):
-        # A failure of LSODA is an error of its own below, and no warning besides.
+        # A failure of LSODA is reported by an error below, not by a warning.
         with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
             run = solve_ivp(
                 rates,

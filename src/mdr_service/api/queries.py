@@ -201,8 +201,8 @@ async def post_history(
     normal and tangential forces, are solved exactly. Where a depth changes with a tangential force,
     or a normal force with a displacement, the path is replaced by chords: the error is mostly 1e-9
     to 1e-7 and within `error_estimate`. A negative depth is a separation, which erases the slip
-    memory. A tangential force beyond µ F_N, at a point or between
-    points, has no equilibrium and is rejected.
+    memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
+    rejected.
 
     `error_estimate` is relative to the largest value on the path. A warning `accuracy` says where
     `slip_fronts` is less accurate. `energy_per_cycle` and `secant_stiffness` belong to `cycles`.
