@@ -4,23 +4,19 @@ import argparse
 import logging
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from mdr_command import flags
 from mdr_command.exit_status import ExitStatus
-from mdr_command.progress import ProgressBar
 from mdr_core.errors import InputError
-from mdr_core.wear import evolution
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import parse, respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.query_parameters import Parameters
 from mdr_service.schemas.contacts import Query
-from mdr_service.schemas.wear import EvolutionQuery
 from mdr_service.serializers import FORMATS, json
 
 _STATUS: Final = {
@@ -105,8 +101,7 @@ def _read(file: str) -> bytes:
 
 def _respond(name: str, query: Query, members: Sequence[str], format_: str) -> bytes:
     media_type = content_negotiation.media_type(format_, "*/*")
-    with _progress(query) as progress:
-        return respond(name, query, media_type, members, **progress)
+    return respond(name, query, media_type, members)
 
 
 def _by_parameters(name: str, parameters: Parameters, format_: str) -> bytes:
@@ -117,16 +112,6 @@ def _by_parameters(name: str, parameters: Parameters, format_: str) -> bytes:
         return _respond(name, query, members, format_)
     except problems.FAILURES as error:
         raise parameters.pointed(problems.to_problem(error)) from None
-
-
-@contextmanager
-def _progress(query: Query) -> Iterator[dict[str, ProgressBar]]:
-    """Show a progress bar for a long computation on a terminal."""
-    if not (isinstance(query, EvolutionQuery) and sys.stderr.isatty()):
-        yield {}
-        return
-    with ProgressBar(sys.stderr, evolution.EVALUATIONS) as bar:
-        yield {"progress": bar}
 
 
 def _write(content: bytes, file: Path | None) -> None:

@@ -4,7 +4,7 @@ Endpoints, compute processes and the command line call these functions, and get 
 """
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -40,13 +40,7 @@ def parse(model: type[_Model], text: bytes) -> _Model:
         raise problems.from_validation(error) from None
 
 
-def respond(
-    name: str,
-    query: BaseModel,
-    media_type: str,
-    members: Sequence[str] = (),
-    **progress: Callable[[int], None],
-) -> bytes:
+def respond(name: str, query: BaseModel, media_type: str, members: Sequence[str] = ()) -> bytes:
     """Return the response content of a query or a batch.
 
     Parameters
@@ -55,7 +49,6 @@ def respond(
     query : the request.
     media_type : media type of the content.
     members : members of the result to return, by default all; a picture shows all.
-    progress : for an evolution, see `queries.wear.solve_evolution`.
 
     Raises
     ------
@@ -66,7 +59,7 @@ def respond(
     # Results are checked for overflow at their end.
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
-        source = kind.solve(query, **progress)
+        source = kind.solve(query)
         result: Any = kind.result(query, source)
         if media_type in PICTURES:
             result = PLOTS[name](query, source, result)

@@ -155,24 +155,6 @@ def terminal() -> Iterator[tuple[int, int]]:
         os.close(response)
 
 
-def test_progress_bar_is_shown_on_a_terminal(client: Client) -> None:
-    text = json.dumps(HISTORY).encode()
-    with terminal() as (ours, response):
-        result = subprocess.run(
-            [*MDR, "evolution"],
-            input=text,
-            stdout=subprocess.PIPE,
-            stderr=response,
-            check=True,
-            timeout=PATIENCE,
-        )
-        shown = os.read(ours, 100_000)
-    assert result.stdout == client.post_text("/v1/wear/evolution", text).content
-    assert b"about 1 %" in shown
-    # The progress bar is erased.
-    assert shown.endswith(b"\r\x1b[K")
-
-
 def test_output_on_a_terminal_ends_with_a_newline(client: Client) -> None:
     with terminal() as (ours, response):
         subprocess.run([*MDR, "normal"], input=BODY, stdout=response, check=True, timeout=PATIENCE)

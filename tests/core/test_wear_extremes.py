@@ -13,7 +13,7 @@ from mdr_core.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from mdr_core.wear import evolution, limit
+from mdr_core.wear import evolution, integrator, limit
 
 
 @pytest.mark.parametrize("cycles", [2e-309, 1e-250])
@@ -63,13 +63,15 @@ def kinked() -> Tabulated:
 
 
 @pytest.mark.parametrize("width", [0.2, 0.4, 0.6])
-def test_edge_of_the_contact_passes_a_break_in_few_steps(width: float) -> None:
+def test_edge_of_the_contact_passes_a_break_in_few_steps(
+    width: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """g' is infinite behind the break, which the nodes pass one after the other."""
     body = kinked()
     contact = normal.solve(body, 1.3, contact_radius=1.0003)
     within = normal.solve(body, 1.3, contact_radius=1.0003 - width)
     contact = normal.solve(body, 1.3, normal_force=float(contact.normal_force))
-    calls: list[int] = []
+    monkeypatch.setattr(integrator, "_MOST_CALLS", 2000)
     worn = evolution.solve(
         contact,
         0.9,
@@ -77,9 +79,7 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(width: float) -> None:
         wear_coefficient=2e-4,
         cycles=[1e2, 1e4],
         tangential_force=0.4 * float(contact.normal_force - within.normal_force),
-        progress=calls.append,
     )
-    assert sum(calls) < evolution.EVALUATIONS
     assert worn.contact_radius[-1] > 1.003
     lost = 2e-4 * worn.dissipated_energy
     assert worn.worn_volume == pytest.approx(lost, rel=2 * worn.error_estimate, abs=0)

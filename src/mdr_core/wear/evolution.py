@@ -18,7 +18,6 @@ from mdr_core.validation import first_index, require_not_negative
 from mdr_core.wear.annulus_state import Held
 from mdr_core.wear.arguments import one_amplitude
 from mdr_core.wear.initial_state import InitialState
-from mdr_core.wear.integrator import Progress
 from mdr_core.wear.worn_surface import WornSurface, worn_surface
 
 # Default of `resolution`, ...
@@ -28,8 +27,6 @@ COARSEST: Final = 8
 # ... and its largest.
 FINEST: Final = 96
 FIELDS: Final = ("profile", "worn_depth", "pressure")
-# Evaluations of the rates by both runs, within a factor of 2, whatever the resolution.
-EVALUATIONS: Final = 3000
 SCALARS: Final = (
     "worn_volume",
     "indentation_depth",
@@ -183,7 +180,6 @@ def solve(
     tangential_force: float | None = None,
     resolution: int = DEFAULT_RESOLUTION,
     rtol: float = 1e-6,
-    progress: Progress | None = None,
 ) -> WearEvolution:
     """Solve for the wear of a contact under an oscillating tangential load.
 
@@ -204,8 +200,6 @@ def solve(
         [length], [force].
     resolution : nodes over the worn annulus beyond the least number, 16; 8 to 96.
     rtol : relative tolerance of the integration over the cycles, 1e-10 to 1e-3.
-    progress : called with the number of evaluations of the rates since its last call;
-        about `EVALUATIONS` in all.
 
     Returns
     -------
@@ -256,7 +250,7 @@ def solve(
     initial = InitialState(sideways, float(wear_coefficient), held)
     numbers = _checked_cycles(cycles)
     nodes = int(resolution) + _FEWEST
-    run = partial(worn_surface, initial, numbers, progress=progress)
+    run = partial(worn_surface, initial, numbers)
     fine, coarse = run(nodes, rtol), run(int(nodes * _COARSER), _LOOSER * rtol)
     parts = fine.states, fine.trail, fine.settled
     found = WearEvolution(initial, numbers, *parts, coarse=coarse)

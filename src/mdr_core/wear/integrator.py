@@ -25,9 +25,6 @@ _FIRST: Final = 1e-100
 # About 5 times as many as 96 nodes take at a tolerance of 1e-10.
 _MOST_CALLS: Final = 40_000
 
-Progress = Callable[[int], None]
-"""Called with the number of evaluations of the rates since its last call."""
-
 
 class StickTrail(NamedTuple):
     """Radii that a growing stick zone has passed, and the wear w_c that the springs there keep."""
@@ -67,11 +64,7 @@ class Integration(NamedTuple):
 
 
 def integrate(
-    model: WearModel,
-    cycles: Array,
-    rtol: float,
-    ends: tuple[float, float],
-    progress: Progress | None = None,
+    model: WearModel, cycles: Array, rtol: float, ends: tuple[float, float]
 ) -> Integration:
     """Return the states of the annulus at ascending numbers of cycles.
 
@@ -84,7 +77,6 @@ def integrate(
     cycles : scaled numbers of cycles, ascending, (k,).
     rtol : relative tolerance.
     ends : growth of the contact, and stick radius, at which the integration ends; in its unit.
-    progress : called at each evaluation of the rates.
 
     Raises
     ------
@@ -99,8 +91,6 @@ def integrate(
     def rates(_time: float, vector: Array) -> Array:
         nonlocal calls
         calls += 1
-        if progress:
-            progress(1)
         if calls > _MOST_CALLS:
             detail = "the wear over the cycles takes too many steps: fewer nodes may take less"
             raise AccuracyError(detail, ("resolution",))

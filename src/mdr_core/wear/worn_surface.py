@@ -15,7 +15,7 @@ from mdr_core.wear import surface_fields
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.arguments import checked_radii
 from mdr_core.wear.initial_state import InitialState
-from mdr_core.wear.integrator import NO_TRAIL, Progress, StickTrail, integrate
+from mdr_core.wear.integrator import NO_TRAIL, StickTrail, integrate
 
 
 @dataclass(frozen=True)
@@ -152,9 +152,7 @@ class WornSurface:
         return np.array([value(state) for state in self.states])
 
 
-def worn_surface(
-    initial: InitialState, cycles: Array, nodes: int, rtol: float, *, progress: Progress | None
-) -> WornSurface:
+def worn_surface(initial: InitialState, cycles: Array, nodes: int, rtol: float) -> WornSurface:
     """Return the worn surface at ascending numbers of cycles.
 
     Parameters
@@ -163,7 +161,6 @@ def worn_surface(
     cycles : numbers of cycles, (k,).
     nodes : number of nodes of the annulus.
     rtol : relative tolerance of the integration.
-    progress : called with the number of evaluations since its last call.
 
     Raises
     ------
@@ -173,7 +170,7 @@ def worn_surface(
     if not initial.slips:
         return WornSurface(initial, cycles)
     unit, scaled = initial.cycle_unit, cycles / initial.cycle_unit
-    found = integrate(initial.model(nodes), scaled, rtol, initial.ends, progress)
+    found = integrate(initial.model(nodes), scaled, rtol, initial.ends)
     if isfinite(found.left):
         cycle = found.left * unit
         if initial.reach < initial.room:

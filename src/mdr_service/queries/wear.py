@@ -11,7 +11,6 @@ from mdr_core.typing import Array
 from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
 from mdr_core.wear.evolution import WearEvolution
-from mdr_core.wear.integrator import Progress
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.queries.contacts import body, control, friction, paired, solve_normal
 from mdr_service.queries.fields import require_few_numbers
@@ -63,14 +62,8 @@ def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
     return _result(query, limit, values, radius, np.ravel(limit.stuck.endless))
 
 
-def solve_evolution(query: EvolutionQuery, progress: Progress | None = None) -> WearEvolution:
-    """Return fretting wear over the cycles of a query.
-
-    Parameters
-    ----------
-    query : the request.
-    progress : called with the number of evaluations since its last call.
-    """
+def solve_evolution(query: EvolutionQuery) -> WearEvolution:
+    """Return fretting wear over the cycles of a query."""
     _require_radii(query, "cycles")
     try:
         return wear_evolution.solve(
@@ -82,7 +75,6 @@ def solve_evolution(query: EvolutionQuery, progress: Progress | None = None) -> 
             cycles=np.array(query.cycles, dtype=float),
             resolution=query.resolution,
             rtol=query.rtol,
-            progress=progress,
         )
     except InputError as error:
         raise _in_request(error) from None
