@@ -37,9 +37,8 @@ def declare(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        default="json",
         metavar="|".join(FORMATS),
-        help="format of the response (default: json)",
+        help="format of the response (default: by the suffix of FILE, else json)",
     )
     parser.add_argument(
         "-o",
@@ -83,12 +82,14 @@ def run(arguments: argparse.Namespace) -> int:
 def _content(arguments: argparse.Namespace) -> bytes:
     """Return the response to the request, which a file or options give."""
     parameters = flags.parameters(arguments)
+    suffix = arguments.output.suffix[1:] if arguments.output else ""
+    format_ = arguments.format or (suffix if suffix in FORMATS else "json")
     if parameters is None:
         query = parse(QUERIES[arguments.command].model, _read(arguments.file or _STANDARD_INPUT))
-        return _respond(arguments.command, query, (), arguments.format)
+        return _respond(arguments.command, query, (), format_)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")
-    return _by_parameters(arguments.command, parameters, arguments.format)
+    return _by_parameters(arguments.command, parameters, format_)
 
 
 def _read(file: str) -> bytes:

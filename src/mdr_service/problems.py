@@ -182,12 +182,13 @@ _ABOUT_KIND: Final = {
     "union_tag_invalid": "there is no such kind of profile; GET /v1/profiles lists them",
     "union_tag_not_found": "the kind of profile is missing; GET /v1/profiles lists them",
 }
-# In queries of a batch, pydantic names the types of Python.
+# In queries of a batch, pydantic names the types of Python; a member it calls an input.
 _IN_JSON: Final = {
     "model_type": "Input should be an object",
     "model_attributes_type": "Input should be an object",
     "dict_type": "Input should be an object",
     "list_type": "Input should be a valid array",
+    "extra_forbidden": "there is no such member",
 }
 
 

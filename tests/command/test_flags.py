@@ -27,6 +27,15 @@ def test_options_give_the_bytes_of_the_request(tmp_path: Path) -> None:
     assert by_file.read_bytes() == by_options.read_bytes()
 
 
+def test_the_suffix_of_the_file_gives_the_format(tmp_path: Path) -> None:
+    by_suffix, by_option = tmp_path / "a.csv", tmp_path / "b.out"
+    query = ["normal", *OPTIONS, "--normal-force", "10"]
+    assert main([*query, "-o", str(by_suffix)]) == 0
+    assert main([*query, "--format", "csv", "-o", str(by_option)]) == 0
+    assert by_suffix.read_bytes() == by_option.read_bytes()
+    assert by_suffix.read_text("utf-8").startswith("indentation_depth,")
+
+
 @pytest.mark.parametrize(
     ("given", "pointer"),
     [
