@@ -20,6 +20,7 @@ from mdr_service.schemas.answers import (
     TangentialAnswer,
     WearAnswer,
 )
+from mdr_service.serializers import PICTURES
 from tests.conftest import Client
 from tests.contract import strict_json
 
@@ -115,6 +116,9 @@ def test_response_matches_its_schema(client: Client, path: str, model: type[Answ
     examples = post["requestBody"]["content"]["application/json"]["examples"]
     for example in examples.values():
         for media_type in post["responses"]["200"]["content"]:
+            # Each picture takes half a second, and test_forms draws those of all examples.
+            if media_type in PICTURES and example is not next(iter(examples.values())):
+                continue
             headers = {"accept": media_type}
             response = client.request("POST", path, json=example["value"], headers=headers)
             assert response.status_code == 200

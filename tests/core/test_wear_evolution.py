@@ -109,7 +109,7 @@ def test_initial_wear_follows_the_friction_work(kind: str, control: str, resolut
     assert early.worn_volume[0] == expected
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
     result = worn(kind, control)
@@ -174,7 +174,7 @@ def test_limiting_state_is_stationary(control: str) -> None:
     assert result.worn_volume[-1] == result.worn_volume[-2]
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_wear_never_adds_material(kind: str, control: str) -> None:
     cycles = (0.0, *np.geomspace(1.0, 1e7, 22).tolist())
