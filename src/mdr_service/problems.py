@@ -127,7 +127,7 @@ def from_validation(error: ValidationError) -> ServiceError:
     if count > _MAX_BUILT:
         detail = f"{count} values are invalid, too many to list"
         return ServiceError(INVALID_REQUEST, detail, [("", detail)])
-    return from_errors(error.errors(include_url=False, include_context=False, include_input=False))
+    return from_errors(error.errors(include_url=False, include_input=False))
 
 
 def from_errors(found: Sequence[ErrorDetails]) -> ServiceError:
@@ -192,5 +192,11 @@ _IN_JSON: Final = {
 }
 
 
+# Pydantic prints the bounds 1e-50 and 1e50 with all their zeros.
+_BOUNDS: Final = {"greater_than_equal": "ge", "less_than_equal": "le"}
+
+
 def _sentence(error: ErrorDetails) -> str:
+    if bound := _BOUNDS.get(error["type"]):
+        return f"{error['msg'].rpartition(' ')[0]} {error['ctx'][bound]:.15g}"
     return (_ABOUT_KIND | _IN_JSON).get(error["type"], error["msg"])

@@ -835,6 +835,28 @@ def test_problem_does_not_repeat_the_input(client: Client) -> None:
         assert b"s3cret" not in client.post_text("/v1/normal", body).content
 
 
+@pytest.mark.parametrize(
+    ("radius", "detail"),
+    [
+        (-1.0, "Input should be greater than or equal to 1e-50"),
+        (1e60, "Input should be less than or equal to 1e+50"),
+    ],
+)
+def test_bounds_are_stated_in_short(client: Client, radius: float, detail: str) -> None:
+    query = {
+        "profile": {"kind": "paraboloid", "radius": radius},
+        "material": {"e_star": 1.0},
+        "load": {"normal_force": 1.0},
+    }
+    errors = client.post("/v1/normal", query).json()["errors"]
+    assert errors == [{"pointer": "/profile/radius", "detail": detail}]
+
+
+def test_unknown_members_are_named(client: Client) -> None:
+    response = client.get("/v1/normal?kind=paraboloid&radius=1&e_star=1&normal_force=1&force=1")
+    assert response.json()["errors"] == [{"pointer": "/force", "detail": "there is no such member"}]
+
+
 def test_number_of_errors_is_limited(client: Client) -> None:
     many = "".join(f', "{"unknown" * 8}{i}": 1' for i in range(10_000))
     response = client.post_text("/v1/normal", query(more=many))
