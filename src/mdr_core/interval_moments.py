@@ -103,18 +103,17 @@ class IntervalMoments:
         end = self.profile.last_coordinate
         return inf if end is None else float(self.normal(np.asarray(end)))
 
-    def over(self, low: Array, span: Array) -> Moments:
-        """Return the moments over the intervals [low, low + span], shape (m,)."""
+    def over(self, low: Array, span: Array, ends: Array | None = None) -> Moments:
+        """Return the moments over the intervals [low, low + span], shape (m,).
+
+        Their `ends` in the contact coordinate may be known; the parameters of the profile may then
+        be arrays over the intervals.
+        """
         if self.profile.slips_at_once:
             # The contact radius is constant.
             return Moments(span, np.zeros((3, span.size)))
-        return self.between(low, span, self.contact_coordinate(np.stack([low, low + span])))
-
-    def between(self, low: Array, span: Array, ends: Array) -> Moments:
-        """Return the moments over intervals whose ends in the contact coordinate are known.
-
-        The profile is not a flat punch; its parameters may be arrays over the intervals.
-        """
+        if ends is None:
+            ends = self.contact_coordinate(np.stack([low, low + span]))
         if not has_many_breaks(self.profile):
             return self._by_break(low, span, ends)
         breaks, levels = self._breaks
@@ -248,8 +247,10 @@ class IntervalMoments:
         at_break = (base > 0) & (ends[0] == base)
 
         def values(function: Function) -> Array:
-            low, high = function(ends)
-            return np.stack([np.where(at_break, _from_below(function, base), low), high])
+            found = function(ends)
+            if at_break.any():
+                found[0] = np.where(at_break, _from_below(function, base), found[0])
+            return found
 
         twice = 2 * profile.contact_radius(ends)
         depth, force, energy = map(

@@ -59,9 +59,8 @@ def _by_springs(profile: Profile, coordinate: Array, width: Array, stick: Array)
 
     def moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
         span = depth_step(profile, high, width, low)
-        found = IntervalMoments(profile, by_force=False).between(
-            profile.depth(low), span, np.stack([low, high])
-        )
+        moments = IntervalMoments(profile, by_force=False)
+        found = moments.over(profile.depth(low), span, np.stack([low, high]))
         return (np.square(span) * found.weights[1] / 4,)
 
     ends = coordinate, width, stick

@@ -167,7 +167,8 @@ class ContactState(Results):
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
         if self.profile.slips_at_once or not self.in_contact:
             return np.zeros(0)
-        return self.profile.contact_radius(self.segments.coordinate[1:-1])
+        edges = self.coordinate if self.arcs is None else self.arcs.coordinate
+        return self.profile.contact_radius(edges[1:-1])
 
     @property
     def tangential_force(self) -> float:

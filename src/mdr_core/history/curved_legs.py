@@ -213,9 +213,9 @@ class ExtrapolatedResults:
         return results.regime[samples]
 
     @property
-    def last(self) -> Polyline:
-        """Polyline after the last step, over normal coordinates, with the finest chords."""
-        return self.sets[-1][0].last
+    def finest(self) -> StepResults:
+        """Results on the finest chords."""
+        return self.sets[-1][0]
 
     @cached_property
     def error(self) -> float:

@@ -19,9 +19,6 @@ from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
-# Lower end and length of an interval of springs, and the Bernstein coefficients of M on it.
-_Interval = tuple[Array, Array, tuple[Array, Array, Array]]
-
 
 def per_segment(profile: Profile, segments: SlipSegments, *, by_force: bool) -> Array:
     """Return D/(mu E*) of every segment [length^3]."""
@@ -36,22 +33,25 @@ def per_segment(profile: Profile, segments: SlipSegments, *, by_force: bool) -> 
     if profile.slips_at_once:
         return dissipated
     partial = np.flatnonzero(~segments.full & (segments.span > 0))
-    total = np.zeros(partial.size)
     given = segments.normal, segments.span, segments.upper_gap, segments.lower_gap
-    for low, length, coefficients in _intervals(*(row[partial] for row in given)):
-        some = np.flatnonzero(length > 0)
-        weights = moments.over(low[some], length[some]).weights
-        for coefficient, weight in zip(coefficients, weights, strict=True):
-            # Over forces the measure is infinite on the axis, where M is zero.
-            part = coefficient[some]
-            total[some] += np.multiply(part, weight, where=part > 0, out=np.zeros(some.size))
+    low, length, coefficients = _intervals(*(row[partial] for row in given))
+    some = length > 0
+    part = np.zeros(coefficients.shape)
+    weights = moments.over(low[some], length[some]).weights
+    # Over forces the measure is infinite on the axis, where M is zero.
+    chosen = coefficients[:, some]
+    part[:, some] = np.multiply(chosen, weights, where=chosen > 0, out=np.zeros(chosen.shape))
+    total = part.sum(axis=0).sum(axis=0)
     dissipated[partial] = segments.slip[partial] / segments.span[partial] * total
     return dissipated
 
 
-def _intervals(normal: Array, span: Array, upper: Array, lower: Array) -> list[_Interval]:
+def _intervals(
+    normal: Array, span: Array, upper: Array, lower: Array
+) -> tuple[Array, Array, Array]:
     """Return the three intervals between the four ends of the paths of front and load point.
 
+    Lower ends and lengths, shape (3, n), and the Bernstein coefficients of M, shape (3, 3, n).
     Above the lower end `normal` of the segment, the front moves from `span` to 0 and the load
     point from span + upper to `lower`.
     """
@@ -69,8 +69,10 @@ def _intervals(normal: Array, span: Array, upper: Array, lower: Array) -> list[_
     at_second = np.where(ratio > 0, np.square(upper) / (2 * some), 0.0)
     at_second = np.where(overtaken, at_second, np.abs(ratio) * np.square(span) / 2)
     between = np.where(overtaken, lower * upper / 2, (at_first + at_second) / 2)
-    return [
-        (normal, first, (nothing, first * lower / 2, at_first)),
-        (normal + first, second, (at_first, between, at_second)),
-        (normal + first + second, third, (at_second, nothing, nothing)),
+    ends = np.cumsum([normal, first, second], axis=0)
+    coefficients = [
+        [nothing, at_first, at_second],
+        [first * lower / 2, between, nothing],
+        [at_first, at_second, nothing],
     ]
+    return ends, np.array([first, second, third]), np.array(coefficients)

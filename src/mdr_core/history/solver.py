@@ -15,7 +15,6 @@ from mdr_core.history.curved_legs import ExtrapolatedResults
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
-from mdr_core.history.traction_branches import TractionBranches
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
@@ -32,6 +31,8 @@ class LoadHistory(Results):
     path: SampledPath
     start: ContactState
     """The unloaded contact."""
+    contact: NormalContact
+    """Normal contact of every sample, with zero load in separation."""
     results: StepResults | ExtrapolatedResults
     """Results of the tangential foundation in reduced units."""
     rtol: float
@@ -48,12 +49,6 @@ class LoadHistory(Results):
         "regime",
         "slip_fronts",
     )
-
-    @cached_property
-    def contact(self) -> NormalContact:
-        """Normal contact of every sample, with zero load in separation."""
-        loads = {self.path.normal_name: np.maximum(self.path.normal, 0.0)}
-        return normal.solve(self.start.profile, self.start.e_star, **loads, rtol=self.rtol)
 
     @property
     def step(self) -> Indices:
@@ -123,20 +118,24 @@ class LoadHistory(Results):
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
-        line = self.results.last
-        arcs = None
-        if isinstance(self.results, ExtrapolatedResults):
-            arcs = self.results.legs.arcs(line)
+        steps, arcs = self.results, None
+        if isinstance(steps, ExtrapolatedResults):
+            arcs = steps.legs.arcs(steps.finest.last)
+            steps = steps.finest
+        part, at = steps.last_branches
+        line = steps.last
         if self.path.by_force:
-            line = self._over_depths(line)
-        return replace(self.start, polyline=line, arcs=arcs)
+            line = self._over_depths(part.depth_step[at[1:]], line)
+        state = replace(self.start, polyline=line, arcs=arcs)
+        if line.in_contact:
+            vars(state)["coordinate"] = part.coordinate[at]
+        return state
 
-    def _over_depths(self, line: Polyline) -> Polyline:
+    def _over_depths(self, span: Array, line: Polyline) -> Polyline:
         """Return a polyline over reduced forces as one over depths, with the same slopes."""
         if not line.in_contact:
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
-        part = TractionBranches(self.start.profile, slip_memory.as_tree(line), by_force=True)
-        span, slope = part.depth_step[1:], part.tree.slope[1:]
+        slope = slip_memory.as_tree(line).slope[1:]
         growth = np.stack([span * (1 + slope), span * (1 - slope)], axis=1)
         return slip_memory.stacked(growth, line.leg[1:])
 
@@ -249,15 +248,15 @@ def solve(
     path = load_path.build(
         _one("normal", normal_load), _one("tangential", tangential_load), samples_per_step
     )
-    _require_within_domain(start, path)
+    contact = _normal_contact(start, path, rtol)
     scale = friction_coefficient * e_star / (1.0 if path.by_force else g_star)
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if path.curved.any() and not profile.slips_at_once:
-        return LoadHistory(path, start, curved_legs.results(path, start, scale, rtol), rtol)
+        results = curved_legs.results(path, start, scale, rtol)
+        return LoadHistory(path, start, contact, results, rtol)
     points = path.load_points(profile, e_star, friction_coefficient, scale)
-    return LoadHistory(
-        path, start, StepResults(profile, path.by_force, points, start.polyline), rtol
-    )
+    steps = StepResults(profile, path.by_force, points, start.polyline)
+    return LoadHistory(path, start, contact, steps, rtol)
 
 
 def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]:
@@ -268,11 +267,12 @@ def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]
     return named[0]
 
 
-def _require_within_domain(start: ContactState, path: SampledPath) -> None:
-    """Raise InputError if the largest normal load is beyond the end of the profile."""
+def _normal_contact(start: ContactState, path: SampledPath, rtol: float) -> NormalContact:
+    """Return the normal contact; raise InputError if a load is beyond the end of the profile."""
     name = path.normal_name
+    loads = {name: np.maximum(path.normal, 0.0)}
     try:
-        normal.solve(start.profile, start.e_star, **{name: max(float(path.normal.max()), 0.0)})
+        return normal.solve(start.profile, start.e_star, **loads, rtol=rtol)
     except InputError as error:
         if error.path[:1] != ("load",):
             raise

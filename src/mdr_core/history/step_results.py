@@ -1,9 +1,10 @@
 """Results of the tangential foundation at every load point of a sequence of straight steps."""
 
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from mdr_core.typing import Array, Indices
 _BLOCK: Final = 16_384
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
+
+# Some of the steps, their vertices, the path of the slip front, and the polyline after them.
+_Block = tuple[slice, TractionBranches, FrontPath, Polyline]
 
 
 @dataclass(frozen=True)
@@ -48,12 +52,13 @@ class StepResults:
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
-        dissipated = np.zeros(self.points.normal.shape)
-        for block, _, path, _ in self._blocks():
+
+        def dissipated(_part: TractionBranches, path: FrontPath) -> Array:
             segments = slip_memory.slip_segments(path)
             each = dissipation.per_segment(self.profile, segments, by_force=self.by_force)
-            np.add.at(dissipated[block], segments.step, each)
-        return dissipated
+            return np.asarray(np.bincount(segments.step, each, path.load.size), dtype=float)
+
+        return self._per_step(dissipated)
 
     @cached_property
     def regime(self) -> Indices:
@@ -61,39 +66,64 @@ class StepResults:
 
         Determined by the springs at their friction limit: none, the outermost, or all.
         """
-        codes = np.zeros(self.points.normal.shape, dtype=np.intp)
-        for block, part, _, top in self._blocks():
-            tree = part.tree
+        slips = 1 if self.profile.slips_at_once else 2
+
+        def code(part: TractionBranches, _path: FrontPath) -> Indices:
+            tree, top = part.tree, part.tree.top
             slipping = (tree.growth[top] == 0).any(axis=1)
             full = slipping & (tree.parent[tree.parent[top]] < 0)
-            partial = 1 if self.profile.slips_at_once else 2
-            code = np.where(full, 3, np.where(slipping, partial, 1))
-            codes[block] = np.where(top >= 0, code, 0)
-        return codes
+            return np.where(top >= 0, np.where(full, 3, np.where(slipping, slips, 1)), 0)
+
+        return self._per_step(code).astype(np.intp)
 
     @cached_property
     def last(self) -> Polyline:
         """Polyline after the last step, over normal coordinates."""
-        line = self.start
-        for chosen in self._parts():
-            *_, line = slip_memory.apply_steps(line, self.points.part(chosen))
-        return line
+        return self._end[-1]
 
-    def _blocks(self) -> Iterator[tuple[slice, TractionBranches, FrontPath, Indices]]:
-        """Yield the steps, vertices, path of the front and load points of every block."""
-        line = self.start
-        for chosen in self._parts():
+    @property
+    def last_branches(self) -> tuple[TractionBranches, Indices]:
+        """Branches with the vertices of the last polyline, and their indices from the axis."""
+        part = self._end[1]
+        indices, vertex = [], int(part.tree.top[-1])
+        while vertex >= 0:
+            indices.append(vertex)
+            vertex = int(part.tree.parent[vertex])
+        return part, np.array(indices[::-1], dtype=np.intp)
+
+    @property
+    def _blocks(self) -> Iterable[_Block]:
+        """Blocks of steps: a single one is kept, many are computed again, to bound the memory."""
+        return self._kept if self.points.normal.size <= _BLOCK else self._walk()
+
+    @property
+    def _end(self) -> _Block:
+        return deque(self._blocks, maxlen=1)[0]
+
+    @cached_property
+    def _kept(self) -> tuple[_Block, ...]:
+        return tuple(self._walk())
+
+    def _walk(self) -> Iterator[_Block]:
+        count, line = self.points.normal.size, self.start
+        for begin in range(0, count, _BLOCK):
+            chosen = slice(begin, begin + _BLOCK)
             tree, path, line = slip_memory.apply_steps(line, self.points.part(chosen))
-            if tree.normal.size:
-                yield chosen, TractionBranches(self.profile, tree, self.by_force), path, tree.top
+            yield chosen, TractionBranches(self.profile, tree, self.by_force), path, line
 
-    def _parts(self) -> Iterator[slice]:
-        count = self.points.normal.size
-        return (slice(begin, begin + _BLOCK) for begin in range(0, count, _BLOCK))
+    def _per_step(self, result: Callable[[TractionBranches, FrontPath], Any]) -> Array:
+        """Return a result of every step, zero in blocks without contact."""
+        values = np.zeros(self.points.normal.shape)
+        for chosen, part, path, _ in self._blocks:
+            if part.tree.normal.size:
+                values[chosen] = result(part, path)
+        return values
 
     def _at_load_points(self, result: Callable[[TractionBranches], Array]) -> Array:
         """Return a result of the load points, zero in separation."""
-        values = np.zeros(self.points.normal.shape)
-        for block, part, _, top in self._blocks():
-            values[block] = np.where(top >= 0, result(part)[top], 0.0)
-        return values
+
+        def at_tops(part: TractionBranches, _path: FrontPath) -> Array:
+            top = part.tree.top
+            return np.where(top >= 0, result(part)[top], 0.0)
+
+        return self._per_step(at_tops)

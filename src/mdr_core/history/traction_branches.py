@@ -82,12 +82,13 @@ class TractionBranches:
         the energy of every traction is a sum of squares.
         """
         tree, radius = self.tree, self.radius
-        below = np.maximum(tree.parent, 0)
+        below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
         some = np.flatnonzero((tree.parent >= 0) & (self.depth_step > 0))
         moments = IntervalMoments(self.profile, by_force=False)
+        given = self.depth[below], self.depth_step, self.coordinate[np.stack([below, own])]
         # The measure of the moments is 2 dx.
         weights = np.zeros((3, tree.normal.size))
-        weights[:, some] = moments.over(self.depth[below[some]], self.depth_step[some]).weights / 2
+        weights[:, some] = moments.over(*(each[..., some] for each in given)).weights / 2
         low, middle, high = weights
         width = low + middle + high
         inner, outer = radius[below], np.where(radius > 0, radius, 1.0)
