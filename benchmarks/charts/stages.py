@@ -51,7 +51,7 @@ QUADRATURE = (
     ("mdr_core.equivalent_1d", "_narrow_step"),
     ("mdr_core.interval_moments.IntervalMoments", "over_narrow"),
     ("mdr_core.interval_moments.IntervalMoments", "over_wide"),
-    ("mdr_core.wear.worn_annulus", "annulus_integral"),
+    ("mdr_core.wear.worn_annulus", "annulus_integrals"),
     ("mdr_core.fields.contact", "stress"),
 )
 ENDPOINTS = ("normal", "tangential", "stress", "tangential/history", "wear")

@@ -212,12 +212,13 @@ def _root(
     (function, slope), end = functions, profile.last_coordinate
     low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
 
-    def log_slope(s: Array, value: Array) -> Array:
-        return s * slope(s) / value
+    def sloped(s: Array) -> tuple[Array, Array]:
+        value = function(s)
+        return value, s * slope(s) / value
 
     smooth = not profile.coordinate_breaks.size
     start = np.minimum(start, high)
-    return invert(function, log_slope, target, start, low, high, profile.kind, smooth=smooth)
+    return invert(sloped, target, start, low, high, profile.kind, smooth=smooth)
 
 
 def _start(profile: Profile, name: str, function: Function, target: Array) -> Array:
@@ -277,12 +278,12 @@ def _stick(
     # A width that underflows is zero.
     target = where(start > 0, target, 0.0)
 
-    def log_slope(width: Array, value: Array) -> Array:
-        return width * slope(coordinate - width) / value
+    def sloped(width: Array) -> tuple[Array, Array]:
+        value = step(profile, coordinate, width, coordinate - width)
+        return value, width * slope(coordinate - width) / value
 
     width = invert(
-        lambda width: step(profile, coordinate, width, coordinate - width),
-        log_slope,
+        sloped,
         target,
         where(start > 0, start, 1.0),
         full(0.0, target),

@@ -10,6 +10,8 @@ from mdr_core.errors import DefectError
 from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
+# A function and the derivative of its logarithm by that of its argument.
+Sloped = Callable[[Array], tuple[Array, Array]]
 
 # Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
 _MOST_STEPS: Final = 200
@@ -34,8 +36,7 @@ _LARGEST: Final = 1e307
 
 
 def invert(
-    function: Function,
-    log_slope: Callable[[Array, Array], Array],
+    function: Sloped,
     target: Array,
     start: Array,
     low: Array,
@@ -52,8 +53,7 @@ def invert(
 
     Parameters
     ----------
-    function : increasing and not negative, of arrays of one shape.
-    log_slope : derivative of log(function) by log(s), from s and function(s).
+    function : increasing and not negative, with its logarithmic slope, of arrays of one shape.
     target : values >= 0; where it is zero, `low` is returned.
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
@@ -76,9 +76,8 @@ def invert(
     settling, longest = ~(done | positive), _LAST_STEP if smooth else _LAST_BUT_ONE
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
         for _ in range(_MOST_STEPS):
-            value = function(s)
+            value, slope = function(s)
             residual = np.log(goal / value)
-            slope = log_slope(s, value)
             # Without a finite slope, as at a kink, the residual gives the direction alone.
             known = (slope > 0) & (slope < np.inf)
             step = where(known, residual / slope, residual)

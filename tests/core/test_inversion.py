@@ -44,8 +44,7 @@ def test_inverse_from_any_start(name: str, start: float, end: float) -> None:
     function, slope, inverse = CASES[name]
     low, high = np.zeros(TARGETS.size), np.full(TARGETS.size, end)
     result = invert(
-        function,
-        lambda s, value: s * slope(s) / value,
+        lambda s: (function(s), s * slope(s) / function(s)),
         TARGETS,
         np.full(TARGETS.size, start),
         low,
@@ -62,14 +61,12 @@ def test_bracket_encloses_the_root_for_wrong_slopes() -> None:
     """Wrong slopes send every step out of the bracket, which is then bisected."""
     seen: list[Array] = []
 
-    def cube(s: Array) -> Array:
+    def cube(s: Array) -> tuple[Array, Array]:
         seen.append(s)
-        return s * s * s
+        return s * s * s, np.full(1, 1e-3)
 
     one = np.ones(1)
-    result = invert(
-        cube, lambda _s, _value: np.full(1, 1e-3), 8 * one, 3 * one, one / 8, 64 * one, "cube"
-    )
+    result = invert(cube, 8 * one, 3 * one, one / 8, 64 * one, "cube")
     # The last step, at most 1e-10, is a Newton step and is as wrong as the slope.
     assert result[0] == pytest.approx(2.0, rel=1e-10, abs=0)
     low, high = 1 / 8, 64.0
@@ -82,8 +79,7 @@ def test_unreachable_target_raises() -> None:
     one = np.ones(1)
     with pytest.raises(DefectError, match="a step did not converge"):
         invert(
-            lambda s: 2 + np.sin(1e9 * s),
-            lambda s, _: one,
+            lambda s: (2 + np.sin(1e9 * s), one),
             5 * one,
             one,
             0 * one,

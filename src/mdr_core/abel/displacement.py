@@ -109,19 +109,21 @@ def slope_integral(
             )
             root_low, root_high = (np.sqrt((far - x) * (far + x)) for x in (start, end))
             ends = _Ends(s_low, s_high, s_r, root_low, root_high)
-            total[index] += _branch(branch, ends, kernel, rtol)
+            total[index] += _branch(branch, ends, [kernel], rtol)[0]
     return total
 
 
-def annulus_integral(
+def annulus_integrals(
     branches: Sequence[Branch],
     low: Array,
     width: Array,
     below: Callable[[float], Array],
-    kernel: Kernel,
+    kernels: Sequence[Kernel],
     rtol: float,
 ) -> Array:
     """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, however narrow that is.
+
+    One row for each kernel K, shape (k, m).
 
     Source: notes, §7.
 
@@ -130,10 +132,10 @@ def annulus_integral(
     branches : intervals of g', ascending.
     low, width : inner radius and width of the annulus [length], shape (m,).
     below : below(x) = low - x, as accurate as the width even where low and x are close [length].
-    kernel : K.
+    kernels : K of each integral.
     rtol : relative tolerance.
     """
-    total = np.zeros_like(low)
+    total = np.zeros((len(kernels), low.size))
     for branch in branches:
         begin = max(branch.base, branch.start)
         inside = below(begin) + width > 0
@@ -142,7 +144,7 @@ def annulus_integral(
         index = np.flatnonzero(inside)
         if index.size:
             ends = _annulus_ends(branch, low, width, below, index)
-            total[index] += _branch(branch, ends, kernel, rtol)
+            total[:, index] += _branch(branch, ends, kernels, rtol)
     return total
 
 
@@ -171,8 +173,8 @@ def _annulus_ends(
     return _Ends(s_low, s_high, s_r, root_low, root(past, stop))
 
 
-def _branch(branch: Branch, ends: _Ends, kernel: Kernel, rtol: float) -> Array:
-    """Integral in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it."""
+def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float) -> Array:
+    """Integrals in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it."""
     base, (s_low, s_high, s_r, root_low, root_high) = branch.base, ends
     split = np.minimum(np.maximum(_UPPER * s_r, s_low), s_high)
     # Relative to r, where a narrow interval is accurate.
@@ -196,12 +198,14 @@ def _branch(branch: Branch, ends: _Ends, kernel: Kernel, rtol: float) -> Array:
         run = 2 / (1 + half * half)
         s, root = s_r[part] * (run - 1), s_r[part] * (half * run)
         x = np.sqrt(base * base + s * s)
-        return np.asarray(branch.weight(x, s, part) * kernel(x, root) * root * run)
+        slope = branch.weight(x, s, part) * root * run
+        return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
-    total = span * _in_blocks(values, weights, s_r.size)
+    total = span * _in_blocks(values, weights.size, s_r.size)
     index = np.flatnonzero(split > s_low)
     if index.size:
-        total[index] += _lower(branch, s_low[index], split[index], s_r[index], kernel, rtol)
+        lower = _lower(branch, s_low[index], split[index], s_r[index], kernels, rtol)
+        total[:, index] += lower
     return np.asarray(total)
 
 
@@ -215,9 +219,9 @@ def _pole_distance(branch: Branch, s_r: Array, top: Array, span: Array) -> float
 
 
 def _lower(
-    branch: Branch, low: Array, high: Array, s_r: Array, kernel: Kernel, rtol: float
+    branch: Branch, low: Array, high: Array, s_r: Array, kernels: Sequence[Kernel], rtol: float
 ) -> Array:
-    """Part of a branch up to s = high <= s_r/2, in y = arcsinh(s/base), or log(s) if base = 0."""
+    """Parts of a branch up to s = high <= s_r/2, in y = arcsinh(s/base), or log(s) if base = 0."""
     base, points = branch.base, nodes_of_pieces(rtol)
     if base > 0:
         upper = np.arcsinh(high / base)
@@ -229,7 +233,7 @@ def _lower(
     longest = float(length.max())
     if not longest > 0:
         # Two neighbouring doubles may have the same logarithm.
-        return np.zeros_like(s_r)
+        return np.zeros((len(kernels), s_r.size))
     piece = _PIECE * min(1.0, _STEEP / branch.steepness)
     count = max(ceil(longest / piece), 1)
     part = count / longest
@@ -251,17 +255,17 @@ def _lower(
         s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
         x = np.sqrt(base * base + s * s)
         root = np.sqrt((s_r[part] - s) * (s_r[part] + s))
-        return np.asarray(branch.weight(x, s, part) * kernel(x, root) * run)
+        slope = branch.weight(x, s, part) * run
+        return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
-    return length * _in_blocks(values, weights, s_r.size)
+    return length * _in_blocks(values, weights.size, s_r.size)
 
 
-def _in_blocks(values: Callable[[slice], Array], weights: Array, count: int) -> Array:
-    """Sums of weights times values over the nodes, in blocks of integrals."""
-    step = max(_BLOCK // weights.size, 1)
-    return np.concatenate(
-        [weights @ values(slice(start, start + step)) for start in range(0, count, step)]
-    )
+def _in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
+    """Values of a number of integrals with so many nodes each, in blocks."""
+    step = max(_BLOCK // nodes, 1)
+    parts = [values(slice(start, start + step)) for start in range(0, count, step)]
+    return np.concatenate(parts, axis=1)
 
 
 def _reach(exponent: float, rtol: float) -> float:

@@ -1,6 +1,6 @@
 """The two-limit stress kernel of a table, int g'(x)/sqrt(x^2 - r^2) dx over an annulus."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -75,13 +75,13 @@ class StressPanels:
 
         return Branch(left, weight, right)
 
-    def annulus_integral(
-        self, low: float, width: float, below: Callable[[float], Array], kernel: Kernel
-    ) -> float:
-        """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, however narrow.
+    def annulus_integrals(
+        self, low: float, width: float, below: Callable[[float], Array], kernels: Sequence[Kernel]
+    ) -> list[float]:
+        """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, for each kernel K.
 
         All panels at once, in tan(alpha/2), s = sqrt(r^2 - left^2) cos(alpha).
-        Source: notes, §7. Parameters: see `displacement.annulus_integral`.
+        Source: notes, §7. Parameters: see `displacement.annulus_integrals`.
         """
         r = low + width
         first = int(np.searchsorted(self.edges[1:-1], low, side="right"))
@@ -105,7 +105,8 @@ class StressPanels:
         u, value = np.minimum(s / length[:, None], 1.0), np.zeros_like(s)
         for row in self.weight[first:last].T[::-1]:
             value = value * u + row[:, None]
-        return float(span @ ((value * kernel(x, root) * root * run) @ weights))
+        value *= root * run
+        return [float(span @ ((value * kernel(x, root)) @ weights)) for kernel in kernels]
 
     @cached_property
     def _rows(self) -> Array:

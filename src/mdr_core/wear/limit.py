@@ -21,6 +21,9 @@ from mdr_core.wear.worn_annulus import WornAnnulus
 
 # The grid extends beyond the worn annulus up to this multiple of its radius.
 _GRID_END: Final = 1.25
+# Width over that of the rise of g by the step, where both are narrow: the mean of r cos(t) - c up
+# to the angle arccos(c/r) is two thirds of r - c.
+_NARROW: Final = 1.5
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
     "the stick zone grows over worn material, and the limit depends on the load path: this is "
@@ -77,7 +80,7 @@ class LimitingWear(Results):
             worn = np.where(rests, 0.0, self._normal.contact_radius)
         else:
             target = np.where(self.stuck.endless, 0.0, self.stuck.step)
-            start = np.where(target > 0, 1.25 * self.stuck.slip_width, 1.0)
+            start = np.where(target > 0, _NARROW * self.stuck.slip_width, 1.0)
             room = self.annulus.room.reshape(target.shape)
             flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * room)))
             worn = self.annulus.width_where_worn(*flat).reshape(target.shape)

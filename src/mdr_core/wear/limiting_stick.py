@@ -37,7 +37,7 @@ class LimitingStick:
     step: Array
     """d - g(c) in the limit [length], free of cancellation."""
     slip_width: Array
-    """a - c before wear [length]: about the width of the worn annulus."""
+    """About the width outside c in which g grows by the step [length]; zero without slip."""
     lost: Flags
     """Full slip at a constant depth: the contact wears until nothing touches."""
     endless: Flags
@@ -60,7 +60,10 @@ def by_forces(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
     In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
     """
     step = _carried(sideways, amplitude, sideways.stick_radius)
-    return _from(sideways, step, endless=sideways.full_slip)
+    before = sideways.tangential_displacement / sideways.compliance
+    grown = np.maximum(step, before) / np.where(before > 0, before, 1.0)
+    moved = sideways.stick_coordinate, sideways.stick_radius, grown * sideways.slip_width
+    return _from(sideways, step, endless=sideways.full_slip, moved=moved)
 
 
 def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -77,23 +80,17 @@ def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
     top = np.broadcast_to(contact.coordinate, step.shape)
     target = np.where(endless | (sideways.width <= 0), 0.0, step)
 
-    def step_by_force(width: Array) -> Array:
-        """Return (F_N(a) - F_N(c))/(2 E* c)."""
-        edge = top - width
-        gained = equivalent_1d.force_step(profile, top, width, edge)
-        return np.asarray(gained / (2 * profile.contact_radius(edge)))
-
-    def log_slope(width: Array, value: Array) -> Array:
+    def step_by_force(width: Array) -> tuple[Array, Array]:
+        """Return (F_N(a) - F_N(c))/(2 E* c), and its logarithmic slope."""
         edge = top - width
         c = profile.contact_radius(edge)
-        rise = profile.depth_slope(edge) / value + profile.radius_slope(edge) / c
-        return np.asarray(width * rise)
+        value = equivalent_1d.force_step(profile, top, width, edge) / (2 * c)
+        return value, width * (profile.depth_slope(edge) / value + profile.radius_slope(edge) / c)
 
     # The stick edge before wear lies further in: there the annulus outside carries load as well.
     widest = np.where(target > 0, sideways.width, 1.0)
     width = invert(
         step_by_force,
-        log_slope,
         target,
         widest / 2,
         np.zeros_like(target),
@@ -137,14 +134,17 @@ def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> Limitin
         shrinks = profile.radius_slope(edge) * step
         return np.asarray(profile.contact_radius(edge) * profile.depth_slope(edge) - shrinks)
 
+    def sloped(width: Array) -> tuple[Array, Array]:
+        value = carried(width)
+        return value, width * slope(width) / value
+
     reach = top - profile.first_coordinate
     target = np.where(reach > 0, share, 0.0)
     low, high, most = _first_crossing(carried, slope, reach, target)
     largest = 2 * sideways.friction_coefficient * contact.e_star * most
     _refuse_overload(sideways, amplitude, most < target, largest)
     width = invert(
-        carried,
-        lambda width, value: np.asarray(width * slope(width) / value),
+        sloped,
         target,
         np.where(target > 0, (low + high) / 2, 1.0),
         low,

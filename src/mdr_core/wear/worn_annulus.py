@@ -6,11 +6,12 @@ Source: notes, §9.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.displacement import Kernel, annulus_integral, arccosine
+from mdr_core.abel.displacement import Kernel, annulus_integrals, arccosine
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
@@ -38,7 +39,7 @@ class WornAnnulus:
     coordinate: Array
     """c in the profile's contact coordinate; undefined where c lies inside the flat."""
 
-    @property
+    @cached_property
     def flat(self) -> float:
         """Radius of the profile's flat, zero for none."""
         return float(self.profile.contact_radius(np.asarray(self.profile.first_coordinate)))
@@ -65,7 +66,7 @@ class WornAnnulus:
         edge = np.where(beyond, self.coordinate, start)
         return np.where(beyond, profile.radius_width(edge, edge - start), plain)
 
-    @property
+    @cached_property
     def _special(self) -> set[float]:
         """Radii at which a coordinate starts; none is needed at the axis."""
         breaks = (float(np.asarray(b)) for b in self.profile.breaks)
@@ -80,7 +81,7 @@ class WornAnnulus:
 
         Source: mdr-5, Eq. (5.41).
         """
-        return 2 / np.pi * self._integral(width, arccosine)
+        return 2 / np.pi * self._integrals(width, arccosine)[0]
 
     def mean_rise(self, width: Array) -> Array:
         """Return the mean of g(r cos(t)) - g(c) over 0 < t < arccos(c/r), r = c + w [length].
@@ -88,7 +89,7 @@ class WornAnnulus:
         At the outer edge, where the worn depth vanishes, it equals d - g(c), Eq. (5.88). It grows
         with the width wherever g does. Source: notes, §9.
         """
-        return self._integral(width, arccosine) / self.angle(width)
+        return self._integrals(width, arccosine)[0] / self.angle(width)
 
     def angle(self, width: Array) -> Array:
         """Return arccos(c/r) [1]."""
@@ -101,7 +102,7 @@ class WornAnnulus:
         depth h, so that the rounding error of the width has no effect. Source: notes, §9.
         """
         constant = _segment(self.stick, np.sqrt(width * (2 * self.stick + width)))
-        return np.asarray(4 * (step * constant - self._integral(width, _segment)))
+        return np.asarray(4 * (step * constant - self._integrals(width, _segment)[0]))
 
     def width_where_worn(self, step: Array, start: Array) -> Array:
         """Return the width at which `mean_rise` equals the step; NaN if it is not representable.
@@ -109,16 +110,14 @@ class WornAnnulus:
         Source: mdr-5, Eq. (5.88), for any profile.
         """
 
-        def log_slope(width: Array, value: Array) -> Array:
+        def sloped(width: Array) -> tuple[Array, Array]:
             angle, r = self.angle(width), self.stick + width
             rate = self.stick / (r * np.sqrt(width * (2 * self.stick + width)))
-            return np.asarray(
-                width * (self._integral(width, _rate) / (value * angle) - rate / angle)
-            )
+            total, growth = self._integrals(width, arccosine, _rate)
+            return total / angle, width * (growth / total - rate / angle)
 
         return invert(
-            self.mean_rise,
-            log_slope,
+            sloped,
             step,
             start,
             np.zeros_like(step),
@@ -127,22 +126,23 @@ class WornAnnulus:
             smooth=len(self.profile.branches) == 1,
         )
 
-    def _integral(self, width: Array, kernel: Kernel) -> Array:
-        """Return int_c^r g'(x) K dx."""
+    def _integrals(self, width: Array, *kernels: Kernel) -> Array:
+        """Return int_c^r g'(x) K dx for each kernel K, shape (k, m)."""
+        result = np.zeros((len(kernels), width.size))
         if self.profile.slips_at_once:
-            return np.zeros_like(width)
-        panels, result = self.profile.panels(RTOL), np.empty_like(width)
+            return result
+        panels = self.profile.panels(RTOL)
         if panels is not None:
             for i, (c, w) in enumerate(zip(self.stick.tolist(), width.tolist(), strict=True)):
                 below = self.chosen(np.array([i])).below
-                result[i] = panels.annulus_integral(c, w, below, kernel)
+                result[:, i] = panels.annulus_integrals(c, w, below, kernels)
             return result
         branches = self.profile.branches
         for start in range(0, width.size, _BLOCK):
             part = np.arange(start, min(start + _BLOCK, width.size))
             some = self.chosen(part)
-            result[part] = annulus_integral(
-                branches, some.stick, width[part], some.below, kernel, RTOL
+            result[:, part] = annulus_integrals(
+                branches, some.stick, width[part], some.below, kernels, RTOL
             )
         return result
 
