@@ -12,18 +12,18 @@ from typing import Final
 import numpy as np
 
 from mdr_service.dispatch import respond
-from mdr_service.queries import QUERIES
-from mdr_service.schemas.examples import NORMAL_EXAMPLES, STRESS_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 
 REPEATS: Final = 7
 # The fastest level; higher ones take several times as long for a tenth less.
 LEVEL: Final = 1
 
-BALL = NORMAL_EXAMPLES["hertz"]["value"]
+BALL = EXAMPLES["normal"]["hertz"]["value"]
 FIELDS = {
     name: value
-    for name, value in STRESS_EXAMPLES["cattaneo_mindlin"]["value"].items()
+    for name, value in EXAMPLES["stress"]["cattaneo_mindlin"]["value"].items()
     if name != "radius"
 }
 CASES = {
@@ -51,7 +51,7 @@ def fastest(work: Callable[[], object]) -> float:
 def row(case: str, form: str) -> str:
     """Return one line of the table."""
     name, request = CASES[case]
-    query = QUERIES[name].model.model_validate(request)
+    query = SCHEMAS[name].model.model_validate(request)
     media_type = FORMATS[form]
     content = respond(name, query, media_type)
     computed = fastest(lambda: respond(name, query, media_type))

@@ -28,6 +28,7 @@ from tests.core.evaluations import PROFILES
 
 from mdr_service.dispatch import parse
 from mdr_service.queries import QUERIES
+from mdr_service.schemas.contacts import NormalQuery
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,7 +77,7 @@ def requests(kind: str) -> dict[str, dict[str, Any]]:
     part = {"profile": profile(kind), "material": {"e_star": 1.0, "g_star": 0.9}}
     load = {"indentation_depth": 0.05} if kind == "flat_punch" else {"contact_radius": 1.0}
     normal = QUERIES["normal"]
-    found = normal.solve(parse(normal.model, json.dumps({**part, "load": load}).encode()))
+    found = normal.solve(parse(NormalQuery, json.dumps({**part, "load": load}).encode()))
     force = float(found.normal_force)
     limit, held = FRICTION * force, {**part, "load": {"normal_force": force}}
     rubbed = {**held, "friction_coefficient": FRICTION}

@@ -23,12 +23,12 @@ from statistics import median
 
 import measure
 
-from mdr_service.schemas.examples import NORMAL_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 
 HOST = "127.0.0.1"
 # Requests/s at PORT/PATH.
 Load = Callable[[str], float]
-BODY = json.dumps(NORMAL_EXAMPLES["hertz"]["value"])
+BODY = json.dumps(EXAMPLES["normal"]["hertz"]["value"])
 CONNECTIONS, ROUND_SECONDS, ROUNDS = 4, 1, 9
 # Start-up takes longer on a busy machine.
 START_SECONDS = 60

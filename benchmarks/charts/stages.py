@@ -31,6 +31,7 @@ from machine import footer
 
 from mdr_service.dispatch import parse
 from mdr_service.queries import QUERIES
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import json as json_format
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def once(name: str, text: bytes, timed: Timed) -> list[float]:
     question = QUERIES[name]
     timed.seconds = dict.fromkeys(timed.seconds, 0.0)
     clock = [perf_counter()]
-    query = parse(question.model, text)
+    query = parse(SCHEMAS[name].model, text)
     clock.append(perf_counter())
     with np.errstate(all="ignore"):
         result = question.result(query, question.solve(query))

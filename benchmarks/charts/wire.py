@@ -25,6 +25,7 @@ from measure import medians
 
 from mdr_service.dispatch import parse
 from mdr_service.queries import QUERIES
+from mdr_service.schemas.fields import StressQuery
 from mdr_service.serializers import csv, npz
 from mdr_service.serializers import json as json_format
 
@@ -48,11 +49,11 @@ def body(length: int) -> bytes:
 def stages(text: bytes, format_name: str) -> tuple[dict[str, Callable[[], object]], int]:
     """Duration of each stage, and the response."""
     question, write = QUERIES["stress"], WRITERS[format_name].write
-    query = parse(question.model, text)
+    query = parse(StressQuery, text)
     found = question.solve(query)
     document = question.result(query, found)
     runs = {
-        "validation": lambda: parse(question.model, text),
+        "validation": lambda: parse(StressQuery, text),
         "compute": lambda: question.solve(query),
         "assembly": lambda: question.result(query, found),
         "serialisation": lambda: write(document),

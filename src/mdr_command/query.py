@@ -14,9 +14,9 @@ from mdr_core.errors import InputError
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import parse, respond
 from mdr_service.problems import ServiceError
-from mdr_service.queries import QUERIES
 from mdr_service.query_parameters import Parameters
 from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS, json
 
 _STATUS: Final = {
@@ -85,7 +85,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
     suffix = arguments.output.suffix[1:] if arguments.output else ""
     format_ = arguments.format or (suffix if suffix in FORMATS else "json")
     if parameters is None:
-        query = parse(QUERIES[arguments.command].model, _read(arguments.file or _STANDARD_INPUT))
+        query = parse(SCHEMAS[arguments.command].model, _read(arguments.file or _STANDARD_INPUT))
         return _respond(arguments.command, query, (), format_)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")

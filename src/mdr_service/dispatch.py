@@ -18,6 +18,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.fields import FieldQuery
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.serializers import PICTURES, WRITE, json
 from mdr_service.settings import SETTINGS
@@ -45,7 +46,7 @@ def respond(name: str, query: BaseModel, media_type: str, members: Sequence[str]
 
     Parameters
     ----------
-    name : name of the query, a key of `QUERIES`, or ``batch``.
+    name : name of the query, a key of `SCHEMAS`, or ``batch``.
     query : the request.
     media_type : media type of the content.
     members : members of the result to return, by default all; a picture shows all.
@@ -78,7 +79,7 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
 
 def respond_to_text(name: str, text: bytes, media_type: str) -> bytes:
     """Return the response content of a query in a JSON text; see `parse` and `respond`."""
-    query = parse(BatchQuery if name == "batch" else QUERIES[name].model, text)
+    query = parse(BatchQuery if name == "batch" else SCHEMAS[name].model, text)
     cost.require_feasible(query, media_type)
     return respond(name, query, media_type)
 

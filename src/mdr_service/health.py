@@ -8,7 +8,7 @@ import orjson
 from mdr_service import problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
-from mdr_service.queries import QUERIES
+from mdr_service.schemas.contacts import NormalQuery
 from mdr_service.serializers import json
 
 FAILURES: Final = (problems.LOST, problems.NOT_READY, problems.TIME_EXCEEDED)
@@ -31,7 +31,7 @@ _ROUNDING: Final = 1e-14
 
 def self_test() -> None:
     """Solve a Hertzian contact; raise ServiceError if the result is wrong."""
-    query = QUERIES["normal"].model.model_validate(_QUERY)
+    query = NormalQuery.model_validate(_QUERY)
     result: dict[str, Any] = orjson.loads(respond("normal", query, json.MEDIA_TYPE))
     for name, expected in _EXPECTED.items():
         if not isclose(result[name][0], expected, rel_tol=_ROUNDING):

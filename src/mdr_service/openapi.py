@@ -6,8 +6,8 @@ from fastapi import FastAPI
 from pydantic.json_schema import models_json_schema
 
 from mdr_service.schemas.answers import Problem
-from mdr_service.schemas.batch import MODELS
-from mdr_service.schemas.examples import ANSWERS, PARAMETER_EXAMPLES
+from mdr_service.schemas.examples import ANSWERS, EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
 
 DESCRIPTION: Final = """\
 Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
@@ -81,7 +81,7 @@ def extend(app: FastAPI) -> None:
         # The service validates each request of a batch alone, so that its model has any object.
         request = schemas["BatchItem"]["properties"]["request"]
         del request["type"], request["additionalProperties"]
-        request["anyOf"] = [_reference(model.__name__) for model in MODELS.values()]
+        request["anyOf"] = [_reference(query.model.__name__) for query in SCHEMAS.values()]
         schemas["Settings"]["additionalProperties"] = False
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])
@@ -94,7 +94,7 @@ def extend(app: FastAPI) -> None:
                 name = operation["operationId"].removeprefix("get_")
                 if answer := ANSWERS.get(operation["operationId"]):
                     operation["responses"]["200"]["content"]["application/json"]["example"] = answer
-                given = PARAMETER_EXAMPLES.get(name, {})
+                given = EXAMPLES["parameters"].get(name, {})
                 for parameter in operation.get("parameters", ()):
                     if parameter["name"] in given:
                         parameter["example"] = given[parameter["name"]]

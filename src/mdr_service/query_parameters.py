@@ -24,12 +24,12 @@ from mdr_core.errors import InputError
 from mdr_service import problems
 from mdr_service.content_negotiation import FORMAT, Format
 from mdr_service.problems import ServiceError
-from mdr_service.queries import QUERIES
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import MODELS
 from mdr_service.schemas.quantities import quantity
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.settings import SETTINGS
 
 # JSON numbers, and a leading plus, which spreadsheets write.
@@ -223,7 +223,7 @@ def _parameters(model: type[contacts.Query]) -> type[Parameters]:
 
 
 PARAMETERS: Final = {
-    name: _parameters(QUERIES[name].model)
+    name: _parameters(SCHEMAS[name].model)
     for name in ("normal", "tangential", "history", "stress", "wear")
 }
 """Parameters of the queries that consist of numbers, by query."""

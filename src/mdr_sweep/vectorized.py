@@ -21,6 +21,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import body, control, friction
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_sweep.request_columns import Column, Values, read_columns
 from mdr_sweep.spec import ERROR, MAXIMA, TEXTS, WARNING, Spec
 
@@ -202,7 +203,7 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
 def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:
     """Return the request with the given fields; raise InputError or ServiceError."""
     try:
-        return QUERIES[spec.query].model.model_validate(nested(given))
+        return SCHEMAS[spec.query].model.model_validate(nested(given))
     except ValidationError as error:
         raise problems.from_validation(error) from None
 

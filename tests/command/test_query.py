@@ -15,7 +15,7 @@ import pytest
 from mdr_command.__main__ import main
 from mdr_core.errors import AccuracyError
 from mdr_service.queries import QUERIES
-from mdr_service.schemas.examples import EVOLUTION_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import Client
 from tests.faults.server import PATIENCE
 from tests.service.test_batch import NAMES
@@ -30,7 +30,7 @@ PAST_THE_EQUATOR = json.dumps(
         "load": {"contact_radius": 2.0},
     }
 ).encode()
-HISTORY = EVOLUTION_EXAMPLES["held_forces"]["value"] | {"resolution": 8}
+HISTORY = EXAMPLES["evolution"]["held_forces"]["value"] | {"resolution": 8}
 # Takes at least a second, so that it can be interrupted.
 LONG = HISTORY | {"resolution": 96, "rtol": 1e-9}
 

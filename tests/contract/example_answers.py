@@ -7,28 +7,18 @@ from typing import Any
 from urllib.parse import urlencode
 
 from mdr_service import openapi
-from mdr_service.schemas.examples import (
-    BATCH_EXAMPLES,
-    EVOLUTION_EXAMPLES,
-    HISTORY_EXAMPLES,
-    NORMAL_EXAMPLES,
-    PARAMETER_EXAMPLES,
-    STRESS_EXAMPLES,
-    SUBSURFACE_EXAMPLES,
-    TANGENTIAL_EXAMPLES,
-    WEAR_EXAMPLES,
-)
+from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import Client, running_client
 
-EXAMPLES = {
-    "normal": ("normal", NORMAL_EXAMPLES),
-    "tangential": ("tangential", TANGENTIAL_EXAMPLES),
-    "history": ("tangential/history", HISTORY_EXAMPLES),
-    "stress": ("stress", STRESS_EXAMPLES),
-    "subsurface": ("subsurface", SUBSURFACE_EXAMPLES),
-    "wear": ("wear", WEAR_EXAMPLES),
-    "evolution": ("wear/evolution", EVOLUTION_EXAMPLES),
-    "batch": ("batch", BATCH_EXAMPLES),
+QUERIES = {
+    "normal": ("normal", EXAMPLES["normal"]),
+    "tangential": ("tangential", EXAMPLES["tangential"]),
+    "history": ("tangential/history", EXAMPLES["history"]),
+    "stress": ("stress", EXAMPLES["stress"]),
+    "subsurface": ("subsurface", EXAMPLES["subsurface"]),
+    "wear": ("wear", EXAMPLES["wear"]),
+    "evolution": ("wear/evolution", EXAMPLES["evolution"]),
+    "batch": ("batch", EXAMPLES["batch"]),
 }
 DIGITS = 6
 
@@ -45,11 +35,11 @@ def rounded(value: Any) -> Any:
 def answers(client: Client) -> dict[str, Any]:
     """Return the response to the first example of each operation, by its name."""
     result = {}
-    for name, (path, examples) in EXAMPLES.items():
+    for name, (path, examples) in QUERIES.items():
         body = next(iter(examples.values()))["value"]
         result[name] = rounded(client.post(f"/v1/{path}", body).json())
-    for name, parameters in PARAMETER_EXAMPLES.items():
-        path = EXAMPLES[name][0]
+    for name, parameters in EXAMPLES["parameters"].items():
+        path = QUERIES[name][0]
         result[f"get_{name}"] = rounded(client.get(f"/v1/{path}?{urlencode(parameters)}").json())
     return result
 

@@ -14,7 +14,7 @@ import httpx
 import pytest
 from openapi_spec_validator import validate
 
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.server import free_port, running, service
 
 pytestmark = [pytest.mark.long, pytest.mark.alone]
@@ -24,14 +24,14 @@ DOCUMENT = ROOT / "openapi.json"
 SOURCES = Path(__file__).with_name("clients")
 # Module of the generated client, path, example and model of the request of every endpoint.
 ENDPOINTS = [
-    ("contact.normal", "/v1/normal", examples.NORMAL_EXAMPLES, "NormalQuery"),
-    ("contact.tangential", "/v1/tangential", examples.TANGENTIAL_EXAMPLES, "TangentialQuery"),
-    ("contact.history", "/v1/tangential/history", examples.HISTORY_EXAMPLES, "HistoryQuery"),
-    ("contact.stress", "/v1/stress", examples.STRESS_EXAMPLES, "StressQuery"),
-    ("contact.subsurface", "/v1/subsurface", examples.SUBSURFACE_EXAMPLES, "SubsurfaceQuery"),
-    ("wear.wear", "/v1/wear", examples.WEAR_EXAMPLES, "WearQuery"),
-    ("wear.evolution", "/v1/wear/evolution", examples.EVOLUTION_EXAMPLES, "EvolutionQuery"),
-    ("batch.batch", "/v1/batch", examples.BATCH_EXAMPLES, "BatchQuery"),
+    ("contact.normal", "/v1/normal", EXAMPLES["normal"], "NormalQuery"),
+    ("contact.tangential", "/v1/tangential", EXAMPLES["tangential"], "TangentialQuery"),
+    ("contact.history", "/v1/tangential/history", EXAMPLES["history"], "HistoryQuery"),
+    ("contact.stress", "/v1/stress", EXAMPLES["stress"], "StressQuery"),
+    ("contact.subsurface", "/v1/subsurface", EXAMPLES["subsurface"], "SubsurfaceQuery"),
+    ("wear.wear", "/v1/wear", EXAMPLES["wear"], "WearQuery"),
+    ("wear.evolution", "/v1/wear/evolution", EXAMPLES["evolution"], "EvolutionQuery"),
+    ("batch.batch", "/v1/batch", EXAMPLES["batch"], "BatchQuery"),
 ]
 
 

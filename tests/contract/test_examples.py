@@ -6,14 +6,7 @@ from typing import Any
 
 import pytest
 
-from mdr_service.schemas.examples import (
-    EVOLUTION_EXAMPLES,
-    HISTORY_EXAMPLES,
-    NORMAL_EXAMPLES,
-    STRESS_EXAMPLES,
-    TANGENTIAL_EXAMPLES,
-    WEAR_EXAMPLES,
-)
+from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import Client
 
 STEEL = 210e9 / (1 - 0.3**2)
@@ -434,24 +427,24 @@ WARNINGS = {
 CASES = [
     pytest.param(path, name, examples[name]["value"], textbook, id=f"{path} {name}")
     for path, examples, textbooks in (
-        ("/v1/normal", NORMAL_EXAMPLES, TEXTBOOK),
-        ("/v1/tangential", TANGENTIAL_EXAMPLES, TANGENTIAL_TEXTBOOK),
-        ("/v1/tangential/history", HISTORY_EXAMPLES, HISTORY_TEXTBOOK),
-        ("/v1/stress", STRESS_EXAMPLES, STRESS_TEXTBOOK),
-        ("/v1/wear", WEAR_EXAMPLES, WEAR_TEXTBOOK),
+        ("/v1/normal", EXAMPLES["normal"], TEXTBOOK),
+        ("/v1/tangential", EXAMPLES["tangential"], TANGENTIAL_TEXTBOOK),
+        ("/v1/tangential/history", EXAMPLES["history"], HISTORY_TEXTBOOK),
+        ("/v1/stress", EXAMPLES["stress"], STRESS_TEXTBOOK),
+        ("/v1/wear", EXAMPLES["wear"], WEAR_TEXTBOOK),
     )
     for name, textbook in textbooks.items()
 ]
 
 
 def test_every_example_has_a_textbook_reference() -> None:
-    assert set(TEXTBOOK) == set(NORMAL_EXAMPLES)
-    assert set(TANGENTIAL_TEXTBOOK) == set(TANGENTIAL_EXAMPLES)
-    assert set(HISTORY_TEXTBOOK) == set(HISTORY_EXAMPLES)
-    assert set(WEAR_TEXTBOOK) == set(WEAR_EXAMPLES)
-    assert set(EVOLUTION_TEXTBOOK) == set(EVOLUTION_EXAMPLES)
+    assert set(TEXTBOOK) == set(EXAMPLES["normal"])
+    assert set(TANGENTIAL_TEXTBOOK) == set(EXAMPLES["tangential"])
+    assert set(HISTORY_TEXTBOOK) == set(EXAMPLES["history"])
+    assert set(WEAR_TEXTBOOK) == set(EXAMPLES["wear"])
+    assert set(EVOLUTION_TEXTBOOK) == set(EXAMPLES["evolution"])
     # The stresses of the rounded punch have no closed form, but their integrals do.
-    assert {*STRESS_TEXTBOOK, "rounded_punch"} == set(STRESS_EXAMPLES)
+    assert {*STRESS_TEXTBOOK, "rounded_punch"} == set(EXAMPLES["stress"])
 
 
 def same(result: object, expected: object) -> None:
@@ -489,9 +482,9 @@ def test_example_gives_the_textbook_result(
     assert codes == WARNINGS.get(name, set()) | ({"singular"} if "null" in answer.text else set())
 
 
-@pytest.mark.parametrize("name", EVOLUTION_EXAMPLES)
+@pytest.mark.parametrize("name", EXAMPLES["evolution"])
 def test_wear_evolution_matches_its_limits(client: Client, name: str) -> None:
-    document = client.post("/v1/wear/evolution", EVOLUTION_EXAMPLES[name]["value"]).json()
+    document = client.post("/v1/wear/evolution", EXAMPLES["evolution"][name]["value"]).json()
     for quantity, values in EVOLUTION_TEXTBOOK[name]().items():
         for result, expected in zip(document[quantity], values, strict=True):
             if expected is not None:
@@ -500,7 +493,7 @@ def test_wear_evolution_matches_its_limits(client: Client, name: str) -> None:
 
 def test_stresses_of_the_rounded_punch_integrate_to_its_forces(client: Client) -> None:
     """F_N by Eq. (5.61) and F_x by Eq. (5.65), against the integrals of the computed fields."""
-    answer = client.post("/v1/stress", STRESS_EXAMPLES["rounded_punch"]["value"]).json()
+    answer = client.post("/v1/stress", EXAMPLES["stress"]["rounded_punch"]["value"]).json()
     radius, b, a, c, friction = 0.05, 0.004, 0.005, 0.0045, 0.5
 
     def force(edge: float) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mdr_service.schemas.answers import SubsurfaceAnswer
-from mdr_service.schemas.examples import SUBSURFACE_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 from tests.contract import strict_json
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 PATH = "/v1/subsurface"
 PAGE = (Path(__file__).parents[2] / "docs" / "yield.md").read_text(encoding="utf-8")
 REQUESTS = [json.loads(block) for block in re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL)]
-HISTORY = SUBSURFACE_EXAMPLES["end_of_a_cycle"]["value"]
-LOADS = SUBSURFACE_EXAMPLES["partial_slip"]["value"]
+HISTORY = EXAMPLES["subsurface"]["end_of_a_cycle"]["value"]
+LOADS = EXAMPLES["subsurface"]["partial_slip"]["value"]
 
 
 def content(client: Client, query: dict[str, Any], media_type: str) -> bytes:

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
 MEGABYTE = 2**20
@@ -50,7 +50,7 @@ EXPENSIVE = (
     ),
     post(
         "/v1/wear/evolution",
-        examples.EVOLUTION_EXAMPLES["shakedown"]["value"]
+        EXAMPLES["evolution"]["shakedown"]["value"]
         | {"resolution": 96, "cycles": [float(10 * n) for n in range(2000)]},
     ),
 )

@@ -10,19 +10,19 @@ from pathlib import Path
 
 import psutil
 
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
 from tests.contract import strict_json
 from tests.faults.figures import MEBIBYTE, Row, say
 from tests.faults.load import Client, ResetError, Response, clients, request
 
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
 QUERIES = {
-    "/v1/normal": examples.NORMAL_EXAMPLES,
-    "/v1/tangential": examples.TANGENTIAL_EXAMPLES,
-    "/v1/tangential/history": examples.HISTORY_EXAMPLES,
-    "/v1/stress": examples.STRESS_EXAMPLES,
-    "/v1/subsurface": examples.SUBSURFACE_EXAMPLES,
-    "/v1/wear": examples.WEAR_EXAMPLES,
+    "/v1/normal": EXAMPLES["normal"],
+    "/v1/tangential": EXAMPLES["tangential"],
+    "/v1/tangential/history": EXAMPLES["history"],
+    "/v1/stress": EXAMPLES["stress"],
+    "/v1/subsurface": EXAMPLES["subsurface"],
+    "/v1/wear": EXAMPLES["wear"],
 }
 REQUESTS = [
     (path, json.dumps(each["value"]).encode())

@@ -10,20 +10,20 @@ from typing import Any
 import pytest
 
 from mdr_service.app import create_app
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.server import PATIENCE, free_port, running, service
 
 pytestmark = [pytest.mark.long, pytest.mark.alone]
 
 BODIES: dict[str, Any] = {
-    "/v1/normal": examples.NORMAL_EXAMPLES,
-    "/v1/tangential": examples.TANGENTIAL_EXAMPLES,
-    "/v1/tangential/history": examples.HISTORY_EXAMPLES,
-    "/v1/stress": examples.STRESS_EXAMPLES,
-    "/v1/subsurface": examples.SUBSURFACE_EXAMPLES,
-    "/v1/wear": examples.WEAR_EXAMPLES,
-    "/v1/wear/evolution": examples.EVOLUTION_EXAMPLES,
-    "/v1/batch": examples.BATCH_EXAMPLES,
+    "/v1/normal": EXAMPLES["normal"],
+    "/v1/tangential": EXAMPLES["tangential"],
+    "/v1/tangential/history": EXAMPLES["history"],
+    "/v1/stress": EXAMPLES["stress"],
+    "/v1/subsurface": EXAMPLES["subsurface"],
+    "/v1/wear": EXAMPLES["wear"],
+    "/v1/wear/evolution": EXAMPLES["evolution"],
+    "/v1/batch": EXAMPLES["batch"],
 }
 LOADED = "kind=cone&slope=0.1&e_star=1&g_star=1&normal_force=1"
 PARAMETERS = {

@@ -19,7 +19,7 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from mdr_service import observability, protocol
 from mdr_service.app import create_app
 from mdr_service.protocol import MAX_HEADER_BYTES, MAX_HEADER_FIELDS, BoundedProtocol
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.faults.server import PATIENCE, free_port, wait_until_ready
 
@@ -328,7 +328,7 @@ def test_early_response_closes_a_connection_with_an_endless_body(served: Served)
 
 @pytest.mark.usefixtures("short_timeouts")
 def test_slow_response_is_not_a_request_timeout(served: Served) -> None:
-    query = next(iter(examples.EVOLUTION_EXAMPLES.values()))["value"] | {"resolution": 96}
+    query = next(iter(EXAMPLES["evolution"].values()))["value"] | {"resolution": 96}
     body = json.dumps(query).encode()
     text = post(body).replace(b"/v1/normal", b"/v1/wear/evolution")
     # The second request is incomplete, but the first response is still pending.

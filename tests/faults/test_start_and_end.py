@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from mdr_service.schemas.examples import EVOLUTION_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import JSON
 from tests.faults.server import PATIENCE, free_port, is_served, running, service
 
@@ -77,7 +77,7 @@ def test_second_interrupt_completes_the_request_in_flight_at_once() -> None:
     with running(service(port), port, **FEW) as process:
         client = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
         # A few seconds of computation.
-        ball = EVOLUTION_EXAMPLES["shakedown"]["value"]
+        ball = EXAMPLES["evolution"]["shakedown"]["value"]
         query = ball | {"resolution": 96, "cycles": [10.0 * n for n in range(2000)]}
         client.request("POST", "/v1/wear/evolution", json.dumps(query), JSON)
         time.sleep(0.5)

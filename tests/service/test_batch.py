@@ -9,7 +9,7 @@ import pytest
 from mdr_service.problems import MEDIA_TYPE
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchAnswer
-from mdr_service.schemas.examples import BATCH_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_forms import BALL, CASES
@@ -119,7 +119,7 @@ def test_malformed_batch_is_malformed_json(client: Client) -> None:
 
 @pytest.mark.parametrize("accept", ["text/csv", "image/svg+xml", "application/x-npz"])
 def test_batch_is_available_as_json_only(client: Client, accept: str) -> None:
-    example = BATCH_EXAMPLES["two"]["value"]
+    example = EXAMPLES["batch"]["two"]["value"]
     headers = {"accept": accept}
     assert client.request("POST", "/v1/batch", json=example, headers=headers).status_code == 406
     assert client.request("POST", "/v1/batch?format=csv", json=example).status_code == 406
@@ -142,5 +142,5 @@ def test_internal_error_of_one_query_leaves_the_others(
 
 
 def test_batch_example_has_a_result_and_a_problem(client: Client) -> None:
-    answers = client.post("/v1/batch", BATCH_EXAMPLES["two"]["value"]).json()["answers"]
+    answers = client.post("/v1/batch", EXAMPLES["batch"]["two"]["value"]).json()["answers"]
     assert [each["status"] for each in answers] == [200, 422]

@@ -11,10 +11,10 @@ import mdr_core
 import mdr_service
 from mdr_core import normal
 from mdr_service.app import create_app
-from mdr_service.schemas.examples import NORMAL_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 
 SERVICE, CORE = (Path(str(each.__file__)).parent for each in (mdr_service, mdr_core))
-BODY = json.dumps(NORMAL_EXAMPLES["hertz"]["value"]).encode()
+BODY = json.dumps(EXAMPLES["normal"]["hertz"]["value"]).encode()
 SCOPE: dict[str, Any] = {
     "type": "http",
     "method": "POST",

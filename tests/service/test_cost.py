@@ -11,26 +11,23 @@ from mdr_service import cost
 from mdr_service.dispatch import parse, respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
-from mdr_service.schemas import examples
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, Query
+from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from mdr_service.workers import AT_ONCE_SECONDS
 from tests.conftest import Client
 
 JSON = FORMATS["json"]
-EXAMPLES = [
-    (name, example["value"])
-    for name in QUERIES
-    for example in getattr(examples, f"{name.upper()}_EXAMPLES").values()
-]
-BALL = examples.NORMAL_EXAMPLES["hertz"]["value"]
-STRESS = examples.STRESS_EXAMPLES["cattaneo_mindlin"]["value"]
-WEAR = examples.WEAR_EXAMPLES["held_force"]["value"]
-EVOLUTION = examples.EVOLUTION_EXAMPLES["shakedown"]["value"]
-HISTORY = examples.HISTORY_EXAMPLES["mindlin_deresiewicz"]["value"]
-TABLE = examples.NORMAL_EXAMPLES["table"]["value"]["profile"]
+CASES = [(name, example["value"]) for name in QUERIES for example in EXAMPLES[name].values()]
+BALL = EXAMPLES["normal"]["hertz"]["value"]
+STRESS = EXAMPLES["stress"]["cattaneo_mindlin"]["value"]
+WEAR = EXAMPLES["wear"]["held_force"]["value"]
+EVOLUTION = EXAMPLES["evolution"]["shakedown"]["value"]
+HISTORY = EXAMPLES["history"]["mindlin_deresiewicz"]["value"]
+TABLE = EXAMPLES["normal"]["table"]["value"]["profile"]
 SERIES = {
     "kind": "series",
     "terms": [{"coefficient": 10.0 ** (2 * n - 2), "exponent": n} for n in range(1, 20)],
@@ -38,10 +35,10 @@ SERIES = {
 
 
 def query(name: str, value: dict[str, Any]) -> Query:
-    return parse(QUERIES[name].model, json.dumps(value).encode())
+    return parse(SCHEMAS[name].model, json.dumps(value).encode())
 
 
-@pytest.mark.parametrize(("name", "value"), EXAMPLES)
+@pytest.mark.parametrize(("name", "value"), CASES)
 def test_examples_take_about_the_estimated_time(name: str, value: dict[str, Any]) -> None:
     # The first call imports modules. The event loop must not be blocked.
     given = query(name, value)

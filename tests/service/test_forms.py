@@ -13,26 +13,19 @@ import numpy as np
 import orjson
 import pytest
 
-from mdr_service.schemas.examples import (
-    EVOLUTION_EXAMPLES,
-    HISTORY_EXAMPLES,
-    NORMAL_EXAMPLES,
-    STRESS_EXAMPLES,
-    TANGENTIAL_EXAMPLES,
-    WEAR_EXAMPLES,
-)
+from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.serializers import csv as table_of
 from tests.conftest import Client
 
 CASES = [
     (path, name, example["value"])
     for path, examples in (
-        ("/v1/normal", NORMAL_EXAMPLES),
-        ("/v1/tangential", TANGENTIAL_EXAMPLES),
-        ("/v1/tangential/history", HISTORY_EXAMPLES),
-        ("/v1/stress", STRESS_EXAMPLES),
-        ("/v1/wear", WEAR_EXAMPLES),
-        ("/v1/wear/evolution", EVOLUTION_EXAMPLES),
+        ("/v1/normal", EXAMPLES["normal"]),
+        ("/v1/tangential", EXAMPLES["tangential"]),
+        ("/v1/tangential/history", EXAMPLES["history"]),
+        ("/v1/stress", EXAMPLES["stress"]),
+        ("/v1/wear", EXAMPLES["wear"]),
+        ("/v1/wear/evolution", EXAMPLES["evolution"]),
     )
     for name, example in examples.items()
 ]
@@ -41,7 +34,7 @@ EVERY_EXAMPLE = pytest.mark.parametrize(
     [case[::2] for case in CASES],
     ids=[f"{path} {name}" for path, name, _ in CASES],
 )
-BALL = NORMAL_EXAMPLES["hertz"]["value"]
+BALL = EXAMPLES["normal"]["hertz"]["value"]
 WITHOUT_ROWS = {
     *("method", "error_estimate", "field_error_estimate", "warnings"),
     *("slip_fronts", "energy_per_cycle", "secant_stiffness"),
@@ -236,7 +229,7 @@ def test_identical_queries_give_identical_plots(client: Client) -> None:
 def test_degenerate_contacts_have_a_plot(
     client: Client, path: str, change: dict[str, object]
 ) -> None:
-    query = {**STRESS_EXAMPLES["cattaneo_mindlin"]["value"], **change}
+    query = {**EXAMPLES["stress"]["cattaneo_mindlin"]["value"], **change}
     if path == "/v1/tangential":
         query = {name: query[name] for name in query if name not in {"radius", "quantities"}}
     parse_svg(ask(client, path, query, "image/svg+xml"))
@@ -256,7 +249,7 @@ def test_degenerate_contacts_have_a_plot(
     ids=["nothing", "gaps", "slip without force", "curves", "many points", "many samples"],
 )
 def test_degenerate_histories_have_a_plot(client: Client, change: dict[str, object]) -> None:
-    example = HISTORY_EXAMPLES["residual"]["value"]
+    example = EXAMPLES["history"]["residual"]["value"]
     displaced = {"tangential": {"tangential_displacement": [0.0, 1e-8]}}
     simple = example["history"] | (displaced if "tangential" not in change else {})
     parse_svg(
@@ -287,7 +280,7 @@ def test_degenerate_histories_have_a_plot(client: Client, change: dict[str, obje
     ids=str,
 )
 def test_degenerate_wear_has_a_plot(client: Client, change: dict[str, object]) -> None:
-    query = {**WEAR_EXAMPLES["amplitudes"]["value"], "oscillation": {"tangential_force": 0.2}}
+    query = {**EXAMPLES["wear"]["amplitudes"]["value"], "oscillation": {"tangential_force": 0.2}}
     parse_svg(ask(client, "/v1/wear", query | change, "image/svg+xml"))
 
 
@@ -306,13 +299,13 @@ def test_degenerate_wear_has_a_plot(client: Client, change: dict[str, object]) -
     ids=str,
 )
 def test_degenerate_wear_evolution_has_a_plot(client: Client, change: dict[str, object]) -> None:
-    query = EVOLUTION_EXAMPLES["held_forces"]["value"]
+    query = EXAMPLES["evolution"]["held_forces"]["value"]
     parse_svg(ask(client, "/v1/wear/evolution", query | change, "image/svg+xml"))
 
 
 def test_plot_shows_a_smooth_curve(client: Client) -> None:
     response = ask(
-        client, "/v1/tangential/history", HISTORY_EXAMPLES["residual"]["value"], "image/svg+xml"
+        client, "/v1/tangential/history", EXAMPLES["history"]["residual"]["value"], "image/svg+xml"
     )
     lines = [len(path.get("d", "").split("L")) for path in parse_svg(response).iter(f"{SVG}path")]
     # As many samples are drawn as a smooth curve requires.

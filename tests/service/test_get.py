@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from mdr_service import problems
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.contract import strict_json
@@ -403,7 +403,7 @@ def test_number_of_a_spreadsheet_is_accepted(client: Client, written: str) -> No
 def test_documented_parameters_have_a_result(client: Client, query: str) -> None:
     get = DOCUMENT["paths"][at(query)]["get"]
     shown = {each["name"]: each["example"] for each in get["parameters"] if "example" in each}
-    assert shown == examples.PARAMETER_EXAMPLES[query]
+    assert shown == EXAMPLES["parameters"][query]
     assert client.get(at(query, shown)).status_code == 200
 
 

@@ -13,29 +13,30 @@ from matplotlib.figure import Figure
 from mdr_service.dispatch import parse
 from mdr_service.plots import PLOTS, Map, Plot
 from mdr_service.queries import QUERIES
-from mdr_service.schemas import examples
+from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import picture
 
-EXAMPLES = [
+CASES = [
     (name, example["value"])
     for name in QUERIES
     # A map has no curves.
     if name != "subsurface"
-    for example in getattr(examples, f"{name.upper()}_EXAMPLES").values()
+    for example in EXAMPLES[name].values()
 ]
-BALL = examples.NORMAL_EXAMPLES["hertz"]["value"]
-TANGENTIAL = examples.TANGENTIAL_EXAMPLES["cattaneo_mindlin"]["value"]
-STRESS = examples.STRESS_EXAMPLES["cattaneo_mindlin"]["value"]
-PUNCH = examples.STRESS_EXAMPLES["boussinesq"]["value"]
-WEAR = examples.WEAR_EXAMPLES["amplitudes"]["value"]
-EVOLUTION = examples.EVOLUTION_EXAMPLES["held_forces"]["value"]
-HISTORY = examples.HISTORY_EXAMPLES["mindlin_deresiewicz"]["value"]
+BALL = EXAMPLES["normal"]["hertz"]["value"]
+TANGENTIAL = EXAMPLES["tangential"]["cattaneo_mindlin"]["value"]
+STRESS = EXAMPLES["stress"]["cattaneo_mindlin"]["value"]
+PUNCH = EXAMPLES["stress"]["boussinesq"]["value"]
+WEAR = EXAMPLES["wear"]["amplitudes"]["value"]
+EVOLUTION = EXAMPLES["evolution"]["held_forces"]["value"]
+HISTORY = EXAMPLES["history"]["mindlin_deresiewicz"]["value"]
 
 
 def plotted(name: str, value: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
     """Return the plot and the result of a query."""
     kind = QUERIES[name]
-    query = parse(kind.model, json.dumps(value).encode())
+    query = parse(SCHEMAS[name].model, json.dumps(value).encode())
     with np.errstate(all="ignore"):
         source = kind.solve(query)
         result = kind.result(query, source)
@@ -60,9 +61,7 @@ def labels(plot: Plot, panel: int = 0) -> list[str]:
     return [curve.label for curve in plot.panels[panel].curves]
 
 
-@pytest.mark.parametrize(
-    "value", [example["value"] for example in examples.SUBSURFACE_EXAMPLES.values()]
-)
+@pytest.mark.parametrize("value", [example["value"] for example in EXAMPLES["subsurface"].values()])
 def test_stress_map_marks_the_contact_and_its_maximum(
     value: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -87,7 +86,7 @@ def test_stress_map_marks_the_contact_and_its_maximum(
     assert low > high
 
 
-@pytest.mark.parametrize(("name", "value"), EXAMPLES)
+@pytest.mark.parametrize(("name", "value"), CASES)
 def test_every_point_lies_on_its_curve(name: str, value: dict[str, Any]) -> None:
     plot, _ = plotted(name, value)
     for panel in plot.panels:
@@ -111,7 +110,7 @@ def test_every_point_lies_on_its_curve(name: str, value: dict[str, Any]) -> None
                     assert away.min() < 0.03
 
 
-@pytest.mark.parametrize(("name", "value"), EXAMPLES)
+@pytest.mark.parametrize(("name", "value"), CASES)
 def test_svg_draws_the_plot(
     name: str, value: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -336,7 +335,7 @@ def test_onset_of_full_slip_has_a_plot(kind: str, force: float) -> None:
     fields = {"radius": 0.01, "slope": 0.1, "flat_radius": 1e-5}
     model = next(
         m
-        for m in QUERIES["normal"].model.model_json_schema()["$defs"].values()
+        for m in SCHEMAS["normal"].model.model_json_schema()["$defs"].values()
         if m.get("properties", {}).get("kind", {}).get("const") == kind
     )
     profile = {"kind": kind} | {n: fields[n] for n in model["properties"] if n != "kind"}

@@ -10,13 +10,13 @@ import pytest
 
 from mdr_core import normal, subsurface, tangential
 from mdr_core.profiles import Paraboloid
-from mdr_service.schemas.examples import SUBSURFACE_EXAMPLES
+from mdr_service.schemas.examples import EXAMPLES
 
 if TYPE_CHECKING:
     from tests.conftest import Client
 
 PATH = "/v1/subsurface"
-AXIS = SUBSURFACE_EXAMPLES["hertz_on_the_axis"]["value"]
+AXIS = EXAMPLES["subsurface"]["hertz_on_the_axis"]["value"]
 MAP: dict[str, Any] = {
     "profile": {"kind": "paraboloid", "radius": 2.0},
     "material": {"e_star": 3.0, "g_star": 2.5, "poissons_ratio": 0.3},

@@ -7,8 +7,9 @@ import pytest
 
 from mdr_core.profiles import Tabulated
 from mdr_service.dispatch import parse, respond
-from mdr_service.queries import QUERIES, contacts
+from mdr_service.queries import contacts
 from mdr_service.schemas.profiles import TabulatedProfile
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from mdr_service.table_cache import TableCache
 
@@ -71,7 +72,7 @@ def test_cached_table_gives_identical_bytes(name: str, monkeypatch: pytest.Monke
         request[sideways] = {"tangential_force": 0.2}
     if name == "stress":
         request |= {"points": 20, "quantities": ["pressure", "shear_stress"]}
-    query = parse(QUERIES[name].model, json.dumps(request).encode())
+    query = parse(SCHEMAS[name].model, json.dumps(request).encode())
     kept = TableCache(10 * BYTES)
     monkeypatch.setattr(contacts, "TABLES", kept)
     first = respond(name, query, FORMATS["json"])

@@ -1,6 +1,6 @@
 """Queries by GET: the parameters of `query_parameters` in the URL."""
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable
 from hashlib import blake2b
 from typing import Annotated, Any, Final
 
@@ -12,14 +12,7 @@ from mdr_service.api.documentation import GET_RESPONSES
 from mdr_service.api.queries import Responder, url_parameters
 from mdr_service.middleware import header
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.schemas.answers import (
-    Answer,
-    HistoryAnswer,
-    NormalAnswer,
-    StressAnswer,
-    TangentialAnswer,
-    WearAnswer,
-)
+from mdr_service.schemas.queries import SCHEMAS
 
 # A response depends on the query and on the version of the service alone.
 _CACHE_CONTROL: Final = "max-age=3600"
@@ -57,20 +50,19 @@ def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
     return get
 
 
-_QUERIES: Final[Mapping[str, tuple[str, str, type[Answer]]]] = {
-    "normal": ("contact", "Normal contact", NormalAnswer),
-    "tangential": ("contact", "Partial slip", TangentialAnswer),
-    "history": ("contact", "Cycles of the tangential load", HistoryAnswer),
-    "stress": ("contact", "Fields over the radius", StressAnswer),
-    "wear": ("wear", "Limiting state of fretting wear", WearAnswer),
+_TITLES: Final = {
+    "normal": "Normal contact",
+    "tangential": "Partial slip",
+    "history": "Cycles of the tangential load",
+    "stress": "Fields over the radius",
+    "wear": "Limiting state of fretting wear",
 }
-_PATHS: Final = {"history": "/v1/tangential/history"}
 router = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(url_parameters)])
-for _name, (_tag, _title, _answer) in _QUERIES.items():
+for _name, _title in _TITLES.items():
     router.get(
-        _PATHS.get(_name, f"/v1/{_name}"),
+        SCHEMAS[_name].path,
         operation_id=f"get_{_name}",
-        tags=[_tag],
+        tags=[SCHEMAS[_name].tag],
         summary=f"{_title} by parameters, for spreadsheets and browsers",
-        response_model=_answer,
+        response_model=SCHEMAS[_name].answer,
     )(_endpoint(_name, PARAMETERS[_name]))

@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Awaitable, Callable, Sequence
-from functools import partial
 from inspect import signature
 from typing import Annotated, Any, ClassVar, Final, get_args
 
@@ -17,25 +16,18 @@ from mdr_service.content_negotiation import FORMAT, Format, media_type
 from mdr_service.dispatch import parse, respond, respond_to_text
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
-from mdr_service.schemas import examples
-from mdr_service.schemas.answers import (
-    EvolutionAnswer,
-    HistoryAnswer,
-    NormalAnswer,
-    StressAnswer,
-    SubsurfaceAnswer,
-    TangentialAnswer,
-    WearAnswer,
-)
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
+from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.load_paths import HistoryQuery
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.serializers import FORMATS, json
 from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES, AT_ONCE_SECONDS
 
+_Endpoint = Callable[..., Awaitable[Response]]
 _ANY: Final = "*/*"
 # Bound; the longest query has about forty.
 _MAX_PARAMETERS: Final = 100
@@ -105,7 +97,7 @@ class QueryRoute(APIRoute):
         query, responder = signature(self.endpoint).parameters.values()
         model, make = get_args(query.annotation)[0], get_args(responder.annotation)[0]
         name = str(self.operation_id)
-        endpoint: Callable[..., Awaitable[Response]] = self.endpoint
+        endpoint: _Endpoint = self.endpoint
 
         async def handle(request: Request) -> Response:
             given = url_parameters(request)
@@ -143,18 +135,24 @@ def _invalid(errors: dict[str, str]) -> ServiceError:
 Respond = Annotated[Responder, Depends()]
 RespondToBatch = Annotated[BatchResponder, Depends()]
 router = APIRouter(route_class=QueryRoute)
-_post = partial(router.post, responses=POST_RESPONSES)
 
 
-@_post(
-    "/v1/normal",
-    operation_id="normal",
-    tags=["contact"],
-    summary="Normal contact under a depth, a force or a contact radius",
-    response_model=NormalAnswer,
-)
+def _post(name: str, summary: str) -> Callable[[_Endpoint], _Endpoint]:
+    """Declare the endpoint of a query, as its schema describes it."""
+    path, _, answer, tag = SCHEMAS[name]
+    return router.post(
+        path,
+        operation_id=name,
+        tags=[tag],
+        summary=summary,
+        response_model=answer,
+        responses=POST_RESPONSES,
+    )
+
+
+@_post("normal", "Normal contact under a depth, a force or a contact radius")
 async def post_normal(
-    query: Annotated[NormalQuery, Body(openapi_examples=examples.NORMAL_EXAMPLES)],
+    query: Annotated[NormalQuery, Body(openapi_examples=EXAMPLES["normal"])],
     respond: Respond,
 ) -> Response:
     """Compute the frictionless contact of a profile with an elastic half-space.
@@ -165,15 +163,9 @@ async def post_normal(
     return await respond("normal", query)
 
 
-@_post(
-    "/v1/tangential",
-    operation_id="tangential",
-    tags=["contact"],
-    summary="Partial slip under a tangential force or displacement, or a stick radius",
-    response_model=TangentialAnswer,
-)
+@_post("tangential", "Partial slip under a tangential force or displacement, or a stick radius")
 async def post_tangential(
-    query: Annotated[TangentialQuery, Body(openapi_examples=examples.TANGENTIAL_EXAMPLES)],
+    query: Annotated[TangentialQuery, Body(openapi_examples=EXAMPLES["tangential"])],
     respond: Respond,
 ) -> Response:
     """Compute a contact with friction, loaded normally first and then tangentially once.
@@ -184,15 +176,9 @@ async def post_tangential(
     return await respond("tangential", query)
 
 
-@_post(
-    "/v1/tangential/history",
-    operation_id="history",
-    tags=["contact"],
-    summary="Load history: an arbitrary load path or identical cycles",
-    response_model=HistoryAnswer,
-)
+@_post("history", "Load history: an arbitrary load path or identical cycles")
 async def post_history(
-    query: Annotated[HistoryQuery, Body(openapi_examples=examples.HISTORY_EXAMPLES)],
+    query: Annotated[HistoryQuery, Body(openapi_examples=EXAMPLES["history"])],
     respond: Respond,
 ) -> Response:
     """Follow a load path from first contact, and return samples along it.
@@ -210,15 +196,9 @@ async def post_history(
     return await respond("history", query)
 
 
-@_post(
-    "/v1/stress",
-    operation_id="stress",
-    tags=["contact"],
-    summary="Surface stresses, slip and displacement over the radius",
-    response_model=StressAnswer,
-)
+@_post("stress", "Surface stresses, slip and displacement over the radius")
 async def post_stress(
-    query: Annotated[StressQuery, Body(openapi_examples=examples.STRESS_EXAMPLES)],
+    query: Annotated[StressQuery, Body(openapi_examples=EXAMPLES["stress"])],
     respond: Respond,
 ) -> Response:
     """Compute the fields named in `quantities`, and nothing else, by load and radius.
@@ -230,14 +210,10 @@ async def post_stress(
 
 
 @_post(
-    "/v1/subsurface",
-    operation_id="subsurface",
-    tags=["contact"],
-    summary="Stresses beneath the surface of either body, their peaks and the onset of yield",
-    response_model=SubsurfaceAnswer,
+    "subsurface", "Stresses beneath the surface of either body, their peaks and the onset of yield"
 )
 async def post_subsurface(
-    query: Annotated[SubsurfaceQuery, Body(openapi_examples=examples.SUBSURFACE_EXAMPLES)],
+    query: Annotated[SubsurfaceQuery, Body(openapi_examples=EXAMPLES["subsurface"])],
     respond: Respond,
 ) -> Response:
     """Compute the stresses named in `quantities` by load, depth z and x, in the plane of one y.
@@ -249,15 +225,9 @@ async def post_subsurface(
     return await respond("subsurface", query)
 
 
-@_post(
-    "/v1/wear",
-    operation_id="wear",
-    tags=["wear"],
-    summary="Limiting state of fretting wear under a small oscillation",
-    response_model=WearAnswer,
-)
+@_post("wear", "Limiting state of fretting wear under a small oscillation")
 async def post_wear(
-    query: Annotated[WearQuery, Body(openapi_examples=examples.WEAR_EXAMPLES)], respond: Respond
+    query: Annotated[WearQuery, Body(openapi_examples=EXAMPLES["wear"])], respond: Respond
 ) -> Response:
     """Compute the limiting profile: the annulus outside the stick zone wears until it is unloaded.
 
@@ -272,15 +242,9 @@ async def post_wear(
     return await respond("wear", query)
 
 
-@_post(
-    "/v1/wear/evolution",
-    operation_id="evolution",
-    tags=["wear"],
-    summary="Fretting wear over the cycles: profile and pressure up to the limiting state",
-    response_model=EvolutionAnswer,
-)
+@_post("evolution", "Fretting wear over the cycles: profile and pressure up to the limiting state")
 async def post_evolution(
-    query: Annotated[EvolutionQuery, Body(openapi_examples=examples.EVOLUTION_EXAMPLES)],
+    query: Annotated[EvolutionQuery, Body(openapi_examples=EXAMPLES["evolution"])],
     respond: Respond,
 ) -> Response:
     """Integrate wear over the cycles: dV/dN = K W at each radius, W the friction work of a cycle.
@@ -300,7 +264,7 @@ async def post_evolution(
     responses=BATCH_RESPONSES,
 )
 async def post_batch(
-    query: Annotated[BatchQuery, Body(openapi_examples=examples.BATCH_EXAMPLES)],
+    query: Annotated[BatchQuery, Body(openapi_examples=EXAMPLES["batch"])],
     respond: RespondToBatch,
 ) -> Response:
     """Compute each query as at its own endpoint, in the given order.

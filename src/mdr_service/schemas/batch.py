@@ -1,8 +1,7 @@
 """Several queries in one request, and their responses."""
 
-from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 from pydantic import Field, ValidationError
 
@@ -17,23 +16,10 @@ from mdr_service.schemas.answers import (
     TangentialAnswer,
     WearAnswer,
 )
-from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
-from mdr_service.schemas.fields import StressQuery
-from mdr_service.schemas.load_paths import HistoryQuery
+from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.quantities import Strict, drop_null_defaults, left_out
-from mdr_service.schemas.subsurface import SubsurfaceQuery
-from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.settings import SETTINGS
-
-MODELS: Final[Mapping[str, type[Query]]] = {
-    "normal": NormalQuery,
-    "tangential": TangentialQuery,
-    "history": HistoryQuery,
-    "stress": StressQuery,
-    "subsurface": SubsurfaceQuery,
-    "wear": WearQuery,
-    "evolution": EvolutionQuery,
-}
 
 
 class BatchItem(Strict):
@@ -54,7 +40,7 @@ class BatchItem(Strict):
     def query(self) -> Query | ValidationError:
         """Query, or the reason why the request is invalid."""
         try:
-            return MODELS[self.ask].model_validate(self.request)
+            return SCHEMAS[self.ask].model.model_validate(self.request)
         except ValidationError as error:
             return error
 
