@@ -15,7 +15,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi verification dist lock clean
+.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi verification docs dist lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -87,6 +87,10 @@ figures: .venv/development
 verification: .venv/development
 	$(BIN)/python -m verification docs/verification.md
 
+# The manual, which the service of this .venv then serves at /manual.
+docs: .venv/development
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --site-dir .venv/share/mdr/manual
+
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json
 
@@ -102,6 +106,7 @@ LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-
 lock:
 	$(LOCK) --extra build --extra service --output-file requirements.lock
 	$(LOCK) --extra build --extra sweep --output-file requirements-sweep.lock
+	$(LOCK) --extra docs --output-file requirements-docs.lock
 	$(LOCK) --all-extras --output-file requirements-dev.lock
 	$(LOCK) --extra build --extra service requirements-bench.in --output-file requirements-bench.lock
 

@@ -68,5 +68,7 @@ def create_app() -> FastAPI:
     middleware.install(app)
     openapi.extend(app)
     app.mount("/docs/swagger", StaticFiles(packages=[("fastapi_swagger", "resources")]))
+    if explorer.MANUAL.is_dir():
+        app.mount("/manual/", explorer.Manual(directory=explorer.MANUAL, html=True))
     app.mount("/docs/page", StaticFiles(packages=[("mdr_service", "page")]))
     return app

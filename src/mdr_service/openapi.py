@@ -12,7 +12,7 @@ from mdr_service.schemas.queries import SCHEMAS
 DESCRIPTION: Final = """\
 Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
 
-[Explorer](./): the same queries with charts, in the browser. [Introduction](readme),
+[Explorer](./): the same queries with charts, in the browser. [Manual](manual),
 with examples. [Licence](license): MIT.
 
 **Units.** Use one consistent system of your choice (N, m, Pa; or N, mm, MPa). Nothing is

@@ -1,4 +1,4 @@
-"""The commands and code of the README give the output that it shows."""
+"""The commands and code of README and manual give the output that they show."""
 
 import contextlib
 import csv
@@ -18,13 +18,20 @@ from mdr_service.settings import PREFIX, Settings
 from tests.conftest import Client
 from tests.faults.server import free_port, running, service
 
-README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
+ROOT = Path(__file__).parents[2]
+# The gallery shows figures in place of output: `test_gallery.py`.
+PAGES = [
+    page
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+    if page.name != "gallery.md"
+]
+TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
 ADDRESS = "http://127.0.0.1:8000"
 
 
 def examples(language: str, output: str) -> list[tuple[str, str]]:
     pattern = rf"```{language}\n([^`]*)```\s+```{output}\n([^`]*)```"
-    return re.findall(pattern, README)
+    return [found for text in TEXTS.values() for found in re.findall(pattern, text)]
 
 
 # Integrals over the cycles are compared to fewer digits, since they depend on the platform.
@@ -71,6 +78,14 @@ def curl_response(client: Client, command: str) -> httpx.Response:
     return client.request("POST", path, content=body.encode(), headers=headers)
 
 
+def curl_command(command: str) -> tuple[str, str]:
+    """Return path and output file of a command that sends a file."""
+    curl, silent, address, option, _, data, _, output, target = shlex.split(command)
+    assert (curl, silent, option, data, output) == ("curl", "-s", "-H", "-d", "-o")
+    assert address.startswith(ADDRESS)
+    return address.removeprefix(ADDRESS), target
+
+
 def output_of(client: Client, command: str) -> str:
     """Return the output of a shell command: of the service itself, or of curl in its place."""
     if command.startswith("curl"):
@@ -102,20 +117,46 @@ def test_curl_example_shows_the_table(client: Client, command: str, shown: str) 
         assert list(map(float, one)) == pytest.approx(list(map(float, other)), rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize(("code", "shown"), examples("python", "text"))
-def test_python_example_prints_its_output(code: str, shown: str) -> None:
+def test_python_examples_print_their_output() -> None:
     port = free_port()
-    output = io.StringIO()
-    with running(service(port), port), contextlib.redirect_stdout(output):
-        exec(code.replace(":8000", f":{port}"), {})  # noqa: S102 -- our own README
-    assert output.getvalue() == shown
+    with running(service(port), port):
+        for code, shown in examples("python", "text"):
+            output = io.StringIO()
+            with contextlib.redirect_stdout(output):
+                exec(code.replace(":8000", f":{port}"), {})  # noqa: S102 -- our own pages
+            assert output.getvalue() == shown
 
 
 def test_every_setting_is_listed_with_its_default() -> None:
     for name, field in Settings.model_fields.items():
-        assert f"| `{PREFIX}{name.upper()}` | {field.default or 'none'} |" in README
+        row = f"| `{PREFIX}{name.upper()}` | {field.default or 'none'} |"
+        assert row in TEXTS["operation.md"]
+
+
+REQUESTS = [
+    (path, request)
+    for name, path in (("yield.md", "/v1/subsurface"), ("sweeps.md", "/v1/tangential"))
+    for request in re.findall(r"```json\n([^`]*)```", TEXTS[name])
+]
+
+
+@pytest.mark.parametrize(("path", "request_text"), REQUESTS)
+def test_request_is_solved(client: Client, path: str, request_text: str) -> None:
+    # An axis of a sweep is a text in place of a number: its start is a case.
+    one_case = re.sub(r'"([0-9.e-]+):[^"]*:log"', r"\1", request_text)
+    assert client.post_text(path, one_case.encode()).status_code == 200
 
 
 def test_every_example_is_tested() -> None:
     tried = [*examples("sh", "json"), *examples("sh", "csv"), *examples("python", "text")]
-    assert len(tried) == len(re.findall(r"```(?:sh|python)\n", README)) == 13
+    shown = [re.findall(r"^```(?:sh|python)\n", text, re.MULTILINE) for text in TEXTS.values()]
+    assert len(tried) == sum(map(len, shown)) >= 16
+    answers = len([*examples("sh", "json"), *REQUESTS])
+    shown = [re.findall(r"^```json\n", text, re.MULTILINE) for text in TEXTS.values()]
+    assert answers == sum(map(len, shown))
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "docs" / "gallery.md", ROOT / "CONTRIBUTING.md"])
+def test_links_between_files_lead_to_files(page: Path) -> None:
+    for link in re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text("utf-8")):
+        assert (page.parent / link).exists(), link

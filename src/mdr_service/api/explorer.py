@@ -1,17 +1,19 @@
-"""The explorer, the page at ``/`` with its files, and the texts to which the pages link."""
+"""The explorer, the page at ``/`` with its files, the manual, and the texts to which they link."""
 
 import asyncio
 import gzip
+import sys
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import distribution, version
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from fastapi import APIRouter, Request
 from starlette.exceptions import HTTPException
-from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.staticfiles import StaticFiles
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,9 +35,12 @@ _SECURITY: Final = {
         "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
     )
 }
+# Built by `make docs`, and in the image.
+MANUAL: Final = Path(sys.prefix, "share", "mdr", "manual")
 _LINKS: Final = {
     "explorer": "./",
     "documentation": "docs",
+    "manual": "manual",
     "readme": "readme",
     "license": "license",
     "openapi": "openapi.json",
@@ -95,6 +100,22 @@ async def file(name: str, request: Request) -> Response:
     if name not in known:
         raise HTTPException(404)
     return await _respond(name, request, {"Cache-Control": "no-cache"})
+
+
+@router.get("/manual")
+async def manual() -> Response:
+    """Redirect to the manual, or to the introduction if it is not built."""
+    return RedirectResponse("manual/" if MANUAL.is_dir() else "readme")
+
+
+class Manual(StaticFiles):
+    """Files of the manual, with the security policy of the explorer."""
+
+    def file_response(self, *arguments: Any, **options: Any) -> Response:
+        """Return a file with the policy."""
+        response = super().file_response(*arguments, **options)
+        response.headers.update(_SECURITY)
+        return response
 
 
 @router.get("/readme")

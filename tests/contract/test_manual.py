@@ -1,0 +1,52 @@
+"""The manual: no broken link, no request to other hosts, served under a strict policy."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mdr_service.api import explorer
+from tests.conftest import Client, running_client
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_address_without_slash_redirects(client: Client) -> None:
+    response = client.get("/manual")
+    assert response.status_code == 307
+    assert response.headers["location"] in {"manual/", "readme"}
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the manual as `make docs`; a broken link is an error."""
+    folder = tmp_path_factory.mktemp("manual")
+    build = [Path(sys.executable).parent / "mkdocs", "build", "--site-dir", folder]
+    told = subprocess.run(build, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert told.returncode == 0, told.stderr
+    return folder
+
+
+@pytest.mark.long
+def test_pages_load_from_this_host_and_hold_no_script(site: Path) -> None:
+    pages = list(site.rglob("*.html"))
+    assert len(pages) > 20
+    for page in pages:
+        text = page.read_text("utf-8")
+        assert not re.search(r"<script(?![^>]*(?:src=|application/json))", text), page
+        assert not re.search(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"?https?:", text), page
+    assert sum(path.stat().st_size for path in site.rglob("*")) < 8e6
+
+
+@pytest.mark.long
+def test_manual_is_served_with_the_policy(site: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(explorer, "MANUAL", site)
+    with running_client() as client:
+        assert client.get("/manual").headers["location"] == "manual/"
+        for path, status in {"": 200, "gallery/": 200, "manual.css": 200, "nothing": 404}.items():
+            assert client.get(f"/manual/{path}").status_code == status
+        page = client.get("/manual/gallery/")
+    assert page.headers["content-security-policy"].startswith("default-src 'self';")
+    assert "Hertz contact" in page.text
