@@ -22,9 +22,26 @@ RUN /app/bin/pip wheel --no-deps --no-build-isolation --wheel-dir dist . \
     && find /app -type d -name tests -prune -exec rm -r {} +
 
 
+# The manual, by tools that the service does not need.
+FROM python:3.11.15-bookworm AS manual
+
+ENV PIP_DISABLE_PIP_VERSION_CHECK=1 \
+    PIP_NO_CACHE_DIR=1
+RUN ["python", "-m", "venv", "/tools"]
+WORKDIR /build
+COPY requirements-docs.lock ./
+RUN ["/tools/bin/pip", "install", "--require-hashes", "--requirement", "requirements-docs.lock"]
+COPY mkdocs.yml README.md CHANGELOG.md CONTRIBUTING.md ./
+COPY docs ./docs
+COPY examples ./examples
+COPY src ./src
+RUN ["/tools/bin/mkdocs", "build", "--site-dir", "/manual"]
+
+
 FROM python:3.11.15-slim-bookworm
 
 COPY --from=build /app /app
+COPY --from=manual /manual /app/share/mdr/manual
 
 # Only Matplotlib's font cache is written, in memory, so that the root can be read-only. More BLAS
 # threads than cores would wait for each other.

@@ -28,7 +28,7 @@ def test_first_visit_shows_results_and_charts(visit: Visit) -> None:
 def test_head_links_are_served(address: str) -> None:
     links = httpx.get(address, headers={"Accept": "application/json"}).json()
     for link in links.values():
-        assert httpx.get(urljoin(address, link)).status_code == 200
+        assert httpx.get(urljoin(address, link), follow_redirects=True).status_code == 200
 
 
 @pytest.mark.parametrize("tab", TABS)
