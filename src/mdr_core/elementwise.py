@@ -39,6 +39,12 @@ def piecewise(
     """Return below(place) up to `start` and beyond(place) from there on.
 
     Each formula sees only places on its own side.
+
+    Parameters
+    ----------
+    place : numbers or arrays at which the formulas are evaluated.
+    start : place from which on `beyond` holds.
+    below, beyond : formulas, each of a place.
     """
     if is_number(place) and is_number(start):
         return _number(below(place) if place < start else beyond(place))

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import broadcast, full, is_number, number, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
@@ -31,8 +32,6 @@ _NODES: Final = 16
 # Products of weights and cases that are summed faster in one call than term by term, by
 # measurement.
 _FEW: Final = 4096
-# A gap between breaks longer than twice this many times the one before is divided in such ratios.
-_GROWTH: Final = 4.0
 # Part of full slip up to which the width is the unknown; beyond it the stick edge is.
 _EARLY: Final = 0.05
 # Logarithms of the contact coordinate over the scale between which the curve of a kind is bent,
@@ -165,16 +164,8 @@ def stick_from_depth(
 ) -> tuple[Array, Array]:
     """Return the stick radius and the width of the slip annulus under a displacement.
 
-    Source: mdr-5, Eq. (5.20).
-
-    Parameters
-    ----------
-    profile, coordinate : see `stick_from_force`.
-    ratio, rest : u_x/u_x,max and 1 - u_x/u_x,max, each accurate by itself.
-
-    Returns
-    -------
-    c and a - c in the contact coordinate.
+    Source: mdr-5, Eq. (5.20). Parameters and returns: see `stick_from_force`, for the ratio
+    u_x/u_x,max.
     """
     closed = profile.stick_from_depth_ratio(coordinate, ratio, rest)
     if closed is not None:
@@ -314,39 +305,6 @@ def _step(
     result[~narrow] = function(high[~narrow]) - function(np.maximum(low[~narrow], 0.0))
     result[narrow] = _narrow_step(slope, high[narrow], width[narrow], below[narrow])
     return result
-
-
-def break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
-    """Return the nearest break below each coordinate and the one before it; zero for none."""
-    breaks = profile.coordinate_breaks
-    if has_many_breaks(profile):
-        padded = np.concatenate([[0.0, 0.0], breaks])
-        index = np.maximum(np.searchsorted(padded, high, side="left") - 1, 1)
-        return padded[index], padded[index - 1]
-    nothing = full(0.0, high)
-    if not breaks.size:
-        return nothing, nothing
-    # Every case of a sweep has its own break.
-    own = breaks if profile.swept else breaks[0]
-    return where(high > own, own, 0.0), nothing
-
-
-def divided_breaks(profile: Profile) -> Array:
-    """Return the coordinates of a profile's breaks, and points that divide long gaps between them.
-
-    The root singularity at one break limits the convergence of quadrature beyond the next.
-    """
-    breaks = profile.coordinate_breaks
-    gaps, added = np.diff(breaks), [breaks]
-    for i in np.flatnonzero(gaps[1:] > 2 * _GROWTH * gaps[:-1]).tolist():
-        count = int(np.log(gaps[i + 1] / (2 * gaps[i])) / np.log(_GROWTH))
-        added.append(breaks[i + 1] + gaps[i] * _GROWTH ** np.arange(1, count + 1))
-    return np.sort(np.concatenate(added))
-
-
-def has_many_breaks(profile: Profile) -> bool:
-    """True for tables, whose parameters are never arrays over the cases of a sweep."""
-    return profile.coordinate_breaks.size > 1 and not profile.swept
 
 
 def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Array:

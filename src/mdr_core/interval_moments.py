@@ -18,15 +18,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
+from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.broadcasting import with_parameters
-from mdr_core.equivalent_1d import (
-    break_below,
-    coordinate_from_depth,
-    coordinate_from_force,
-    divided_breaks,
-    has_many_breaks,
-    in_order,
-)
+from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force, in_order
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
@@ -106,8 +100,11 @@ class IntervalMoments:
     def over(self, low: Array, span: Array, ends: Array | None = None) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).
 
-        Their `ends` in the contact coordinate may be known; the parameters of the profile may then
-        be arrays over the intervals.
+        Parameters
+        ----------
+        low, span : lower ends and lengths in the normal coordinate, shape (m,).
+        ends : both ends in the contact coordinate, shape (2, m), if they are known; the parameters
+            of the profile may then be arrays over the intervals.
         """
         if self.profile.slips_at_once:
             # The contact radius is constant.
@@ -242,7 +239,14 @@ class IntervalMoments:
         return IntervalMoments(with_parameters(profile, part), self.by_force)
 
     def over_wide(self, span: Array, ends: Array, base: Array) -> Array:
-        """Moments over wide intervals, by parts, in closed form."""
+        """Return the moments over wide intervals, by parts, in closed form.
+
+        Parameters
+        ----------
+        span : lengths of the intervals in the normal coordinate, shape (m,).
+        ends : both ends in the contact coordinate, shape (2, m).
+        base : contact coordinates of the breaks below, zero for none, shape (m,).
+        """
         profile = self.profile
         at_break = (base > 0) & (ends[0] == base)
 
@@ -270,10 +274,13 @@ class IntervalMoments:
         return np.stack([whole - 2 * first + second, 2 * (first - second), second])
 
     def over_narrow(self, span: Array, ends: Array, base: Array, beyond: Flags) -> Array:
-        """Moments over narrow intervals, by Gauss' rule in the contact coordinate.
+        """Return the moments over narrow intervals, by Gauss' rule in the contact coordinate.
 
-        `beyond` a break or a flat's edge all is smooth in the root of the distance from this
-        `base`, elsewhere in the logarithm.
+        Parameters
+        ----------
+        span, ends, base : see `over_wide`.
+        beyond : True beyond a break or a flat's edge, where all is smooth in the root of the
+            distance from `base`; elsewhere it is in the logarithm.
         """
         profile, (start, stop) = self.profile, ends
         slope = self._slope(stop)

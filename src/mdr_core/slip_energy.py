@@ -57,7 +57,7 @@ def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array)
 def _by_springs(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
     """D^2/4 times the second Bernstein moment of the springs."""
 
-    def moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
+    def _moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
         span = depth_step(profile, high, width, low)
         moments = IntervalMoments(profile, by_force=False)
         found = moments.over(profile.depth(low), span, np.stack([low, high]))
@@ -65,8 +65,8 @@ def _by_springs(profile: Profile, coordinate: Array, width: Array, stick: Array)
 
     ends = coordinate, width, stick
     if is_number(sum(ends)) and not profile.swept:
-        return moment(profile, *map(np.atleast_1d, ends))[0][0]
+        return _moment(profile, *map(np.atleast_1d, ends))[0][0]
     swept = [profile.parameters[name] for name in profile.swept]
     shape = np.broadcast_shapes(*map(np.shape, (*ends, *swept)))
-    (result,) = in_blocks(moment, profile, [np.atleast_1d(end) for end in ends], _BLOCK)
+    (result,) = in_blocks(_moment, profile, [np.atleast_1d(end) for end in ends], _BLOCK)
     return result.reshape(shape)

@@ -14,6 +14,7 @@ import numpy as np
 
 from mdr_core.abel import Annulus, InnerEnd, two_root_integral
 from mdr_core.abel.displacement import Branch, arccosine, slope_integral
+from mdr_core.abel.subpanels import FEW
 from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import Analytic
@@ -26,9 +27,10 @@ _NEAR_AXIS: Final = 1e-8
 _NEXT_TO_AXIS: Final = 1e-120
 # Pieces end half way to a pole.
 _HALF: Final = 0.5
-# Nodes on every piece, and the least power to integrate: a table's polynomial with the factor.
+# Nodes on every piece: a subpanel of a table is a polynomial through up to 22 points.
 _NODES: Final = 24
-_DEGREE: Final = 14.0
+# Least power to integrate: the polynomial of a spline's subpanel, times x of the factor and of dx.
+_DEGREE: Final = FEW + 2.0
 # Tolerance of the foundation's load, for which no tolerance is requested.
 _RTOL: Final = 1e-13
 

@@ -5,7 +5,8 @@ compiles this file as it stands, with the C types of `slip_memory_kernel.pxd`; u
 the same bits, about a hundred times slower.
 
 The polyline is a stack of vertices. On a random path branch prediction fails, so what can be
-selected by an index is not selected by an `if`.
+selected by an index is not selected by an `if`. The functions stand in one file of over 350 lines,
+because they are compiled, and inlined, together.
 """
 
 from mdr_core.typing import Array, Indices
