@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from mdr_core.typing import Array, Flags, Indices
 
 
@@ -40,7 +38,3 @@ class Annulus(NamedTuple):
         inner = None if self.inner is None else InnerEnd(*map(pick, self.inner))
         radius = None if self.outer_radius is None else pick(self.outer_radius)
         return Annulus(pick(self.outer), inner, radius)
-
-    def inner_coordinate(self) -> Array:
-        """Return the coordinate of c, zero for the whole contact."""
-        return np.zeros_like(self.outer) if self.inner is None else self.outer - self.inner.width

@@ -53,7 +53,7 @@ class Arc:
         result = np.zeros(r.shape)
         inside = r < self.high
         if inside.any():
-            result[inside] = sum(self._on(each, r[inside], rtol) for each in self.branches(rtol))
+            result[inside] = sum(self._on(each, r[inside], rtol) for each in self.branches)
         return result
 
     def slip(self, r: Array, rtol: float) -> Array:
@@ -62,23 +62,22 @@ class Arc:
         at = r[r > self.low]
         if at.size:
             low, high = np.full(at.shape, self.low), np.minimum(at, self.high)
-            value = slope_integral(self.branches(rtol), low, high, at, arccosine, rtol)
+            value = slope_integral(self.branches, low, high, at, arccosine, rtol)
             result[r > self.low] = 2 / np.pi * value
         return result
 
     def anchor_step(self, x: Array) -> Array:
         """int k g'(x) dx from each radius on the arc to its end [length]; shape (m,)."""
         end = np.full(x.shape, self.high)
-        branches = self.branches(_RTOL)
+        branches = self.branches
         return slope_integral(branches, x, end, end, lambda at, _root: np.ones_like(at), _RTOL)
 
-    def branches(self, rtol: float) -> list[Branch]:
-        """Return the intervals on which k g' is smooth, as those of the profile."""
-        panels = self.profile.panels(rtol)
-        branches = self.profile.branches if panels is None else panels.branches
+    @property
+    def branches(self) -> list[Branch]:
+        """Intervals on which k g' is smooth, as those of the profile."""
         return [
             self._weighted(each)
-            for each in branches
+            for each in self.profile.branches
             if each.stop > self.low and max(each.base, each.start) < self.high
         ]
 

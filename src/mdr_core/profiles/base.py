@@ -9,7 +9,6 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from mdr_core import validation
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integral
 from mdr_core.abel.stress import StressPanels
@@ -17,6 +16,7 @@ from mdr_core.elementwise import full
 from mdr_core.errors import Notice
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.validation import require_positive
 
 # Quantities of a normal contact, as `Profile.closed_forms` names them.
 NORMAL_QUANTITIES: Final = (
@@ -30,11 +30,6 @@ NORMAL_QUANTITIES: Final = (
 )
 _NO_BREAKS: Final = np.empty(0)
 _NO_LEVELS: Final = np.empty((0, 2))
-
-
-def require_positive(name: str, value: Parameter) -> None:
-    """Raise InputError unless the profile's parameter is positive and finite."""
-    validation.require_positive(("profile", name), value)
 
 
 class Profile(ABC):
@@ -53,11 +48,16 @@ class Profile(ABC):
     kind: ClassVar[str]
     formula: ClassVar[str]
     # Quantities in closed form; the others need quadrature or iteration.
-    closed_forms: ClassVar[tuple[str, ...]]
+    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
     # True if the profiles of the kind are one curve at different scales.
     similar: ClassVar[bool] = False
     # Bound on the relative rounding error of the closed forms.
     rounding: Parameter = 3e-14
+
+    def __post_init__(self) -> None:
+        """Raise InputError unless all parameters are positive and finite."""
+        for name, value in self.parameters.items():
+            require_positive(("profile", name), value)
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -317,8 +317,9 @@ class Profile(ABC):
         tip, steepness = self.tip_exponent, self.steepness
         return (Branch(0.0, lambda x, _s, _: self.dg(x), tip=tip, steepness=steepness),)
 
-    def panels(self, rtol: float) -> StressPanels | None:
-        """Panels of g', resolved to a tolerance, for a profile given by panels; else None."""
+    @property
+    def panels(self) -> StressPanels | None:
+        """Panels of g' for a profile given by panels, else None."""
         return None
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
@@ -333,7 +334,7 @@ class Profile(ABC):
         """
         # Next to the axis arccos(x/r) = pi/2 - x/r, of which the integrals are closed.
         near = np.maximum(c, np.cbrt(rtol) * r)
-        value = slope_integral(self._resolved_branches(rtol), near, r, r, arccosine, rtol)
+        value = slope_integral(self.branches, near, r, r, arccosine, rtol)
         if np.any(near > c):
             value += np.pi / 2 * (self.g(near) - self.g(c))
             step = self._force_within(near) - self._force_within(c)
@@ -353,13 +354,9 @@ class Profile(ABC):
         """
         # Next to the axis arcsin(x/r) = x/r, of which the integral is closed.
         near = np.minimum(a, np.sqrt(rtol) * r)
-        value = slope_integral(self._resolved_branches(rtol), near, a, r, arcsine, rtol)
+        value = slope_integral(self.branches, near, a, r, arcsine, rtol)
         value += self._force_within(near) / (2 * r)
         return 2 / np.pi * value
-
-    def _resolved_branches(self, rtol: float) -> tuple[Branch, ...]:
-        panels = self.panels(rtol)
-        return self.branches if panels is None else panels.branches
 
     def _force_within(self, x: Array) -> Array:
         """2 int_0^x x g'(x) dx, zero on a flat [length^2]."""

@@ -13,7 +13,7 @@ from mdr_core.abel.power_moments import root_step
 from mdr_core.abel.two_root import inverse_hypot, two_root_integral
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
-from mdr_core.profiles.base import Profile, require_positive
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.typing import Array, Parameter
 
@@ -48,12 +48,9 @@ class CappedParaboloid(Profile):
         "r²/(2·tip_radius) for r ≤ cap_radius, then "
         "+ (1/radius − 1/tip_radius)·(r² − cap_radius²)/2"
     )
-    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
 
     def __post_init__(self) -> None:
-        require_positive("cap_radius", self.cap_radius)
-        require_positive("tip_radius", self.tip_radius)
-        require_positive("radius", self.radius)
+        super().__post_init__()
         if np.any(self.radius > self.tip_radius):
             raise InputError(
                 ("profile", "radius"),

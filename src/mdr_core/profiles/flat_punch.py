@@ -8,7 +8,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
-from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
+from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.typing import Array, Parameter
 
 
@@ -28,9 +28,6 @@ class FlatPunch(Profile):
     kind: ClassVar[str] = "flat_punch"
     formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, "pressure")
-
-    def __post_init__(self) -> None:
-        require_positive("radius", self.radius)
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import root_step
 from mdr_core.abel.two_root import arcsinh_difference
-from mdr_core.profiles.base import Profile, require_positive
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.quadrature import integrate
 from mdr_core.typing import Array, Chosen, Flags, Parameter
@@ -32,12 +32,7 @@ class Hyperboloid(Profile):
 
     kind: ClassVar[str] = "hyperboloid"
     formula: ClassVar[str] = "tip_radius·slope²·(√(1 + r²/(tip_radius·slope)²) − 1)"
-    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
     similar: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        require_positive("slope", self.slope)
-        require_positive("tip_radius", self.tip_radius)
 
     @property
     def scale(self) -> Parameter:

@@ -9,7 +9,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import log_ratio, power_moment, root_step
 from mdr_core.elementwise import full, where
-from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
+from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
     kappa,
@@ -46,9 +46,6 @@ class Cone(Profile):
     kind: ClassVar[str] = "cone"
     formula: ClassVar[str] = "slope·r"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
-
-    def __post_init__(self) -> None:
-        require_positive("slope", self.slope)
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
@@ -145,9 +142,6 @@ class Paraboloid(Profile):
     kind: ClassVar[str] = "paraboloid"
     formula: ClassVar[str] = "r²/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
-
-    def __post_init__(self) -> None:
-        require_positive("radius", self.radius)
 
     def f(self, radius: Array) -> Array:
         return radius * radius / (2 * self.radius)
@@ -255,10 +249,6 @@ class Power(Profile):
     closed_forms: ClassVar[tuple[str, ...]] = tuple(
         name for name in NORMAL_QUANTITIES if name != "maximum_pressure"
     )
-
-    def __post_init__(self) -> None:
-        require_positive("coefficient", self.coefficient)
-        require_positive("exponent", self.exponent)
 
     @property
     def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds

@@ -8,7 +8,6 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.elementwise import piecewise, where
-from mdr_core.profiles.base import require_positive
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroids import Sphere, artanh_ratio, artanh_ratio_difference, sphere_kernel
 from mdr_core.profiles.tipped import TippedCone
@@ -42,10 +41,6 @@ class SphericalTipCone(TippedCone):
     formula: ClassVar[str] = (
         "sphere of tip_radius for r ≤ b = tip_radius·slope/√(1 + slope²), then its tangent cone"
     )
-
-    def __post_init__(self) -> None:
-        require_positive("slope", self.slope)
-        require_positive("tip_radius", self.tip_radius)
 
     @cached_property
     def tangent_radius(self) -> Parameter:

@@ -11,7 +11,7 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import arcsinh_difference
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
-from mdr_core.profiles.base import Profile, require_positive
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.equator import slope_integral_inside, slope_integral_outside
 from mdr_core.quadrature import integrate
@@ -26,7 +26,6 @@ _NEAR_EQUATOR: Final = 1.5
 # a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
 # (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
 _SHALLOW: Final = 0.64
-_CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
 
 class Spheroid(Profile):
@@ -41,7 +40,6 @@ class Spheroid(Profile):
     radius: Parameter
     height: Parameter
 
-    closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
     similar: ClassVar[bool] = True
 
     @property
@@ -240,9 +238,6 @@ class Sphere(Spheroid):
     kind: ClassVar[str] = "sphere"
     formula: ClassVar[str] = "radius − √(radius² − r²), contact radius < radius"
 
-    def __post_init__(self) -> None:
-        require_positive("radius", self.radius)
-
     @property
     def height(self) -> Parameter:  # type: ignore[override]  # a field of the ellipsoid
         return self.radius
@@ -265,7 +260,3 @@ class Ellipsoid(Spheroid):
 
     kind: ClassVar[str] = "ellipsoid"
     formula: ClassVar[str] = "height·(1 − √(1 − r²/radius²)), contact radius < radius"
-
-    def __post_init__(self) -> None:
-        require_positive("radius", self.radius)
-        require_positive("height", self.height)

@@ -259,8 +259,8 @@ class Tabulated(FlatEnded):
     def branches(self) -> tuple[Branch, ...]:
         return self.resolved.stress.branches
 
-    def panels(self, rtol: float) -> StressPanels:
-        del rtol
+    @property
+    def panels(self) -> StressPanels:
         return self.resolved.stress
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:

@@ -13,7 +13,7 @@ from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
 from mdr_core.elementwise import piecewise
-from mdr_core.profiles.base import Profile, require_positive
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.powers import Paraboloid
 from mdr_core.profiles.spheroids import Sphere
@@ -37,8 +37,6 @@ class TippedCone(Profile):
 
     slope: Parameter
     tip_radius: Parameter
-
-    closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
 
     @property
     @abstractmethod
@@ -222,10 +220,6 @@ class RoundedCone(TippedCone):
     formula: ClassVar[str] = "r²/(2·tip_radius) for r ≤ b = tip_radius·slope, then slope·(r − b/2)"
 
     similar: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        require_positive("slope", self.slope)
-        require_positive("tip_radius", self.tip_radius)
 
     @cached_property
     def tangent_radius(self) -> Parameter:

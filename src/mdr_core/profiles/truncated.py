@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from dataclasses import dataclass
 from math import pi
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,13 +12,11 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, two_root_integral
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
-from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile, require_positive
+from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import first_index
-
-_CLOSED: Final = ("normal_force", "mean_pressure", "normal_stiffness")
 
 
 class FlatEnded(Profile):
@@ -122,12 +120,7 @@ class RoundedPunch(Truncated):
 
     kind: ClassVar[str] = "rounded_punch"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
-    closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
     zeros: ClassVar[Analytic] = Analytic(zeros=2)
-
-    def __post_init__(self) -> None:
-        require_positive("flat_radius", self.flat_radius)
-        require_positive("rounding_radius", self.rounding_radius)
 
     def f(self, radius: Array) -> Array:
         return np.square(np.maximum(radius - self.flat_radius, 0.0)) / (2 * self.rounding_radius)
@@ -178,11 +171,6 @@ class TruncatedCone(Truncated):
 
     kind: ClassVar[str] = "truncated_cone"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then slope·(r − flat_radius)"
-    closed_forms: ClassVar[tuple[str, ...]] = _CLOSED
-
-    def __post_init__(self) -> None:
-        require_positive("flat_radius", self.flat_radius)
-        require_positive("slope", self.slope)
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
@@ -226,10 +214,6 @@ class TruncatedParaboloid(Truncated):
     kind: ClassVar[str] = "truncated_paraboloid"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r² − flat_radius²)/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
-
-    def __post_init__(self) -> None:
-        require_positive("flat_radius", self.flat_radius)
-        require_positive("radius", self.radius)
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:

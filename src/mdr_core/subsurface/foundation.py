@@ -77,9 +77,7 @@ def foundations(
     nearest : least distance of the points from the origin [length]; None for a search.
     """
     for profile, e_star, whole, depth, parts in _cases(contact):
-        panels = profile.panels(rtol)
-        branches = profile.branches if panels is None else panels.branches
-        smooth = [Smooth(branch, _near(profile, branch)) for branch in branches]
+        smooth = [Smooth(branch, _near(profile, branch)) for branch in profile.branches]
         given = rtol, _NEAREST * whole.a if nearest is None else nearest
         if profile.slips_at_once:
             pressed = step_block(whole.a, depth) if depth > 0 else None
@@ -90,7 +88,7 @@ def foundations(
             block, span = pressed, whole
             if isinstance(part, Arc):
                 span = Span(part.high, part.low, part.width)
-                own = [Smooth(each, min(each.base, each.behind)) for each in part.branches(rtol)]
+                own = [Smooth(each, min(each.base, each.behind)) for each in part.branches]
                 block = blocks(own, span, *given)
             elif part is not None:
                 block, span = blocks(smooth, part, *given), part

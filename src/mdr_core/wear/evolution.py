@@ -67,15 +67,7 @@ class WearEvolution(Results, WornSurface):
 
     coarse: WornSurface = field(kw_only=True)
     """Worn contact by fewer nodes and a looser tolerance, for the error estimates."""
-    quantities: ClassVar[tuple[str, ...]] = (
-        "cycles",
-        "worn_volume",
-        "indentation_depth",
-        "normal_force",
-        "stick_radius",
-        "contact_radius",
-        "dissipated_energy",
-    )
+    quantities: ClassVar[tuple[str, ...]] = ("cycles", *SCALARS)
 
     @cached_property
     def error_estimate(self) -> float:

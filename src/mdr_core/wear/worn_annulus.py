@@ -131,7 +131,7 @@ class WornAnnulus:
         result = np.zeros((len(kernels), width.size))
         if self.profile.slips_at_once:
             return result
-        panels = self.profile.panels(RTOL)
+        panels = self.profile.panels
         if panels is not None:
             for i, (c, w) in enumerate(zip(self.stick.tolist(), width.tolist(), strict=True)):
                 below = self.chosen(np.array([i])).below
