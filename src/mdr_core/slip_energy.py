@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.broadcasting import in_blocks
-from mdr_core.elementwise import is_number, where
+from mdr_core.broadcasting import in_blocks, with_parameters
+from mdr_core.elementwise import is_number
 from mdr_core.equivalent_1d import depth_step
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import Profile
@@ -21,7 +21,9 @@ _BLOCK: Final = 4096
 _BOWED: Final = 2e-3
 
 
-def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+def slip_moment(
+    profile: Profile, coordinate: Array, width: Array, stick: Array, energy: Array
+) -> Array:
     """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx [length^3].
 
     It is the area between F(d) from c to a and its chord. In narrow annuli, where that is a small
@@ -35,26 +37,30 @@ def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array)
     profile : parameters broadcast with the annuli.
     coordinate : a as a contact coordinate.
     width, stick : a - c and c in the contact coordinate, each accurate by itself.
+    energy : elastic energy over E* at a [length^3].
     """
     closed = profile.slip_moment(coordinate, width, stick)
     if closed is not None:
         return closed
-    if not profile.has_closed_energy:
-        return _by_springs(profile, coordinate, width, stick)
     with np.errstate(over="ignore", invalid="ignore"):
         low = np.maximum(stick, profile.first_coordinate)
-        (d, force, energy), (less, weaker, lower) = (
-            (profile.depth(s), profile.reduced_force(s), profile.reduced_energy(s))
-            for s in (coordinate, low)
-        )
-        area = (d - less) * (force + weaker) / 2 - (energy - lower)
-        bowed = area > _BOWED * d * force
-    if bowed.all():
+        d, force = profile.depth(coordinate), profile.reduced_force(coordinate)
+        chord = (d - profile.depth(low)) * (force + profile.reduced_force(low)) / 2
+        area = chord - (energy - profile.reduced_energy(low))
+        narrow = ~(area > _BOWED * d * force)
+    if not narrow.any():
         return area
-    return where(bowed, area, _by_springs(profile, coordinate, width, stick))
+    ends = coordinate, width, stick
+    if is_number(area):
+        return _by_springs(profile, *map(np.atleast_1d, ends))[0]
+    cases = [np.broadcast_to(end, area.shape)[narrow] for end in ends]
+    swept = {name: np.broadcast_to(profile.parameters[name], area.shape) for name in profile.swept}
+    part = with_parameters(profile, {name: column[narrow] for name, column in swept.items()})
+    area[narrow] = _by_springs(part, *cases)
+    return area
 
 
-def _by_springs(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+def _by_springs(profile: Profile, *ends: Array) -> Array:
     """D^2/4 times the second Bernstein moment of the springs."""
 
     def _moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
@@ -63,10 +69,7 @@ def _by_springs(profile: Profile, coordinate: Array, width: Array, stick: Array)
         found = moments.over(profile.depth(low), span, np.stack([low, high]))
         return (np.square(span) * found.weights[1] / 4,)
 
-    ends = coordinate, width, stick
-    if is_number(sum(ends)) and not profile.swept:
-        return _moment(profile, *map(np.atleast_1d, ends))[0][0]
-    swept = [profile.parameters[name] for name in profile.swept]
-    shape = np.broadcast_shapes(*map(np.shape, (*ends, *swept)))
-    (result,) = in_blocks(_moment, profile, [np.atleast_1d(end) for end in ends], _BLOCK)
-    return result.reshape(shape)
+    if ends[0].size <= _BLOCK:
+        return _moment(profile, *ends)[0]
+    (result,) = in_blocks(_moment, profile, ends, _BLOCK)
+    return result

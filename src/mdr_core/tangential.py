@@ -205,7 +205,8 @@ class TangentialContact(Results):
         if profile.slips_at_once:
             slipping = 0 * self.width
         else:
-            moment = slip_moment(profile, self._coordinate, *self._slipping)
+            energy = self.normal.elastic_energy / e_star
+            moment = slip_moment(profile, self._coordinate, *self._slipping, energy)
             slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
         return slipping + self.limiting_force * self.excess
 

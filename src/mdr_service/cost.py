@@ -25,11 +25,11 @@ from mdr_service.settings import SETTINGS
 
 # Times on one core of a server of 2023 [s]: of a query about a single load of a cone, ...
 _START: Final[dict[type[Query], float]] = {
-    NormalQuery: 5e-5,
-    TangentialQuery: 1.5e-4,
+    NormalQuery: 1e-4,
+    TangentialQuery: 2e-4,
     StressQuery: 1e-4,
-    HistoryQuery: 5e-4,
-    WearQuery: 1e-3,
+    HistoryQuery: 7e-4,
+    WearQuery: 6e-4,
     EvolutionQuery: 1e-3,
 }
 # ... of the step from one load to many, for which arrays take the place of single numbers, ...
@@ -44,7 +44,8 @@ _VALUE, _PICTURE = 2.5e-7, 0.3
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
 # Of each nonlinear load step, and of each node of an evolution, besides its least number of nodes.
-# Of these, of cycles and of stresses and slip only the fourth root of the multiples is taken.
+# Of these, of a single load, cycles, stresses and slip only the fourth root of the multiples is
+# taken.
 _NONLINEAR_STEP, _NODE, _LEAST_NODES = 2.5e-3, 7.5e-3, 16
 # Of the stress at a point beneath the surface, and points that a search for its peak takes.
 _POINT, _POINT_OF_TABLE, _SEARCHED = 3e-6, 1e-5, 2000
@@ -68,7 +69,7 @@ def seconds(query: BaseModel) -> float:
     path = query.path if isinstance(query, HistoryQuery | LoadedQuery) else None
     # Times that are multiplied in full, and those multiplied by the fourth root.
     # A table is resolved once for many queries.
-    evaluated, integrated = _START[type(query)] * min(1.0, _IMPLICIT / scale), 0.0
+    evaluated, integrated = 0.0, _START[type(query)]
     if isinstance(query, FieldQuery):
         if "normal_displacement" in query.quantities:
             evaluated += _VALUE * query.numbers

@@ -146,11 +146,6 @@ class Profile(ABC):
         return 3.5
 
     @property
-    def has_closed_energy(self) -> bool:
-        """True if `reduced_energy` takes no quadrature."""
-        return "elastic_energy" in self.closed_forms
-
-    @property
     def tip_exponent(self) -> float:
         """Lower bound of the exponent of g at the axis, at most 1."""
         return 1.0

@@ -1,6 +1,7 @@
 """Elastic energy by quadrature, for profiles without a closed form of it."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -31,10 +32,7 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
     length = np.minimum(top, _DECAY)
     # Every load has its own pieces, summed in order: its result does not depend on other loads.
     count = np.maximum(np.ceil(length / _LONGEST), 1.0)
-    nodes, weights = gauss_legendre(_NODES)
-    most = int(np.max(count, initial=1.0))
-    places = (np.arange(most)[:, None] + (1 - nodes) / 2).ravel()
-    weights = np.tile(weights, most)
+    places, weights = _rule(int(np.max(count, initial=1.0)))
     step = max(_BLOCK // max(top.size, 1), 1)
     total = np.zeros_like(top)
     for start in range(0, places.size, step):
@@ -47,3 +45,11 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
         values[0] += total
         total = np.cumsum(values, axis=0)[-1] if len(values) > 1 else values[0]
     return total * scale * length / (2 * count)
+
+
+@lru_cache(maxsize=32)
+def _rule(pieces: int) -> tuple[Array, Array]:
+    """Distances of the nodes from the upper end, in pieces, and their weights."""
+    nodes, weights = gauss_legendre(_NODES)
+    places = (np.arange(pieces)[:, None] + (1 - nodes) / 2).ravel()
+    return places, np.tile(weights, pieces)

@@ -76,10 +76,6 @@ class Tabulated(FlatEnded):
         return "panel_moments"
 
     @property
-    def has_closed_energy(self) -> bool:
-        return True
-
-    @property
     def notices(self) -> tuple[Notice, ...]:
         return self.resolved.notices
 
