@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from itertools import pairwise
 from math import frexp, inf
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
-from scipy.linalg.lapack import dgtsv
 
 from mdr_core.errors import InputError
 from mdr_core.typing import Array, Flags
@@ -138,48 +137,21 @@ def _end_error(r: Array, f: Array) -> float:
 
 
 def _not_a_knot(r: Array, f: Array, first: float | None = None, last: float | None = None) -> Array:
-    """Slopes of SciPy's `CubicSpline` at the points, bit-identical, without its checks.
+    """Slopes of a cubic spline at the points; a prescribed slope at an end replaces its condition.
 
-    A prescribed slope at an end replaces the condition that the next point is not a knot. Three
-    points give a parabola, two a straight line.
+    Three points give a parabola, two a straight line.
     """
-    if r.size == 2 or (r.size == 3 and first is None and last is None):
-        slopes = np.asarray(CubicSpline(r, f)(r, 1))
-        return np.array(
-            [
-                slopes[0] if first is None else first,
-                *slopes[1:-1],
-                slopes[-1] if last is None else last,
-            ]
-        )
-    width = r[1:] - r[:-1]
-    chord = (f[1:] - f[:-1]) / width
-    upper, lower = np.empty((2, width.size))
-    diagonal, right = np.empty((2, r.size))
-    diagonal[1:-1] = 2 * (width[:-1] + width[1:])
-    upper[1:], lower[:-1] = width[:-1], width[1:]
-    right[1:-1] = 3 * (width[1:] * chord[:-1] + width[:-1] * chord[1:])
-    diagonal[0], upper[0], right[0] = _end_condition(width, chord, first)
-    diagonal[-1], lower[-1], right[-1] = _end_condition(width[::-1], chord[::-1], last)
-    *_, slopes, failed = dgtsv(lower, diagonal, upper, right, 1, 1, 1, 1)
-    if failed:
-        raise InputError(("profile", "r"), "radii are too close together for cubic interpolation")
-    return np.asarray(slopes)
-
-
-def _end_condition(width: Array, chord: Array, slope: float | None) -> tuple[float, float, float]:
-    """Diagonal, next element and right side of the first equation for the slopes.
-
-    The diagonal is as large as the element below: rows that change places lose digits one after
-    the other.
-    """
-    h, k = float(width[0]), float(width[1])
-    if slope is not None:
-        # A power of two, so that no rounding error is added.
-        scale = 2.0 ** frexp(k)[1]
-        return scale, 0.0, scale * slope
-    both = h + k
-    return k, both, ((h + 2 * both) * k * chord[0] + h**2 * chord[1]) / both
+    # Widths below 1 keep the order of the equations; a power of two adds no rounding error.
+    unit = 2.0 ** frexp(r[-1])[1]
+    ends: Any = tuple(
+        "not-a-knot" if slope is None else (1, unit * slope) for slope in (first, last)
+    )
+    try:
+        spline = CubicSpline(r / unit, f, bc_type=ends)
+    except (np.linalg.LinAlgError, ValueError):
+        detail = "radii are too close together for cubic interpolation"
+        raise InputError(("profile", "r"), detail) from None
+    return np.asarray(spline(r / unit, 1) / unit)
 
 
 def checked_heights(r: Array, f: Array) -> Array:
