@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import inf
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -129,7 +129,7 @@ def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
         load = np.arange(start, min(start + step, edge.size))
         same = np.broadcast_to(fixed, (load.size, fixed.size))
         stops = np.concatenate([same, *(part[load, None] for part in (edge, *slip[1:]))], axis=1)
-        stops = np.sort(np.clip(stops, fixed[0], edge[load, None]), axis=1)
+        stops = np.sort(_within(stops, fixed[0], edge[load, None]), axis=1)
         _refine(field, _sampled(field, load, _between(stops, count), best), best)
     return best
 
@@ -165,10 +165,10 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
     `outer` brackets the top; [low, high] is the part of it around the top of a polynomial.
     """
     load, low, high, sample = brackets
-    outer, highest, peak = np.stack([low, high]), low, np.zeros(load.size)
+    outer, highest, peak = np.array([low, high]), low, np.zeros(load.size)
     for _ in range(_ROUNDS):
         rows, middle, half = np.arange(load.size), (low + high) / 2, (high - low) / 2
-        at = np.clip(middle[:, None] + half[:, None] * _LOBATTO, low[:, None], high[:, None])
+        at = _within(middle[:, None] + half[:, None] * _LOBATTO, low[:, None], high[:, None])
         values = field(np.repeat(load, _NODES), at.ravel()).reshape(at.shape)
         place = np.argmax(values, axis=1)
         first, last = place == 0, place == _NODES - 1
@@ -186,7 +186,7 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         top, height = _vertex(values @ _TO_FINE.T)
         centre = np.where(inside, middle + half * top, highest)
         reach = half * np.where(inside, 1 / _NARROWER, _WIDER)
-        low, high = np.clip(centre - reach, *outer), np.clip(centre + reach, *outer)
+        low, high = _within(centre - reach, *outer), _within(centre + reach, *outer)
         left = ~inside | (peak < sample) | (height > best[load] * (1 + _SETTLED))
         if not left.any():
             break
@@ -196,14 +196,19 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
 
 def _vertex(curve: Array) -> tuple[Array, Array]:
     """Place in [-1, 1] and height of the highest point of each curve, by the parabola there."""
-    rows, at = np.arange(len(curve)), np.clip(np.argmax(curve, axis=1), 1, _FINE - 1)
+    rows, at = np.arange(len(curve)), _within(np.argmax(curve, axis=1), 1, _FINE - 1)
     before, highest, after = (curve[rows, at + step] for step in (-1, 0, 1))
     bend = 2 * highest - before - after
     with np.errstate(divide="ignore", invalid="ignore"):
         offset = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
-    offset = np.clip(offset, -1.0, 1.0)
+    offset = _within(offset, -1.0, 1.0)
     height = np.maximum(np.max(curve, axis=1), highest + offset * (after - before) / 4)
     return (at + offset) * (2 / _FINE) - 1, height
+
+
+def _within(values: Any, low: Any, high: Any) -> Any:
+    """Values clipped to an interval; NumPy's own function takes four times as long for a few."""
+    return np.minimum(np.maximum(values, low), high)
 
 
 _LOBATTO: Final = -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))

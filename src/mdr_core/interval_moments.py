@@ -66,7 +66,7 @@ class Moments(NamedTuple):
             low * a[1] + 2 * low * high * (a[2] + b[0]) + high * b[1],
             low * low * (a[2] + b[0]) + low * b[1] + b[2],
         ]
-        return Moments(span, np.stack(weights))
+        return Moments(span, np.array(weights))
 
     def at(self, index: Indices | slice) -> "Moments":
         """Return the moments of some of the intervals."""
@@ -110,7 +110,7 @@ class IntervalMoments:
             # The contact radius is constant.
             return Moments(span, np.zeros((3, span.size)))
         if ends is None:
-            ends = self.contact_coordinate(np.stack([low, low + span]))
+            ends = self.contact_coordinate(np.array([low, low + span]))
         if not has_many_breaks(self.profile):
             return self._by_break(low, span, ends)
         breaks, levels = self._breaks
@@ -121,13 +121,13 @@ class IntervalMoments:
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         next_break = first[crossed]
         stop[crossed], length[crossed] = breaks[next_break], levels[next_break] - low[crossed]
-        found = self._smooth(low, length, np.stack([start, stop]), base)
+        found = self._smooth(low, length, np.array([start, stop]), base)
         if not crossed.size:
             return found
         between = self._chained(found.at(crossed), next_break, last[crossed] - 1)
         top = np.maximum(span[crossed] - between.span, 0.0)
         base = breaks[last[crossed] - 1]
-        ends = np.stack([base, np.maximum(ends[1][crossed], base)])
+        ends = np.array([base, np.maximum(ends[1][crossed], base)])
         upper = self._smooth(levels[last[crossed] - 1], top, ends, base)
         found.weights[:, crossed] = between.joined(upper).weights
         return Moments(span, found.weights)
@@ -140,8 +140,8 @@ class IntervalMoments:
             return self._smooth(low, span, ends, base)
         part = np.where(crossed, np.clip(_from_below(self.normal, base) - low, 0.0, span), 0.0)
         inside = np.maximum(base, ends[0])
-        lower = self._smooth(low, part, np.stack([ends[0], inside]), np.zeros_like(base))
-        upper = self._smooth(low + part, span - part, np.stack([inside, ends[1]]), base)
+        lower = self._smooth(low, part, np.array([ends[0], inside]), np.zeros_like(base))
+        upper = self._smooth(low + part, span - part, np.array([inside, ends[1]]), base)
         # The first moment is infinite on the axis where forces are prescribed.
         with np.errstate(invalid="ignore"):
             joined = lower.joined(upper).weights
@@ -185,7 +185,7 @@ class IntervalMoments:
     def _chains(self) -> list[Moments]:
         """Moments from each break to the 2^k-th next, for k = 0, 1, ..."""
         breaks, levels = self._breaks
-        ends = np.stack([breaks[:-1], breaks[1:]])
+        ends = np.array([breaks[:-1], breaks[1:]])
         chains, size = [self._smooth(levels[:-1], np.diff(levels), ends, ends[0])], 1
         # On a level the measure is concentrated at one normal coordinate.
         level = levels[:-1] == levels[1:]
@@ -271,7 +271,7 @@ class IntervalMoments:
         first, second = sign * (slope[1] - rise), sign * (slope[1] - 2 * (rise - mean))
         # The measure itself is infinite on the axis where forces are prescribed.
         whole = sign * (slope[1] - slope[0])
-        return np.stack([whole - 2 * first + second, 2 * (first - second), second])
+        return np.array([whole - 2 * first + second, 2 * (first - second), second])
 
     def over_narrow(self, span: Array, ends: Array, base: Array, beyond: Flags) -> Array:
         """Return the moments over narrow intervals, by Gauss' rule in the contact coordinate.
@@ -316,7 +316,8 @@ class IntervalMoments:
         total = np.where(total > 0, total, inf)
         t = in_order(_cumulative().T[:, :, None], rise[:, None]) / total
         measure = measure * (span / total)
-        return in_order(measure, np.stack([np.square(1 - t), 2 * t * (1 - t), t * t], axis=1))
+        parts = np.array([np.square(1 - t), 2 * t * (1 - t), t * t])
+        return in_order(measure, parts.swapaxes(0, 1))
 
 
 def _from_below(function: Function, breaks: Array) -> Array:

@@ -66,7 +66,7 @@ def _by_springs(profile: Profile, *ends: Array) -> Array:
     def _moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
         span = depth_step(profile, high, width, low)
         moments = IntervalMoments(profile, by_force=False)
-        found = moments.over(profile.depth(low), span, np.stack([low, high]))
+        found = moments.over(profile.depth(low), span, np.array([low, high]))
         return (np.square(span) * found.weights[1] / 4,)
 
     if ends[0].size <= _BLOCK:

@@ -232,14 +232,14 @@ def slip_segments(path: FrontPath) -> SlipSegments:
         lower_side[crossed] = 0.0
         side, lower_side = np.append(side, 0 * share), np.append(lower_side, -side[crossed])
     span = (lower - upper).sum(axis=1) / 2
-    slip, gaps = _slip(np.stack([upper, lower]), moved, side + lower_side)
+    slip, gaps = _slip(np.array([upper, lower]), moved, side + lower_side)
     partial = np.zeros(step.shape, dtype=bool)
     segments = SlipSegments(step, normal, span, slip, gaps[0], gaps[1], partial)
     # After the last visit, on the axis, all springs slip until the end of the step.
     last = np.flatnonzero(~np.append(follows, False) & (path.normal < 0))
     step, behind = path.step[last], path.behind[last]
     moved, nothing = path.moved[step], np.zeros(last.size)
-    slip, gaps = _slip(np.stack([behind, moved]), moved, _side(behind, moved))
+    slip, gaps = _slip(np.array([behind, moved]), moved, _side(behind, moved))
     slides = SlipSegments(
         step, nothing, nothing, slip, gaps[0], path.load[step], np.ones(last.size, dtype=bool)
     )

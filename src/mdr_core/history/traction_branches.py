@@ -85,7 +85,7 @@ class TractionBranches:
         below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
         some = np.flatnonzero((tree.parent >= 0) & (self.depth_step > 0))
         moments = IntervalMoments(self.profile, by_force=False)
-        given = self.depth[below], self.depth_step, self.coordinate[np.stack([below, own])]
+        given = self.depth[below], self.depth_step, self.coordinate[np.array([below, own])]
         # The measure of the moments is 2 dx.
         weights = np.zeros((3, tree.normal.size))
         weights[:, some] = moments.over(*(each[..., some] for each in given)).weights / 2

@@ -3,6 +3,7 @@
 Source: notes, §4.
 """
 
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -27,7 +28,7 @@ def raised(base: Parameter, exponent: Parameter) -> Array:
     here to arrays of exponents, so that a sweep is bit-identical to its cases.
     """
     result = np.power(base, exponent)
-    if np.ndim(exponent):
+    if isinstance(exponent, np.ndarray):
         for special, exact in _EXACT:
             there = exponent == special
             if np.any(there):
@@ -36,17 +37,15 @@ def raised(base: Parameter, exponent: Parameter) -> Array:
 
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
-    """Return C r^n."""
+    """Return C r^n; overflow is up to the caller, whose sum of terms takes one `np.errstate`."""
     factor, scale = _scaled(coefficient, exponent)
-    with np.errstate(over="ignore", under="ignore"):
-        return factor * raised(r * scale, exponent)
+    return factor * raised(r * scale, exponent)
 
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
-    """Return C n r^(n-1), infinite at r = 0 for n < 1."""
+    """Return C n r^(n-1), infinite at r = 0 for n < 1; overflow as of `power`."""
     factor, scale = _scaled(coefficient, exponent)
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):
-        return (factor * scale * exponent) * raised(r * scale, exponent - 1)
+    return (factor * scale * exponent) * raised(r * scale, exponent - 1)
 
 
 def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Parameter]:
@@ -82,8 +81,16 @@ def kappa(exponent: Parameter) -> Array:
 
     Source: mdr-5, Eq. (5.25), as pi/B((n + 1)/2, 1/2).
     """
+    return _kappa_of_one(exponent) if isinstance(exponent, float) else _kappa(exponent)
+
+
+def _kappa(exponent: Parameter) -> Array:
     inverse: Any = beta((exponent + 1) / 2, 0.5)
     return np.pi / inverse
+
+
+# Every function of a power takes it again.
+_kappa_of_one = lru_cache(maxsize=256)(_kappa)
 
 
 def power_stick(a: Array, ratio: Array, rest: Array, exponent: Parameter) -> tuple[Array, Array]:

@@ -274,10 +274,12 @@ class Power(Profile):
         return min(1.0, float(np.min(self.exponent)))
 
     def f(self, radius: Array) -> Array:
-        return power(self.coefficient, radius, self.exponent)
+        with np.errstate(over="ignore", under="ignore"):
+            return power(self.coefficient, radius, self.exponent)
 
     def df(self, radius: Array) -> Array:
-        return power_slope(self.coefficient, radius, self.exponent)
+        with np.errstate(divide="ignore", over="ignore", under="ignore"):
+            return power_slope(self.coefficient, radius, self.exponent)
 
     def g(self, x: Array) -> Array:
         return kappa(self.exponent) * self.f(x)

@@ -1,6 +1,6 @@
 """Sums of powers, with negative terms where the profile stays admissible."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, inf, isfinite, log, pi
@@ -171,9 +171,9 @@ class Series(Profile):
     def dg(self, x: Array) -> Array:
         return _total(kappa(n) * power_slope(c, x, n) for c, n in self._powers)
 
-    def _depths(self, x: Array) -> list[tuple[Array, float]]:
+    def _depths(self, x: Array) -> Iterator[tuple[Array, float]]:
         """Each term of g [length], and its exponent."""
-        return [(kappa(n) * power(c, x, n), n) for c, n in self._powers]
+        return ((kappa(n) * power(c, x, n), n) for c, n in self._powers)
 
     def reduced_force(self, coordinate: Array) -> Array:
         parts = (2 * n / (n + 1) * depth for depth, n in self._depths(coordinate))
@@ -182,8 +182,8 @@ class Series(Profile):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """sum_ij d_i d_j a n_i n_j (n_i + n_j + 2)/((n_i + 1)(n_j + 1)(n_i + n_j + 1))."""
-        depths = self._depths(coordinate)
-        with np.errstate(over="ignore"):
+        with np.errstate(over="ignore", under="ignore"):
+            depths = list(self._depths(coordinate))
             pairs = (
                 d * e * (n * m * (n + m + 2) / ((n + 1) * (m + 1) * (n + m + 1)))
                 for d, n in depths
@@ -213,7 +213,7 @@ class Series(Profile):
         # Where the terms cancel, each has to be more accurate.
         tolerance = max(rtol / (1 + self._cancellation), _FINEST)
         total = np.zeros(radius.shape)
-        with np.errstate(invalid="ignore"):
+        with np.errstate(all="ignore"):
             for c, n in self._powers:
                 moment = power_moment(n - 1, annulus, radius, tolerance)
                 total += kappa(n) / pi * power_slope(c, annulus.outer, n) * moment
@@ -225,6 +225,6 @@ class Series(Profile):
 
 def _total(parts: Iterable[Array]) -> Array:
     """Sum of the terms of a positive total; infinity where terms of either sign overflow."""
-    with np.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         total: Any = sum(parts)
     return where(np.isnan(total), inf, total)
