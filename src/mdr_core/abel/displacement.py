@@ -160,7 +160,8 @@ def _annulus_ends(
         """sqrt(r^2 - at^2) from gap = r - at."""
         return np.asarray(np.sqrt(np.maximum(gap, 0.0) * (r + at)))
 
-    above_base, above_begin = below(base)[index], below(begin)[index]
+    above_base = below(base)[index]
+    above_begin = above_base if begin == base else below(begin)[index]
     s_r = root(above_base + w, base)
     later = above_begin < 0
     at_begin = sqrt((begin - base) * (begin + base))
@@ -183,9 +184,11 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
     # The roots distinguish the ends of an interval that is too narrow for s to resolve.
     upper = (split < s_high) | (split <= s_low)
     span = np.where(upper, root_split / (split + s_r) - top, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
-    pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / _STEEP), 1)
+    pieces = 1
+    if branch.steepness > _STEEP:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
+        pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / _STEEP), 1)
     points = nodes_of_pieces(rtol)
     if branch.pole < inf and np.any(span > 0):
         distance = _pole_distance(branch, s_r, top, span)
