@@ -47,8 +47,9 @@ _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
 # Of these, of a single load, cycles, stresses and slip only the fourth root of the multiples is
 # taken.
 _NONLINEAR_STEP, _NODE, _LEAST_NODES = 2.5e-3, 7.5e-3, 16
-# Of the stress at a point beneath the surface, and points that a search for its peak takes.
-_POINT, _POINT_OF_TABLE, _SEARCHED = 3e-6, 1e-5, 2000
+# Of the stress at a point beneath the surface, points that a search for its peak takes, and
+# searches for the onset of yield by both criteria.
+_POINT, _POINT_OF_TABLE, _SEARCHED, _ONSETS = 3e-6, 5e-6, 2000, 10
 # Profiles whose peak is a multiple of the mean pressure: without friction, it is known.
 _SIMILAR: Final = frozenset({"cone", "paraboloid", "power"})
 # Well beyond the deadline, since few queries take less than a quarter of the expected time.
@@ -96,8 +97,12 @@ def seconds(query: BaseModel) -> float:
 def _beneath(query: SubsurfaceQuery) -> float:
     """Return the expected time of stresses beneath the surface."""
     by_force = query.material.has("yield_strength") and not query.has("history")
-    points = query.positions + _SEARCHED * (2 * query.largest + 20 * by_force)
-    return _START[NormalQuery] + query.loads * points * _point(query) + _yielding(query)
+    points = query.loads * (query.positions + 2 * _SEARCHED * query.largest)
+    if by_force:
+        # Loads in one ratio of the forces share the onset. Under a power it follows from one peak.
+        onsets = query.loads if query.has("friction_coefficient") else 1
+        points += _SEARCHED * onsets * (2 if query.profile.kind in _SIMILAR else _ONSETS)
+    return _START[NormalQuery] + points * _point(query) + _yielding(query)
 
 
 def _yielding(query: Query) -> float:

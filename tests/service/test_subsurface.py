@@ -112,6 +112,14 @@ def test_default_points_cover_the_contact(client: Client) -> None:
     assert np.shape(result["von_mises"]) == (2, 7, 7)
 
 
+def test_default_points_have_no_unit_without_a_load(client: Client) -> None:
+    load = {"normal_force": 0.0}
+    query = {key: MAP[key] for key in ("profile", "material")} | {"load": load, "points": 3}
+    result = result_of(client, query)
+    assert result["x"] == result["z"] == [0.0, 0.0, 0.0]
+    assert not np.any(result["von_mises"])
+
+
 def test_infinite_stress_is_null_with_a_warning(client: Client) -> None:
     cone = MAP | {"profile": {"kind": "cone", "slope": 0.05}, "y": 0.0, "largest": True}
     result = result_of(client, cone | {"quantities": ["stress_zz", "von_mises", "stress_xy"]})

@@ -1,162 +1,266 @@
-"""Slopes of the foundation's loads q and q_x over annuli, from which the stresses follow."""
+"""Loads of the foundation and their moments, from which the stresses beneath a contact follow.
+
+With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are Im int k(x) g'(x) K dx for
+
+    K = 1/rho, zeta/rho^3, 1/(rho u), 1/rho^3, 1/u, 1/u^2, 1/(rho u^2),
+
+k = 1 for the normal load, and the slope of q_x over q for the tangential load.
+
+In x^2 the kernels are singular at w = (r + i z)^2 alone. The contact is cut into pieces on which
+k g' is smooth, and pieces are merged in pairs into blocks. A block that is far from w acts like
+masses at a few nodes. On a piece that is near, s = sqrt(x^2 - b^2) = p + q sinh(t) moves the
+singularity p + i q = sqrt(w - b^2) to t = i pi/2, however close to the surface the point is. The
+values of g' are needed on the real axis only.
+
+Source: notes, §14.
+"""
 
 from collections.abc import Iterator
-from math import inf
-from typing import Any, Final, NamedTuple, TypeAlias
+from math import hypot, inf, sqrt
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.polynomial import polynomial
 
 from mdr_core.abel.displacement import Branch
-from mdr_core.fields.arc import Arc
-from mdr_core.fields.history_end import arcs
-from mdr_core.history import ContactState, LoadHistory
-from mdr_core.normal import NormalContact
-from mdr_core.profiles import Cone, Hyperboloid, Paraboloid, Profile
-from mdr_core.subsurface.moments import Block, Smooth, Span, blocks, step_block
-from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
+from mdr_core.profiles import Cone, Paraboloid
+from mdr_core.quadrature import composite_rule, gauss_legendre
+from mdr_core.subsurface.annuli import Contact, annuli_of, normal_of
+from mdr_core.typing import Array, Chosen, Indices
 
-# Least distance from the origin at which a search needs all digits, over the contact radius.
-_NEAREST: Final = 1e-7
-
-Contact: TypeAlias = NormalContact | TangentialContact | ContactState
-# Slope of -q_x/E* in parts of g' on an annulus, None for the whole contact, or times the factor of
-# an arc.
-_Part: TypeAlias = tuple[float, Span | Arc | None]
-
-
-class Foundation(NamedTuple):
-    """Loads of the foundation in one case, resolved to a tolerance."""
-
-    profile: Profile
-    modulus: float
-    """E*/pi [pressure]."""
-    edges: list[float]
-    """Slip fronts and contact radius, ascending [length]."""
-    pressed: Block | None
-    """Of the slope g' of -q/E*; None without a load."""
-    sheared: list[tuple[float, Block]]
-    """Parts of the slope of -q_x/E*: a factor, and the block of a slope."""
-    slips_from: float
-    """Least radius at which q_x has a slope [length]; infinite if it has none."""
-    rtol: float
+# Number of kernels.
+KERNELS: Final = 7
+# Longest panel in t: the nearest singularity lies pi/2 beside the axis, or log(2) beyond an end.
+_PANEL: Final = 2.0
+# Nodes of a panel, and the part of its distance from the nearest edge or break by which a point is
+# moved off the surface: up to rounding error, or to 5e-8 of the largest stress.
+_EXACT, _COARSE = (16, 1e-18), (10, 1e-9)
+# Nodes of a block, and the least distance of a far singularity from it over its length, both in
+# x^2: interpolation errs by 5.8^-n.
+_JOINED, _FAR = 20, 1.0
+# Powers of s up to this one are resolved on a piece that doubles s.
+_STEEP: Final = 8.0
+# First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
+# error beyond 1e16 times this distance.
+_NEAREST: Final = 1e-32
+# Replaces a distance of zero from a node.
+_TINY: Final = 1e-290
+# Nodes times points evaluated at once: larger complex arrays leave the cache, and those above
+# 128 kB are allocated anew.
+_BLOCK: Final = 4_096
 
 
-def shape_of(contact: Contact) -> tuple[int, ...]:
-    """Return the shape of the loads."""
-    if isinstance(contact, ContactState):
-        return ()
-    return (contact.width if isinstance(contact, TangentialContact) else contact.coordinate).shape
+class _Pieces(NamedTuple):
+    """Intervals low <= x <= high on which k g' is smooth in s, ascending; shape (n,) each."""
+
+    low: Array
+    high: Array
+    base: Array
+    """b of s = sqrt(x^2 - b^2) [length]."""
+    s_low: Array
+    s_high: Array
+    step: Array
+    """s_high - s_low, accurate however narrow."""
 
 
-def normal_of(contact: Contact) -> NormalContact:
-    """Return the normal contact."""
-    if isinstance(contact, ContactState):
-        coordinate = contact.coordinate[-1] if contact.in_contact else 0.0
-        return NormalContact(contact.profile, contact.e_star, np.asarray(coordinate))
-    return contact.normal if isinstance(contact, TangentialContact) else contact
+class _Blocks(NamedTuple):
+    """Parts low <= x <= high of the contact, n of the same number of pieces, as masses at nodes."""
+
+    low: Array
+    high: Array
+    width: Array
+    """high^2 - low^2, accurate however narrow, shape (n,); the last block may be empty."""
+    offset: Array
+    """x^2 - low^2 of the nodes, shape (nodes, n)."""
+    x: Array
+    mass: Array
+    """Of q and q_x, if there is one, shape (1 or 2, nodes, n)."""
 
 
-def slips_from(contact: TangentialContact | LoadHistory) -> Array:
-    """Return the least radius with slip under each load [length]; infinite without slip."""
-    if isinstance(contact, LoadHistory):
-        return np.where(contact.regime == "full_slip", 0.0, inf)
-    slips = contact.full_slip | (contact.width > 0)
-    return np.where(slips, contact.stick_radius, inf)
+class Foundation:
+    """Loads of the foundation under a single load, exact or for a search."""
 
+    def __init__(self, contact: Contact, *, exact: bool = True) -> None:
+        normal, (self._nodes, self.lift) = normal_of(contact), _EXACT if exact else _COARSE
+        self.profile, self.modulus = normal.profile, float(normal.e_star) / np.pi
+        self.annuli, self.loaded = annuli_of(contact), bool(normal.loaded)
+        if not self.loaded:
+            return
+        if self.profile.slips_at_once:
+            # The slope of g is a single step at the contact radius.
+            a, zero = self.annuli.radius, np.zeros((1, 1))
+            k = np.append(1.0, self.annuli.slope)[: 1 + self.annuli.sheared, None, None]
+            mass = k * float(normal.indentation_depth)
+            self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
+            return
+        self._pieces = pieces = self._cut(float(normal.coordinate))
+        u, shares = (part[:, None] for part in composite_rule(self._nodes, 1))
+        past = pieces.step * u
+        s = pieces.s_low + past
+        x = np.sqrt(pieces.base**2 + s * s)
+        mass = self._slopes(x, s, slice(None)) * (pieces.step * shares)
+        width, offset = pieces.step * (pieces.s_low + pieces.s_high), past * (pieces.s_low + s)
+        self._levels = [_Blocks(pieces.low, pieces.high, width, offset, x, mass)]
+        while self._levels[-1].low.size > 1:
+            self._levels[-1] = _paired(self._levels[-1])
+            self._levels.append(_merged(self._levels[-1]))
 
-def foundations(
-    contact: Contact, rtol: float, nearest: float | None = None
-) -> Iterator[Foundation]:
-    """Yield the loads of the foundation of each case.
+    def _cut(self, coordinate: float) -> _Pieces:
+        panels, radius, width = self.profile.panels, self.annuli.radius, self.annuli.width
+        self._panels = panels
+        self._branches = self.profile.branches
+        starts = np.array([max(branch.base, branch.start) for branch in self._branches])
+        ends = [starts[starts < radius[-1]], radius[radius > starts[0]]]
+        if panels is None or self.annuli.rate.any():
+            ends += [self._cuts(branch) for branch in self._branches]
+        cuts = np.unique(np.concatenate(ends))
+        low, high = cuts[:-1], cuts[1:]
+        self._owner = np.searchsorted(starts, low, side="right") - 1
+        self._part = part = np.searchsorted(radius, high)
+        base = np.array([branch.base for branch in self._branches])[self._owner]
+        s_low, s_high = (np.sqrt((x - base) * (x + base)) for x in (low, high))
+        if base[-1] == starts[0] > 0:
+            # The coordinate is sqrt(a^2 - b^2), accurate however narrow the annulus around a flat.
+            s_high[-1] = coordinate
+        # An annulus may be too narrow for its radii to resolve it.
+        narrow = (np.append(0.0, radius)[part] == low) & (radius[part] == high)
+        step = np.where(narrow, width[part] * (low + high) / (s_low + s_high), s_high - s_low)
+        return _Pieces(low, high, base, s_low, s_high, step)
 
-    Parameters
-    ----------
-    contact : a contact under any loads, or the state at the end of a load history.
-    rtol : accuracy of the stresses, relative to the largest.
-    nearest : least distance of the points from the origin [length]; None for a search.
-    """
-    for profile, e_star, whole, depth, parts in _cases(contact):
-        smooth = [Smooth(branch, _near(profile, branch)) for branch in profile.branches]
-        given = rtol, _NEAREST * whole.a if nearest is None else nearest
-        if profile.slips_at_once:
-            pressed = step_block(whole.a, depth) if depth > 0 else None
+    def _cuts(self, branch: Branch) -> list[float]:
+        """Radii between which k g' of a branch changes over more than their distance."""
+        base, curved = branch.base, bool(self.annuli.rate.any())
+        ends = max(base, branch.start), min(branch.stop, self.annuli.radius[-1]), branch.pole
+        s, last, pole = (sqrt(max(x - base, 0.0) * (x + base)) for x in ends)
+        near = min(base, branch.behind) if base > 0 else _NEAREST * last
+        ended = min(branch.stop, branch.pole) < inf or isinstance(self.profile, Cone | Paraboloid)
+        if base == 0 and ended and not curved:
+            near = inf
+        growth = min(1.0, _STEEP / (branch.steepness + curved))
+        found = []
+        while s < last:
+            found.append(sqrt(base * base + s * s))
+            s += min(growth * hypot(near, s), (pole - s) / 2)
+        return found
+
+    def _slopes(self, x: Array, s: Array, index: Chosen) -> Array:
+        """k dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,), shape (1 or 2, nodes, m)."""
+        owner, part = self._owner[index], self._part[index]
+        if self._panels is not None:
+            u = np.minimum(s / self._panels.length[owner], 1.0)
+            found = polynomial.polyval(u, self._panels.weight.T[:, owner], tensor=False)
         else:
-            pressed = blocks(smooth, whole, *given)
-        edges, sheared = {whole.a}, []
-        for factor, part in parts:
-            block, span = pressed, whole
-            if isinstance(part, Arc):
-                span = Span(part.high, part.low, part.width)
-                own = [Smooth(each, min(each.base, each.behind)) for each in part.branches]
-                block = blocks(own, span, *given)
-            elif part is not None:
-                block, span = blocks(smooth, part, *given), part
-            edges |= {span.c, span.a}
-            if block is not None:
-                sheared.append((factor, block))
-        first = min(edges) if sheared else inf
-        radii = sorted(edges - {0.0}) or [0.0]
-        yield Foundation(profile, e_star / np.pi, radii, pressed, sheared, first, rtol)
+            found = np.empty_like(x)
+            for number, branch in enumerate(self._branches):
+                own = owner == number
+                found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
+        if not self.annuli.sheared:
+            return np.asarray(found[None])
+        _, _, slope, rate, inverse = self.annuli
+        k = slope[part] + rate[part] * (0.5 / x if inverse else 2 * x)
+        return np.stack([found, k * found])
+
+    def moments(self, r: Array, z: Array) -> Array:
+        """Return the moments of q and q_x at points, z > 0, shape (1 or 2, 7, m)."""
+        total = np.zeros((len(self._levels[0].mass), KERNELS, r.size))
+        point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
+        for size, level in reversed(list(enumerate(self._levels))):
+            at_r, at_z, high = r[point], z[point], level.high[block]
+            width = level.width[block]
+            # Re w less the square of either end; the nearer one is accurate in a narrow annulus.
+            above_low, above_high = (
+                (at_r - x) * (at_r + x) - at_z * at_z for x in (level.low[block], high)
+            )
+            nearer = np.abs(above_low) < np.abs(above_high)
+            above_low = np.where(nearer, above_low, above_high + width)
+            gap = np.maximum(np.maximum(-above_low, above_low - width), 0.0)
+            far = np.hypot(gap, 2 * at_r * at_z) >= _FAR * width
+            for part in _in_cache(np.flatnonzero(far & (high > 0)), len(level.x)):
+                depth, own = at_z[part], block[part]
+                square = above_low[part] + 2 * depth * depth - level.offset[:, own]
+                _add(total, point[part], square, level.x[:, own], depth, level.mass[..., own])
+            point, block = point[~far], block[~far]
+            if size:
+                point = np.repeat(point, 2)
+                block = (2 * block[:, None] + np.arange(2)).ravel()
+        if point.size:
+            self._add_near(total, point, block, (r[point], z[point]))
+        return total
+
+    def _add_near(
+        self, total: Array, point: Indices, index: Indices, place: tuple[Array, Array]
+    ) -> None:
+        """Add the moments of pieces at points near them, in s = p + q sinh(t)."""
+        low, high, base, s_low, s_high, step = (part[index] for part in self._pieces)
+        at = place[0] + 1j * place[1]
+        root = np.sqrt((at - base) * (at + base))
+        p, q = root.real, root.imag
+        # Distances of s_0 from both ends, in a narrow annulus by its width.
+        past_low = ((at - low) * (at + low) / (root + s_low)).real
+        past_high = ((at - high) * (at + high) / (root + s_high)).real
+        nearer = np.abs(past_low) < np.abs(past_high)
+        bottom = np.arcsinh(-np.where(nearer, past_low, past_high + step) / q)
+        top = np.arcsinh(-np.where(nearer, past_low - step, past_high) / q)
+        length = top - bottom
+        count = np.maximum(np.ceil(length / _PANEL), 1).astype(int)
+        for panels in np.unique(count):
+            u, shares = (part[:, None] for part in composite_rule(self._nodes, int(panels)))
+            for part in _in_cache(np.flatnonzero(count == panels), u.size):
+                sinh = np.sinh(top[part] - u * length[part])
+                s = np.clip(p[part] + q[part] * sinh, s_low[part], s_high[part])
+                x = np.sqrt(base[part] ** 2 + s * s)
+                depth = place[1][part]
+                square = 2 * depth * depth - q[part] * (sinh * (p[part] + s) + q[part])
+                run = q[part] * np.sqrt(1 + sinh * sinh) * length[part] * shares
+                mass = self._slopes(x, s, index[part]) * run
+                _add(total, point[part], square, x, depth, mass)
 
 
-def _cases(contact: Contact) -> Iterator[tuple[Profile, float, Span, float, list[_Part]]]:
-    """Profile, E*, span and coordinate of the contact, and parts of q_x in each case."""
-    if isinstance(contact, ContactState):
-        yield _end(contact)
-        return
-    normal = normal_of(contact)
-    columns: list[Any] = [normal.e_star, normal.contact_radius, normal.coordinate]
-    if isinstance(contact, TangentialContact):
-        columns += [contact.sign * contact.friction_coefficient, contact.full_slip]
-        columns += [contact.stick_radius, contact.slip_width, contact.width]
-    shape = shape_of(contact)
-    rows = zip(*(np.broadcast_to(part, shape).ravel().tolist() for part in columns), strict=True)
-    for e_star, a, coordinate, *friction in rows:
-        whole = _span(normal.profile, a, coordinate)
-        parts: list[_Part] = []
-        if friction:
-            factor, full, c, width, share = friction
-            if full:
-                parts = [(factor, None)]
-            elif share > 0 and normal.profile.slips_at_once:
-                # Of a flat punch, which sticks completely, the width is the part of its depth.
-                parts = [(factor * share, None)]
-            elif share > 0:
-                parts = [(factor, whole._replace(c=c, width=width))]
-        yield normal.profile, e_star, whole, coordinate, parts
+def _paired(blocks: _Blocks) -> _Blocks:
+    """An even number of blocks, the last of which may be empty."""
+    if blocks.low.size % 2 == 0:
+        return blocks
+    return _Blocks(*(np.append(part, np.zeros_like(part[..., :1]), -1) for part in blocks))
 
 
-def _end(state: ContactState) -> tuple[Profile, float, Span, float, list[_Part]]:
-    """The case at the end of a load history: an annulus between neighbouring slip fronts each."""
-    profile, segments, friction = state.profile, state.segments, state.friction_coefficient
-    if not state.in_contact:
-        return profile, state.e_star, Span(0.0, 0.0, 0.0), 0.0, []
-    radii = profile.contact_radius(segments.coordinate).tolist()
-    places, depth = segments.coordinate.tolist(), state.indentation_depth
-    whole = _span(profile, state.contact_radius, places[-1])
-    if profile.slips_at_once:
-        # All springs carry the same load.
-        return profile, state.e_star, whole, depth, [(state.load[0] / (state.e_star * depth), None)]
-    widths = profile.radius_width(segments.coordinate[1:], segments.width)
-    parts: list[_Part] = [(friction, arc) for arc in arcs(state)]
-    for i in np.flatnonzero(segments.slope * (segments.rate == 0)):
-        span = _span(profile, radii[i + 1], places[i + 1])
-        if i:
-            span = span._replace(c=radii[i], width=float(widths[i]))
-        parts.append((friction * float(segments.slope[i]), span))
-    return profile, state.e_star, whole, depth, parts
+def _merged(blocks: _Blocks) -> _Blocks:
+    """Neighbours as one block: Im K/x is interpolated between its nodes in x^2."""
+    low, high = (_Blocks(*(part[..., i::2] for part in blocks)) for i in (0, 1))
+    width = low.width + high.width
+    at, weights = gauss_legendre(_JOINED)
+    place = (1 + at[:, None]) / 2
+    known = np.concatenate([low.offset, low.width + high.offset]) / width
+    # Barycentric weights of Gauss points, whose signs alternate.
+    signed = np.sqrt((1 - at) * (1 + at) * weights) * (-1.0) ** np.arange(_JOINED)
+    shares = signed[:, None, None] / (known - place[..., None] + _TINY)
+    shares /= shares.sum(axis=0)
+    mass = np.concatenate([low.mass * low.x, high.mass * high.x], axis=1)
+    offset = place * width
+    x = np.sqrt(low.low**2 + offset)
+    top = np.maximum(low.high, high.high)
+    return _Blocks(low.low, top, width, offset, x, np.einsum("jin,kin->kjn", shares, mass) / x)
 
 
-def _span(profile: Profile, a: float, coordinate: float) -> Span:
-    flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
-    return Span(a, 0.0, a, 0.0 if profile.slips_at_once else flat, coordinate)
+def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
+    step = max(_BLOCK // nodes, 1)
+    return (index[start : start + step] for start in range(0, index.size, step))
 
 
-def _near(profile: Profile, branch: Branch) -> float:
-    """Distance in s over which g' changes next to s = 0."""
-    if branch.base > 0:
-        return min(branch.base, branch.behind)
-    if branch.stop < inf or branch.pole < inf or isinstance(profile, Cone | Paraboloid):
-        return inf
-    return float(np.asarray(profile.scale)) if isinstance(profile, Hyperboloid) else 0.0
+def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: Array) -> None:
+    """Add sums of mass Im K over nodes, from Re rho^2 there (nodes, m), at points (m,)."""
+    # The root of rho^2 in real numbers takes half the time of a complex one.
+    imaginary = 2 * x * z
+    larger = np.sqrt((np.hypot(square, imaginary) + np.abs(square)) / 2)
+    smaller = imaginary / (2 * larger)
+    rho, zeta = np.empty((2, *larger.shape), dtype=complex)
+    rho.real = np.where(square < 0, smaller, larger)
+    rho.imag = np.where(square < 0, larger, smaller)
+    zeta.real, zeta.imag = z, x
+    inverse, second = 1 / rho, 1 / (rho + zeta)
+    mixed, cube = inverse * second, inverse * inverse * inverse
+    kernels = inverse, zeta * cube, mixed, cube, second, second * second, mixed * second
+    for number, kernel in enumerate(kernels):
+        for row, sums in zip(
+            total[:, number], np.einsum("knm,nm->km", mass, kernel.imag), strict=True
+        ):
+            np.add.at(row, point, sums)

@@ -11,25 +11,69 @@ from mdr_core.errors import InputError
 from mdr_core.fields.radii import Edges, edge_error
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
-from mdr_core.subsurface.foundation import (
-    Contact,
-    Foundation,
-    foundations,
-    normal_of,
-    shape_of,
-)
-from mdr_core.subsurface.moments import moments, rule_error
-from mdr_core.subsurface.tensor import StressTensor
+from mdr_core.subsurface.annuli import Contact, every, normal_of, shape_of
+from mdr_core.subsurface.foundation import Foundation
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
 
-# A point is moved off the surface by this part of its distance from the nearest edge or break, at
-# such a radius by the second part of the contact radius: stresses have at worst a root there.
-_SURFACE: Final = 1e-18
-# See _SURFACE.
+# A point at an edge is moved off the surface by this part of the contact radius: stresses have at
+# worst a root there.
 _SURFACE_AT_EDGE: Final = 1e-34
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
+
+
+class StressTensor(NamedTuple):
+    """Stresses at points, tension positive, x along the tangential force, z into the body.
+
+    Each has the shape of the points, or of loads and points. Where the pressure is infinite, the
+    normal stresses are -inf.
+    """
+
+    xx: Array
+    """[pressure]"""
+    yy: Array
+    """[pressure]"""
+    zz: Array
+    """[pressure]"""
+    xy: Array
+    """[pressure]"""
+    xz: Array
+    """[pressure]"""
+    yz: Array
+    """[pressure]"""
+
+    @property
+    def mean_stress(self) -> Array:
+        """A third of the trace [pressure]."""
+        return np.asarray((self.xx + self.yy + self.zz) / 3)
+
+    @property
+    def von_mises(self) -> Array:
+        """Von Mises' equivalent stress [pressure]; infinite where the stress is."""
+        xx, yy, zz, xy, xz, yz = self._finite
+        normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+        return np.sqrt(normal / 2 + 3 * (xy**2 + xz**2 + yz**2)) + np.where(
+            np.isinf(self.zz), inf, 0.0
+        )
+
+    @property
+    def principal(self) -> Array:
+        """Principal stresses, ascending in a last axis of length 3 [pressure]."""
+        xx, yy, zz, xy, xz, yz = self._finite
+        rows = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        values = np.linalg.eigvalsh(np.moveaxis(rows, (0, 1), (-2, -1)))
+        return np.where(np.isinf(self.zz)[..., None], -inf, values)
+
+    @property
+    def maximum_shear(self) -> Array:
+        """Largest shear stress, half the difference of the extreme principal ones [pressure]."""
+        values = self._finite.principal
+        return (values[..., 2] - values[..., 0]) / 2 + np.where(np.isinf(self.zz), inf, 0.0)
+
+    @property
+    def _finite(self) -> "StressTensor":
+        return StressTensor(*(np.where(np.isinf(part), 0.0, part) for part in self))
 
 
 def stress(
@@ -40,7 +84,6 @@ def stress(
     *,
     poissons_ratio: float,
     body: int = 1,
-    rtol: float = 1e-10,
 ) -> StressTensor:
     """Return the stress tensor of one body at any points.
 
@@ -57,7 +100,6 @@ def stress(
     z : depth in the body, >= 0 [length]. The three broadcast to the shape of the points.
     poissons_ratio : of this body, -1 to 1/2 [1].
     body : 1 for the body of the profile, 2 for the other.
-    rtol : accuracy relative to the largest stress, 1e-13 to 1e-3.
 
     Returns
     -------
@@ -83,34 +125,25 @@ def stress(
         if not np.isfinite(given).all():
             raise InputError((name,), "must be finite")
     require_not_negative(("z",), where[2])
-    across, aside, depth = np.broadcast_arrays(*where)
-    r = np.hypot(across, aside).ravel()
+    points, shape = np.broadcast_shapes(*(part.shape for part in where)), shape_of(contact)
+    across, aside, depth = (np.broadcast_to(part, points).ravel() for part in where)
+    r = np.hypot(across, aside)
     away = np.where(r > 0, r, 1.0)
-    cos, sin = np.where(r > 0, across.ravel() / away, 1.0), aside.ravel() / away
-    rings = Rings(r, depth.ravel(), cos, sin)
-    nearest = float(np.hypot(r, rings.z).min(initial=np.inf))
-    under = foundations(contact, rtol, nearest)
-    found = np.stack([on_rings(one, rings, poissons_ratio, body) for one in under], axis=1)
-    origin = (r == 0) & (rings.z == 0)
+    rings = Rings(r, depth, np.where(r > 0, across / away, 1.0), aside / away)
+    under = (Foundation(one) for one in every(contact))
+    found = np.stack([on_rings(each, rings, poissons_ratio, body) for each in under], axis=1)
+    origin = (r == 0) & (depth == 0)
     if origin.any():
-        found[..., origin] = _at_origin(contact, poissons_ratio, body)[..., None]
-    return StressTensor(*found.reshape(6, *shape_of(contact), *across.shape))
-
-
-def _at_origin(contact: Contact, nu: float, body: int) -> Array:
-    """Stresses at the origin by the tractions there, which powers next to a cone approach slowly.
-
-    The in-plane stresses are (1 + 2 nu)/2 times -p: V_r/r and Om_r/r are halves of V_rr and Om_rr.
-    """
-    pressed, shape = normal_of(contact), shape_of(contact)
-    pressure = np.broadcast_to(fields.pressure(pressed, [0.0])[..., 0], shape).ravel()
-    found = np.zeros((6, pressure.size))
-    found[:3] = -np.outer([(1 + 2 * nu) / 2, (1 + 2 * nu) / 2, 1.0], pressure)
-    if not isinstance(contact, NormalContact):
-        shear = np.ravel(fields.shear_stress(contact, [0.0])[..., 0])
-        found[4] = shear if body == 1 else -shear
-    found[3:, np.isinf(pressure)] = inf
-    return found
+        # Powers next to a cone approach the tractions there slowly. V_r/r and Om_r/r are halves of
+        # V_rr and Om_rr.
+        p = np.broadcast_to(fields.pressure(normal_of(contact), [0.0])[..., 0], shape).ravel()
+        in_plane = -(1 + 2 * poissons_ratio) / 2 * p
+        shear = np.where(np.isinf(p), inf, 0.0)
+        along = shear
+        if not isinstance(contact, NormalContact):
+            along = shear + (1 if body == 1 else -1) * np.ravel(fields.shear_stress(contact, [0.0]))
+        found[..., origin] = np.array([in_plane, in_plane, -p, shear, along, shear])[..., None]
+    return StressTensor(*found.reshape(6, *shape, *points))
 
 
 class Rings(NamedTuple):
@@ -125,8 +158,6 @@ class Rings(NamedTuple):
 def on_rings(under: Foundation, rings: Rings, nu: float, body: int) -> StressTensor:
     """Return the stress tensor at points that share radii and depths, of shape (..., m).
 
-    The quadrature does not depend on the direction.
-
     Parameters
     ----------
     under : the loads of the foundation.
@@ -134,35 +165,67 @@ def on_rings(under: Foundation, rings: Rings, nu: float, body: int) -> StressTen
     nu : Poisson's ratio of this body [1].
     body : 1 for the body of the profile, 2 for the other.
     """
-    r, breaks = rings.r, [float(np.asarray(b)) for b in under.profile.breaks]
-    near = np.abs(r[:, None] - np.array([0.0, *under.edges, *breaks])).min(axis=1)
-    least = np.maximum(_SURFACE * near, _SURFACE_AT_EDGE * under.edges[-1])
+    if not under.loaded:
+        return StressTensor(*np.zeros((6, *rings.cos.shape)))
+    r, a = rings.r, under.annuli.radius[-1]
+    breaks = [float(np.asarray(b)) for b in under.profile.breaks]
+    near = np.abs(r[:, None] - np.array([0.0, *under.annuli.radius, *breaks])).min(axis=1)
     # In points with depths > 0 the kernels are regular.
-    inner = rings._replace(z=np.maximum(rings.z, least))
-    total = np.zeros((6, *rings.cos.shape))
-    if under.pressed is not None:
-        pressed = moments(under.pressed, r, inner.z, under.rtol)
-        total += _normal(pressed, inner, nu)
-        shear = np.zeros_like(pressed)
-        for slope, block in under.sheared:
-            of_block = block is under.pressed
-            shear += slope * (pressed if of_block else moments(block, r, inner.z, under.rtol))
-        if under.sheared:
-            total += (1 if body == 2 else -1) * _tangential(shear, inner, nu)
+    inner = rings._replace(z=np.maximum(rings.z, under.lift * near + _SURFACE_AT_EDGE * a))
+    pressed, *sheared = under.moments(r, inner.z)
+    along = sheared[0] if body == 2 and sheared else -sheared[0] if sheared else 0 * pressed
+    found = under.modulus * of_moments(pressed, along, inner, nu)
     for b in under.profile.infinite_pressure_radii:
-        infinite = (r == b) & (rings.z == 0) & bool(b <= under.edges[-1])
-        total[:3, ..., infinite], total[3:, ..., infinite] = -inf, inf
-    return StressTensor(*(under.modulus * total))
+        infinite = (r == b) & (rings.z == 0) & bool(b <= a)
+        found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
+    return StressTensor(*found)
 
 
-def error_estimate(
-    contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike, *, rtol: float = 1e-10
-) -> float:
+def of_moments(pressed: Array, sheared: Array, place: Rings, nu: float) -> Array:
+    """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
+
+    The sum and the difference of the in-plane stresses have few harmonics of the direction.
+
+    Parameters
+    ----------
+    pressed, sheared : moments of the normal and of the tangential load, shape (7, m).
+    place : points.
+    nu : Poisson's ratio of this body [1].
+    """
+    r, z, k, m = place
+    cos2, sin2 = k * k - m * m, 2 * k * m
+    cos3, sin3 = k * cos2 - m * sin2, k * sin2 + m * cos2
+    v_z, zz, mixed, rz, om, _, _ = pressed
+    zz, mixed, rz = z * zz, z * mixed, z * r * rz
+    total, second = (1 + 2 * nu) * v_z - zz, (1 - 2 * nu) * (v_z - 2 * om) + 2 * mixed - zz
+    shear, t_zz, t_mixed, t_rz, _, ring, z_ring = sheared
+    t_zz, t_r, t_rz = z * t_zz, r * t_mixed, z * r * t_rz
+    # tau_xz = along + across cos 2 phi.
+    along, across = shear - t_zz / 2, z * t_mixed - t_zz / 2
+    total = total + k * ((2 + 2 * nu) * t_r - t_rz)
+    first, third = (
+        (2 - nu) * t_r - t_rz / 2,
+        nu * (2 * r * ring - t_r) + r * (2 * z * z_ring) - t_rz / 2,
+    )
+    difference = second * cos2 + first * k + third * cos3
+    return np.stack(
+        np.broadcast_arrays(
+            (total + difference) / 2,
+            (total - difference) / 2,
+            v_z + zz + k * t_rz,
+            (second * sin2 + first * m + third * sin3) / 2,
+            k * rz + along + across * cos2,
+            m * rz + across * sin2,
+        )
+    )
+
+
+def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> float:
     """Return a bound on the error of the stresses at points, relative to the largest of them [1].
 
-    It contains the rule's error, rounding errors, and the error of a contact radius or slip front
-    that follows from a load, near which stresses change like a root. That of a load history itself
-    is left out. Parameters: see `stress`.
+    It contains rounding errors, and the error of a contact radius or slip front that follows from
+    a load, near which stresses change like a root. That of a load history itself is left out.
+    Parameters: see `stress`.
     """
     across, aside, depth = np.broadcast_arrays(x, y, z)
     r, z = np.hypot(across, aside).ravel(), np.ravel(depth)
@@ -171,58 +234,4 @@ def error_estimate(
         edge = Edges(*(part[i : i + 1] for part in known))
         near = max(near, edge_error(edge, at + np.hypot(r - at, z), root=True))
     own = 0.0 if isinstance(contact, ContactState) else 4 * contact.error_estimate
-    return rule_error(rtol) + _ROUNDING + own + near
-
-
-def _normal(moments: Array, place: Rings, nu: float) -> Array:
-    """Stresses of a normal load over its scale E*/pi, in the order of `StressTensor`."""
-    r, z, k, m = place.r, place.z, place.cos, place.sin
-    v_z, zz, mixed, rz, om, _, _ = moments
-    zz, mixed, rz = z * zz, z * mixed, z * r * rz
-    radial = v_z - zz + mixed - (1 - 2 * nu) * om
-    hoop = 2 * nu * v_z - mixed + (1 - 2 * nu) * om
-    return _stacked(
-        [
-            k * k * radial + m * m * hoop,
-            m * m * radial + k * k * hoop,
-            v_z + zz,
-            k * m * (radial - hoop),
-            k * rz,
-            m * rz,
-        ]
-    )
-
-
-def _stacked(components: list[Array]) -> Array:
-    return np.stack(np.broadcast_arrays(*components))
-
-
-def _tangential(moments: Array, place: Rings, nu: float) -> Array:
-    """Stresses of a load along x over its scale, with the third derivatives of Om and F1."""
-    r, z, k, m = place.r, place.z, place.cos, place.sin
-    v_z, zz, mixed, rz, _, second, third = moments
-    v_r, zz, rz = r * mixed, z * zz, z * r * rz
-    mixed = z * mixed
-    f_ring, om_ring = -r * second / 2, z * r * third
-    f_rrr, om_rrr = -v_r - f_ring, rz - om_ring
-
-    def third_derivatives(rrr: Array, ring: Array) -> tuple[Array, Array, Array]:
-        """XXX, XYY and XXY of a potential from its rrr and (Phi_r/r)_r."""
-        return (
-            k * (k * k * rrr + 3 * m * m * ring),
-            k * (m * m * rrr + (k * k - 2 * m * m) * ring),
-            m * (k * k * rrr + (m * m - 2 * k * k) * ring),
-        )
-
-    f_xxx, f_xyy, f_xxy = third_derivatives(f_rrr, f_ring)
-    om_xxx, om_xyy, om_xxy = third_derivatives(om_rrr, om_ring)
-    return _stacked(
-        [
-            (2 + 2 * nu) * k * v_r + 2 * nu * f_xxx - om_xxx,
-            2 * nu * k * v_r + 2 * nu * f_xyy - om_xyy,
-            k * rz,
-            m * v_r + 2 * nu * f_xxy - om_xxy,
-            v_z - k * k * (zz - mixed) - m * m * mixed,
-            -k * m * (zz - 2 * mixed),
-        ]
-    )
+    return _ROUNDING + own + near

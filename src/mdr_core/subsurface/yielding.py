@@ -2,35 +2,33 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
-from math import exp, inf, isfinite, log, nan
-from typing import Any, Final, NamedTuple, TypeAlias
+from functools import cache, lru_cache
+from math import exp, inf, isclose, isnan, log, nan
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from scipy.optimize import brentq
 
 from mdr_core import normal, tangential
-from mdr_core.broadcasting import with_parameters
 from mdr_core.errors import InputError
-from mdr_core.history import ContactState, LoadHistory
+from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
-from mdr_core.profiles import Cone, Paraboloid, Power
-from mdr_core.subsurface.foundation import shape_of
+from mdr_core.profiles import Cone, Paraboloid, Power, Profile
+from mdr_core.subsurface.annuli import Contact, normal_of, single
 from mdr_core.subsurface.peaks import MEASURES, largest
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
-# Refinements of the grid at the onset.
-_ROUNDS: Final = 5
-# Accuracy of the contact coordinate's logarithm there.
-_ONSET_RTOL: Final = 1e-6
-# Steps of that logarithm by which the onset is bracketed, and the largest distance.
-_STEP, _REACH = 2.0, 60.0
-# Refinements of the grid where only the excess over the yield strength matters: to 1e-4.
-_FEW_ROUNDS: Final = 3
-# Ratio of the forces from which a contact counts as being in full slip.
+# Refinements of the grid at the onset, and where only the excess over the yield strength matters.
+_ROUNDS, _FEW_ROUNDS = 5, 3
+# Accuracy of the stress at the onset, and of the contact coordinate's logarithm.
+_ONSET_RTOL: Final = 3e-6
+# First step of that logarithm over the logarithm of the stress, which is exact for the exponent
+# 5/3, and the largest distance.
+_STEP, _REACH = 1.5, 60.0
+# Ratio of the forces that stands for full slip: but for a stick radius of 1e-4 a, it is.
 _SLIDES: Final = 1 - 1e-12
 
 _Contact: TypeAlias = NormalContact | TangentialContact
@@ -78,8 +76,16 @@ def yield_onset_force(
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
     limit = yield_strength if measure == "von_mises" else yield_strength / 2
     options = {"measure": measure, "poissons_ratio": poissons_ratio, "body": body}
-    found = [_onset(case, limit, options) for case in _cases(contact)]
-    return np.array(found).reshape(shape_of(contact))
+    pressed, (columns, shape) = normal_of(contact), _columns(contact)
+    if not np.all(pressed.loaded):
+        raise InputError(("load",), "the onset of yield needs a load that is not zero")
+    # Loads in one ratio of the forces share the onset.
+    _, first, which = np.unique(columns[1:], axis=1, return_index=True, return_inverse=True)
+    onset = [
+        _onset(single(pressed, i, shape), columns[1, i], columns[2, i], limit, options)
+        for i in first.tolist()
+    ]
+    return np.array(onset)[which].reshape(shape)
 
 
 def yielding(
@@ -98,177 +104,157 @@ def yielding(
     poissons_ratios : of the elastic bodies; empty if they are unknown, 0.3 is assumed then.
     yield_strength : of the softer body, in uniaxial tension [pressure].
     """
-    ratios, normal = poissons_ratios or (ASSUMED_RATIO,), _pressed(contact)
+    ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), normal_of(contact)
     sheared = not isinstance(contact, NormalContact) and bool(np.any(contact.tangential_force))
-    exponent: Parameter | None = {Cone: 1.0, Paraboloid: 2.0}.get(type(normal.profile))
-    if isinstance(normal.profile, Power):
-        exponent = normal.profile.exponent
+    exponent = _exponent(pressed.profile)
     if exponent is not None and not sheared:
-        factor = np.max([_similar(nu)(np.asarray(exponent)) for nu in ratios], axis=0)
-        where = normal.loaded & (2 * factor * normal.mean_pressure >= yield_strength)
+        # Under a power the stresses are similar at all loads.
+        factor = np.max(
+            [np.vectorize(_factor, otypes=[float])(exponent, nu) for nu in ratios], axis=0
+        )
+        where = pressed.loaded & (2 * factor * pressed.mean_pressure >= yield_strength)
     else:
-        cases = _cases(contact)
-        flags, groups = np.zeros(len(cases), dtype=bool), dict[tuple[float, ...], list[int]]()
-        for i, case in enumerate(cases):
-            if case.normal.loaded:
-                groups.setdefault(case.body, []).append(i)
-        for index in groups.values():
-            _mark(flags, index, cases, ratios, yield_strength)
+        columns, shape = _columns(contact)
+
+        def reaches(one: Contact) -> bool:
+            peaks = (
+                largest(one, MEASURES[1], poissons_ratio=nu, rounds=_FEW_ROUNDS) for nu in ratios
+            )
+            return any(2 * peak.value >= yield_strength for peak in peaks)
+
+        def under(i: int, place: Array) -> bool:
+            return reaches(_under(single(pressed, i, shape), columns[2, i], *place.tolist()))
+
+        flags = np.zeros(columns.shape[1], dtype=bool)
+        loaded = np.broadcast_to(pressed.loaded, shape).ravel()
+        _, group = np.unique(columns[2:], axis=1, return_inverse=True)
+        for number in range(int(group.max()) + 1):
+            _mark(flags, np.flatnonzero((group == number) & loaded), columns[:2], under)
         if isinstance(contact, LoadHistory) and not flags[-1]:
-            flags[-1] = _reaches(contact.state, ratios, yield_strength)
-        where = flags.reshape(_ratio(contact).shape)
+            flags[-1] = reaches(contact.state)
+        where = flags.reshape(shape)
 
     def message() -> str:
-        least = float(np.min(np.broadcast_to(normal.normal_force, where.shape)[where]))
+        least = float(np.min(np.broadcast_to(pressed.normal_force, where.shape)[where]))
         return f"the stresses meet Tresca's criterion under a normal force of {least:.4g}"
 
     return Finding("yield", where, message)
 
 
-class _Case(NamedTuple):
-    """A contact under a single load."""
-
-    normal: NormalContact
-    ratio: float
-    """|F_x|/(mu F_N) [1]."""
-    friction: float
-    body: tuple[float, ...]
-    """Friction, E* and parameters of the profile, by which cases differ beside their loads."""
-
-    def under(self, coordinate: float, ratio: float) -> _Contact:
-        """Return the contact under another load, of this contact coordinate and ratio."""
-        pressed = replace(self.normal, coordinate=np.asarray(coordinate))
-        if ratio == 0:
-            return pressed
-        # The stresses depend on the ratio of the forces alone, not on G*.
-        moduli = self.normal.e_star, self.friction
-        if ratio > _SLIDES:
-            beyond = 2 * self.friction * pressed.indentation_depth
-            return tangential.solve(pressed, *moduli, tangential_displacement=beyond)
-        force = ratio * (self.friction * pressed.normal_force)
-        return tangential.solve(pressed, *moduli, tangential_force=force)
+def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
+    """Coordinate, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of loads."""
+    pressed, ratio, friction = normal_of(contact), np.zeros(()), np.zeros(())
+    if not isinstance(contact, NormalContact):
+        start = contact.start if isinstance(contact, LoadHistory) else contact
+        friction = np.asarray(start.friction_coefficient)
+        limit = friction * pressed.normal_force
+        ratio = np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0)
+        ratio = np.where(contact.regime == "full_slip", 1.0, ratio)
+    swept = [pressed.profile.parameters[name] for name in pressed.profile.swept]
+    columns = np.broadcast_arrays(pressed.coordinate, ratio, friction, pressed.e_star, *swept)
+    return np.array([np.ravel(each) for each in columns]), columns[0].shape
 
 
-def _cases(contact: _Contact | LoadHistory) -> list[_Case]:
-    normal, names = _pressed(contact), _pressed(contact).profile.swept
-    start = contact.start if isinstance(contact, LoadHistory) else contact
-    friction = 0.0 if isinstance(start, NormalContact) else start.friction_coefficient
-    swept = [normal.profile.parameters[name] for name in names]
-    columns = normal.coordinate, _ratio(contact), friction, normal.e_star, *swept
-    found = []
-    for row in zip(*(part.ravel().tolist() for part in np.broadcast_arrays(*columns)), strict=True):
-        coordinate, ratio, *body = row
-        profile = with_parameters(normal.profile, dict(zip(names, body[2:], strict=True)))
-        own = replace(normal, profile=profile, e_star=body[1], coordinate=np.asarray(coordinate))
-        found.append(_Case(own, ratio, body[0], tuple(body)))
-    return found
-
-
-def _ratio(contact: _Contact | LoadHistory) -> Array:
-    """|F_x|/(mu F_N) under each load [1], of the shape of the loads."""
-    if isinstance(contact, NormalContact):
-        return np.zeros(contact.coordinate.shape)
-    start = contact.start if isinstance(contact, LoadHistory) else contact
-    limit = start.friction_coefficient * _pressed(contact).normal_force
-    ratio = np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0)
-    return np.where(contact.regime == "full_slip", 1.0, ratio)
+def _under(pressed: NormalContact, friction: float, coordinate: float, ratio: float) -> _Contact:
+    """Return a contact under another load, of this contact coordinate and ratio of the forces."""
+    there = replace(pressed, coordinate=np.asarray(coordinate))
+    if ratio == 0:
+        return there
+    # The stresses depend on the ratio of the forces alone, not on G*.
+    force = min(ratio, _SLIDES) * (friction * there.normal_force)
+    return tangential.solve(there, there.e_star, friction, tangential_force=force)
 
 
 def _mark(
-    flags: Flags, index: list[int], cases: list[_Case], ratios: tuple[float, ...], strength: float
+    flags: Flags, index: Indices, places: Array, reaches: Callable[[int, Array], bool]
 ) -> None:
     """Set the flags of cases that yield, which differ in load alone, by bisection of the loads."""
-    places = np.array([(float(cases[i].normal.coordinate), cases[i].ratio) for i in index]).T
-
-    def reaches(place: Array) -> bool:
-        return _reaches(cases[index[0]].under(*place.tolist()), ratios, strength)
-
-    low, high = places.min(axis=1), places.max(axis=1)
-    if not reaches(high):
+    if not index.size:
         return
-    if np.array_equal(low, high) or reaches(low):
+    low, high = places[:, index].min(axis=1), places[:, index].max(axis=1)
+    if not reaches(int(index[0]), high):
+        return
+    if np.array_equal(low, high) or reaches(int(index[0]), low):
         flags[index] = True
         return
-    order = np.argsort(places[0] if low[0] < high[0] else places[1], kind="stable")
+    order = index[np.argsort(places[int(low[0] == high[0]), index], kind="stable")]
     for half in np.array_split(order, 2):
-        _mark(flags, [index[i] for i in half], cases, ratios, strength)
+        _mark(flags, half, places, reaches)
 
 
-def _reaches(contact: _Contact | ContactState, ratios: tuple[float, ...], strength: float) -> bool:
-    """Return whether the largest shear stress in a body reaches half of the yield strength."""
-    given: dict[str, Any] = {"rounds": _FEW_ROUNDS, "limit": strength / 2}
-    peaks = (largest(contact, MEASURES[1], poissons_ratio=nu, **given) for nu in ratios)
-    return any(peak.value >= strength / 2 for peak in peaks)
+@lru_cache(maxsize=256)
+def _factor(exponent: float, poissons_ratio: float) -> float:
+    """Largest shear stress over the mean pressure under a power."""
+    contact = normal.solve(Power(1.0, exponent), 1.0, contact_radius=1.0)
+    return float(
+        largest(contact, MEASURES[1], poissons_ratio=poissons_ratio).value / contact.mean_pressure
+    )
 
 
-@lru_cache(maxsize=64)
-def _similar(poissons_ratio: float) -> Any:
-    """Largest shear stress over the mean pressure under a power, by its exponent, vectorised."""
-
-    @lru_cache(maxsize=256)
-    def factor(exponent: float) -> float:
-        contact = normal.solve(Power(1.0, exponent), 1.0, contact_radius=1.0)
-        peak = largest(contact, "maximum_shear", poissons_ratio=poissons_ratio)
-        return float(peak.value / contact.mean_pressure)
-
-    return np.vectorize(factor, otypes=[float])
+def _exponent(profile: Profile) -> Parameter | None:
+    """Exponent of a power, else None."""
+    if isinstance(profile, Power):
+        return profile.exponent
+    return {Cone: 1.0, Paraboloid: 2.0}.get(type(profile))
 
 
-def _onset(case: _Case, limit: float, options: dict[str, Any]) -> float:
+def _onset(
+    pressed: NormalContact, ratio: float, friction: float, limit: float, options: dict[str, Any]
+) -> float:
     """Normal force at which a measure reaches a limit, the ratio of the loads held constant."""
-    profile, start, ratio = case.normal.profile, float(case.normal.coordinate), case.ratio
-    if not case.normal.loaded:
-        raise InputError(("load",), "the onset of yield needs a load that is not zero")
-    slips_from, ratios = (0.0 if ratio > _SLIDES else inf), (options["poissons_ratio"],)
-    singular = [
-        float(np.asarray(b))
-        for b in profile.infinite_pressure_radii
-        if infinite_deviator(profile, b, ratios, slips_from)
-    ]
-    first = min(singular, default=inf)
-    if first <= profile.contact_radius(np.zeros(())):
+    profile, start = pressed.profile, log(pressed.coordinate)
+    singular = _infinite_from(profile, options["poissons_ratio"], 0.0 if ratio > _SLIDES else inf)
+    if singular == 0:
         return 0.0
 
     def force(coordinate: float) -> float:
-        return float(_pressed(case.under(coordinate, 0.0)).normal_force)
+        return float(replace(pressed, coordinate=np.asarray(coordinate)).normal_force)
 
+    @cache
     def excess(place: float) -> float:
+        """Logarithm of the measure over the limit, by that of the contact coordinate."""
         with np.errstate(all="ignore"):
-            contact = case.under(exp(place), ratio)
-            value = float(largest(contact, rounds=_ROUNDS, **options).value)
+            value = float(
+                largest(
+                    _under(pressed, friction, exp(place), ratio), rounds=_ROUNDS, **options
+                ).value
+            )
+        if isclose(value, limit, rel_tol=_ONSET_RTOL):
+            return 0.0
         return log(value / limit) if value > 0 else nan
 
-    if isinstance(profile, Cone):
-        # The largest stress is that of any load.
-        return 0.0 if excess(log(start)) >= 0 else inf
-    end = profile.last_coordinate or inf
-    if first < inf:
-        # At a slope discontinuity the stress is infinite.
-        end = float(profile.coordinate_from_radius(np.asarray(first)))
-    low, high = _bracket(excess, log(start), log(end) - _ONSET_RTOL)
-    if low == -inf:
-        return 0.0
-    if high == inf:
-        return force(end) if first < inf else inf
-    return force(exp(brentq(excess, low, high, xtol=_ONSET_RTOL)))
-
-
-def _bracket(excess: Callable[[float], float], start: float, last: float) -> tuple[float, float]:
-    """Places up to the last one between which the excess changes its sign; infinite without."""
-    place = min(start, last)
-    above = excess(place) > 0
-    while abs(place - start) < _REACH and (above or place < last):
-        before, place = place, min(place + (-_STEP if above else _STEP), last)
-        value = excess(place)
-        if not isfinite(value):
-            # Next to the equator of a body no double tells the contact from it.
+    exponent = _exponent(profile)
+    if exponent is not None:
+        n, over = float(np.asarray(exponent)), excess(start)
+        if n == 1:
+            return 0.0 if over >= 0 else inf
+        # The stresses grow like a^(n - 1), and the force like a^(n + 1).
+        with np.errstate(over="ignore"):
+            return float(pressed.normal_force * np.exp(-over * (n + 1) / (n - 1)))
+    last = log(min(singular, profile.last_coordinate or inf)) - _ONSET_RTOL
+    before = place = min(start, last)
+    above, step = excess(place) > 0, _STEP
+    # Next to the equator of a body no double tells the contact from it, and the excess is nan.
+    while excess(place) > 0 if above else excess(place) < 0:
+        if abs(place - start) > _REACH or (place == last and not above):
             break
-        if (value > 0) != above:
-            return min(before, place), max(before, place)
-    return (-inf, place) if above else (place, inf)
+        before, place = place, min(place - step * excess(place), last)
+        step *= 2
+    else:
+        if not isnan(excess(place)):
+            return force(
+                exp(brentq(excess, min(before, place), max(before, place), xtol=_ONSET_RTOL))
+            )
+    return 0.0 if above else force(singular) if singular < inf else inf
 
 
-def _pressed(contact: _Contact | LoadHistory) -> NormalContact:
-    if isinstance(contact, NormalContact):
-        return contact
-    return contact.contact if isinstance(contact, LoadHistory) else contact.normal
+def _infinite_from(profile: Profile, poissons_ratio: float, slips_from: float) -> float:
+    """Contact coordinate from which on the deviatoric stress is infinite; 0 under any load."""
+    radii = [
+        float(np.asarray(b))
+        for b in profile.infinite_pressure_radii
+        if infinite_deviator(profile, b, (poissons_ratio,), slips_from)
+    ]
+    if any(b <= profile.contact_radius(np.zeros(())) for b in radii):
+        return 0.0
+    return min((float(profile.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf)

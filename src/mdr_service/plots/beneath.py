@@ -5,7 +5,7 @@ import numpy as np
 from mdr_core import subsurface
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_service.plots.plot import POINTS, VISIBLE, Map, some
+from mdr_service.plots.plot import POINTS, Map, some
 from mdr_service.queries.fields import at_end
 from mdr_service.queries.subsurface import body_of
 from mdr_service.results import Contact, Result
@@ -25,7 +25,7 @@ def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> M
 
     def von_mises(*place: Array | float) -> Array:
         loaded, body = partial or contact, body_of(query)
-        return subsurface.stress(loaded, *place, **body, rtol=VISIBLE).von_mises
+        return subsurface.stress(loaded, *place, **body).von_mises
 
     first = von_mises(x, query.y, z[:, None]).reshape(-1, z.size, x.size)[0]
     on_axis = von_mises(0.0, query.y, depth).reshape(-1, depth.size)[0]

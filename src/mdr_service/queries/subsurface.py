@@ -46,10 +46,11 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     if query.has("x"):
         x, z = np.array(query.x), np.array(query.z)
     else:
-        end = _BEYOND * float(np.max(contact.contact_radius)) or 1.0
-        x, z = np.linspace(-end, end, query.points), np.linspace(0.0, end, query.points)
+        # In separation all points lie on the axis: any other extent would depend on the units.
+        end = _BEYOND * float(np.max(contact.contact_radius))
+        x, z = np.linspace(-end, end, query.points) + 0.0, np.linspace(0.0, end, query.points)
     place = x, query.y, z[:, None]
-    tensor = subsurface.stress(loaded, *place, **body, rtol=query.rtol)
+    tensor = subsurface.stress(loaded, *place, **body)
     shape = query.loads, z.size, x.size
     values: Result = {
         name: np.ascontiguousarray(np.broadcast_to(_by_name(tensor, name), shape))
@@ -57,7 +58,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     }
     infinite = np.broadcast_to(np.isinf(tensor.zz), shape)
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
-    error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place, rtol=query.rtol))
+    error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = without_singular(notices(query, source))
     if infinite.any():
         message = "stresses are infinite on the surface, where the pressure is"
