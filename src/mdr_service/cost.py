@@ -9,15 +9,13 @@ rejected.
 from math import log2
 from typing import Final
 
-from pydantic import BaseModel
-
 from mdr_service import problems
 from mdr_service.problems import ServiceError
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import FieldQuery, LoadedQuery, StressQuery
 from mdr_service.schemas.load_paths import HistoryQuery
-from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
+from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.serializers import PICTURES
@@ -56,40 +54,37 @@ _SIMILAR: Final = frozenset({"cone", "paraboloid", "power"})
 _LONGEST: Final = 4.0 * SETTINGS.budget_seconds
 
 
-def seconds(query: BaseModel) -> float:
+def seconds(query: Query | BatchQuery) -> float:
     """Return the expected time of a query or a batch."""
     if isinstance(query, BatchQuery):
         times = [seconds(item.query) for item in query.queries if isinstance(item.query, Query)]
         # A query that is rejected alone takes no time.
         return sum(time for time in times if time <= _LONGEST)
-    if not isinstance(query, Query):
-        raise TypeError(f"{type(query).__name__} is not a query")
     if isinstance(query, SubsurfaceQuery):
         return _beneath(query)
-    scale = _complexity(query.profile)
-    path = query.path if isinstance(query, HistoryQuery | LoadedQuery) else None
+    scale, path = _complexity(query.profile), query.path
     # Times that are multiplied in full, and those multiplied by the fourth root.
     # A table is resolved once for many queries.
     evaluated, integrated = 0.0, _START[type(query)]
-    if isinstance(query, FieldQuery):
+    if query.numbers and isinstance(query, FieldQuery):
         if "normal_displacement" in query.quantities:
             evaluated += _VALUE * query.numbers
         else:
             integrated += _VALUE * query.numbers
-    if isinstance(query, EvolutionQuery):
-        integrated += _NODE * (_LEAST_NODES + query.resolution) + _CYCLE * query.loads
-    elif isinstance(query, WearQuery):
-        evaluated += _WEAR * query.loads
-    elif path:
+    if path:
         evaluated += _FRICTION * path.samples
         integrated += _NONLINEAR_STEP * path.steps if path.nonlinear else 0.0
-    else:
+    elif isinstance(query, (NormalQuery, LoadedQuery)):
         with_friction = query.has("friction_coefficient")
         evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
         evaluated += _ARRAYS if query.loads > 1 else 0.0
-        flat = isinstance(query.profile, TabulatedProfile) and query.profile.f[1:2] == [0.0]
+        flat = query.profile.kind == "tabulated" and query.profile.f[1:2] == [0.0]
         if flat and isinstance(query, NormalQuery):
             evaluated += _SEARCH * query.load.count
+    elif isinstance(query, EvolutionQuery):
+        integrated += _NODE * (_LEAST_NODES + query.resolution) + _CYCLE * query.loads
+    else:
+        evaluated += _WEAR * query.loads
     root: float = scale**0.25
     return scale * evaluated + root * integrated + _yielding(query)
 
@@ -115,13 +110,13 @@ def _yielding(query: Query) -> float:
 
 def _point(query: Query) -> float:
     """Return the expected time of the stress at a point."""
-    each = _POINT_OF_TABLE if isinstance(query.profile, TabulatedProfile) else _POINT
+    each = _POINT_OF_TABLE if query.profile.kind == "tabulated" else _POINT
     # The traction has two segments, and more at the end of a load path.
     tractions = 2 if query.has("friction_coefficient") else 1
     return each * tractions * (3 if query.has("history") else 1)
 
 
-def require_feasible(query: BaseModel, media_type: str) -> float:
+def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
     """Return the expected time of a response.
 
     Raises
@@ -142,21 +137,20 @@ def require_feasible(query: BaseModel, media_type: str) -> float:
 
 
 def _complexity(profile: Profile) -> float:
-    if isinstance(profile, TabulatedProfile):
-        return _TABLE
-    if isinstance(profile, SeriesProfile):
+    if profile.kind in _EXPLICIT:
+        return 1.0
+    if profile.kind == "series":
         return _IMPLICIT + _TERM * len(profile.terms)
-    return 1.0 if profile.kind in _EXPLICIT else _IMPLICIT
+    return _TABLE if profile.kind == "tabulated" else _IMPLICIT
 
 
-def _sizes(query: BaseModel) -> dict[str, int]:
+def _sizes(query: Query | BatchQuery) -> dict[str, int]:
     """Return the sizes that can be reduced, by the member of the request."""
     if isinstance(query, BatchQuery):
         return {"queries": len(query.queries)}
-    found: dict[str, int] = {}
-    if isinstance(query, HistoryQuery | LoadedQuery) and query.path:
+    if query.path:
         found = {"history" if query.has("history") else "cycles": query.path.samples}
-    elif isinstance(query, Query):
+    else:
         found = {"cycles" if isinstance(query, EvolutionQuery) else "load": query.loads}
     if isinstance(query, SubsurfaceQuery):
         found["points" if query.points else "x"] = query.points or len(query.x or ())

@@ -17,9 +17,7 @@ from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
-from mdr_service.schemas.fields import FieldQuery
 from mdr_service.schemas.queries import SCHEMAS
-from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.serializers import PICTURES, WRITE, json
 from mdr_service.settings import SETTINGS
 
@@ -41,7 +39,9 @@ def parse(model: type[_Model], text: bytes) -> _Model:
         raise problems.from_validation(error) from None
 
 
-def respond(name: str, query: BaseModel, media_type: str, members: Sequence[str] = ()) -> bytes:
+def respond(
+    name: str, query: Query | BatchQuery, media_type: str, members: Sequence[str] = ()
+) -> bytes:
     """Return the response content of a query or a batch.
 
     Parameters
@@ -79,7 +79,8 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
 
 def respond_to_text(name: str, text: bytes, media_type: str) -> bytes:
     """Return the response content of a query in a JSON text; see `parse` and `respond`."""
-    query = parse(BatchQuery if name == "batch" else SCHEMAS[name].model, text)
+    model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
+    query = parse(model, text)
     cost.require_feasible(query, media_type)
     return respond(name, query, media_type)
 
@@ -94,9 +95,7 @@ def _require_few_numbers(batch: BatchQuery) -> None:
     numbers, most = 0, SETTINGS.max_numbers
     for index, item in enumerate(batch.queries):
         if isinstance(item.query, Query):
-            own = item.query.loads
-            if isinstance(item.query, FieldQuery | SubsurfaceQuery):
-                own = max(own, item.query.numbers)
+            own = max(item.query.loads, item.query.numbers)
             # A query that is too large alone is rejected alone.
             numbers += own if own <= most else 0
         if numbers > most:

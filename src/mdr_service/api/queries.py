@@ -7,7 +7,6 @@ from typing import Annotated, Any, ClassVar, Final, get_args
 
 from fastapi import APIRouter, Body, Depends, Query, Request
 from fastapi.routing import APIRoute
-from pydantic import BaseModel
 from starlette.responses import Response
 
 from mdr_service import cost, problems
@@ -16,6 +15,7 @@ from mdr_service.content_negotiation import FORMAT, Format, media_type
 from mdr_service.dispatch import parse, respond, respond_to_text
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
+from mdr_service.schemas import contacts
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.examples import EXAMPLES
@@ -59,7 +59,9 @@ class Responder:
             self.media_type = media_type(format_, accept, self.formats)
         self.workers = request.app.state.workers
 
-    async def __call__(self, name: str, query: BaseModel, members: Sequence[str] = ()) -> Response:
+    async def __call__(
+        self, name: str, query: contacts.Query | BatchQuery, members: Sequence[str] = ()
+    ) -> Response:
         """Compute on the event loop if that is short, else in a compute process."""
         seconds = cost.require_feasible(query, self.media_type)
         arguments = name, query, self.media_type, members

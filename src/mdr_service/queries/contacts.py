@@ -15,7 +15,7 @@ from mdr_service.results import Result, about, by_load, checked, members, notice
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
-from mdr_service.schemas.profiles import Profile, SeriesProfile, TabulatedProfile
+from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.table_cache import TABLES
 
@@ -50,10 +50,10 @@ def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Res
 
 def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
-    if isinstance(model, TabulatedProfile):
+    if model.kind == "tabulated":
         return TABLES.resolved(model)
     given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
-    if isinstance(model, SeriesProfile):
+    if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
     return profiles.KINDS[model.kind](**given)
 

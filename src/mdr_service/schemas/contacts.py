@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from functools import cached_property, lru_cache
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
@@ -17,6 +17,9 @@ from mdr_service.schemas.quantities import (
     positive,
     quantity,
 )
+
+if TYPE_CHECKING:
+    from mdr_service.schemas.load_paths import LoadPath
 
 
 def _describe_choice(schema: dict[str, Any]) -> None:
@@ -51,7 +54,7 @@ class Choice(Strict, json_schema_extra=_describe_choice):
             raise PydanticCustomError("one_control", f"exactly one of {names} is needed")
         return self
 
-    @property
+    @cached_property
     def control(self) -> str:
         """Name of the control."""
         (name,) = self.model_fields_set - self.optional
@@ -199,6 +202,16 @@ class Query(Strict):
     @abstractmethod
     def loads(self) -> int:
         """Number of entries over the loads in the response."""
+
+    @property
+    def path(self) -> "LoadPath | None":
+        """Load path, if there is one."""
+        return None
+
+    @property
+    def numbers(self) -> int:
+        """Number of values over the radius, or over positions, in the response."""
+        return 0
 
     @abstractmethod
     def place(self, index: int) -> tuple[str | int, ...]:

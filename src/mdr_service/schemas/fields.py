@@ -57,7 +57,6 @@ class FieldQuery(Query):
 
     @property
     def numbers(self) -> int:
-        """Number of values over the radius in the response."""
         return self.loads * self.radii * len(self.quantities)
 
 
@@ -103,7 +102,6 @@ class LoadedQuery(Query):
 
     @property
     def path(self) -> LoadPath | None:
-        """Load path, if there is one."""
         return self.history
 
     def place(self, index: int) -> tuple[str | int, ...]:

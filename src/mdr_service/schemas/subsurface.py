@@ -84,5 +84,4 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_describe):
 
     @property
     def numbers(self) -> int:
-        """Number of stresses in the response."""
         return self.loads * self.positions * len(self.quantities)
