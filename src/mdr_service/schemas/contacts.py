@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
@@ -17,9 +17,6 @@ from mdr_service.schemas.quantities import (
     positive,
     quantity,
 )
-
-if TYPE_CHECKING:
-    from mdr_service.schemas.load_paths import LoadPath
 
 
 def _describe_choice(schema: dict[str, Any]) -> None:
@@ -204,8 +201,8 @@ class Query(Strict):
         """Number of entries over the loads in the response."""
 
     @property
-    def path(self) -> "LoadPath | None":
-        """Load path, if there is one."""
+    def path(self) -> Any:
+        """Load path (`schemas.load_paths.LoadPath`), None where there is none."""
         return None
 
     @property
