@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from mpmath import acos, asin, cbrt, findroot, gamma, log, mpf, pi, sqrt
+from mpmath import acos, asin, cbrt, findroot, gamma, log, mpf, pi, quad, sqrt
 
 from verification.case import QUADRATURE, Case, at, fields, tangential
 
@@ -246,6 +246,7 @@ def chapter() -> Iterator[Case]:
                 value,
                 bound=1e-10,
             )
+    yield from rounded_punch_stresses()
     request = tangential(BALL, {"contact_radius": 1.0}, {"stick_radius": 0.5})
     radii = (0.55, 0.75, 0.99)
     for i, r in enumerate(map(mpf, radii)):
@@ -274,6 +275,40 @@ def chapter() -> Iterator[Case]:
         MU * mpf(0.1) / 2 * log(1 / mpf(0.4)),
         bound=1e-11,
     )
+
+
+def rounded_punch_stresses() -> Iterator[Case]:
+    """Problem 4: pressure and shear stress as integrals, here by tanh-sinh quadrature."""
+    b, radius, a, c = 1.0, 20.0, 1.25, 1.125
+    profile = {"kind": "rounded_punch", "flat_radius": b, "rounding_radius": radius}
+    request = tangential(profile, {"contact_radius": a}, {"stick_radius": c})
+    radii = (0.0, 0.5, 0.99, 1.0625, 1.2)
+
+    def stress(r: Any, start: Any) -> Any:
+        """Return the integral, with u = sqrt(x^2 - r^2) in the place of x."""
+
+        def integrand(u: Any) -> Any:
+            x = sqrt(u**2 + r**2)
+            return (2 * sqrt(x**2 - 1) - acos(1 / x)) / x if x > 1 else mpf(0)
+
+        ends = [sqrt(x**2 - r**2) for x in (max(r, start), mpf(a))]
+        return quad(integrand, ends) / (pi * radius)
+
+    for equation, quantity, factor, start in (
+        ("(5.68)", "pressure", mpf(1), mpf(b)),
+        ("(5.70)", "shear_stress", MU, mpf(c)),
+    ):
+        for i, r in enumerate(radii):
+            yield Case(
+                "mdr-5",
+                equation,
+                f"rounded punch, a/b = {a}: {quantity} at r/b = {r}",
+                FIELD,
+                fields(request, quantity, radii),
+                at(quantity, 0, i),
+                factor * stress(mpf(r), start),
+                bound=QUADRATURE,
+            )
 
 
 def wear() -> Iterator[Case]:

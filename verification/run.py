@@ -66,6 +66,10 @@ def page(rows: Iterable[Row]) -> str:
         "The tables of Buie's pair no. 1 converge slowly, with the root of the spacing: the",
         "pressure jumps to zero at the edge, where the slope of g is infinite.",
         "",
+        "For the punch with rounded edges of Ciavarella (Int. J. Solids Struct. 36 (1999)",
+        "4149-4181) no printed numbers were available: its cases are problems 3 and 4 of `mdr-5`,",
+        "equations (5.59) to (5.70), and ring elements.",
+        "",
         "| source | equation | case | reference | uncertainty | bound | deviation | |",
         "|---|---|---|---|---|---|---|---|",
     ]
