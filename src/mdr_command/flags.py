@@ -20,7 +20,7 @@ def declare(parser: argparse.ArgumentParser, command: str) -> None:
         return
     group = parser.add_argument_group("request by options, in place of a file")
     for name, field in PARAMETERS[command].model_fields.items():
-        if name != "format":
+        if name not in {"format", "size"}:
             group.add_argument(
                 f"--{name.replace('_', '-')}",
                 dest=_PREFIX + name,

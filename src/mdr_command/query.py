@@ -40,6 +40,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="|".join(FORMATS),
         help="format of the response (default: by the suffix of FILE, else json)",
     )
+    parser.add_argument("--size", metavar="WxH", help=content_negotiation.SIZE)
     parser.add_argument(
         "-o",
         "--output",
@@ -86,10 +87,10 @@ def _content(arguments: argparse.Namespace) -> bytes:
     format_ = arguments.format or (suffix if suffix in FORMATS else "json")
     if parameters is None:
         query = parse(SCHEMAS[arguments.command].model, _read(arguments.file or _STANDARD_INPUT))
-        return _respond(arguments.command, query, (), format_)
+        return _respond(arguments, query, (), format_)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")
-    return _by_parameters(arguments.command, parameters, format_)
+    return _by_parameters(arguments, parameters, format_)
 
 
 def _read(file: str) -> bytes:
@@ -100,17 +101,20 @@ def _read(file: str) -> bytes:
     return sys.stdin.buffer.read()
 
 
-def _respond(name: str, query: Query, members: Sequence[str], format_: str) -> bytes:
+def _respond(
+    arguments: argparse.Namespace, query: Query, members: Sequence[str], format_: str
+) -> bytes:
     media_type = content_negotiation.media_type(format_, "*/*")
-    return respond(name, query, media_type, members)
+    size = content_negotiation.picture_size(arguments.size, media_type)
+    return respond(arguments.command, query, media_type, members, size)
 
 
-def _by_parameters(name: str, parameters: Parameters, format_: str) -> bytes:
+def _by_parameters(arguments: argparse.Namespace, parameters: Parameters, format_: str) -> bytes:
     """Return the response to a request by options; its problems point at the options."""
     members = parameters.answers.split(",") if parameters.answers else ()
     query = parameters.query()
     try:
-        return _respond(name, query, members, format_)
+        return _respond(arguments, query, members, format_)
     except problems.FAILURES as error:
         raise parameters.pointed(problems.to_problem(error)) from None
 

@@ -1,14 +1,17 @@
-"""Media type of a response: by the parameter ``format``, or else by the header ``Accept``."""
+"""Media type of a response, by ``format`` or the header ``Accept``, and size of a picture."""
 
 import re
 from collections.abc import Sequence
 from typing import Final, Literal
 
 from mdr_service import problems
-from mdr_service.serializers import FORMATS
+from mdr_service.serializers import FORMATS, PICTURES
 
 Format = Literal["json", "csv", "npz", "txt", "svg", "png", "pdf"]
 FORMAT: Final = "Format of the response; overrides `Accept`"
+SIZE: Final = "Width x height of a picture in millimetres, 30 to 400 each, such as `90x60`"
+_SIZE: Final = re.compile(r"(\d{2,3})x(\d{2,3})", re.ASCII)
+_SMALLEST, _LARGEST = 30, 400
 _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 
@@ -35,6 +38,23 @@ def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FOR
         formats = ", ".join(f"{each} ({FORMATS[each]})" for each in offered)
         raise problems.ServiceError(problems.NOT_ACCEPTABLE, f"available formats: {formats}")
     return best
+
+
+def picture_size(text: str | None, media_type: str) -> tuple[int, int] | None:
+    """Return width and height of a picture [mm], None if they are not given.
+
+    Raises
+    ------
+    ServiceError : the text is not a size, or the response is not a picture.
+    """
+    if text is None:
+        return None
+    found = _SIZE.fullmatch(text)
+    size = (int(found[1]), int(found[2])) if found else (0, 0)
+    if media_type in PICTURES and min(size) >= _SMALLEST and max(size) <= _LARGEST:
+        return size
+    errors = [("/size", f"{SIZE}; other formats have no size")]
+    raise problems.ServiceError(problems.INVALID_REQUEST, "some parameters are invalid", errors)
 
 
 def _range(text: str) -> tuple[str, float]:

@@ -40,7 +40,11 @@ def parse(model: type[_Model], text: bytes) -> _Model:
 
 
 def respond(
-    name: str, query: Query | BatchQuery, media_type: str, members: Sequence[str] = ()
+    name: str,
+    query: Query | BatchQuery,
+    media_type: str,
+    members: Sequence[str] = (),
+    size: tuple[int, int] | None = None,
 ) -> bytes:
     """Return the response content of a query or a batch.
 
@@ -50,6 +54,7 @@ def respond(
     query : the request.
     media_type : media type of the content.
     members : members of the result to return, by default all; a picture shows all.
+    size : width and height of a picture [mm].
 
     Raises
     ------
@@ -63,8 +68,8 @@ def respond(
         source = kind.solve(query)
         result: Any = kind.result(query, source)
         if media_type in PICTURES:
-            result = PLOTS[name](query, source, result)
-        elif members:
+            return WRITE[media_type](PLOTS[name](query, source, result), size=size)
+        if members:
             result = _chosen(result, members)
     return WRITE[media_type](result)
 
@@ -77,12 +82,14 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
     return {name: result[name] for name in members}
 
 
-def respond_to_text(name: str, text: bytes, media_type: str) -> bytes:
+def respond_to_text(
+    name: str, text: bytes, media_type: str, size: tuple[int, int] | None = None
+) -> bytes:
     """Return the response content of a query in a JSON text; see `parse` and `respond`."""
     model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
     query = parse(model, text)
     cost.require_feasible(query, media_type)
-    return respond(name, query, media_type)
+    return respond(name, query, media_type, size=size)
 
 
 def _respond_to_batch(batch: BatchQuery) -> bytes:

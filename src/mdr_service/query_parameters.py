@@ -22,7 +22,7 @@ from pydantic_core import PydanticCustomError
 
 from mdr_core.errors import InputError
 from mdr_service import problems
-from mdr_service.content_negotiation import FORMAT, Format
+from mdr_service.content_negotiation import FORMAT, SIZE, Format
 from mdr_service.problems import ServiceError
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
@@ -73,7 +73,7 @@ _Described = tuple[str, str, Any, str]
 
 
 # Parameters of the response, to which a problem can point.
-_RESPONSE: Final = {"answers": "answers"}
+_RESPONSE: Final = {"answers": "answers", "size": "size"}
 
 
 class Parameters(BaseModel):
@@ -91,13 +91,16 @@ class Parameters(BaseModel):
     )
     # An unknown format is not acceptable (406), as for POST, rather than invalid.
     format: SkipValidation[Format | None] = Field(default=None, description=FORMAT)
+    size: str | None = Field(default=None, description=SIZE)
     answers: str | None = Field(
         default=None, description="Members of the response, separated by commas; by default all"
     )
 
     def query(self) -> contacts.Query:
         """Return the request; raise InputError or ServiceError that points at a parameter."""
-        given = self.model_dump(exclude_unset=True, exclude={"n", "scale", "format", "answers"})
+        given = self.model_dump(
+            exclude_unset=True, exclude={"n", "scale", "format", "size", "answers"}
+        )
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
         bodies = {f"material.bodies.{index}" for index in "01"}

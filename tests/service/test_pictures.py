@@ -1,6 +1,7 @@
 """Content of the plots: curves, points, limits, markers, labels and legends."""
 
 import json
+import struct
 from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -16,6 +17,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import picture
+from tests.conftest import Client
 
 CASES = [
     (name, example["value"])
@@ -327,6 +329,29 @@ def test_svg_text_is_text() -> None:
     texts = {"".join(each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")}
     assert texts >= {"requested loads", "normal force F_N"}
     assert "indentation depth d   (in the units of the request)" in texts
+
+
+GET = "/v1/normal?kind=paraboloid&radius=0.01&e_star=1e11&normal_force=10"
+
+
+def test_picture_has_the_requested_size(client: Client) -> None:
+    post = client.request("POST", "/v1/normal?format=png&size=90x60", json=BALL)
+    for response in (post, client.get(f"{GET}&format=png&size=90x60")):
+        # Width and height in the header of a PNG.
+        pixels = struct.unpack(">II", response.content[16:24])
+        assert pixels == pytest.approx([90 / 25.4 * 150, 60 / 25.4 * 150], abs=1)
+    assert 'width="510.236' in client.get(f"{GET}&format=svg&size=180x60").text
+
+
+@pytest.mark.parametrize("size", ["29x60", "90x401", "90", "90.5x60", "x"])
+def test_invalid_size_is_rejected(client: Client, size: str) -> None:
+    for response in (
+        client.request("POST", f"/v1/normal?format=svg&size={size}", json=BALL),
+        client.get(f"{GET}&format=svg&size={size}"),
+        client.get(f"{GET}&size=90x60"),
+    ):
+        assert response.status_code == 422
+        assert response.json()["errors"][0]["pointer"] == "/size"
 
 
 @pytest.mark.parametrize("force", [2.9999999999999996, 3.0])

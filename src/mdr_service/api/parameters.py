@@ -39,7 +39,8 @@ def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
 
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """
-        respond, query = Responder(request, parameters.format), parameters.query()
+        respond = Responder(request, parameters.format, parameters.size)
+        query = parameters.query()
         members = parameters.answers.split(",") if parameters.answers else ()
         try:
             response = await respond(name, query, members)

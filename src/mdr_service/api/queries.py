@@ -11,7 +11,7 @@ from starlette.responses import Response
 
 from mdr_service import cost, problems
 from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES
-from mdr_service.content_negotiation import FORMAT, Format, media_type
+from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
 from mdr_service.dispatch import parse, respond, respond_to_text
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
@@ -40,6 +40,7 @@ class Responder:
     ----------
     request : the HTTP request.
     format_ : format of the response; if absent, the header ``Accept`` decides.
+    size : width and height of a picture.
     """
 
     formats: ClassVar[tuple[str, ...]] = tuple(FORMATS)
@@ -50,6 +51,7 @@ class Responder:
         self,
         request: Request,
         format_: Annotated[Format | None, Query(alias="format", description=FORMAT)] = None,
+        size: Annotated[str | None, Query(description=SIZE)] = None,
     ) -> None:
         accept = header(request.scope, b"accept", _ANY)
         # Most clients accept anything.
@@ -57,6 +59,7 @@ class Responder:
             self.media_type = json.MEDIA_TYPE
         else:
             self.media_type = media_type(format_, accept, self.formats)
+        self.size = picture_size(size, self.media_type)
         self.workers = request.app.state.workers
 
     async def __call__(
@@ -64,7 +67,7 @@ class Responder:
     ) -> Response:
         """Compute on the event loop if that is short, else in a compute process."""
         seconds = cost.require_feasible(query, self.media_type)
-        arguments = name, query, self.media_type, members
+        arguments = name, query, self.media_type, members, self.size
         if seconds <= AT_ONCE_SECONDS:
             content = respond(*arguments)
         else:
@@ -73,7 +76,7 @@ class Responder:
 
     async def to_text(self, name: str, text: bytes) -> Response:
         """Parse, compute and serialize in a compute process."""
-        arguments = name, text, self.media_type
+        arguments = name, text, self.media_type, self.size
         content = await self.workers.run_in_process(respond_to_text, *arguments)
         return Response(content, media_type=self.media_type)
 
@@ -103,7 +106,7 @@ class QueryRoute(APIRoute):
 
         async def handle(request: Request) -> Response:
             given = url_parameters(request)
-            respond_: Responder = make(request, given.pop("format", None))
+            respond_: Responder = make(request, given.pop("format", None), given.pop("size", None))
             if given:
                 raise _invalid(dict.fromkeys(given, "there is no such parameter"))
             text = await read_body(request)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 from mdr_service.serializers import csv, json, npz, picture, text
 
@@ -16,8 +16,8 @@ FORMATS: Final[Mapping[str, str]] = {
 """Media types by the name of the format."""
 PICTURES: Final = frozenset(picture.MEDIA_TYPES.values())
 """Media types of plots."""
-WRITE: Final[Mapping[str, Callable[[Any], bytes]]] = {
+WRITE: Final[Mapping[str, Callable[..., bytes]]] = {
     **{module.MEDIA_TYPE: module.write for module in (json, csv, npz, text)},
     **{each: partial(picture.write, name=name) for name, each in picture.MEDIA_TYPES.items()},
 }
-"""Functions by the media type that they write."""
+"""Functions by the media type that they write; those of pictures take a size."""

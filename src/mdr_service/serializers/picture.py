@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 MEDIA_TYPES: Final = {"svg": "image/svg+xml", "png": "image/png", "pdf": "application/pdf"}
 
-# Width of the picture and height of a panel, a single and one of several, in inches.
+# A picture's size in millimetres.
+Size = tuple[int, int] | None
+_INCH: Final = 25.4
+# Usual width of the picture and height of a panel, a single and one of several, in inches.
 _WIDTH, _SINGLE, _PANEL = 7.2, 4.0, 2.6
 # Marks closer than this share of the axis share one label.
 _CLOSE: Final = 0.025
@@ -55,17 +58,17 @@ _METADATA: Final = {
 }
 
 
-def write(plot: Plot | Map, name: str) -> bytes:
+def write(plot: Plot | Map, name: str, size: Size = None) -> bytes:
     """Return the picture in a format of `MEDIA_TYPES`; equal plots give identical bytes."""
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
 
     if isinstance(plot, Map):
-        return _write_map(plot, name)
+        return _write_map(plot, name, size)
     count = len(plot.panels)
     height = 0.9 + (_SINGLE if count == 1 else _PANEL * count)
     with _lock, mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(_WIDTH, height), layout="constrained")
+        figure = Figure(figsize=_inches(size) or (_WIDTH, height), layout="constrained")
         axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for each, panel in zip(axes, plot.panels, strict=True):
             _draw(each, panel, plot)
@@ -77,7 +80,7 @@ def write(plot: Plot | Map, name: str) -> bytes:
         return _save(figure, name)
 
 
-def _write_map(plot: Map, name: str) -> bytes:
+def _write_map(plot: Map, name: str, size: Size) -> bytes:
     """Draw contours, and beside them the values on the axis."""
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
@@ -87,7 +90,7 @@ def _write_map(plot: Map, name: str) -> bytes:
     top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _MOST)))
     levels = np.linspace(0.0, top or 1.0, _LEVELS)
     with _lock, mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(_WIDTH, _SINGLE), layout="constrained")
+        figure = Figure(figsize=_inches(size) or (_WIDTH, _SINGLE), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
         shown = np.where(np.isfinite(plot.values), plot.values, top)
         drawn = left.contourf(plot.x, plot.z, np.minimum(shown, levels[-1]), levels)
@@ -104,6 +107,10 @@ def _write_map(plot: Map, name: str) -> bytes:
         right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
         left.invert_yaxis()
         return _save(figure, name)
+
+
+def _inches(size: Size) -> tuple[float, float] | None:
+    return (size[0] / _INCH, size[1] / _INCH) if size else None
 
 
 def _save(figure: "Figure", name: str) -> bytes:
