@@ -6,6 +6,7 @@ import pty
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -163,26 +164,24 @@ def test_output_on_a_terminal_ends_with_a_newline(client: Client) -> None:
 
 
 def test_interrupt_ends_the_command_without_a_traceback() -> None:
-    with terminal() as (ours, response):
-        process = subprocess.Popen(
-            [*MDR, "evolution"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=response,
-            # A process inherits an ignored SIGINT from its parent, e.g. from a background shell.
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509 -- no threads
-        )
-        assert process.stdin is not None
-        process.stdin.write(json.dumps(LONG).encode())
-        process.stdin.close()
-        process.stdin = None
-        # The command is running once the bar is shown.
-        shown = os.read(ours, 100)
-        process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=PATIENCE)
-        shown += os.read(ours, 100_000)
+    process = subprocess.Popen(
+        [*MDR, "evolution"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        # A process inherits an ignored SIGINT from its parent, e.g. from a background shell.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509 -- no threads
+    )
+    assert process.stdin is not None
+    # More than a pipe holds: the command reads it once it is written, and then computes.
+    process.stdin.write(json.dumps(LONG).encode() + b" " * 200_000)
+    process.stdin.close()
+    process.stdin = None
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    out, told = process.communicate(timeout=PATIENCE)
     assert (process.returncode, out) == (130, b"")
-    assert b"Traceback" not in shown
+    assert b"Traceback" not in told
 
 
 def test_closed_output_pipe_ends_silently() -> None:
