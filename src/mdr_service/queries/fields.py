@@ -82,9 +82,13 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(source, contact, query.quantities)
     integrated = 0.0 if method == "closed_form" else query.rtol
+    names = set(query.quantities)
+    if "shear_stress" in names:
+        # Its edges include those of the pressure.
+        names.discard("pressure")
     at_edges = max(
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
-        for name in query.quantities
+        for name in names
     )
     warnings = without_singular(notices(query, source)) + singular(radius, values, infinite)
     if source.error_estimate <= query.rtol < at_edges:
