@@ -24,6 +24,8 @@ _GRID_END: Final = 1.25
 # Width over that of the rise of g by the step, where both are narrow: the mean of r cos(t) - c up
 # to the angle arccos(c/r) is two thirds of r - c.
 _NARROW: Final = 1.5
+# Part of the room from which on a worn annulus may reach the end of the profile: 1 up to rounding.
+_AT_END: Final = 0.99
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
     "the stick zone grows over worn material, and the limit depends on the load path: this is "
@@ -331,6 +333,9 @@ def _require_room(wear: LimitingWear) -> None:
     if profile.slips_at_once or not float(profile.domain) < inf:
         return
     annulus, wearing = wear.annulus, (wear.stuck.step > 0) & ~wear.stuck.endless
+    # Without a root the search for the width ends there.
+    if not (np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * annulus.room).any():
+        return
     step = np.ravel(np.where(wearing, wear.stuck.step, 0.0))
     beyond = (annulus.mean_rise(annulus.room) < step).reshape(wear.stuck.step.shape)
     if beyond.any():
