@@ -34,10 +34,10 @@ KERNELS: Final = 7
 _PANEL: Final = 2.0
 # Nodes of a panel, and the part of its distance from the nearest edge or break by which a point is
 # moved off the surface: up to rounding error, or to 5e-8 of the largest stress.
-_EXACT, _COARSE = (16, 1e-18), (10, 1e-9)
+_EXACT, _COARSE = (14, 1e-18), (10, 1e-9)
 # Nodes of a block, and the least distance of a far singularity from it over its length, both in
 # x^2: interpolation errs by 5.8^-n.
-_JOINED, _FAR = 20, 1.0
+_JOINED, _FAR = 18, 1.0
 # Powers of s up to this one are resolved on a piece that doubles s.
 _STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
@@ -153,6 +153,9 @@ class Foundation:
             found = np.empty_like(x)
             for number, branch in enumerate(self._branches):
                 own = owner == number
+                if own.all():
+                    found = branch.weight(x, s, slice(0, 1))
+                    break
                 found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
         if not self.annuli.sheared:
             return np.asarray(found[None])
@@ -161,7 +164,10 @@ class Foundation:
         return np.stack([found, k * found])
 
     def moments(self, r: Array, z: Array) -> Array:
-        """Return the moments of q and q_x at points, z > 0, shape (1 or 2, 7, m)."""
+        """Return the moments of q and q_x at points, z > 0, shape (1 or 2, 7, m).
+
+        The last two kernels are those of q_x alone, and zero without it.
+        """
         total = np.zeros((len(self._levels[0].mass), KERNELS, r.size))
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
         for size, level in reversed(list(enumerate(self._levels))):
@@ -250,15 +256,19 @@ def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: 
     """Add sums of mass Im K over nodes, from Re rho^2 there (nodes, m), at points (m,)."""
     # The root of rho^2 in real numbers takes half the time of a complex one.
     imaginary = 2 * x * z
-    larger = np.sqrt((np.hypot(square, imaginary) + np.abs(square)) / 2)
+    size = np.hypot(square, imaginary)
+    larger = np.sqrt((size + np.abs(square)) / 2)
     smaller = imaginary / (2 * larger)
-    rho, zeta = np.empty((2, *larger.shape), dtype=complex)
-    rho.real = np.where(square < 0, smaller, larger)
-    rho.imag = np.where(square < 0, larger, smaller)
-    zeta.real, zeta.imag = z, x
-    inverse, second = 1 / rho, 1 / (rho + zeta)
+    inverse, u = np.empty((2, *larger.shape), dtype=complex)
+    inverse.real = np.where(square < 0, smaller, larger)
+    inverse.imag = -np.where(square < 0, larger, smaller)
+    u.real, u.imag = z + inverse.real, x - inverse.imag
+    inverse /= size
+    second = 1 / u
     mixed, cube = inverse * second, inverse * inverse * inverse
-    kernels = inverse, zeta * cube, mixed, cube, second, second * second, mixed * second
+    kernels = [inverse, (z + 1j * x) * cube, mixed, cube, second]
+    if len(total) > 1:
+        kernels += [second * second, mixed * second]
     for number, kernel in enumerate(kernels):
         for row, sums in zip(
             total[:, number], np.einsum("knm,nm->km", mass, kernel.imag), strict=True

@@ -169,7 +169,7 @@ def on_rings(under: Foundation, rings: Rings, nu: float, body: int) -> StressTen
         return StressTensor(*np.zeros((6, *rings.cos.shape)))
     r, a = rings.r, under.annuli.radius[-1]
     breaks = [float(np.asarray(b)) for b in under.profile.breaks]
-    near = np.abs(r[:, None] - np.array([0.0, *under.annuli.radius, *breaks])).min(axis=1)
+    near = np.abs(np.subtract.outer([0.0, *under.annuli.radius, *breaks], r)).min(axis=0)
     # In points with depths > 0 the kernels are regular.
     inner = rings._replace(z=np.maximum(rings.z, under.lift * near + _SURFACE_AT_EDGE * a))
     pressed, *sheared = under.moments(r, inner.z)
