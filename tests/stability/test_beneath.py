@@ -13,7 +13,7 @@ from mpmath import mp, mpc, mpf
 from mdr_core import normal, tangential
 from mdr_core.profiles import Cone, Paraboloid, Profile
 from mdr_core.subsurface import error_estimate, stress
-from mdr_core.subsurface.stress import Rings, of_moments
+from mdr_core.subsurface.stress import of_moments
 from mdr_core.tangential import TangentialContact
 from tests.core.comparison import profile_from
 from tests.oracles.subsurface_limits import FRICTION, NU, STORED
@@ -74,7 +74,7 @@ def exact_stress(profile: Profile, c: float | None, place: list[float]) -> Array
     with mp.workdps(CLOSED_DIGITS):
         x, y, z = map(mpf, place)
         r, nu = mp.hypot(x, y), mpf(NU)
-        where = Rings(*(np.array([part], dtype=object) for part in (r, z, x / r, y / r)))
+        where = tuple(np.array([part], dtype=object) for part in (r, z, x / r, y / r))
         pressed = closed_moments(profile, 0.0, r, z)
         sheared = mpf(0) if c is None else mpf(FRICTION) * closed_moments(profile, c, r, z)
         total = of_moments(pressed, sheared + 0 * pressed, where, nu)
@@ -87,7 +87,7 @@ def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) 
     profile = (contact.normal if sheared else contact).profile
     first = float(profile.contact_radius(np.zeros(())))
     r, z = np.array([np.hypot(*place[:2])]), np.array([place[2]])
-    where = Rings(r, z, place[0] / r, place[1] / r)
+    where = (r, z, place[0] / r, place[1] / r)
 
     def moments(low: float) -> Array:
         x = low + (1 - low) * (1 + NODES) / 2

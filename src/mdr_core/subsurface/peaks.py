@@ -10,7 +10,7 @@ from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.subsurface.annuli import Contact, every, shape_of
 from mdr_core.subsurface.foundation import Foundation
-from mdr_core.subsurface.stress import Rings, on_rings
+from mdr_core.subsurface.stress import on_rings
 from mdr_core.typing import Array
 from mdr_core.validity import infinite_deviator
 
@@ -105,11 +105,9 @@ def _peak(
 
     def on(axes: list[Array]) -> Array:
         """The measure on a grid of directions, radii and depths; zero where it is infinite."""
-        turn, (r, z) = (
-            axes[0][:, None],
-            (part.ravel() for part in np.meshgrid(*axes[1:], indexing="ij")),
-        )
-        place = Rings(np.abs(r), z, np.cos(turn) * np.where(r < 0, -1, 1), np.sin(turn))
+        turn = axes[0][:, None]
+        r, z = (part.ravel() for part in np.meshgrid(*axes[1:], indexing="ij"))
+        place = np.abs(r), z, np.cos(turn) * np.where(r < 0, -1, 1), np.sin(turn)
         values = np.asarray(getattr(on_rings(under, place, nu, body), measure))
         return np.where(np.isinf(values), 0.0, values).reshape([-1, *map(len, axes[1:])])
 

@@ -1,7 +1,7 @@
 """Stress tensor of a contact at any points of either body."""
 
 from math import inf
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +21,10 @@ from mdr_core.validation import require_not_negative
 _SURFACE_AT_EDGE: Final = 1e-34
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
+
+
+# r, z, cos and sin of the direction.
+Place: TypeAlias = tuple[Array, Array, Array, Array]
 
 
 class StressTensor(NamedTuple):
@@ -129,9 +133,9 @@ def stress(
     across, aside, depth = (np.broadcast_to(part, points).ravel() for part in where)
     r = np.hypot(across, aside)
     away = np.where(r > 0, r, 1.0)
-    rings = Rings(r, depth, np.where(r > 0, across / away, 1.0), aside / away)
+    place = r, depth, np.where(r > 0, across / away, 1.0), aside / away
     under = (Foundation(one) for one in every(contact))
-    found = np.stack([on_rings(each, rings, poissons_ratio, body) for each in under], axis=1)
+    found = np.stack([on_rings(each, place, poissons_ratio, body) for each in under], axis=1)
     origin = (r == 0) & (depth == 0)
     if origin.any():
         # Powers next to a cone approach the tractions there slowly. V_r/r and Om_r/r are halves of
@@ -146,42 +150,33 @@ def stress(
     return StressTensor(*found.reshape(6, *shape, *points))
 
 
-class Rings(NamedTuple):
-    """Points in cylindrical coordinates: radii and depths of shape (m,), directions (..., m)."""
-
-    r: Array
-    z: Array
-    cos: Array
-    sin: Array
-
-
-def on_rings(under: Foundation, rings: Rings, nu: float, body: int) -> StressTensor:
+def on_rings(under: Foundation, place: Place, nu: float, body: int) -> StressTensor:
     """Return the stress tensor at points that share radii and depths, of shape (..., m).
 
     Parameters
     ----------
     under : the loads of the foundation.
-    rings : points.
+    place : radii and depths [length], shape (m,), and cosines and sines of directions, (..., m).
     nu : Poisson's ratio of this body [1].
     body : 1 for the body of the profile, 2 for the other.
     """
+    (r, z, *direction), a = place, under.annuli.radius[-1]
     if not under.loaded:
-        return StressTensor(*np.zeros((6, *rings.cos.shape)))
-    r, a = rings.r, under.annuli.radius[-1]
+        return StressTensor(*np.zeros((6, *direction[0].shape)))
     breaks = [float(np.asarray(b)) for b in under.profile.breaks]
     near = np.abs(np.subtract.outer([0.0, *under.annuli.radius, *breaks], r)).min(axis=0)
     # In points with depths > 0 the kernels are regular.
-    inner = rings._replace(z=np.maximum(rings.z, under.lift * near + _SURFACE_AT_EDGE * a))
-    pressed, *sheared = under.moments(r, inner.z)
+    depth = np.maximum(z, under.lift * near + _SURFACE_AT_EDGE * a)
+    pressed, *sheared = under.moments(r, depth)
     along = sheared[0] if body == 2 and sheared else -sheared[0] if sheared else 0 * pressed
-    found = under.modulus * of_moments(pressed, along, inner, nu)
+    found = under.modulus * of_moments(pressed, along, (r, depth, *direction), nu)
     for b in under.profile.infinite_pressure_radii:
-        infinite = (r == b) & (rings.z == 0) & bool(b <= a)
+        infinite = (r == b) & (z == 0) & bool(b <= a)
         found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
     return StressTensor(*found)
 
 
-def of_moments(pressed: Array, sheared: Array, place: Rings, nu: float) -> Array:
+def of_moments(pressed: Array, sheared: Array, place: Place, nu: float) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
 
     The sum and the difference of the in-plane stresses have few harmonics of the direction.
@@ -189,7 +184,7 @@ def of_moments(pressed: Array, sheared: Array, place: Rings, nu: float) -> Array
     Parameters
     ----------
     pressed, sheared : moments of the normal and of the tangential load, shape (7, m).
-    place : points.
+    place : see `on_rings`.
     nu : Poisson's ratio of this body [1].
     """
     r, z, k, m = place

@@ -52,11 +52,8 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     place = x, query.y, z[:, None]
     tensor = subsurface.stress(loaded, *place, **body)
     shape = query.loads, z.size, x.size
-    values: Result = {
-        name: np.ascontiguousarray(np.broadcast_to(_by_name(tensor, name), shape))
-        for name in query.quantities
-    }
-    infinite = np.broadcast_to(np.isinf(tensor.zz), shape)
+    values: Result = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
+    infinite = np.isinf(tensor.zz).reshape(shape)
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = without_singular(notices(query, source))
@@ -68,32 +65,27 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     more: Result = {}
     if query.largest:
         more["largest"] = {
-            measure: _by_load(subsurface.largest(loaded, measure, **body)._asdict(), query.loads)
+            measure: _by_load(subsurface.largest(loaded, measure, **body)._asdict())
             for measure in subsurface.MEASURES
         }
         if any(np.isinf(peak["value"]).any() for peak in more["largest"].values()):
             message = "the largest stress is infinite: see its place in `largest`"
             warnings.append(Notice("singular", message))
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
+        given = source, query.material.yield_strength
         onset = {
-            criterion: subsurface.yield_onset_force(
-                source, query.material.yield_strength, measure, **body
-            )
+            criterion: subsurface.yield_onset_force(*given, measure, **body)
             for criterion, measure in _CRITERIA.items()
         }
-        more["yield_onset_force"] = _by_load(onset, query.loads)
+        more["yield_onset_force"] = _by_load(onset)
     if more:
         more["search_error_estimate"] = _OF_SEARCH
-    return (
-        {"x": x, "z": z}
-        | checked(query, values, dict.fromkeys(values, infinite))
-        | more
-        | {
-            "method": "closed_form" if contact.profile.slips_at_once else "quadrature",
-            "error_estimate": error,
-            "warnings": written(warnings),
-        }
-    )
+    about = {
+        "method": "closed_form" if contact.profile.slips_at_once else "quadrature",
+        "error_estimate": error,
+        "warnings": written(warnings),
+    }
+    return {"x": x, "z": z} | checked(query, values, dict.fromkeys(values, infinite)) | more | about
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
@@ -123,8 +115,5 @@ def _by_name(tensor: StressTensor, name: str) -> Array:
     return np.asarray(getattr(tensor, name.removeprefix("stress_")))
 
 
-def _by_load(values: dict[str, Array], loads: int) -> dict[str, Array]:
-    return {
-        name: np.ascontiguousarray(np.broadcast_to(value, (loads,)))
-        for name, value in values.items()
-    }
+def _by_load(values: dict[str, Array]) -> dict[str, Array]:
+    return {name: np.atleast_1d(value) for name, value in values.items()}
