@@ -82,6 +82,7 @@ pages: .venv/development
 figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py
 	$(BIN)/python docs/figures/beneath.py
+	$(BIN)/python docs/figures/gallery.py
 
 # Published cases, each sent to the service; fails if one misses its bound.
 verification: .venv/development

@@ -18,6 +18,8 @@ ROOT_FILES: Final = {
     "contributing.md": "CONTRIBUTING.md",
     "changelog.md": "CHANGELOG.md",
 }
+# Their columns need the width, and their numbers are found too often.
+LONG_TABLES: Final = {"routes.md", "verification.md"}
 _FORMULA: Final = re.compile(
     r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</(?:span|div)>', re.DOTALL
 )
@@ -39,10 +41,12 @@ def on_files(files: Files, config: Any) -> Files:
     return files
 
 
-def on_page_markdown(markdown: str, **_: object) -> str:
+def on_page_markdown(markdown: str, page: Any, **_: object) -> str:
     """Lead links to files of the root folder to their pages; escape the stars of E* and G*."""
-    for page, name in ROOT_FILES.items():
-        markdown = markdown.replace(f"](../{name}", f"]({page}")
+    if page.file.src_uri in LONG_TABLES:
+        page.meta |= {"hide": ["toc"], "search": {"boost": 0.5}}
+    for target, name in ROOT_FILES.items():
+        markdown = markdown.replace(f"](../{name}", f"]({target}")
     parts = _VERBATIM.split(markdown)
     parts[::2] = [_STARRED.sub(r"\1\\*", part) for part in parts[::2]]
     return "".join(parts)

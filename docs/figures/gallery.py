@@ -1,0 +1,25 @@
+"""Draw the figures of docs/gallery.md from its requests: `make figures`."""
+
+import re
+from pathlib import Path
+from textwrap import dedent
+
+from mdr_service.dispatch import respond_to_text
+from mdr_service.schemas.queries import SCHEMAS
+
+DOCS = Path(__file__).parents[1]
+
+
+def main() -> None:
+    """Write the response to every request to the folder of the gallery."""
+    page = (DOCS / "gallery.md").read_text("utf-8")
+    requests = dict(re.findall(r'```json title="(\w+)\.json"\n(.*?)```', page, re.DOTALL))
+    paths = re.findall(r"(/v1/[\w/]+)\?format=svg.*? -d @(\w+)\.json", page)
+    queries = {schema.path: name for name, schema in SCHEMAS.items()}
+    for path, name in paths:
+        picture = respond_to_text(queries[path], dedent(requests[name]).encode(), "image/svg+xml")
+        (DOCS / "gallery" / f"{name}.svg").write_bytes(picture)
+
+
+if __name__ == "__main__":
+    main()
