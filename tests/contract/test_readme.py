@@ -90,9 +90,15 @@ def output_of(client: Client, command: str) -> str:
     """Return the output of a shell command: of the service itself, or of curl in its place."""
     if command.startswith("curl"):
         return curl_response(client, command).text
+    return shell(command)
+
+
+def shell(command: str, folder: Path | None = None) -> str:
+    """Return the output of a command line in which `mdr` is that of this environment."""
     path = {"PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
-    shell = ["sh", "-c", command]
-    told = subprocess.run(shell, env=os.environ | path, capture_output=True, check=True)
+    told = subprocess.run(
+        ["sh", "-c", command], cwd=folder, env=os.environ | path, capture_output=True, check=True
+    )
     return told.stdout.decode()
 
 
@@ -145,6 +151,13 @@ def test_request_is_solved(client: Client, path: str, request_text: str) -> None
     # An axis of a sweep is a text in place of a number: its start is a case.
     one_case = re.sub(r'"([0-9.e-]+):[^"]*:log"', r"\1", request_text)
     assert client.post_text(path, one_case.encode()).status_code == 200
+
+
+def test_sweep_of_the_manual_can_start(tmp_path: Path) -> None:
+    (command,) = re.findall(r"```\n(mdr sweep [^`]*)```", TEXTS["sweeps.md"])
+    (study,) = re.findall(r"```json\n([^`]*)```", TEXTS["sweeps.md"])
+    (tmp_path / "study.json").write_text(study, "utf-8")
+    assert "1,000,000" in shell(f"{command.strip()} --plan", tmp_path)
 
 
 def test_every_example_is_tested() -> None:
