@@ -106,6 +106,27 @@ def test_largest_stress_is_not_exceeded_by_samples(profile: Profile, stick: floa
 
 
 @pytest.mark.parametrize("measure", MEASURES)
+def test_friction_moves_the_largest_stress_off_the_axis(measure: str) -> None:
+    contact = normal.solve(Hyperboloid(0.2, 0.02), 3.0, contact_radius=0.1)
+    case = tangential.solve(contact, 2.5, 0.3, stick_radius=0.065)
+    peak = largest(case, measure, poissons_ratio=0.06)
+    x, z = np.linspace(-1e-3, 1e-3, 101), np.linspace(0.9, 1.1, 101)[:, None] * float(peak.z)
+    nearby = getattr(stress(case, x, 0.0, z, poissons_ratio=0.06), measure)
+    assert nearby.max() < float(peak.value) * (1 + 1e-6)
+    assert float(peak.x) < 0
+
+
+@pytest.mark.parametrize("profile", [Power(0.4, 1.5), RoundedPunch(0.05, 2.0)])
+def test_onset_is_that_of_any_load_in_its_ratio(profile: Profile) -> None:
+    radii = np.array([0.06, 0.1, 0.3])
+    contact = normal.solve(profile, 3.0, contact_radius=radii)
+    pushed = tangential.solve(contact, 2.5, 0.4, tangential_force=0.2 * contact.normal_force)
+    for case in (contact, pushed):
+        forces = yield_onset_force(case, STRENGTH, poissons_ratio=0.3)
+        assert forces == pytest.approx(np.full(3, forces[0]), rel=1e-4, abs=0)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize(
     "profile", [Sphere(2.0), RoundedPunch(0.05, 2.0), Power(0.4, 1.5), Hyperboloid(0.2, 0.05)]
 )
