@@ -4,7 +4,7 @@ import json
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
@@ -68,12 +68,11 @@ def run(arguments: Namespace) -> int:
             for index, batch in solved:
                 checkpoint.put(index, batch)
                 bar.update(batch.num_rows)
-        failures = Failures()
-        batches = failures.counted(checkpoint.chunks())
+        failed, lines = summary(checkpoint.chunks())
         with checkpoint.result() as path:
-            write(path, arguments.out.suffix, batches, identity | {"units": _UNITS})
-    sys.stderr.write("".join(f"{line}\n" for line in failures.lines(source.rows)))
-    return _ALL_FAILED if failures.count == source.rows else 0
+            write(path, arguments.out.suffix, checkpoint.chunks(), identity | {"units": _UNITS})
+    sys.stderr.write("".join(f"{line}\n" for line in lines))
+    return _ALL_FAILED if failed == source.rows else 0
 
 
 def specified(arguments: Namespace) -> tuple[Spec, Source]:
@@ -119,34 +118,26 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     return spec, source
 
 
-class Failures(dict[str, tuple[int, int, str]]):
-    """Number of failed cases, first row and error of that row, by reason."""
-
-    def counted(self, batches: Iterable[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-        """Yield the batches of a result and count their errors."""
-        start = 1
-        for batch in batches:
-            errors = batch.column(ERROR)
-            for place in np.flatnonzero(errors.is_valid()).tolist():
-                error = errors[place].as_py()
-                reason = _NUMBER.sub("…", error)
-                count, first, text = self.get(reason, (0, start + place, error))
-                self[reason] = count + 1, first, text
-            start += len(errors)
-            yield batch
-
-    @property
-    def count(self) -> int:
-        """Number of failed cases."""
-        return sum(count for count, _, _ in self.values())
-
-    def lines(self, rows: int) -> Iterator[str]:
-        """Yield the summary of a sweep of `rows` cases, frequent reasons first."""
-        yield f"{rows:,} cases: {rows - self.count:,} solved, {self.count:,} failed"
-        for count, row, error in sorted(self.values(), reverse=True)[:_MAX_REASONS]:
-            yield f"{count:>10,}  {error} (first in row {row:,})"
-        if len(self) > _MAX_REASONS:
-            yield f"and {len(self) - _MAX_REASONS} more reasons; see the column {ERROR}"
+def summary(batches: Iterable[pa.RecordBatch]) -> tuple[int, list[str]]:
+    """Return the number of failed cases of a result, and its summary, frequent reasons first."""
+    reasons: dict[str, tuple[int, int, str]] = {}
+    rows = 0
+    for batch in batches:
+        errors = batch.column(ERROR)
+        for place in np.flatnonzero(errors.is_valid()).tolist():
+            error = errors[place].as_py()
+            reason = _NUMBER.sub("…", error)
+            count, first, text = reasons.get(reason, (0, rows + place + 1, error))
+            reasons[reason] = count + 1, first, text
+        rows += len(errors)
+    failed = sum(count for count, _, _ in reasons.values())
+    lines = [f"{rows:,} cases: {rows - failed:,} solved, {failed:,} failed"]
+    for count, row, error in sorted(reasons.values(), reverse=True)[:_MAX_REASONS]:
+        lines.append(f"{count:>10,}  {error} (first in row {row:,})")
+    if len(reasons) > _MAX_REASONS:
+        more = len(reasons) - _MAX_REASONS
+        lines.append(f"and {more} more reasons; see the column {ERROR}")
+    return failed, lines
 
 
 def _check_target(arguments: Namespace, checkpoint: Checkpoint) -> None:

@@ -30,8 +30,6 @@ Results = dict[str, NDArray[Any]]
 Columns = Mapping[str, Column]
 # Queries that the core solves for arrays of profiles, moduli and loads.
 _VECTORIZED: Final = frozenset({"normal", "tangential"})
-# Fewer cases are solved faster one by one.
-_FEW: Final = 4
 # Fields, or groups of fields, whose numbers can be arrays over the cases.
 _ARRAYS: Final = (
     *("profile.", "load.", "tangential.", "friction_coefficient"),
@@ -102,7 +100,7 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
     }
     for column in swept.values():
         rows = rows[column.field.accepts(column.values[rows])]
-    while rows.size >= _FEW:
+    while rows.size:
         try:
             query: Any = _validated(spec, _request(spec, columns, int(rows[0])))
             arrays = {name: column.values[rows] for name, column in swept.items()}
