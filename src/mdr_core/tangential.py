@@ -91,8 +91,11 @@ class TangentialContact(Results):
         return self.friction_coefficient * self.normal.normal_force
 
     @cached_property
-    def compliance(self) -> Parameter:
-        """mu E*/G* [1], displacement over depth step. Source: mdr-5, Eq. (5.20)."""
+    def displacement_ratio(self) -> Parameter:
+        """mu E*/G* [1], tangential displacement over difference of depths.
+
+        Source: mdr-5, Eq. (5.20).
+        """
         return self.friction_coefficient * self.normal.e_star / self.g_star
 
     @cached_property
@@ -116,7 +119,7 @@ class TangentialContact(Results):
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
             partial = self._largest_stick * self.width
         else:
-            partial = self._over_annulus(equivalent_1d.depth_step, self.compliance)
+            partial = self._over_annulus(equivalent_1d.depth_step, self.displacement_ratio)
         if self.full_slip.any():
             partial = where(self.full_slip, self._largest_stick, partial) + self.excess
         return self._signed(partial)
@@ -137,7 +140,7 @@ class TangentialContact(Results):
     @cached_property
     def _largest_stick(self) -> Array:
         """mu (E*/G*) d [length], at the onset of full slip. Source: mdr-5, Eq. (5.17)."""
-        return self.compliance * self.normal.indentation_depth
+        return self.displacement_ratio * self.normal.indentation_depth
 
     @cached_property
     def slip_width(self) -> Array:
@@ -198,8 +201,9 @@ class TangentialContact(Results):
     def dissipated_energy(self) -> Array:
         """Energy dissipated by friction since the load was zero [force length].
 
-        (2 mu^2 E*^2/G*) int_c^a (g(a) - g)(g - g(c)) dx, a quarter of that of a cycle, and mu F_N
-        times the displacement beyond full slip. Source: notes, §6.
+        (2 mu^2 E*^2/G*) int_c^a (g(a) - g)(g - g(c)) dx, a quarter of the energy of a full cycle of
+        this amplitude, plus mu F_N times the displacement beyond the onset of full slip. Source:
+        notes, §6.
         """
         profile, e_star = self.normal.profile, self.normal.e_star
         if profile.slips_at_once:
@@ -207,7 +211,7 @@ class TangentialContact(Results):
         else:
             energy = self.normal.elastic_energy / e_star
             moment = slip_moment(profile, self._coordinate, *self._slipping, energy)
-            slipping = 2 * self.friction_coefficient * self.compliance * e_star * moment
+            slipping = 2 * self.friction_coefficient * self.displacement_ratio * e_star * moment
         return slipping + self.limiting_force * self.excess
 
     @property
@@ -315,7 +319,12 @@ def solve(
         raise InputError(("tangential",), f"exactly one of {', '.join(CONTROLS)} is needed")
     name, given = named[0][0], np.asarray(named[0][1], dtype=float)[()]
     parameters = (g_star, friction_coefficient)
-    shape = np.broadcast_shapes(given.shape, contact.coordinate.shape, *map(np.shape, parameters))
+    shapes = given.shape, contact.coordinate.shape, *map(np.shape, parameters)
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        detail = f"the shape {given.shape} does not agree with the normal loads, {shapes[1]}"
+        raise InputError(("tangential", name), detail) from None
     zone = stick_zone.solve(contact, *parameters, name, given)
     result = TangentialContact(
         contact,

@@ -74,6 +74,11 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         "no equilibrium",
     ),
     (
+        tangential_contact(tangential_displacement=[0.0, 1e-3, 1e-2]),
+        ("tangential", "tangential_displacement"),
+        "does not agree",
+    ),
+    (
         tangential_contact(stick_radius=[0.05, 0.21]),
         ("tangential", "stick_radius", 1),
         "must lie between",

@@ -114,7 +114,7 @@ def slip(contact: TangentialContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     Source: mdr-5, Eqs. (5.39)-(5.45). Parameters, returns and errors as of `pressure`.
     """
     normal, shape = contact.normal, contact.width.shape
-    scales = contact.sign * contact.compliance, contact.sign * contact.excess
+    scales = contact.sign * contact.displacement_ratio, contact.sign * contact.excess
     a, c, scale, excess = _by_load(shape, normal.contact_radius, contact.stick_radius, *scales)
 
     def values(load: int, r: Array) -> Array:

@@ -93,7 +93,7 @@ def slip(state: ContactState, radius: ArrayLike, *, rtol: float = 1e-10) -> Arra
         inside = r <= a
         for arc in arcs(state):
             result[inside] -= arc.slip(r[inside], rtol)
-        return state.compliance * result
+        return state.displacement_ratio * result
 
     return fill((), values, radius)
 

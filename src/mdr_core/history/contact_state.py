@@ -64,7 +64,7 @@ class ContactState(Results):
     about: ClassVar[tuple[str, ...]] = ()
 
     @property
-    def compliance(self) -> float:
+    def displacement_ratio(self) -> float:
         """mu E*/G* [1], the ratio of a tangential displacement to its reduced value U."""
         return self.friction_coefficient * self.e_star / self.g_star
 
@@ -76,7 +76,7 @@ class ContactState(Results):
     @property
     def tangential_displacement(self) -> float:
         """u_x [length]."""
-        return self.compliance * self.polyline.load_point[1]
+        return self.displacement_ratio * self.polyline.load_point[1]
 
     @property
     def in_contact(self) -> bool:
@@ -160,7 +160,7 @@ class ContactState(Results):
     @property
     def _energy_unit(self) -> float:
         """(mu E*)^2/G* [pressure]."""
-        return self.friction_coefficient * self.e_star * self.compliance
+        return self.friction_coefficient * self.e_star * self.displacement_ratio
 
     @property
     def slip_fronts(self) -> Array:
@@ -275,6 +275,6 @@ def advance(
         raise InputError(("history",), "must be finite")
     coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
     once = np.zeros(1, dtype=bool), np.zeros(1, dtype=np.intp)
-    points = LoadPoints(depth, displacement / state.compliance, *once)
+    points = LoadPoints(depth, displacement / state.displacement_ratio, *once)
     _, path, polyline = slip_memory.apply_steps(state.polyline, points)
     return replace(state, polyline=polyline, arcs=None, last_step=path)

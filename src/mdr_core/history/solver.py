@@ -89,18 +89,18 @@ class LoadHistory(Results):
         it counts from the axis.
         """
         if self.path.by_force:
-            return self.start.compliance * self.results.displacement
+            return self.start.displacement_ratio * self.results.displacement
         return self.path.tangential
 
     @cached_property
     def tangential_energy(self) -> Array:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length], >= 0."""
-        return self._friction * self.start.compliance * self.results.energy
+        return self._friction * self.start.displacement_ratio * self.results.energy
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated by friction since the sample before [force length], >= 0."""
-        return self._friction * self.start.compliance * self.results.dissipation
+        return self._friction * self.start.displacement_ratio * self.results.dissipation
 
     @cached_property
     def dissipated_energy(self) -> Array:

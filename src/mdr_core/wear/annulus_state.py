@@ -5,7 +5,7 @@ D_0 = d_0 - g_0(c_0), cycles in units of b_0/(kappa E* D_0), kappa = 4 K mu^2 E*
 
 A slipping point has |s| = mu (E*/G*) sigma, sigma = (2/pi) int_c^r gamma(x)/sqrt(r^2 - x^2) dx with
 gamma(x) = g(x) - (d - D), and wears by dh/dN = kappa p sigma. D is the displacement amplitude
-divided by its compliance mu E*/G*. Source: notes, §11.
+divided by mu E*/G*. Source: notes, §11.
 """
 
 from dataclasses import dataclass

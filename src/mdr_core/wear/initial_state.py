@@ -60,15 +60,15 @@ class InitialState:
 
     @cached_property
     def depth_unit(self) -> float:
-        """D_0 = d_0 - g(c_0) [length], the tangential displacement over its compliance."""
+        """D_0 = d_0 - g(c_0) [length], u_x/(mu E*/G*)."""
         moved = abs(float(self.sideways.tangential_displacement))
-        return moved / float(self.sideways.compliance)
+        return moved / float(self.sideways.displacement_ratio)
 
     @cached_property
     def cycle_unit(self) -> float:
         """b_0 G*/(4 K mu^2 E*^2 D_0) [1], about the number of cycles that wear the annulus."""
         friction = float(np.asarray(self.sideways.friction_coefficient))
-        slipped = 4 * float(self.sideways.compliance) * self.depth_unit
+        slipped = 4 * float(self.sideways.displacement_ratio) * self.depth_unit
         pressed = float(np.asarray(self.contact.e_star)) * self.depth_unit / self.length_unit
         return self.depth_unit / (self.wear_coefficient * friction * pressed * slipped)
 

@@ -130,7 +130,7 @@ class LimitingWear(Results):
             return np.broadcast_to(self.first.tangential_displacement, self.stuck.step.shape)
         if self._normal.profile.slips_at_once:
             return np.where(self.stuck.endless, inf, self.first.tangential_displacement)
-        return np.where(self.stuck.endless, inf, self.first.compliance * self.stuck.step)
+        return np.where(self.stuck.endless, inf, self.first.displacement_ratio * self.stuck.step)
 
     @cached_property
     def tangential_force(self) -> Array:

@@ -50,7 +50,7 @@ def by_depth_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
     Source: mdr-5, Eq. (5.80).
     """
     depth = sideways.normal.indentation_depth
-    step = np.where(sideways.full_slip, depth, amplitude / sideways.compliance)
+    step = np.where(sideways.full_slip, depth, amplitude / sideways.displacement_ratio)
     return _from(sideways, step, lost=sideways.full_slip)
 
 
@@ -60,7 +60,7 @@ def by_forces(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
     In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
     """
     step = _carried(sideways, amplitude, sideways.stick_radius)
-    before = sideways.tangential_displacement / sideways.compliance
+    before = sideways.tangential_displacement / sideways.displacement_ratio
     grown = np.maximum(step, before) / np.where(before > 0, before, 1.0)
     moved = sideways.stick_coordinate, sideways.stick_radius, grown * sideways.slip_width
     return _from(sideways, step, endless=sideways.full_slip, moved=moved)
@@ -73,7 +73,7 @@ def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
     grows. Source: mdr-5, Eq. (5.90), for any profile.
     """
     contact, profile = sideways.normal, sideways.normal.profile
-    step = np.broadcast_to(amplitude / sideways.compliance, sideways.width.shape)
+    step = np.broadcast_to(amplitude / sideways.displacement_ratio, sideways.width.shape)
     endless = sideways.full_slip
     if profile.slips_at_once:
         return _from(sideways, step, endless=endless)

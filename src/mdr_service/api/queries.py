@@ -93,7 +93,7 @@ class QueryRoute(APIRoute):
 
     The framework's own handler works as well, but parses a body to a dictionary first, solves
     dependencies and validates the response. This one parses the bytes straight into the model and
-    calls the endpoint: 20 instead of 50 µs per request besides the computation. It hands long
+    calls the endpoint: 20 instead of 50 µs per request, apart from the computation. It hands long
     bodies to a compute process unparsed, so that they do not block the event loop.
     """
 
@@ -195,8 +195,9 @@ async def post_history(
     memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
     rejected.
 
-    `error_estimate` is relative to the largest value on the path. A warning `accuracy` says where
-    `slip_fronts` is less accurate. `energy_per_cycle` and `secant_stiffness` belong to `cycles`.
+    `error_estimate` is relative to the largest value on the path. A warning `accuracy` reports
+    where `slip_fronts` is less accurate. `energy_per_cycle` and `secant_stiffness` belong to
+    `cycles`.
     """
     return await respond("history", query)
 
@@ -225,7 +226,7 @@ async def post_subsurface(
 
     `error_estimate` is relative to the largest stress of the response. With a `yield_strength` of
     the material the response holds the normal force at the onset of yield, at the same ratio of
-    tangential to normal force. The tangential force acts on body 1, which passes it on to body 2.
+    tangential to normal force. The tangential force acts on body 1 along x, its reaction on body 2.
     """
     return await respond("subsurface", query)
 
@@ -237,9 +238,9 @@ async def post_wear(
     """Compute the limiting profile: the annulus outside the stick zone wears until it is unloaded.
 
     The given controls are held constant. With a constant depth and displacement amplitude, and with
-    constant forces, the limiting state is unique, whatever the law of wear. With a constant normal
-    force and displacement amplitude it depends on the path: the response is Eq. (5.90) with a
-    warning `path_dependent`; `/v1/wear/evolution` computes the path itself.
+    constant forces, the limiting state is unique and does not depend on the wear law. With a
+    constant normal force and displacement amplitude it depends on the path: the response is
+    Eq. (5.90) with a warning `path_dependent`; `/v1/wear/evolution` computes the path itself.
 
     In full slip, wear is unbounded under a constant force (`endless_wear`), and ends in separation
     at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).
@@ -252,10 +253,11 @@ async def post_evolution(
     query: Annotated[EvolutionQuery, Body(openapi_examples=EXAMPLES["evolution"])],
     respond: Respond,
 ) -> Response:
-    """Integrate wear over the cycles: dV/dN = K W at each radius, W the friction work of a cycle.
+    """Integrate the wear law dh/dN = K µ p S over the cycles.
 
-    The given controls are held constant. A query takes about a second, more with the `resolution`
-    and the numbers of cycles. A warning `limit_reached` says after how many cycles wear stops.
+    h is the worn depth at a radius, and S the sliding distance of a cycle there. The given controls
+    are held constant. A query takes about a second, more with the `resolution` and the numbers of
+    cycles. A warning `limit_reached` reports after how many cycles wear stops.
     """
     return await respond("evolution", query)
 

@@ -107,7 +107,7 @@ def _into_full_slip(
     wherever it ends.
     """
     one = replace(contact.normal, coordinate=np.array([coordinate]))
-    full = _INTO_SLIP * float(np.max(contact.compliance * one.indentation_depth))
+    full = _INTO_SLIP * float(np.max(contact.displacement_ratio * one.indentation_depth))
     start = min(float(requested.min()), -full if requested.min() < 0 else 0.0)
     stop = max(float(requested.max()), full if requested.max() > 0 or start == 0 else 0.0)
     return tangential_contact.solve(
