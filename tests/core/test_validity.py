@@ -104,8 +104,10 @@ def test_half_space_error() -> None:
         (Material(1.0), 0.0445),
         (bodies(0.3, 0.3), 0.1),
         (bodies(0.5), 0.1),
+        # Dundurs' beta is negative here, but not the radial displacement that is neglected.
+        (from_bodies([RIGID, Body(1.0, 0.3)]), 0.0445),
     ],
-    ids=["steel on rigid", "unknown", "steel on steel", "rubber on rigid"],
+    ids=["steel on rigid", "unknown", "steel on steel", "rubber on rigid", "rigid on steel"],
 )
 def test_steep_slopes_exceed_the_half_space_limit(material: Material, slope: float) -> None:
     contact = normal.solve(Paraboloid(1.0), material.e_star, contact_radius=[slope * 0.98, slope])

@@ -105,7 +105,15 @@ def test_numbers_of_a_batch_are_limited_in_total(client: Client) -> None:
         "request": HISTORY
         | {"cycles": HISTORY["cycles"] | {"count": SETTINGS.max_samples // 4 - 1}},
     }
-    for queries, index in (([few, many, few, many], 3), ([many_samples] * 11, 10)):
+    # As many as one response may hold.
+    assert SETTINGS.max_numbers % len(LOADS) == 0
+    points = SETTINGS.max_numbers // len(LOADS)
+    most = {"ask": "stress", "request": fields | {"points": points}}
+    for queries, index in (
+        ([few, many, few, many], 3),
+        ([many_samples] * 11, 10),
+        ([most, few], 1),
+    ):
         response = client.post("/v1/batch", {"queries": queries})
         assert response.status_code == 422
         assert [error["pointer"] for error in response.json()["errors"]] == [f"/queries/{index}"]

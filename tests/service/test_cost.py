@@ -126,6 +126,15 @@ def test_oversized_query_is_rejected_with_the_feasible_size(client: Client) -> N
     assert response.json()["errors"][0]["pointer"] == "/history"
 
 
+def test_sizes_of_one_are_not_offered_for_reduction() -> None:
+    path = {"history": OVERSIZED["history"], "friction_coefficient": 0.3}
+    stress = {"profile": BALL["profile"], "material": STRESS["material"], **path}
+    stress |= {"radius": [0.0], "quantities": ["pressure"]}
+    with pytest.raises(ServiceError) as raised:
+        cost.require_feasible(query("stress", stress), JSON)
+    assert [pointer for pointer, _ in raised.value.errors] == ["/history"]
+
+
 def test_oversized_query_of_a_batch_is_rejected_separately(client: Client) -> None:
     queries = [
         {"ask": "history", "request": OVERSIZED},

@@ -5,6 +5,7 @@ import json
 import httpx
 import pytest
 
+from mdr_service import problems
 from mdr_service.problems import MAX_ERRORS, MEDIA_TYPE
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
@@ -855,6 +856,12 @@ def test_bounds_are_stated_in_short(client: Client, radius: float, detail: str) 
 def test_unknown_members_are_named(client: Client) -> None:
     response = client.get("/v1/normal?kind=paraboloid&radius=1&e_star=1&normal_force=1&force=1")
     assert response.json()["errors"] == [{"pointer": "/force", "detail": "there is no such member"}]
+
+
+def test_pointer_ends_before_a_name_longer_than_any_field() -> None:
+    longest = "x" * problems.MAX_NAME
+    assert problems.pointer(["profile", longest]) == f"/profile/{longest}"
+    assert problems.pointer(["profile", f"{longest}x", "kind"]) == "/profile"
 
 
 def test_number_of_errors_is_limited(client: Client) -> None:
