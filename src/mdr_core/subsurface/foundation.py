@@ -50,19 +50,6 @@ _TINY: Final = 1e-290
 _BLOCK: Final = 4_096
 
 
-class _Pieces(NamedTuple):
-    """Intervals low <= x <= high on which k g' is smooth in s, ascending; shape (n,) each."""
-
-    low: Array
-    high: Array
-    base: Array
-    """b of s = sqrt(x^2 - b^2) [length]."""
-    s_low: Array
-    s_high: Array
-    step: Array
-    """s_high - s_low, accurate however narrow."""
-
-
 class _Blocks(NamedTuple):
     """Parts low <= x <= high of the contact, n of the same number of pieces, as masses at nodes."""
 
@@ -93,25 +80,29 @@ class Foundation:
             mass = k * float(normal.indentation_depth)
             self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
             return
-        self._pieces = pieces = self._cut(float(normal.coordinate))
+        self._pieces = self._cut(float(normal.coordinate))
+        low, high, base, s_low, s_high, step = self._pieces
         u, shares = (part[:, None] for part in composite_rule(self._nodes, 1))
-        past = pieces.step * u
-        s = pieces.s_low + past
-        x = np.sqrt(pieces.base**2 + s * s)
-        mass = self._slopes(x, s, slice(None)) * (pieces.step * shares)
-        width, offset = pieces.step * (pieces.s_low + pieces.s_high), past * (pieces.s_low + s)
-        self._levels = [_Blocks(pieces.low, pieces.high, width, offset, x, mass)]
+        past = step * u
+        s = s_low + past
+        x = np.sqrt(base**2 + s * s)
+        mass = self._slopes(x, s, slice(None)) * (step * shares)
+        width, offset = step * (s_low + s_high), past * (s_low + s)
+        self._levels = [_Blocks(low, high, width, offset, x, mass)]
         while self._levels[-1].low.size > 1:
             self._levels[-1] = _paired(self._levels[-1])
             self._levels.append(_merged(self._levels[-1]))
 
-    def _cut(self, coordinate: float) -> _Pieces:
-        panels, radius, width = self.profile.panels, self.annuli.radius, self.annuli.width
-        self._panels = panels
-        self._branches = self.profile.branches
+    def _cut(self, coordinate: float) -> Array:
+        """Pieces low <= x <= high on which k g' is smooth in s = sqrt(x^2 - b^2), ascending.
+
+        low, high, b, s(low), s(high) and their difference, however narrow; shape (6, n) [length].
+        """
+        radius, width = self.annuli.radius, self.annuli.width
+        self._panels, self._branches = self.profile.panels, self.profile.branches
         starts = np.array([max(branch.base, branch.start) for branch in self._branches])
         ends = [starts[starts < radius[-1]], radius[radius > starts[0]]]
-        if panels is None or self.annuli.rate.any():
+        if self._panels is None or self.annuli.rate.any():
             ends += [self._cuts(branch) for branch in self._branches]
         cuts = np.unique(np.concatenate(ends))
         low, high = cuts[:-1], cuts[1:]
@@ -125,7 +116,7 @@ class Foundation:
         # An annulus may be too narrow for its radii to resolve it.
         narrow = (np.append(0.0, radius)[part] == low) & (radius[part] == high)
         step = np.where(narrow, width[part] * (low + high) / (s_low + s_high), s_high - s_low)
-        return _Pieces(low, high, base, s_low, s_high, step)
+        return np.array([low, high, base, s_low, s_high, step])
 
     def _cuts(self, branch: Branch) -> list[float]:
         """Radii between which k g' of a branch changes over more than their distance."""
@@ -197,7 +188,7 @@ class Foundation:
         self, total: Array, point: Indices, index: Indices, place: tuple[Array, Array]
     ) -> None:
         """Add the moments of pieces at points near them, in s = p + q sinh(t)."""
-        low, high, base, s_low, s_high, step = (part[index] for part in self._pieces)
+        low, high, base, s_low, s_high, step = self._pieces[:, index]
         at = place[0] + 1j * place[1]
         root = np.sqrt((at - base) * (at + base))
         p, q = root.real, root.imag
