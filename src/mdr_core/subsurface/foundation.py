@@ -204,7 +204,8 @@ class Foundation:
             u, shares = (part[:, None] for part in composite_rule(self._nodes, int(panels)))
             for part in _in_cache(np.flatnonzero(count == panels), u.size):
                 sinh = np.sinh(top[part] - u * length[part])
-                s = np.clip(p[part] + q[part] * sinh, s_low[part], s_high[part])
+                s = np.maximum(p[part] + q[part] * sinh, s_low[part])
+                np.minimum(s, s_high[part], out=s)
                 x = np.sqrt(base[part] ** 2 + s * s)
                 depth = place[1][part]
                 square = 2 * depth * depth - q[part] * (sinh * (p[part] + s) + q[part])
@@ -254,7 +255,7 @@ def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: 
     inverse.real = np.where(square < 0, smaller, larger)
     inverse.imag = -np.where(square < 0, larger, smaller)
     u.real, u.imag = z + inverse.real, x - inverse.imag
-    inverse /= size
+    inverse *= 1 / size
     second = 1 / u
     mixed, cube = inverse * second, inverse * inverse * inverse
     kernels = [inverse, (z + 1j * x) * cube, mixed, cube, second]
