@@ -105,7 +105,8 @@ def _respond(
     arguments: argparse.Namespace, query: Query, members: Sequence[str], format_: str
 ) -> bytes:
     media_type = content_negotiation.media_type(format_, "*/*")
-    size = content_negotiation.picture_size(arguments.size, media_type)
+    given = arguments.size
+    size = None if given is None else content_negotiation.picture_size(given, media_type)
     return respond(arguments.command, query, media_type, members, size)
 
 

@@ -40,15 +40,13 @@ def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FOR
     return best
 
 
-def picture_size(text: str | None, media_type: str) -> tuple[int, int] | None:
-    """Return width and height of a picture [mm], None if they are not given.
+def picture_size(text: str, media_type: str) -> tuple[int, int]:
+    """Return width and height of a picture [mm].
 
     Raises
     ------
     ServiceError : the text is not a size, or the response is not a picture.
     """
-    if text is None:
-        return None
     found = _SIZE.fullmatch(text)
     size = (int(found[1]), int(found[2])) if found else (0, 0)
     if media_type in PICTURES and min(size) >= _SMALLEST and max(size) <= _LARGEST:

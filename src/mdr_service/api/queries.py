@@ -59,7 +59,7 @@ class Responder:
             self.media_type = json.MEDIA_TYPE
         else:
             self.media_type = media_type(format_, accept, self.formats)
-        self.size = picture_size(size, self.media_type)
+        self.size = None if size is None else picture_size(size, self.media_type)
         self.workers = request.app.state.workers
 
     async def __call__(
