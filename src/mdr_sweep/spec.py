@@ -3,18 +3,17 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 from mdr_core import __version__
 from mdr_service.results import members
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnswer
+from mdr_service.schemas.wear import WearField
 
-# Members of the responses without one number for each case, or computed on request only.
-_WEAR_FIELDS: Final = ("radius", "initial_profile", "limiting_profile", "worn_depth", "pressure")
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": members(NormalAnswer, ["maximum_pressure"]),
     "tangential": members(TangentialAnswer, ["maximum_pressure"]),
-    "wear": members(WearAnswer, _WEAR_FIELDS),
+    "wear": members(WearAnswer, ["radius", *get_args(WearField)]),
 }
 """Quantities that a sweep computes unless some are named, by query."""
 MAXIMA: Final[Mapping[str, tuple[str, ...]]] = {

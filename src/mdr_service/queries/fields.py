@@ -1,6 +1,5 @@
 """Queries about fields over the radius."""
 
-from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -26,14 +25,6 @@ from mdr_service.results import (
 from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, StressQuery
 from mdr_service.settings import SETTINGS
 
-_FIELDS: Final[Mapping[str, Callable[..., Array]]] = {
-    "pressure": fields.pressure,
-    "shear_stress": fields.shear_stress,
-    "slip": fields.slip,
-    "normal_displacement": fields.normal_displacement,
-    "foundation_load": fields.foundation_load,
-    "foundation_shear": fields.foundation_shear,
-}
 # Closed form wherever the equivalent profile is: these take no tolerance.
 _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
 
@@ -109,7 +100,7 @@ def field(name: str, end: End, radius: Array, rtol: float) -> Array:
 
     Parameters
     ----------
-    name : name of the field, a quantity of a stress query.
+    name : function of `mdr_core.fields`, a quantity of a stress query.
     end : result of `at_end`.
     radius : radii r >= 0 [length], shape (m,).
     rtol : relative accuracy, where the field is integrated.
@@ -117,7 +108,7 @@ def field(name: str, end: End, radius: Array, rtol: float) -> Array:
     contact, partial = end
     tolerance = {} if name in _FOUNDATION else {"rtol": rtol}
     source = partial if name in SHEAR_FIELDS else contact
-    return np.atleast_2d(_FIELDS[name](source, radius, **tolerance))
+    return np.atleast_2d(getattr(fields, name)(source, radius, **tolerance))
 
 
 def at_end(source: Contact) -> End:
