@@ -66,7 +66,7 @@ class Settings(BaseModel):
         15, ge=1, description="Time for requests in flight after SIGTERM [s]."
     )
     cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
-        (), description="Origins of other pages that may ask, separated by commas."
+        (), description="Origins allowed by CORS, separated by commas."
     )
 
     @model_validator(mode="after")

@@ -173,3 +173,12 @@ def test_every_example_is_tested() -> None:
 def test_links_between_files_lead_to_files(page: Path) -> None:
     for link in re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text("utf-8")):
         assert (page.parent / link).exists(), link
+
+
+def test_profile_table_lists_every_kind(client: Client) -> None:
+    shown = re.findall(r"^\| `(\w+)` \| (.*?) \| (.*?) \|$", TEXTS["http.md"], re.MULTILINE)
+    kinds = {
+        each["kind"]: (", ".join(f"`{field['name']}`" for field in each["fields"]), each["formula"])
+        for each in client.get("/v1/profiles").json()["profiles"]
+    }
+    assert {kind: tuple(rest) for kind, *rest in shown if kind in kinds} == kinds
