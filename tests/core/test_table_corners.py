@@ -234,3 +234,19 @@ def test_tables_in_other_units_have_the_same_digits(kind: Any) -> None:
         assert float(result.indentation_depth) == unit * float(exact.indentation_depth)
         assert float(result.normal_force) == unit**2 * float(exact.normal_force)
         assert float(result.maximum_pressure) == float(exact.maximum_pressure)
+
+
+def test_table_is_defined_up_to_its_last_radius() -> None:
+    r, f = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, 4.0, 9.0])
+    body = Tabulated(r, f, "linear")
+    assert body.f(np.array([2.5, 3.0])).tolist() == [6.5, 9.0]
+    with pytest.raises(InputError, match="ends at radius 3"):
+        body.f(np.array([2.5, np.nextafter(3.0, 4.0)]))
+
+
+@pytest.mark.parametrize("place", [0.0, 3.0, 1.5])
+def test_break_that_is_no_inner_radius_is_rejected(place: float) -> None:
+    r = np.array([0.0, 1.0, 2.0, 3.0])
+    with pytest.raises(InputError, match="inner radius") as raised:
+        Tabulated(r, r**2, breaks=(1.0, place))
+    assert raised.value.path == ("profile", "breaks", 1)
