@@ -113,3 +113,13 @@ def test_narrow_annulus_next_to_a_flat_wears_to_its_limit(body: Profile) -> None
     assert worn.error_estimate < 2e-4
     bound = pytest.approx(limit_volume, rel=worn.error_estimate, abs=0)
     assert worn.worn_volume[0] == bound
+
+
+def test_equal_numbers_of_cycles_are_ascending() -> None:
+    contact = normal.solve(Paraboloid(1.0), 1.0, indentation_depth=1.0)
+    given = {"wear_coefficient": 1e-2, "tangential_displacement": 0.75, "resolution": 8}
+    worn = evolution.solve(contact, 1.0, 1.0, cycles=[5.0, 5.0], **given)
+    assert worn.worn_volume[0] == worn.worn_volume[1] > 0
+    with pytest.raises(InputError, match="ascending") as raised:
+        evolution.solve(contact, 1.0, 1.0, cycles=[5.0, 5.0, 4.0], **given)
+    assert raised.value.path == ("cycles", 2)
