@@ -85,7 +85,13 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
 def respond_to_text(
     name: str, text: bytes, media_type: str, size: tuple[int, int] | None = None
 ) -> bytes:
-    """Return the response content of a query in a JSON text; see `parse` and `respond`."""
+    """Return the response content of a query in a JSON text; see `parse` and `respond`.
+
+    Parameters
+    ----------
+    name, media_type, size : as of `respond`.
+    text : the request.
+    """
     model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
     query = parse(model, text)
     cost.require_feasible(query, media_type)

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
 MEDIA_TYPES: Final = {"svg": "image/svg+xml", "png": "image/png", "pdf": "application/pdf"}
 
-# A picture's size in millimetres.
+# Width and height of a picture in millimetres.
 Size = tuple[int, int] | None
+# Millimetres in an inch.
 _INCH: Final = 25.4
 # Usual width of the picture and height of a panel, a single and one of several, in inches.
 _WIDTH, _SINGLE, _PANEL = 7.2, 4.0, 2.6
