@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import fields, normal, tangential
+from mdr_core import fields, history, normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
@@ -189,3 +189,25 @@ def test_contact_beyond_the_end_of_a_series_is_rejected_under_each_control() -> 
         with pytest.raises(InputError, match="ceases to be admissible") as raised:
             normal.solve(profile, 1.0, **{name: [most / 2, most * (1 + 1e-6)]})
         assert raised.value.path == ("load", name, 1)
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_cycles_without_a_cycle_are_rejected(count: int) -> None:
+    with pytest.raises(InputError) as raised:
+        history.cycles(
+            Paraboloid(1.0),
+            1.0,
+            1.0,
+            0.5,
+            indentation_depth=1.0,
+            tangential_displacement=0.1,
+            count=count,
+        )
+    assert raised.value.path == ("history", "count")
+
+
+@pytest.mark.parametrize("load", ["indentation_depth", "normal_force", "contact_radius"])
+def test_loads_of_zero_are_accepted(load: str) -> None:
+    for given in (0.0, [0.0, 1.0]):
+        contact = normal.solve(Paraboloid(1.0), 1.0, **{load: given})
+        assert np.ravel(contact.normal_force)[0] == 0
