@@ -217,3 +217,20 @@ def test_grid_at_the_end_clusters_at_slip_fronts(client: Client, load_path: str)
     for front in fronts:
         nearest = min(abs(radius / front - 1) for radius in document["radius"])
         assert nearest < 1e-3
+
+
+def test_error_of_a_list_of_one_points_at_its_only_value(client: Client) -> None:
+    """The one tangential force exceeds µ F_N at the end of the second step."""
+    query = {
+        "profile": {"kind": "paraboloid", "radius": 1.0},
+        "material": {"e_star": 1.0, "g_star": 1.0},
+        "friction_coefficient": 0.5,
+        "history": {
+            "normal": {"normal_force": [10.0, 1.0]},
+            "tangential": {"tangential_force": [2.0]},
+        },
+    }
+    response = client.post("/v1/tangential/history", query)
+    assert response.status_code == 422
+    pointers = [error["pointer"] for error in response.json()["errors"]]
+    assert pointers == ["/history/tangential/tangential_force/0"]

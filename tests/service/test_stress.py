@@ -109,3 +109,16 @@ def test_loads_times_radii_are_limited(client: Client) -> None:
     response = client.post("/v1/stress", request)
     assert response.status_code == 422
     assert [error["pointer"] for error in response.json()["errors"]] == ["/points"]
+
+
+def test_unreached_accuracy_is_warned_of_once(client: Client) -> None:
+    """Neither the table nor the rounding of the edge next to a radius allows the tolerance."""
+    table = {"kind": "tabulated", "r": [0.0, 0.5, 1.0, 2.0], "f": [0.0, 0.125, 0.5, 2.0]}
+    query = {"profile": table, "material": {"e_star": 1.0}, "load": {"normal_force": 0.5}}
+    (a,) = client.post("/v1/normal", query).json()["contact_radius"]
+    query |= {"radius": [a * (1 - 1e-12)], "quantities": ["pressure"]}
+    for rtol, number in ((1e-13, 1), (1e-10, 1), (1e-6, 0)):
+        answer = client.post("/v1/stress", query | {"rtol": rtol}).json()
+        codes = [warning["code"] for warning in answer["warnings"]]
+        assert codes.count("accuracy") == number, rtol
+        assert answer["error_estimate"] > 1e-10
