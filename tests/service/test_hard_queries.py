@@ -20,6 +20,7 @@ ENDPOINTS = {
     "stress": "/v1/stress",
     "wear": "/v1/wear",
     "evolution": "/v1/wear/evolution",
+    "subsurface": "/v1/subsurface",
 }
 
 
