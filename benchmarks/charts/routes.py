@@ -63,7 +63,7 @@ def load_row(kind: str) -> list[str]:
     loads = {"indentation_depth": 0.1, "normal_force": force, "contact_radius": 1.0}
     cells = [profile.normal_method]
     for name in LOADS:
-        if profile.slips_at_once and name == "contact_radius":
+        if profile.has_no_partial_slip and name == "contact_radius":
             cells.append("fixed")
             continue
         with counted(type(profile)) as count:

@@ -54,7 +54,7 @@ def near_full_slip(
     edges : True to include c and a - c beside forces, displacements and energies.
     """
     late = partial & (ratio > _LATE)
-    if profile.slips_at_once or not late.any():
+    if profile.has_no_partial_slip or not late.any():
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
     load, slope = _load(profile, by_force=by_force)
@@ -81,7 +81,7 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     partial = (limit > 0) & (size < limit)
     ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
     worst = np.argmax(ratio)
-    if contact.profile.slips_at_once or not ratio[worst] > _LATE:
+    if contact.profile.has_no_partial_slip or not ratio[worst] > _LATE:
         return 0.0
     given = contact.coordinate[worst], ratio[worst], 1 - ratio[worst]
     edge, _ = stick_from_force(contact.profile, *map(number, given))

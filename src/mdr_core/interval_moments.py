@@ -106,7 +106,7 @@ class IntervalMoments:
         ends : both ends in the contact coordinate, shape (2, m), if they are known; the parameters
             of the profile may then be arrays over the intervals.
         """
-        if self.profile.slips_at_once:
+        if self.profile.has_no_partial_slip:
             # The contact radius is constant.
             return Moments(span, np.zeros((3, span.size)))
         if ends is None:

@@ -121,10 +121,10 @@ class NormalContact(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the profile, `half_space`, `plastic`, `singular` and `accuracy`."""
-        return (*validity.notices(validity.of_normal_contact(self)), *self.bodiless_warnings)
+        return (*validity.notices(validity.of_normal_contact(self)), *self.warnings_without_bodies)
 
     @property
-    def bodiless_warnings(self) -> tuple[Notice, ...]:
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
         found = list(self.profile.notices)
         if self.profile.kind == "tabulated":

@@ -125,7 +125,7 @@ def _within_limit(
         left, limit = where(some, np.maximum(left, 0.0), 1.0), where(some, limit, 1.0)
     ratio = size / limit
     left /= limit
-    if contact.profile.slips_at_once:
+    if contact.profile.has_no_partial_slip:
         return contact.coordinate, ratio, full_slip, excess
     return *inverse(contact.profile, contact.coordinate, ratio, left), full_slip, excess
 
@@ -138,13 +138,13 @@ def _by_stick_radius(
     all_slips = (radius == 0) & (a > 0)
     bad = (radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost))
     detail = "must lie between the flat's radius, or 0, and the contact radius"
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         bad = bad | (radius > 0)
         detail = "a flat punch has no slip annulus: prescribe tangential_force or another load"
     if bad.any():
         index = first_index(bad) if radius.ndim else ()
         raise InputError(("tangential", "stick_radius", *index), detail, bad)
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         return contact.coordinate, full(1.0, radius + a), all_slips, _NO_EXCESS
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)

@@ -102,7 +102,7 @@ class TangentialContact(Results):
     def tangential_force(self) -> Array:
         """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
         profile = self.normal.profile
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             partial = self.limiting_force * self.width
         else:
             factor = self.friction_coefficient * self.normal.e_star
@@ -115,7 +115,7 @@ class TangentialContact(Results):
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
         profile = self.normal.profile
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
             partial = self._largest_stick * self.width
         else:
@@ -146,7 +146,7 @@ class TangentialContact(Results):
     def slip_width(self) -> Array:
         """a - c [length]."""
         a = self.normal.contact_radius
-        if self.normal.profile.slips_at_once:
+        if self.normal.profile.has_no_partial_slip:
             return where(self.full_slip, a, 0 * self.width)
         width = self.normal.profile.radius_width(self._coordinate, self.width)
         if self._beyond_load is not None:
@@ -157,7 +157,7 @@ class TangentialContact(Results):
     def stick_radius(self) -> Array:
         """c [length]: zero in full slip. Source: mdr-5, Eqs. (5.11), (5.16), (5.31), (5.49)."""
         profile = self.normal.profile
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             a = broadcast(self.normal.contact_radius, self.width.shape)
             return where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self._stick)
@@ -192,7 +192,7 @@ class TangentialContact(Results):
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Regime: "stick", "partial_slip" or "full_slip"."""
-        at_once = self.normal.profile.slips_at_once
+        at_once = self.normal.profile.has_no_partial_slip
         partial = "stick" if at_once else "partial_slip"
         slipping = np.where(self.width > 0, partial, "stick").astype("U12")
         return np.where(self.full_slip, "full_slip", slipping)
@@ -206,7 +206,7 @@ class TangentialContact(Results):
         notes, §6.
         """
         profile, e_star = self.normal.profile, self.normal.e_star
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             slipping = 0 * self.width
         else:
             energy = self.normal.elastic_energy / e_star
@@ -247,7 +247,7 @@ class TangentialContact(Results):
         size = np.abs(self.tangential_force if by_force else self.tangential_displacement)
         limit = self.limiting_force if by_force else self._largest_stick
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             return 1.0 if by_force else conditioning.of_excess_displacement(size, self.excess)
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self._stick
@@ -256,12 +256,15 @@ class TangentialContact(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the normal contact, and `accuracy` if rtol is not reached."""
-        return (*validity.notices(validity.of_normal_contact(self.normal)), *self.bodiless_warnings)
+        return (
+            *validity.notices(validity.of_normal_contact(self.normal)),
+            *self.warnings_without_bodies,
+        )
 
     @property
-    def bodiless_warnings(self) -> tuple[Notice, ...]:
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
-        found = [each for each in self.normal.bodiless_warnings if each.code != "accuracy"]
+        found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.normal.rtol:
             found.append(not_reached(self.normal.rtol))
         return tuple(found)

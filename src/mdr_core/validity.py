@@ -219,7 +219,7 @@ def infinite_deviator(
     poissons_ratios : of the elastic bodies [1].
     slips_from : least radius with slip [length]; infinite without.
     """
-    if profile.slips_at_once or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
+    if profile.has_no_partial_slip or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
         return number(1.0) > 0
     return np.isinf(profile.tip_pressure) | (radius >= slips_from)
 
@@ -241,7 +241,7 @@ def infinite_radii(contact: LoadedContact) -> str:
 def _edge_slope(contact: LoadedContact) -> Array:
     """f'(a) of loaded contacts, else zero [1]."""
     a, loaded = contact.contact_radius, contact.loaded
-    if contact.profile.slips_at_once or not holds(loaded):
+    if contact.profile.has_no_partial_slip or not holds(loaded):
         return full(0.0, a)
     # The slope at the tip, where nothing is loaded, may be infinite.
     inside = a if loaded.all() else np.where(loaded, a, np.max(a))

@@ -82,10 +82,10 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
     return {name: result[name] for name in members}
 
 
-def respond_to_text(
+def respond_to_body(
     name: str, text: bytes, media_type: str, size: tuple[int, int] | None = None
 ) -> bytes:
-    """Return the response content of a query in a JSON text; see `parse` and `respond`.
+    """Return the response content of a query in the body of a request; see `parse` and `respond`.
 
     Parameters
     ----------

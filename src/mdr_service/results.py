@@ -98,7 +98,7 @@ def written(warnings: Iterable[Notice]) -> list[dict[str, str]]:
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
     if isinstance(source, NormalContact | TangentialContact):
-        return [*_notices(query, source), *source.bodiless_warnings]
+        return [*_notices(query, source), *source.warnings_without_bodies]
     contact = source if isinstance(source, LoadHistory) else unworn(source)
     own = [each for each in source.warnings if each.code not in validity.OF_BODIES]
     return [*_notices(query, contact), *own]

@@ -106,7 +106,7 @@ def profile_of(kind: str) -> Profile:
 
 def solved(profile: Profile, rtol: float) -> tangential.TangentialContact:
     """Contact of radius 1 with stick radius 0.8; a flat punch takes forces."""
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         pressed = normal.solve(profile, 1.0, normal_force=1.0, rtol=rtol)
         return tangential.solve(pressed, 0.8, FRICTION, tangential_force=0.5 * FRICTION)
     pressed = normal.solve(profile, 1.0, contact_radius=1.0, rtol=rtol)

@@ -82,7 +82,7 @@ def shear_stress(contact: TangentialContact, radius: ArrayLike, *, rtol: float =
     normal, shape = contact.normal, contact.width.shape
     profile = normal.profile
     # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
-    annuli = contact.width * normal.coordinate if profile.slips_at_once else contact.width
+    annuli = contact.width * normal.coordinate if profile.has_no_partial_slip else contact.width
     modulus = contact.sign * contact.friction_coefficient * normal.e_star
     a, coordinate, scale, width, c, slides = _by_load(
         shape,
@@ -209,11 +209,11 @@ def edges(contact: NormalContact | TangentialContact) -> Edges:
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
     beyond = a - profile.contact_radius(np.asarray(profile.first_coordinate))
-    exact = normal.control == "contact_radius" or profile.slips_at_once
+    exact = normal.control == "contact_radius" or profile.has_no_partial_slip
     error, scale = beyond * (0.0 if exact else EDGE_ROUNDING), beyond / profile.steepness
     if not isinstance(contact, TangentialContact):
         return Edges(*map(np.ravel, (a, error, scale)))
-    exact = contact.control == "stick_radius" or profile.slips_at_once
+    exact = contact.control == "stick_radius" or profile.has_no_partial_slip
     c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
     # Near full slip the condition number of c amplifies the rounding error of the load.
     condition = 1 + contact.load_rounding / normal.error_estimates
@@ -262,7 +262,7 @@ def stress(profile: Profile, annulus: Annulus, a: float, r: Array, rtol: float) 
     result, inside = np.zeros(r.shape), r < a
     if inside.any():
         result[inside] = profile.pressure_kernel(annulus, r[inside], rtol)
-    if profile.slips_at_once and annulus.outer[0] > 0:
+    if profile.has_no_partial_slip and annulus.outer[0] > 0:
         # The stress at the edge of a flat punch.
         result[r == a] = inf
     return result
@@ -278,7 +278,7 @@ def slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
     r : radii r >= c [length], shape (m,).
     rtol : relative accuracy.
     """
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         return np.zeros(r.shape)
     return profile.slip_kernel(np.full(r.shape, c), r, rtol)
 
@@ -301,7 +301,7 @@ def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Arra
     """d - g(r) as the step from r to a, free of cancellation near the edge [length]."""
     result = np.zeros(r.shape)
     inside = r < a
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         result[r <= a] = coordinate
     elif inside.any():
         least = float(profile.contact_radius(np.asarray(profile.first_coordinate)))

@@ -112,7 +112,7 @@ def foundation_shear(state: ContactState, radius: ArrayLike) -> Array:
         result = np.zeros(r.shape)
         if not state.in_contact:
             return result
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             result[r <= edges[-1]] = state.load[0]
             return result
         # The springs of a flat carry the load of its edge.
@@ -163,7 +163,7 @@ def edges(state: ContactState) -> Edges:
     radius = np.append(state.slip_fronts, state.contact_radius)
     gaps = np.diff(radius, prepend=0.0)
     scale = np.minimum(gaps, np.append(gaps[1:], gaps[-1])) / state.profile.steepness
-    rounding = 0.0 if state.profile.slips_at_once else EDGE_ROUNDING
+    rounding = 0.0 if state.profile.has_no_partial_slip else EDGE_ROUNDING
     return Edges(radius, rounding * radius, scale)
 
 
@@ -173,7 +173,7 @@ def _segments(state: ContactState) -> list[tuple[float, Annulus, float]]:
         return []
     segments = state.segments
     radii = state.profile.contact_radius(segments.coordinate)
-    if state.profile.slips_at_once:
+    if state.profile.has_no_partial_slip:
         # All springs carry the same load, which the kernel takes as a depth.
         depth = float(state.load[0]) / (state.friction_coefficient * state.e_star)
         end = InnerEnd(np.array([abs(depth)]), radii[-1:])

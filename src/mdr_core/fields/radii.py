@@ -73,7 +73,7 @@ def grid_through(profile: Profile, edges: Edges, points: int) -> Array:
     """
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
     end = _BEYOND * float(np.max(edges.radius)) or 1.0
-    if not profile.slips_at_once:
+    if not profile.has_no_partial_slip:
         end = min(end, float(np.max(profile.domain)))
     exact = edges.error == 0
     fixed = np.unique(np.concatenate([np.zeros(1), *breaks, edges.radius[exact]]))

@@ -165,7 +165,7 @@ class ContactState(Results):
     @property
     def slip_fronts(self) -> Array:
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
-        if self.profile.slips_at_once or not self.in_contact:
+        if self.profile.has_no_partial_slip or not self.in_contact:
             return np.zeros(0)
         edges = self.coordinate if self.arcs is None else self.arcs.coordinate
         return self.profile.contact_radius(edges[1:-1])

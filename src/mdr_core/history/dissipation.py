@@ -30,7 +30,7 @@ def per_segment(profile: Profile, segments: SlipSegments, *, by_force: bool) -> 
         ends = segments.upper_gap[full], segments.lower_gap[full]
         low, high = np.minimum(*ends), np.maximum(*ends)
         dissipated[full] = segments.slip[full] * moments.conjugate_mean(low, high - low)
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         return dissipated
     partial = np.flatnonzero(~segments.full & (segments.span > 0))
     given = segments.normal, segments.span, segments.upper_gap, segments.lower_gap

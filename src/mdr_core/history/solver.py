@@ -251,7 +251,7 @@ def solve(
     contact = _normal_contact(start, path, rtol)
     scale = friction_coefficient * e_star / (1.0 if path.by_force else g_star)
     # Under a flat punch depth and force are proportional, so that every step is straight.
-    if path.curved.any() and not profile.slips_at_once:
+    if path.curved.any() and not profile.has_no_partial_slip:
         results = curved_legs.results(path, start, scale, rtol)
         return LoadHistory(path, start, contact, results, rtol)
     points = path.load_points(profile, e_star, friction_coefficient, scale)

@@ -66,7 +66,7 @@ class StepResults:
 
         Determined by the springs at their friction limit: none, the outermost, or all.
         """
-        slips = 1 if self.profile.slips_at_once else 2
+        slips = 1 if self.profile.has_no_partial_slip else 2
 
         def code(part: TractionBranches, _path: FrontPath) -> Indices:
             tree, top = part.tree, part.tree.top

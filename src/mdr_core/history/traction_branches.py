@@ -105,7 +105,7 @@ class TractionBranches:
         """Conjugate of each vertex above that of its parent."""
         profile, tree = self.profile, self.tree
         conjugate = self.depth if self.by_force else profile.reduced_force(self.coordinate)
-        if profile.slips_at_once:
+        if profile.has_no_partial_slip:
             # Depth and force are proportional.
             some = np.where(tree.normal > 0, tree.normal, 1.0)
             return np.asarray(conjugate / some * tree.span)

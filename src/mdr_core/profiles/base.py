@@ -136,7 +136,7 @@ class Profile(ABC):
         return 0.0
 
     @property
-    def slips_at_once(self) -> bool:
+    def has_no_partial_slip(self) -> bool:
         """True if there is no partial slip: the whole contact sticks up to full slip."""
         return False
 

@@ -50,7 +50,7 @@ class FlatPunch(Profile):
         return (self.radius,)
 
     @property
-    def slips_at_once(self) -> bool:
+    def has_no_partial_slip(self) -> bool:
         return True
 
     def contact_radius(self, coordinate: Array) -> Array:

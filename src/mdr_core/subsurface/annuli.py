@@ -48,7 +48,7 @@ def annuli_of(contact: Contact) -> Annuli:
     if isinstance(contact, ContactState):
         if not contact.in_contact:
             return Annuli(*np.zeros((4, 1)))
-        if contact.profile.slips_at_once:
+        if contact.profile.has_no_partial_slip:
             # All springs carry the same load.
             share = contact.load[0] / (contact.e_star * contact.indentation_depth)
             return Annuli(*np.array([[contact.contact_radius], [0.0], [share], [0.0]]))
@@ -64,7 +64,7 @@ def annuli_of(contact: Contact) -> Annuli:
         if not contact.full_slip:
             stick, slip = float(contact.stick_radius), float(contact.slip_width)
             # A flat punch that sticks carries q_x in proportion to q; its width is that part.
-            k *= float(contact.width) if normal.profile.slips_at_once else float(slip > 0)
+            k *= float(contact.width) if normal.profile.has_no_partial_slip else float(slip > 0)
     if slip == 0:
         return Annuli(*np.array([[a], [a], [k], [0.0]]))
     return Annuli(*np.array([[stick, a], [stick, slip], [0.0, k], [0.0, 0.0]]))

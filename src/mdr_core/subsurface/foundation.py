@@ -73,7 +73,7 @@ class Foundation:
         self.annuli, self.loaded = annuli_of(contact), bool(normal.loaded)
         if not self.loaded:
             return
-        if self.profile.slips_at_once:
+        if self.profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
             a, zero = self.annuli.radius, np.zeros((1, 1))
             k = np.append(1.0, self.annuli.slope)[: 1 + self.annuli.sheared, None, None]

@@ -78,7 +78,7 @@ class LimitingWear(Results):
     def wear_width(self) -> Array:
         """Width of the worn annulus [length], free of cancellation however narrow it is."""
         rests = self.stuck.step <= 0
-        if self._normal.profile.slips_at_once:
+        if self._normal.profile.has_no_partial_slip:
             worn = np.where(rests, 0.0, self._normal.contact_radius)
         else:
             target = np.where(self.stuck.endless, 0.0, self.stuck.step)
@@ -107,7 +107,7 @@ class LimitingWear(Results):
         # g(c), and zero in full slip.
         edge = np.where(sticks, self.stuck.coordinate, profile.first_coordinate)
         grown = np.where(sticks, profile.depth(edge), 0.0) + self.stuck.step
-        return np.where(self.stuck.endless, inf, held if profile.slips_at_once else grown)
+        return np.where(self.stuck.endless, inf, held if profile.has_no_partial_slip else grown)
 
     @cached_property
     def normal_force(self) -> Array:
@@ -116,7 +116,7 @@ class LimitingWear(Results):
         Source: mdr-5, Eq. (5.90), for any profile.
         """
         contact, profile = self._normal, self._normal.profile
-        if not self._holds_depth or profile.slips_at_once:
+        if not self._holds_depth or profile.has_no_partial_slip:
             held = np.broadcast_to(contact.normal_force, self.stuck.step.shape)
             return np.where(self.stuck.lost, 0.0, held)
         edge = np.where(self.stuck.lost, profile.first_coordinate, self.stuck.coordinate)
@@ -128,7 +128,7 @@ class LimitingWear(Results):
         """Amplitude u_x [length]: constant, or mu (E*/G*) (d - g(c))."""
         if self.amplitude == "tangential_displacement":
             return np.broadcast_to(self.first.tangential_displacement, self.stuck.step.shape)
-        if self._normal.profile.slips_at_once:
+        if self._normal.profile.has_no_partial_slip:
             return np.where(self.stuck.endless, inf, self.first.tangential_displacement)
         return np.where(self.stuck.endless, inf, self.first.displacement_ratio * self.stuck.step)
 
@@ -136,7 +136,7 @@ class LimitingWear(Results):
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
         first = self.first
-        if self.amplitude == "tangential_force" or self._normal.profile.slips_at_once:
+        if self.amplitude == "tangential_force" or self._normal.profile.has_no_partial_slip:
             return np.where(self.stuck.lost, 0.0, first.tangential_force)
         modulus = first.friction_coefficient * self._normal.e_star
         carried = 2 * modulus * self.stuck.radius * self.stuck.step
@@ -330,7 +330,7 @@ def solve(
 def _require_room(wear: LimitingWear) -> None:
     """Raise InputError if a worn annulus would reach beyond the end of the profile."""
     profile = wear.first.normal.profile
-    if profile.slips_at_once or not float(profile.domain) < inf:
+    if profile.has_no_partial_slip or not float(profile.domain) < inf:
         return
     annulus, wearing = wear.annulus, (wear.stuck.step > 0) & ~wear.stuck.endless
     # Without a root the search for the width ends there.

@@ -31,14 +31,14 @@ def worn_depth(stuck: LimitingStick, annulus: WornAnnulus, outer: Array, r: Arra
     profile, step = annulus.profile, np.ravel(stuck.step)
     inner, end = annulus.stick[:, None], np.ravel(outer)[:, None]
     # In full slip the axis wears as well, and a flat punch wears up to its edge.
-    worn = (r <= end if profile.slips_at_once else r < end) & ((r > inner) | (inner == 0))
+    worn = (r <= end if profile.has_no_partial_slip else r < end) & ((r > inner) | (inner == 0))
     worn &= (step > 0)[:, None]
 
     def values(load: Indices, at: Array) -> Array:
         annuli = annulus.chosen(load)
         width = annuli.at(at)
         # S(0; r) is the profile itself.
-        lag = np.where(profile.slips_at_once, 0.0, profile.f(at))
+        lag = np.where(profile.has_no_partial_slip, 0.0, profile.f(at))
         some = np.flatnonzero(annuli.stick > 0)
         if some.size and "slip" in profile.closed_forms:
             lag[some] = profile.slip_kernel(annuli.stick[some], at[some], RTOL)
@@ -76,7 +76,7 @@ def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array) ->
         return np.asarray(moduli[load] * (inner + annulus))
 
     result = _filled(r < c[:, None], r, values)
-    singular = (c > 0) & ((step > 0) | (profile.slips_at_once & (edge > 0)))
+    singular = (c > 0) & ((step > 0) | (profile.has_no_partial_slip & (edge > 0)))
     result[(r == c[:, None]) & singular[:, None]] = inf
     return result.reshape(held.shape + r.shape)
 

@@ -75,7 +75,7 @@ def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
     contact, profile = sideways.normal, sideways.normal.profile
     step = np.broadcast_to(amplitude / sideways.displacement_ratio, sideways.width.shape)
     endless = sideways.full_slip
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         return _from(sideways, step, endless=endless)
     top = np.broadcast_to(contact.coordinate, step.shape)
     target = np.where(endless | (sideways.width <= 0), 0.0, step)
@@ -116,7 +116,7 @@ def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> Limitin
     contact, profile = sideways.normal, sideways.normal.profile
     share = _carried(sideways, amplitude, np.ones(()))
     share = np.broadcast_to(share, sideways.width.shape)
-    if profile.slips_at_once:
+    if profile.has_no_partial_slip:
         _refuse_overload(sideways, amplitude, sideways.full_slip, sideways.limiting_force)
         return _from(sideways, np.zeros_like(share))
     top = np.broadcast_to(contact.coordinate, share.shape)

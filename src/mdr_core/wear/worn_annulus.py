@@ -59,7 +59,7 @@ class WornAnnulus:
     def below(self, radius: float) -> Array:
         """Return c - radius [length]; for the flat or a break, as accurate as the coordinate."""
         plain, profile = self.stick - radius, self.profile
-        if profile.slips_at_once or radius not in self._special:
+        if profile.has_no_partial_slip or radius not in self._special:
             return plain
         start = profile.coordinate_from_radius(np.asarray(radius))
         beyond = (self.stick >= radius) & (self.coordinate >= start)
@@ -129,7 +129,7 @@ class WornAnnulus:
     def _integrals(self, width: Array, *kernels: Kernel) -> Array:
         """Return int_c^r g'(x) K dx for each kernel K, shape (k, m)."""
         result = np.zeros((len(kernels), width.size))
-        if self.profile.slips_at_once:
+        if self.profile.has_no_partial_slip:
             return result
         panels = self.profile.panels
         if panels is not None:

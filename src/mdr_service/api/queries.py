@@ -12,7 +12,7 @@ from starlette.responses import Response
 from mdr_service import cost, problems
 from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES
 from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
-from mdr_service.dispatch import parse, respond, respond_to_text
+from mdr_service.dispatch import parse, respond, respond_to_body
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
 from mdr_service.schemas import contacts
@@ -74,10 +74,10 @@ class Responder:
             content = await self.workers.run_in_process(respond, *arguments)
         return Response(content, media_type=self.media_type)
 
-    async def to_text(self, name: str, text: bytes) -> Response:
+    async def respond_to_body(self, name: str, text: bytes) -> Response:
         """Parse, compute and serialize in a compute process."""
         arguments = name, text, self.media_type, self.size
-        content = await self.workers.run_in_process(respond_to_text, *arguments)
+        content = await self.workers.run_in_process(respond_to_body, *arguments)
         return Response(content, media_type=self.media_type)
 
 
@@ -111,7 +111,7 @@ class QueryRoute(APIRoute):
                 raise _invalid(dict.fromkeys(given, "there is no such parameter"))
             text = await read_body(request)
             if len(text) > respond_.at_once_bytes:
-                return await respond_.to_text(name, text)
+                return await respond_.respond_to_body(name, text)
             return await endpoint(parse(model, text), respond_)
 
         return handle

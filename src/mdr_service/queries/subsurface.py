@@ -81,7 +81,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     if more:
         more["search_error_estimate"] = _OF_SEARCH
     about = {
-        "method": "closed_form" if contact.profile.slips_at_once else "quadrature",
+        "method": "closed_form" if contact.profile.has_no_partial_slip else "quadrature",
         "error_estimate": error,
         "warnings": written(warnings),
     }

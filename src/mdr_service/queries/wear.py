@@ -111,7 +111,7 @@ def _result(
     """Return the result of a wear query, with its fields at `radius` if there is any."""
     warnings = without_singular(notices(query, worn))
     infinite: dict[str, Any] = {"pressure": True}
-    if unworn(worn).normal.profile.slips_at_once:
+    if unworn(worn).normal.profile.has_no_partial_slip:
         infinite |= dict.fromkeys(_PROFILES, True)
     if radius.size:
         surface: Result = {name: _surface(worn, name, radius, query) for name in query.quantities}
