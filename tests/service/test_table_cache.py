@@ -22,8 +22,9 @@ def table(curvature: float = 1.0, **rest: object) -> TabulatedProfile:
     return TabulatedProfile.model_validate({"kind": "tabulated"} | given)
 
 
-def test_table_is_resolved_once() -> None:
-    cache = TableCache(10 * BYTES)
+@pytest.mark.parametrize("room", [BYTES, 10 * BYTES])
+def test_table_is_resolved_once(room: int) -> None:
+    cache = TableCache(room)
     assert cache.resolved(table()) is cache.resolved(table())
     assert cache.size == BYTES
 

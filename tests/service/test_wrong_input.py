@@ -893,6 +893,12 @@ def test_long_body_is_rejected(client: Client) -> None:
     problem(response)
 
 
+def test_body_at_the_limit_is_accepted(client: Client) -> None:
+    text = f'{{"profile": {BALL}, "material": {{"e_star": 1}}, "load": {{"normal_force": 1}}}}'
+    body = text.encode().ljust(SETTINGS.max_body_bytes)
+    assert client.post_text("/v1/normal", body).status_code == 200
+
+
 @pytest.mark.parametrize("media_type", ["text/plain", "application/x-www-form-urlencoded", ""])
 def test_other_content_types_are_rejected(client: Client, media_type: str) -> None:
     headers = {"content-type": media_type}
