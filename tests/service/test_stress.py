@@ -1,8 +1,10 @@
 """Fields over HTTP: the core's digits, by load and radius, with a warning for every null."""
 
+import numpy as np
 import pytest
 
 from mdr_core import fields, normal, tangential
+from mdr_service import results
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_normal import E_STAR, PROFILES
@@ -122,3 +124,11 @@ def test_unreached_accuracy_is_warned_of_once(client: Client) -> None:
         codes = [warning["code"] for warning in answer["warnings"]]
         assert codes.count("accuracy") == number, rtol
         assert answer["error_estimate"] > 1e-10
+
+
+@pytest.mark.parametrize(("radii", "end"), [(5, "0.5"), (6, "0.5 and 1 more")])
+def test_warning_lists_five_singular_radii(radii: int, end: str) -> None:
+    radius = np.arange(1, radii + 1) / 10
+    infinite = np.full((1, radii), np.inf)
+    (notice,) = results.singular(radius, {"pressure": infinite}, {"pressure": True})
+    assert notice.message == f"pressure is infinite at radius 0.1, 0.2, 0.3, 0.4, {end}"
