@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 _Result = TypeVar("_Result")
 
-AT_ONCE_SECONDS: Final = 1e-3
+AT_ONCE_SECONDS: Final = 5e-4
 """Longest computation on the event loop, for which small queries wait; a round trip to a process
 takes 0.1 ms."""
 AT_ONCE_BYTES: Final = 16_384
