@@ -34,13 +34,15 @@ _START: Final[dict[type[Query], float]] = {
 _ARRAYS: Final = 2e-4
 # ... of each load, load with friction or sample, load with wear, number of cycles, ...
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
-# ... normal load of a table with a flat, whose largest pressure is searched for, ...
-_SEARCH = 1e-5
+# ... normal load of a table with a flat, and of a load of other profiles, whose largest pressure is
+# searched for, ...
+_SEARCH, _SEARCH_OF_ONE = 1e-5, 2e-4
 # ... value over the radius, and of drawing a picture.
 _VALUE, _PICTURE = 2.5e-7, 0.3
 # Multiples of these for profiles without closed inverses, per term of a series, for tables.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
+_SEARCHED_PROFILES: Final = frozenset({"rounded_punch", "series", "spherical_tip_cone"})
 # Of each nonlinear load step, and of each node of an evolution, besides its least number of nodes.
 # Of these, of a single load, cycles, stresses and slip only the fourth root of the multiples is
 # taken.
@@ -78,6 +80,8 @@ def seconds(query: Query | BatchQuery) -> float:
         with_friction = query.has("friction_coefficient")
         evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
         evaluated += _ARRAYS if query.loads > 1 else 0.0
+        if isinstance(query, NormalQuery) and query.profile.kind in _SEARCHED_PROFILES:
+            integrated += _SEARCH_OF_ONE
         flat = query.profile.kind == "tabulated" and query.profile.f[1:2] == [0.0]
         if flat and isinstance(query, NormalQuery):
             evaluated += _SEARCH * query.load.count
