@@ -56,6 +56,7 @@ def in_process(capfdbinary: pytest.CaptureFixture[bytes], tmp_path: Path) -> InP
     return InProcess(capfdbinary, tmp_path / "request.json")
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize(
     "format_name", ["json", "csv", "npz", pytest.param("svg", marks=pytest.mark.long)]
 )

@@ -207,7 +207,7 @@ KINDS = [name for name in PROFILES if name != "flat-punch"]
 controls = pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
 
 
-@pytest.mark.every(13)
+@pytest.mark.every(14)
 @controls
 @pytest.mark.parametrize("name", KINDS)
 def test_work_is_stored_or_dissipated(name: str, control: str) -> None:

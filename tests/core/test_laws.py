@@ -84,7 +84,7 @@ def scenes(draw: st.DrawFn) -> tuple[dict[str, Any], float]:
     return chosen, edge(chosen, draw(st.floats(0.05, 3.0)))
 
 
-repeatable = settings(derandomize=True, deadline=None, max_examples=150)
+repeatable = settings(derandomize=True, deadline=None, max_examples=70)
 
 
 def at_radius(fields_: dict[str, Any], radius: float) -> NormalContact:

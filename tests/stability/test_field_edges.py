@@ -97,7 +97,7 @@ def estimate(contact: tangential.TangentialContact, name: str, radii: np.ndarray
     return max(contact.error_estimate, RTOL) + fields.edge_error(contact, name, radii)
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(11)
 @pytest.mark.parametrize("fraction", FRACTIONS)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_error_within_estimate_on_a_grid(shape: str, fraction: float) -> None:

@@ -9,7 +9,7 @@ from mdr_core.wear import evolution
 from tests.stability.fine_wear import PAIRS, RADII, fine, stored, worn
 
 
-@pytest.mark.every(11)
+@pytest.mark.every(23)
 @pytest.mark.parametrize("resolution", [16, 24, 32, 48, 64])
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
 def test_error_within_estimate(kind: str, name: str, resolution: int) -> None:
