@@ -385,6 +385,27 @@ def test_tractions_at_the_origin(exponent: float, stick: float) -> None:
             assert np.abs(np.array(beside) - expected).max() < 1e-11 * p
 
 
+@pytest.mark.parametrize("body", [1, 2])
+@pytest.mark.parametrize("end", ["sliding", "reversed"])
+def test_stresses_are_infinite_at_the_tip_of_a_cone(end: str, body: int) -> None:
+    """Infinite tractions of either sign meet there; no component may be undefined."""
+    contact: tangential.TangentialContact | load_history.ContactState
+    if end == "sliding":
+        pressed = normal.solve(Cone(0.1), 1.0, contact_radius=1.0)
+        contact = tangential.solve(pressed, 0.8, 0.3, tangential_displacement=1.0)
+    else:
+        moved = [1.0, -1.0]
+        contact = load_history.solve(
+            Cone(0.1), 1.0, 0.8, 0.3, indentation_depth=[0.1, 0.1], tangential_displacement=moved
+        ).state
+    at = stress(contact, 0.0, 0.0, 0.0, poissons_ratio=0.3, body=body)
+    normals, shears = np.ravel(at[:3]), np.ravel(at[3:])
+    assert (normals == -np.inf).all()
+    assert (shears == np.inf).all()
+    assert np.ravel(at.von_mises) == np.ravel(at.maximum_shear) == np.inf
+    assert (at.principal == -np.inf).all()
+
+
 def test_shapes_of_loads_and_points() -> None:
     contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=[0.1, 0.2, 0.4])
     x, z = np.linspace(-1, 1, 5), np.linspace(0, 1, 4)

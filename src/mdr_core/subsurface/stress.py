@@ -142,10 +142,10 @@ def stress(
         # V_rr and Om_rr.
         p = np.broadcast_to(fields.pressure(normal_of(contact), [0.0])[..., 0], shape).ravel()
         in_plane = -(1 + 2 * poissons_ratio) / 2 * p
-        shear = np.where(np.isinf(p), inf, 0.0)
-        along = shear
+        along = shear = np.where(np.isinf(p), inf, 0.0)
         if not isinstance(contact, NormalContact):
-            along = shear + (1 if body == 1 else -1) * np.ravel(fields.shear_stress(contact, [0.0]))
+            traction = np.ravel(fields.shear_stress(contact, [0.0]))
+            along = np.where(np.isinf(p), inf, traction if body == 1 else -traction)
         found[..., origin] = np.array([in_plane, in_plane, -p, shear, along, shear])[..., None]
     return StressTensor(*found.reshape(6, *shape, *points))
 
