@@ -76,7 +76,7 @@ class StepResults:
 
         return self._per_step(code).astype(np.intp)
 
-    @cached_property
+    @property
     def last(self) -> Polyline:
         """Polyline after the last step, over normal coordinates."""
         return self._end[-1]
@@ -96,7 +96,7 @@ class StepResults:
         """Blocks of steps: a single one is kept, many are computed again, to bound the memory."""
         return self._kept if self.points.normal.size <= _BLOCK else self._walk()
 
-    @property
+    @cached_property
     def _end(self) -> _Block:
         return deque(self._blocks, maxlen=1)[0]
 
