@@ -112,10 +112,9 @@ def _respond(
 
 def _by_parameters(arguments: argparse.Namespace, parameters: Parameters, format_: str) -> bytes:
     """Return the response to a request by options; its problems point at the options."""
-    members = parameters.answers.split(",") if parameters.answers else ()
     query = parameters.query()
     try:
-        return _respond(arguments, query, members, format_)
+        return _respond(arguments, query, parameters.members, format_)
     except problems.FAILURES as error:
         raise parameters.pointed(problems.to_problem(error)) from None
 

@@ -42,6 +42,7 @@ _VALUE, _PICTURE = 2.5e-7, 0.3
 # Multiples of these for profiles without closed inverses, per term of a series, for tables.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
+# Profiles whose largest pressure may lie off the axis.
 _SEARCHED_PROFILES: Final = frozenset({"rounded_punch", "series", "spherical_tip_cone"})
 # Of each nonlinear load step, and of each node of an evolution, besides its least number of nodes.
 # Of these, of a single load, cycles, stresses and slip only the fourth root of the multiples is

@@ -25,7 +25,7 @@ unbounded wear).
 **Formats.** `?format=` or the header `Accept` selects JSON (the default); `csv`, a table with a
 column per quantity, in which infinities are written `inf`; `npz`, an archive of arrays for
 `numpy.load`; `txt`, the table without its heading; or `svg`, `png` or `pdf`, a
-picture of that `size`.
+picture, whose width and height `?size=` sets.
 
 **GET.** Five queries are available by parameters as well, for spreadsheets and browsers: numbers,
 and one range. `answers` chooses members of the response, and with `format=txt` one number is the

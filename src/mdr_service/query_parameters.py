@@ -96,6 +96,11 @@ class Parameters(BaseModel):
         default=None, description="Members of the response, separated by commas; by default all"
     )
 
+    @property
+    def members(self) -> list[str]:
+        """Members of the response to return; all if there are none."""
+        return self.answers.split(",") if self.answers else []
+
     def query(self) -> contacts.Query:
         """Return the request; raise InputError or ServiceError that points at a parameter."""
         given = self.model_dump(

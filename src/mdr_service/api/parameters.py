@@ -41,9 +41,8 @@ def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
         """
         respond = Responder(request, parameters.format, parameters.size)
         query = parameters.query()
-        members = parameters.answers.split(",") if parameters.answers else ()
         try:
-            response = await respond(name, query, members)
+            response = await respond(name, query, parameters.members)
         except problems.FAILURES as error:
             raise parameters.pointed(problems.to_problem(error)) from None
         return _cacheable(request, response)

@@ -16,11 +16,10 @@ from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
-from mdr_service.schemas.wear import EvolutionQuery, WearQuery
+from mdr_service.schemas.wear import WearQuery
 from mdr_service.table_cache import TABLES
 
 Arguments = dict[str, Any]
-FrictionQuery = TangentialQuery | LoadedQuery | WearQuery | EvolutionQuery
 
 _NORMAL: Final = members(NormalAnswer)
 _PARTIAL_SLIP: Final = members(TangentialAnswer, _NORMAL)
