@@ -170,8 +170,6 @@ def test_interrupt_ends_the_command_without_a_traceback() -> None:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        # A process inherits an ignored SIGINT from its parent, e.g. from a background shell.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509 -- no threads
     )
     assert process.stdin is not None
     # More than a pipe holds: the command reads it once it is written, and then computes.

@@ -17,11 +17,11 @@ FOLDER = Path(__file__).parents[2] / "docs"
 PAGE = (FOLDER / "gallery.md").read_text("utf-8")
 REQUESTS = dict(re.findall(r'```json title="(\w+)\.json"\n(.*?)```', PAGE, re.DOTALL))
 COMMANDS = {
-    re.search(r"@(\w+)\.json", command)[1]: command.strip()  # type: ignore[index]
+    re.findall(r"@(\w+)\.json", command)[0]: command.strip()
     for command in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL)
 }
 PROGRAMS = {
-    re.search(r'savefig\("(\w+)\.svg"\)', program)[1]: dedent(program)  # type: ignore[index]
+    re.findall(r'savefig\("(\w+)\.svg"\)', program)[0]: dedent(program)
     for program in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 }
 FIGURES = re.findall(r"!\[[^]]*\]\(gallery/(\w+)\.svg\)", PAGE)

@@ -11,20 +11,13 @@ import pytest
 
 from mdr_service.app import create_app
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
 from tests.faults.server import PATIENCE, free_port, running, service
 
 pytestmark = [pytest.mark.long, pytest.mark.alone]
 
-BODIES: dict[str, Any] = {
-    "/v1/normal": EXAMPLES["normal"],
-    "/v1/tangential": EXAMPLES["tangential"],
-    "/v1/tangential/history": EXAMPLES["history"],
-    "/v1/stress": EXAMPLES["stress"],
-    "/v1/subsurface": EXAMPLES["subsurface"],
-    "/v1/wear": EXAMPLES["wear"],
-    "/v1/wear/evolution": EXAMPLES["evolution"],
-    "/v1/batch": EXAMPLES["batch"],
-}
+BODIES: dict[str, Any] = {schema.path: EXAMPLES[name] for name, schema in SCHEMAS.items()}
+BODIES["/v1/batch"] = EXAMPLES["batch"]
 LOADED = "kind=cone&slope=0.1&e_star=1&g_star=1&normal_force=1"
 PARAMETERS = {
     "/v1/normal": LOADED,

@@ -9,16 +9,9 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from mdr_service.app import create_app
+from mdr_service.schemas.queries import SCHEMAS
 
-PATHS: Final = {
-    "normal": "/v1/normal",
-    "tangential": "/v1/tangential",
-    "history": "/v1/tangential/history",
-    "stress": "/v1/stress",
-    "subsurface": "/v1/subsurface",
-    "wear": "/v1/wear",
-    "evolution": "/v1/wear/evolution",
-}
+PATHS: Final = {name: schema.path for name, schema in SCHEMAS.items()}
 SECONDS: Final = 10.0
 """CPU time limit of one request."""
 

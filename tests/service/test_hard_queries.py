@@ -7,21 +7,14 @@ from typing import Any
 import pytest
 
 from mdr_service.problems import MEDIA_TYPE
+from mdr_service.schemas.queries import SCHEMAS
 from tests.conftest import Client
 from tests.contract import strict_json
 
 QUERIES: dict[str, Any] = json.loads(
     Path(__file__).with_name("data").joinpath("hard_queries.json").read_text("utf-8")
 )
-ENDPOINTS = {
-    "normal": "/v1/normal",
-    "tangential": "/v1/tangential",
-    "history": "/v1/tangential/history",
-    "stress": "/v1/stress",
-    "wear": "/v1/wear",
-    "evolution": "/v1/wear/evolution",
-    "subsurface": "/v1/subsurface",
-}
+ENDPOINTS = {name: schema.path for name, schema in SCHEMAS.items()}
 
 
 @pytest.mark.parametrize(
