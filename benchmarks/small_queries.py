@@ -2,8 +2,9 @@
 
 The bare endpoint takes the same body by a model of its own, which looks no further than the names
 of its members, and returns a constant; for `/v1/stress` it validates the body as the service does
-and writes arrays of the answer's size. Both are asked in turn, as in `wire_ratio`. A table is
-asked for the first time in every request, or again and again.
+and writes arrays of the answer's size. Both are asked in turn, by a client that sends one request
+after the other; the last column is the ratio with four connections at once. A table is asked for
+the first time in every request, or again and again.
 
 `python small_queries.py [KIND ...]` prints the rows of some kinds; `ratios.py` has all of them.
 """
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 RADII, LEGS, POINTS, END = 1000, 10, 200, 1.25
-SECONDS, ROUNDS = 0.15, 5
+SECONDS, ROUNDS = 0.1, 5
 FRICTION, SHARE = 0.3, 0.6
 CLOSED = ("paraboloid", "cone", "flat_punch")
 AGAIN, FIRST = "the same table", "a new table"
@@ -120,21 +121,24 @@ def rows(chosen: list[str] | None = None) -> list[measure.Row]:
                 path = query.replace("cycle", "tangential/history")
                 other = "stress" if query == "stress" else "small"
                 targets = f"{ours}/v1/{path}", f"{theirs}/{other}"
-                found.append(_row(kind, query, list(_rounds(kind, query, targets))))
+                found.append(_row(kind, query, targets))
     return found
 
 
-def _rounds(kind: str, query: str, targets: tuple[str, str]) -> Iterator[tuple[float, float]]:
-    texts = bodies(kind, query)
+def _rounds(
+    texts: Iterator[str], targets: tuple[str, str], connections: int
+) -> Iterator[tuple[float, float]]:
     for target in targets:
         wire_ratio.check(target, next(texts))
-        wire_ratio.rate(target, texts, SECONDS)
+        wire_ratio.rate(target, texts, SECONDS, connections)
     for _ in range(ROUNDS):
-        ours, theirs = (wire_ratio.rate(target, texts, SECONDS) for target in targets)
+        ours, theirs = (wire_ratio.rate(target, texts, SECONDS, connections) for target in targets)
         yield ours, theirs
 
 
-def _row(kind: str, query: str, rounds: list[tuple[float, float]]) -> measure.Row:
+def _row(kind: str, query: str, targets: tuple[str, str]) -> measure.Row:
+    texts = bodies(kind, query)
+    rounds, crowded = (list(_rounds(texts, targets, n)) for n in (1, wire_ratio.CONNECTIONS))
     target = TARGETS[query][2 if kind == AGAIN else 0 if kind in CLOSED else 1]
     rates = " / ".join(f"{median(column):.0f}" for column in zip(*rounds, strict=True))
     other = "the wire alone" if query == "stress" else "bare FastAPI endpoint"
@@ -143,7 +147,7 @@ def _row(kind: str, query: str, rounds: list[tuple[float, float]]) -> measure.Ro
         "asyncio client",
         *measure.spread(rounds),
         "" if kind == FIRST else f">= {target}",
-        f"{rates} requests/s",
+        f"{rates} requests/s; {wire_ratio.CONNECTIONS} at once {measure.spread(crowded)[0]:.3f}",
     )
 
 

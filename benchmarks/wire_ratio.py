@@ -142,15 +142,17 @@ def load_generator(body: str) -> Iterator[Load]:
         yield _wrk
 
 
-def rate(target: str, bodies: Iterator[str], seconds: float) -> float:
+def rate(
+    target: str, bodies: Iterator[str], seconds: float, connections: int = CONNECTIONS
+) -> float:
     """Requests per second of a client in this process that sends the bodies in turn."""
-    return asyncio.run(_drive(target, bodies, seconds))
+    return asyncio.run(_drive(target, bodies, seconds, connections))
 
 
-async def _drive(target: str, bodies: Iterator[str], seconds: float) -> float:
+async def _drive(target: str, bodies: Iterator[str], seconds: float, connections: int) -> float:
     start = time.perf_counter()
     end = start + seconds
-    counts = await asyncio.gather(*(_send(target, bodies, end) for _ in range(CONNECTIONS)))
+    counts = await asyncio.gather(*(_send(target, bodies, end) for _ in range(connections)))
     return sum(counts) / (time.perf_counter() - start)
 
 

@@ -21,6 +21,10 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.serializers import PICTURES
 from mdr_service.settings import SETTINGS
 
+AT_ONCE_SECONDS: Final = 5e-4
+"""Computation on the event loop at any load; a round trip to a compute process takes as long."""
+# Sum of such computations, for which a small query may have to wait.
+_AT_ONCE_IN_ALL: Final = 5e-3
 # Times on one core of a server of 2023 [s]: of a query about a single load of a cone, ...
 _START: Final[dict[type[Query], float]] = {
     NormalQuery: 1e-4,
@@ -139,6 +143,17 @@ def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
         ]
         raise ServiceError(problems.TOO_COSTLY, detail, fits)
     return expected
+
+
+def is_short(expected: float, requests: int) -> bool:
+    """Return True if a query is computed on the event loop, for which all requests wait.
+
+    Parameters
+    ----------
+    expected : expected time of the query [s].
+    requests : number of requests in progress, this one included.
+    """
+    return expected <= max(AT_ONCE_SECONDS, _AT_ONCE_IN_ALL / (requests + 1))
 
 
 def _complexity(profile: Profile) -> float:

@@ -58,6 +58,8 @@ class BoundedProtocol(HttpToolsProtocol):
         app_state: dict[str, Any],
         _loop: AbstractEventLoop | None = None,
     ) -> None:
+        # For the application: the tasks of all requests in progress.
+        app_state["tasks"] = server_state.tasks
         super().__init__(config, server_state, app_state, _loop)
         self._rejected = False
         # Bytes received since the parser last passed on everything it held.

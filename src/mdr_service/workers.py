@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
 _Result = TypeVar("_Result")
 
-AT_ONCE_SECONDS: Final = 5e-4
-"""Longest computation on the event loop, for which small queries wait; a round trip to a process
-takes 0.1 ms."""
 AT_ONCE_BYTES: Final = 16_384
 """Longest query that is parsed on the event loop; the worst one is rejected in 2 ms."""
 AT_ONCE_BATCH_BYTES: Final = 4_096

@@ -1,7 +1,7 @@
 """Endpoints of the queries by POST, and the route class that they share."""
 
 from collections import Counter
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence, Sized
 from inspect import signature
 from typing import Annotated, Any, ClassVar, Final, get_args
 
@@ -25,7 +25,7 @@ from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.serializers import FORMATS, json
-from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES, AT_ONCE_SECONDS
+from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES
 
 _Endpoint = Callable[..., Awaitable[Response]]
 _ANY: Final = "*/*"
@@ -61,6 +61,7 @@ class Responder:
             self.media_type = media_type(format_, accept, self.formats)
         self.size = None if size is None else picture_size(size, self.media_type)
         self.workers = request.app.state.workers
+        self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 
     async def __call__(
         self, name: str, query: contacts.Query | BatchQuery, members: Sequence[str] = ()
@@ -68,7 +69,7 @@ class Responder:
         """Compute on the event loop if that is short, else in a compute process."""
         seconds = cost.require_feasible(query, self.media_type)
         arguments = name, query, self.media_type, members, self.size
-        if seconds <= AT_ONCE_SECONDS:
+        if cost.is_short(seconds, len(self.tasks)):
             content = respond(*arguments)
         else:
             content = await self.workers.run_in_process(respond, *arguments)
