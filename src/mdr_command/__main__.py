@@ -3,31 +3,19 @@
 import argparse
 import os
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Sequence
 from importlib import import_module
-from typing import Any, Final, Protocol, cast
+from typing import Any, Final, NamedTuple
 
 from mdr_command.exit_status import ExitStatus
 
 
-class Module(Protocol):
-    """Module of a command."""
-
-    def declare(self, parser: argparse.ArgumentParser) -> None:
-        """Declare the arguments of the command."""
-
-    def run(self, arguments: argparse.Namespace) -> int:
-        """Run the command and return the exit status."""
-
-
-@dataclass(frozen=True)
-class Command:
-    """Command with its summary and its module."""
+class Command(NamedTuple):
+    """Command with its summary, and its module with the functions `declare` and `run`."""
 
     summary: str
     module: str
-    example: str = ""
+    example: str
     """Command line that the help shows."""
 
 
@@ -89,10 +77,6 @@ COMMANDS: Final = {
 }
 
 
-# In place of a command: the arguments of all of them.
-_ALL: Final = "*"
-
-
 def main(given: Sequence[str] | None = None) -> int:
     """Run a command line and return the exit status."""
     try:
@@ -106,25 +90,22 @@ def main(given: Sequence[str] | None = None) -> int:
 
 
 def _run(given: Sequence[str]) -> int:
-    name = given[0] if given else ""
+    name = next((each for each in given if each in COMMANDS), "")
     try:
-        module = _loaded(COMMANDS[name]) if name in COMMANDS else None
+        parser = parser_of({name})
     except ModuleNotFoundError as error:
         if str(error.name).startswith("mdr_"):
             raise
         remedy = "run `pip install '.[service]'` in the checkout"
         sys.stderr.write(f"mdr {name}: {error.name} is missing; {remedy}\n")
         return ExitStatus.NOT_INSTALLED
-    arguments = _parser(name, module).parse_args(given)
-    return module.run(arguments) if module else ExitStatus.INVALID_INPUT
+    arguments = parser.parse_args(given)
+    status: int = arguments.run(arguments)
+    return status
 
 
-def _loaded(command: Command) -> Module:
-    return cast("Module", import_module(command.module))
-
-
-def _parser(chosen: str, module: Module | None) -> argparse.ArgumentParser:
-    """Return the parser of all commands, with the arguments of the chosen one."""
+def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
+    """Return the parser of all commands, with the arguments of those that are `loaded`."""
     parser = argparse.ArgumentParser(prog="mdr", description=_ABOUT)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", title="commands")
@@ -136,17 +117,11 @@ def _parser(chosen: str, module: Module | None) -> argparse.ArgumentParser:
             epilog=f"example:\n  {command.example}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        own.set_defaults(command=name)
-        if module and name == chosen:
+        if name in loaded:
+            module = import_module(command.module)
+            own.set_defaults(command=name, run=module.run)
             module.declare(own)
-        elif chosen == _ALL:
-            _loaded(command).declare(own)
     return parser
-
-
-def complete_parser() -> argparse.ArgumentParser:
-    """Return the parser of all commands with all their arguments."""
-    return _parser(_ALL, None)
 
 
 class _Version(argparse.Action):

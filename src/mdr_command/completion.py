@@ -17,6 +17,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the script and return the exit status."""
-    parser = import_module("mdr_command.__main__").complete_parser()
+    command = import_module("mdr_command.__main__")
+    parser = command.parser_of(command.COMMANDS)
     sys.stdout.write(shtab.complete(parser, arguments.shell) + "\n")
     return 0

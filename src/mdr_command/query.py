@@ -1,21 +1,22 @@
-"""``mdr normal``, ``mdr wear`` and so on: responses of the service, without a server."""
+"""``mdr normal``, ``mdr wear`` and so on: responses of the service, without a server.
+
+The request is a file or, if it consists of numbers, options such as ``--radius 0.01``: the query
+parameters of the service, with hyphens in place of underscores.
+"""
 
 import argparse
 import logging
 import os
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from mdr_command import flags
 from mdr_command.exit_status import ExitStatus
 from mdr_core.errors import InputError
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import parse, respond
 from mdr_service.problems import ServiceError
-from mdr_service.query_parameters import Parameters
-from mdr_service.schemas.contacts import Query
+from mdr_service.query_parameters import PARAMETERS, Parameters
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS, json
 
@@ -24,6 +25,8 @@ _STATUS: Final = {
     problems.ACCURACY: ExitStatus.ACCURACY_NOT_REACHABLE,
 }
 _STANDARD_INPUT: Final = "-"
+# Options that are not numbers.
+_TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -48,7 +51,15 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="file for the response (default: standard output)",
     )
-    flags.declare(parser, parser.get_default("command"))
+    if model := PARAMETERS.get(parser.get_default("command")):
+        group = parser.add_argument_group("request by options, in place of a file")
+        for name in _options(model):
+            group.add_argument(
+                f"--{name.replace('_', '-')}",
+                default=argparse.SUPPRESS,
+                metavar="TEXT" if name in _TEXTS else "NUMBER",
+                help=(model.model_fields[name].description or "").replace("%", "%%"),
+            )
     parser.description = (
         f"{parser.description}\n\nA problem document goes to standard error, with the exit status "
         f"{ExitStatus.INVALID_INPUT},\nor {ExitStatus.ACCURACY_NOT_REACHABLE} if rtol cannot "
@@ -82,15 +93,35 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _content(arguments: argparse.Namespace) -> bytes:
     """Return the response to the request, which a file or options give."""
-    parameters = flags.parameters(arguments)
+    name, size = arguments.command, arguments.size
     suffix = arguments.output.suffix[1:] if arguments.output else ""
     format_ = arguments.format or (suffix if suffix in FORMATS else "json")
+    media_type = content_negotiation.media_type(format_, "*/*")
+    size = None if size is None else content_negotiation.picture_size(size, media_type)
+    parameters = _parameters(arguments)
     if parameters is None:
-        query = parse(SCHEMAS[arguments.command].model, _read(arguments.file or _STANDARD_INPUT))
-        return _respond(arguments, query, (), format_)
+        query = parse(SCHEMAS[name].model, _read(arguments.file or _STANDARD_INPUT))
+        return respond(name, query, media_type, size=size)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")
-    return _by_parameters(arguments, parameters, format_)
+    query = parameters.query()
+    try:
+        return respond(name, query, media_type, parameters.members, size)
+    except problems.FAILURES as error:
+        raise parameters.pointed(problems.to_problem(error)) from None
+
+
+def _options(model: type[Parameters]) -> list[str]:
+    """Return the parameters that are options; every command has options for a picture."""
+    return [name for name in model.model_fields if name not in {"format", "size"}]
+
+
+def _parameters(arguments: argparse.Namespace) -> Parameters | None:
+    """Return the parameters that are given as options, None if there are none."""
+    model = PARAMETERS.get(arguments.command)
+    options = vars(arguments)
+    given = {name: options[name] for name in _options(model) if name in options} if model else {}
+    return model.model_validate(given) if model and given else None
 
 
 def _read(file: str) -> bytes:
@@ -99,24 +130,6 @@ def _read(file: str) -> bytes:
     if sys.stdin.isatty():
         sys.stderr.write("mdr: reading the request from the terminal; end it with Ctrl-D\n")
     return sys.stdin.buffer.read()
-
-
-def _respond(
-    arguments: argparse.Namespace, query: Query, members: Sequence[str], format_: str
-) -> bytes:
-    media_type = content_negotiation.media_type(format_, "*/*")
-    given = arguments.size
-    size = None if given is None else content_negotiation.picture_size(given, media_type)
-    return respond(arguments.command, query, media_type, members, size)
-
-
-def _by_parameters(arguments: argparse.Namespace, parameters: Parameters, format_: str) -> bytes:
-    """Return the response to a request by options; its problems point at the options."""
-    query = parameters.query()
-    try:
-        return _respond(arguments, query, parameters.members, format_)
-    except problems.FAILURES as error:
-        raise parameters.pointed(problems.to_problem(error)) from None
 
 
 def _write(content: bytes, file: Path | None) -> None:

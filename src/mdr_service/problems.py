@@ -93,7 +93,7 @@ class ServiceError(Exception):
 INTERNAL_ERROR: Final = ServiceError(
     INTERNAL, "the service has failed on this request; report it with the instance"
 )
-FAILURES: Final = (ServiceError, InputError, AccuracyError)
+FAILURES: Final = (ServiceError, InputError, AccuracyError, ValidationError)
 """Exceptions with a problem document of their own; any other is an internal error."""
 
 
@@ -103,6 +103,8 @@ def to_problem(error: Exception) -> ServiceError:
         return ServiceError(INVALID_REQUEST, error.detail, [(pointer(error.path), error.detail)])
     if isinstance(error, AccuracyError):
         return ServiceError(ACCURACY, str(error), [(pointer(error.path), str(error))])
+    if isinstance(error, ValidationError):
+        return from_validation(error)
     if isinstance(error, ServiceError):
         return error
     raise error

@@ -9,7 +9,6 @@ from typing import Any, Final
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
 from mdr_core import normal, subsurface, tangential, validity
 from mdr_core.errors import InputError
@@ -199,11 +198,8 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:
-    """Return the request with the given fields; raise InputError or ServiceError."""
-    try:
-        return SCHEMAS[spec.query].model.model_validate(nested(given))
-    except ValidationError as error:
-        raise problems.from_validation(error) from None
+    """Return the request with the given fields; raise InputError or ValidationError."""
+    return SCHEMAS[spec.query].model.model_validate(nested(given))
 
 
 def _joined(codes: Iterable[str]) -> str | None:

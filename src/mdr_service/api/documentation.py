@@ -1,4 +1,4 @@
-"""Responses of the endpoints, as OpenAPI documents them."""
+"""Responses of the endpoints, as OpenAPI documents them, and headers of the pages."""
 
 from typing import Any, Final
 
@@ -8,6 +8,12 @@ from mdr_service.serializers import FORMATS
 
 Responses = dict[int | str, dict[str, Any]]
 
+# The browser connects to no other host, whatever the page shows. Plotly sets styles of elements.
+PAGE_HEADERS: Final = {
+    "Content-Security-Policy": (
+        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
+    )
+}
 _COMPUTATION: Final = (
     problems.NOT_ACCEPTABLE,
     problems.INVALID_REQUEST,

@@ -15,6 +15,8 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.staticfiles import StaticFiles
 
+from mdr_service.api.documentation import PAGE_HEADERS
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -28,12 +30,6 @@ _MEDIA_TYPES: Final = {
     "html": "text/html",
     "js": "text/javascript",
     "svg": "image/svg+xml",
-}
-# The browser connects to no other host, whatever the page shows. Plotly sets styles of elements.
-_SECURITY: Final = {
-    "Content-Security-Policy": (
-        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
-    )
 }
 # Built by `make docs`, and in the image.
 MANUAL: Final = Path(sys.prefix, "share", "mdr", "manual")
@@ -87,7 +83,7 @@ async def page(request: Request) -> Response:
     """Return the explorer, or for ``Accept: application/json`` the links of the service."""
     if request.headers.get("accept", "").startswith("application/json"):
         return JSONResponse(_LINKS, headers={"Vary": "Accept"})
-    return await _respond("index.html", request, {"Cache-Control": "no-cache", **_SECURITY})
+    return await _respond("index.html", request, {"Cache-Control": "no-cache", **PAGE_HEADERS})
 
 
 @router.get("/explorer/{name}")
@@ -114,7 +110,7 @@ class Manual(StaticFiles):
     def file_response(self, *arguments: Any, **options: Any) -> Response:
         """Return a file with the policy."""
         response = super().file_response(*arguments, **options)
-        response.headers.update(_SECURITY)
+        response.headers.update(PAGE_HEADERS)
         return response
 
 

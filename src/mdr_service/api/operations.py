@@ -8,7 +8,7 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from mdr_core import profiles
 from mdr_service import health, observability, problems
-from mdr_service.api.documentation import failures
+from mdr_service.api.documentation import PAGE_HEADERS, failures
 from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
 from mdr_service.schemas.profiles import MODELS
 from mdr_service.settings import SETTINGS, Settings
@@ -19,12 +19,6 @@ if TYPE_CHECKING:
 router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
-# The browser connects to no other host, whatever the page shows.
-_DOCS_HEADERS: Final = {
-    "Content-Security-Policy": (
-        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
-    )
-}
 _OK: Final = Health(status="ok")
 
 
@@ -110,4 +104,4 @@ async def metrics() -> Response:
 @router.get("/docs", include_in_schema=False)
 async def docs() -> Response:
     """Return the documentation page, whose files are all of this host."""
-    return HTMLResponse(_DOCS_PAGE, headers=_DOCS_HEADERS)
+    return HTMLResponse(_DOCS_PAGE, headers=PAGE_HEADERS)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import zip_longest
+from math import prod
 from typing import Any, Final
 
 import numpy as np
@@ -35,50 +36,36 @@ def write(result: Mapping[str, Any]) -> bytes:
         # None of the chosen members has rows: each is a column of its own length.
         values = {name: np.atleast_1d(result[name]) for name in result if name not in _OBJECTS}
     if "radius" in values:
-        columns = _by_radius(values)
+        columns = _by_position(values, "radius")
     elif "x" in values:
-        columns = _by_position(values)
+        columns = _by_position(values, "z", "x")
     else:
         columns = {name: _cells(value) for name, value in values.items()}
     rows = map(b",".join, zip_longest(*columns.values(), fillvalue=b""))
     return b"\r\n".join([",".join(columns).encode(), *rows, b""])
 
 
-def _by_radius(values: dict[str, Any]) -> dict[str, list[bytes]]:
-    """Return one cell per load, or number of cycles, and radius in each column.
+def _by_position(values: dict[str, Any], *axes: str) -> dict[str, list[bytes]]:
+    """Return one cell per load, or number of cycles, and position in each column.
 
-    A single load has no index column. Members without a radius have no column.
+    A single load has no index column. Members without a position have no column.
     """
-    radius = _cells(values["radius"])
     fields = {
-        name: value
+        name: np.array(_cells(value), dtype=object)
         for name, value in values.items()
-        if name in _BY_RADIUS or np.ndim(value[0]) == 1
+        if name in _BY_RADIUS or np.ndim(value[0]) == len(axes)
     }
-    loads = next((len(field) for name, field in fields.items() if name not in _BY_RADIUS), 1)
-    columns = {"radius": radius * loads} | {
-        name: _cells(field) * (loads if name in _BY_RADIUS else 1) for name, field in fields.items()
-    }
-    if loads == 1 and "cycles" not in values:
-        return columns
-    name = "cycles" if "cycles" in values else "load"
-    indices = _cells(values.get(name, range(loads)))
-    return {name: [index for index in indices for _ in radius]} | columns
-
-
-def _by_position(values: dict[str, Any]) -> dict[str, list[bytes]]:
-    """Return one cell per load, depth and x in each column; a single load has no index column."""
-    x, z = _cells(values.pop("x")), _cells(values.pop("z"))
-    loads = len(next(iter(values.values())))
-    columns = {
-        "z": [depth for _ in range(loads) for depth in z for _ in x],
-        "x": x * (len(z) * loads),
-    }
-    columns |= {name: _cells(value) for name, value in values.items()}
-    if loads == 1:
-        return columns
-    index = [number for number in _cells(range(loads)) for _ in range(len(x) * len(z))]
-    return {"load": index} | columns
+    positions = [np.array(_cells(values[axis]), dtype=object) for axis in axes]
+    shape = [each.size for each in positions]
+    loads = max((field.size // prod(shape) for field in fields.values()), default=1)
+    rows = "cycles" if "cycles" in values else "load"
+    indices = np.array(_cells(values.get(rows, range(loads))), dtype=object)
+    columns = dict(zip((rows, *axes), np.ix_(indices, *positions), strict=True))
+    if rows == "load" and loads == 1:
+        del columns["load"]
+    columns |= {name: field.reshape(-1, *shape) for name, field in fields.items()}
+    whole = (indices.size, *shape)
+    return {name: np.broadcast_to(cells, whole).ravel().tolist() for name, cells in columns.items()}
 
 
 def _cells(values: Any) -> list[bytes]:

@@ -64,60 +64,55 @@ def write(plot: Plot | Map, name: str, size: Size = None) -> bytes:
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
 
-    if isinstance(plot, Map):
-        return _write_map(plot, name, size)
-    count = len(plot.panels)
-    height = 0.9 + (_SINGLE if count == 1 else _PANEL * count)
+    content = io.BytesIO()
     with _lock, mpl.rc_context(_STYLE):
-        figure = Figure(figsize=_inches(size) or (_WIDTH, height), layout="constrained")
-        axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-        for each, panel in zip(axes, plot.panels, strict=True):
-            _draw(each, panel, plot)
-        if plot.x_limits and plot.x_limits[0] < plot.x_limits[1]:
-            axes[0].set_xlim(*plot.x_limits)
-        axes[-1].set_xlabel(f"{plot.x_label}   (in the units of the request)")
-        _label(axes[0], plot.marks)
-        _legend(axes[0], plot)
-        return _save(figure, name)
+        figure = Figure(layout="constrained")
+        if isinstance(plot, Map):
+            figure.set_size_inches(_WIDTH, _SINGLE)
+            _draw_map(figure, plot)
+        else:
+            count = len(plot.panels)
+            figure.set_size_inches(_WIDTH, 0.9 + (_SINGLE if count == 1 else _PANEL * count))
+            _draw_plot(figure, plot)
+        if size:
+            figure.set_size_inches(size[0] / _INCH, size[1] / _INCH)
+        figure.savefig(content, format=name, metadata=_METADATA[name])
+    return content.getvalue()
 
 
-def _write_map(plot: Map, name: str, size: Size) -> bytes:
+def _draw_plot(figure: "Figure", plot: Plot) -> None:
+    """Draw panels above each other."""
+    axes = figure.subplots(len(plot.panels), 1, sharex=True, squeeze=False)[:, 0]
+    for each, panel in zip(axes, plot.panels, strict=True):
+        _draw(each, panel, plot)
+    if plot.x_limits and plot.x_limits[0] < plot.x_limits[1]:
+        axes[0].set_xlim(*plot.x_limits)
+    axes[-1].set_xlabel(f"{plot.x_label}   (in the units of the request)")
+    _label(axes[0], plot.marks)
+    _legend(axes[0], plot)
+
+
+def _draw_map(figure: "Figure", plot: Map) -> None:
     """Draw contours, and beside them the values on the axis."""
-    import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
-    from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
-
     finite = plot.values[np.isfinite(plot.values)]
     # Singular peaks would leave a single colour for the rest.
     top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _MOST)))
     levels = np.linspace(0.0, top or 1.0, _LEVELS)
-    with _lock, mpl.rc_context(_STYLE):
-        figure = Figure(figsize=_inches(size) or (_WIDTH, _SINGLE), layout="constrained")
-        left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
-        shown = np.where(np.isfinite(plot.values), plot.values, top)
-        drawn = left.contourf(plot.x, plot.z, np.minimum(shown, levels[-1]), levels)
-        figure.colorbar(drawn, ax=left, location="bottom", label=plot.label)
-        left.plot([-plot.contact, plot.contact], [0, 0], color="0.1", linewidth=4, label="contact")
-        if plot.stick:
-            left.plot([-plot.stick, plot.stick], [0, 0], color="C1", linewidth=4, label="stick")
-        if plot.peak:
-            left.plot(*plot.peak, "x", color="C3", label="maximum", clip_on=False, zorder=5)
-        left.set(xlabel="x", ylabel="depth z   (in the units of the request)", aspect="equal")
-        left.legend(title=plot.note or None, loc="lower right")
-        on_axis = np.where(np.isfinite(plot.on_axis), plot.on_axis, np.nan)
-        right.plot(on_axis, plot.depth)
-        right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
-        left.invert_yaxis()
-        return _save(figure, name)
-
-
-def _inches(size: Size) -> tuple[float, float] | None:
-    return (size[0] / _INCH, size[1] / _INCH) if size else None
-
-
-def _save(figure: "Figure", name: str) -> bytes:
-    content = io.BytesIO()
-    figure.savefig(content, format=name, metadata=_METADATA[name])
-    return content.getvalue()
+    left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
+    shown = np.where(np.isfinite(plot.values), plot.values, top)
+    drawn = left.contourf(plot.x, plot.z, np.minimum(shown, levels[-1]), levels)
+    figure.colorbar(drawn, ax=left, location="bottom", label=plot.label)
+    left.plot([-plot.contact, plot.contact], [0, 0], color="0.1", linewidth=4, label="contact")
+    if plot.stick:
+        left.plot([-plot.stick, plot.stick], [0, 0], color="C1", linewidth=4, label="stick")
+    if plot.peak:
+        left.plot(*plot.peak, "x", color="C3", label="maximum", clip_on=False, zorder=5)
+    left.set(xlabel="x", ylabel="depth z   (in the units of the request)", aspect="equal")
+    left.legend(title=plot.note or None, loc="lower right")
+    on_axis = np.where(np.isfinite(plot.on_axis), plot.on_axis, np.nan)
+    right.plot(on_axis, plot.depth)
+    right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
+    left.invert_yaxis()
 
 
 def _draw(axes: "Axes", panel: Panel, plot: Plot) -> None:
