@@ -212,12 +212,14 @@ def solve(
 def _coordinate(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
     """Contact coordinate of the edge under a load, with input and results checked."""
     require_positive(("material", "e_star"), e_star)
-    require_not_negative(("load", name), load)
-    amount = load / e_star if name == "normal_force" else load
-    coordinate = _COORDINATE_FROM[name](profile, amount)
+    with np.errstate(all="ignore"):
+        amount = load / e_star if name == "normal_force" else load
+        coordinate = _COORDINATE_FROM[name](profile, amount)
     low, high = extremes(coordinate)
     reach = 10 ** (_DECADES / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:
+        # No other coordinate follows from a load that is negative or not finite.
+        require_not_negative(("load", name), load)
         contact = NormalContact(profile, e_star, coordinate)
         with np.errstate(all="ignore"):
             depth, force, a = (getattr(contact, result) for result in _COORDINATE_FROM)

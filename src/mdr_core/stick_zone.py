@@ -93,30 +93,28 @@ def _by_force(
     contact: NormalContact, _g_star: Parameter, friction: Parameter, size: Array
 ) -> _Slipped:
     limit = friction * contact.normal_force
-    left = limit - size
-    if left.min() < 0:
-        raise InputError(
-            ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
-            "no equilibrium: the force exceeds friction_coefficient x normal_force",
-            left < 0,
-        )
-    return _within_limit(equivalent_1d.stick_from_force, contact, size, left, limit)
+    return _within_limit(equivalent_1d.stick_from_force, contact, size, limit, bounded=True)
 
 
 def _by_displacement(
     contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
 ) -> _Slipped:
     limit = friction * contact.e_star / g_star * contact.indentation_depth
-    left = limit - size
-    return _within_limit(equivalent_1d.stick_from_depth, contact, size, left, limit)
+    return _within_limit(equivalent_1d.stick_from_depth, contact, size, limit, bounded=False)
 
 
 def _within_limit(
-    inverse: _Inverse, contact: NormalContact, size: Array, left: Array, limit: Array
+    inverse: _Inverse, contact: NormalContact, size: Array, limit: Array, *, bounded: bool
 ) -> _Slipped:
-    """Stick edge and annulus under size = limit - left, both accurate; full slip if left <= 0."""
-    full_slip, excess = _NO_FULL_SLIP, _NO_EXCESS
+    """Stick edge and annulus; full slip from the limit on, which a bounded load does not exceed."""
+    left, full_slip, excess = limit - size, _NO_FULL_SLIP, _NO_EXCESS
     if left.min() <= 0:
+        if bounded and left.min() < 0:
+            raise InputError(
+                ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
+                "no equilibrium: the force exceeds friction_coefficient x normal_force",
+                left < 0,
+            )
         some = limit > 0
         # Without loads there is no slip; without a normal load any displacement is full slip.
         full_slip = where(some, left <= 0, size > 0)

@@ -105,8 +105,7 @@ class TangentialContact(Results):
         if profile.has_no_partial_slip:
             partial = self.limiting_force * self.width
         else:
-            factor = self.friction_coefficient * self.normal.e_star
-            partial = self._over_annulus(equivalent_1d.force_step, factor)
+            partial = self._over_annulus(equivalent_1d.force_step, 1.0)
         if self.full_slip.any():
             partial = where(self.full_slip, self.limiting_force, partial)
         return self._signed(partial)
@@ -119,18 +118,21 @@ class TangentialContact(Results):
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
             partial = self._largest_stick * self.width
         else:
-            partial = self._over_annulus(equivalent_1d.depth_step, self.displacement_ratio)
+            partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
         if self.full_slip.any():
             partial = where(self.full_slip, self._largest_stick, partial) + self.excess
         return self._signed(partial)
 
-    def _over_annulus(self, step: _Step, factor: Parameter) -> Array:
-        """Step of depth or force over the annulus, times a factor."""
+    def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
+        """Step of depth or force over the annulus, times mu E* over a divisor."""
 
-        def product(profile: Profile, factor: Array, *ends: Array) -> tuple[Array]:
-            return (factor * step(profile, *ends),)
+        def product(profile: Profile, *columns: Array) -> tuple[Array]:
+            mu, e_star, part, *ends = columns
+            # mu and G* are often single numbers beside an array E*.
+            return (mu / part * e_star * step(profile, *ends),)
 
-        values = factor, self._coordinate, self.width, self._stick
+        factor = self.friction_coefficient, self.normal.e_star, divisor
+        values = *factor, self._coordinate, self.width, self._stick
         (result,) = solve_cases(product, self.normal.profile, values)
         return result
 
