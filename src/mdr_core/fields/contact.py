@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel import Annulus, InnerEnd
+from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
 from mdr_core.fields.radii import EDGE_ROUNDING, Edges, grid_through
 from mdr_core.normal import NormalContact
@@ -219,7 +220,7 @@ def edges(contact: NormalContact | TangentialContact) -> Edges:
     condition = 1 + contact.load_rounding / normal.error_estimates
     error_c = c * (0.0 if exact else EDGE_ROUNDING * condition)
     parts = (a, c), (error, error_c), (scale, scale)
-    columns = [[np.broadcast_to(part, c.shape).ravel() for part in pair] for pair in parts]
+    columns = [[np.ravel(broadcast(part, c.shape)) for part in pair] for pair in parts]
     return Edges(*map(np.concatenate, columns))
 
 
@@ -285,7 +286,7 @@ def slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
 
 def _by_load(shape: tuple[int, ...], *columns: Any) -> list[list[float]]:
     """Values of each column under every load."""
-    return [np.broadcast_to(column, shape).ravel().tolist() for column in columns]
+    return [np.ravel(broadcast(column, shape)).tolist() for column in columns]
 
 
 def _annulus(

@@ -6,6 +6,7 @@ import numpy as np
 
 from mdr_core import fields
 from mdr_core import normal as normal_contact
+from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
@@ -15,6 +16,7 @@ from mdr_service.queries.contacts import solve_normal, solve_tangential
 from mdr_service.queries.load_paths import require_few_samples, solve_points
 from mdr_service.results import (
     Contact,
+    Flags,
     Result,
     checked,
     notices,
@@ -66,11 +68,13 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     radius = np.array(query.radius or fields.grid(partial or contact, query.points))
     values: Result = {}
     for name in query.quantities:
-        rows = np.broadcast_to(field(name, end, radius, query.rtol), (query.loads, radius.size))
+        rows = broadcast(field(name, end, radius, query.rtol), (query.loads, radius.size))
         values[name] = np.ascontiguousarray(rows)
-    edges = np.ravel(contact.contact_radius)
-    at_singular = np.isin(radius, [0.0, *map(float, contact.profile.breaks), *edges])
-    infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
+    infinite: dict[str, Flags] = {}
+    if not all(np.isfinite(rows).all() for rows in values.values()):
+        edges = np.ravel(contact.contact_radius)
+        at_singular = np.isin(radius, [0.0, *map(float, contact.profile.breaks), *edges])
+        infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(source, contact, query.quantities)
     integrated = 0.0 if method == "closed_form" else query.rtol
     names = set(query.quantities)
