@@ -7,7 +7,7 @@ import { MATERIALS } from "./materials.js";
 import { showForPrint } from "./printing.js";
 import { bodyFields, loadFields, QUESTIONS } from "./questions.js";
 import { ask, askCsv, download, newestWins, Refusal, source } from "./requests.js";
-import { defaultScene, fromAddress, TABS, toAddress, withKind } from "./scene.js";
+import { defaultScene, fromAddress, pathPoints, TABS, toAddress, withKind } from "./scene.js";
 import { DEFAULT_FIELDS, LABELS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
 import { BASE_UNITS, format, unit } from "./units.js";
@@ -46,7 +46,7 @@ function keepLoad(key, value) {
 }
 
 function rescaled(column, largest) {
-  const points = scene.path.split(";").map((point) => point.split(",").map(Number));
+  const points = pathPoints(scene);
   const size = Math.max(...points.map((point) => Math.abs(point[column]))) || 1;
   for (const point of points) point[column] = Number(((point[column] / size) * largest).toPrecision(6));
   return points.map((point) => point.join(",")).join(";");
@@ -212,10 +212,10 @@ function showPath() {
   const editor = $("#editor");
   editor.hidden = scene.tab !== "cycle";
   if (editor.hidden) return;
-  const columns = scene.path.split(";").map((point) => point.split(",").map(Number));
-  const normal = Math.max(...columns.map(([n]) => n));
+  const points = pathPoints(scene);
+  const normal = Math.max(...points.map(([n]) => n));
   const force = scene.tangential === "tangential_force";
-  const tangential = force && scene.normal === "normal_force" ? scene.mu * normal : Math.max(...columns.map(([, t]) => Math.abs(t))) || 1e-7;
+  const tangential = force && scene.normal === "normal_force" ? scene.mu * normal : Math.max(...points.map(([, t]) => Math.abs(t))) || 1e-7;
   showEditor(editor, scene, { normal, tangential }, (path) => {
     scene = { ...scene, path };
     showPath();
