@@ -14,8 +14,7 @@ def declare(_parser: argparse.ArgumentParser) -> None:
 def run(_arguments: argparse.Namespace) -> int:
     """Print a table of the kinds and return the exit status."""
     rows = [("kind", "fields", "f(r)")]
-    for model in MODELS:
-        kind = model.model_json_schema()["properties"]["kind"]["const"]
+    for kind, model in MODELS.items():
         fields = ", ".join(name for name in model.model_fields if name != "kind")
         rows.append((kind, fields, KINDS[kind].formula))
     widths = [max(len(row[column]) for row in rows) for column in (0, 1)]

@@ -9,13 +9,14 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.staticfiles import StaticFiles
 
 from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, parameters, queries
 from mdr_service.settings import SETTINGS
-from mdr_service.transfers import Transfers
+from mdr_service.transfers import LONG, Transfers
 from mdr_service.workers import WorkerPool
 
 if TYPE_CHECKING:
@@ -67,8 +68,14 @@ def create_app() -> FastAPI:
     app.state.workers = WorkerPool(SETTINGS, app.state.transfers)
     middleware.install(app)
     openapi.extend(app)
-    app.mount("/docs/swagger", StaticFiles(packages=[("fastapi_swagger", "resources")]))
+    pages = {
+        "/docs/swagger": StaticFiles(packages=[("fastapi_swagger", "resources")]),
+        "/docs/page": StaticFiles(packages=[("mdr_service", "page")]),
+        "/explorer": explorer.FILES,
+    }
     if explorer.MANUAL.is_dir():
-        app.mount("/manual/", explorer.Manual(directory=explorer.MANUAL, html=True))
-    app.mount("/docs/page", StaticFiles(packages=[("mdr_service", "page")]))
+        pages["/manual/"] = explorer.Pages(directory=explorer.MANUAL, html=True)
+    for path, files in pages.items():
+        # Compresses in threads, so that the event loop stays free.
+        app.mount(path, GZipMiddleware(files, compresslevel=1, thread_minimum_size=LONG))
     return app

@@ -50,15 +50,15 @@ def _reference(model: str) -> dict[str, str]:
 
 
 def _describe_defaults(schema: dict[str, Any]) -> None:
-    """Move the defaults of optional members to their descriptions.
+    """Move the defaults of optional members to their descriptions; null is none, and not allowed.
 
     Generators of clients require a member with a default, because they take it for one of answers.
     """
     for part in schema.get("oneOf", ()):
         _describe_defaults(part)
     for member in schema.get("properties", {}).values():
-        if "default" in member:
-            default = member.pop("default")
+        default = member.pop("default", None)
+        if default is not None:
             shown = ", ".join(default) or "none" if isinstance(default, list) else default
             meaning, bracket, dimension = member["description"].rstrip(".").partition(" [")
             member["description"] = f"{meaning}; default {shown}{bracket}{dimension}"

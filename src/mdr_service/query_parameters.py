@@ -38,8 +38,8 @@ _WHOLE: Final = re.compile(r"\d{1,9}", re.ASCII)
 _SPACINGS: Final[Mapping[str, Any]] = {"linear": np.linspace, "log": np.geomspace}
 # Kinds of profile that consist of numbers.
 _KINDS: Final = tuple(
-    model.model_json_schema()["properties"]["kind"]["const"]
-    for model in MODELS
+    kind
+    for kind, model in MODELS.items()
     if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
 )
 
@@ -70,10 +70,6 @@ _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude"}
 _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 _Described = tuple[str, str, Any, str]
 """Name, field of the request, type and description of a parameter."""
-
-
-# Parameters of the response, to which a problem can point.
-_RESPONSE: Final = {"answers": "answers", "size": "size"}
 
 
 class Parameters(BaseModel):
@@ -161,6 +157,7 @@ class Parameters(BaseModel):
         """Return the parameter that stands for a place in the request.
 
         For a group it is the first one that is given, or could be; in a range the end at fault.
+        Parameters of the response keep their names.
         """
         inside = [
             name
@@ -171,7 +168,7 @@ class Parameters(BaseModel):
         index = place.rpartition(".")[2]
         after_first = index.isdecimal() and index != "0"
         at_end = after_first and given[:1] and given[0].endswith("_from")
-        return given[1] if at_end else next(iter(given or inside), "")
+        return given[1] if at_end else next(iter(given or inside), place)
 
 
 def _described(model: type[contacts.Query]) -> Iterator[_Described]:
@@ -226,7 +223,7 @@ def _parameters(model: type[contacts.Query]) -> type[Parameters]:
     }
     title = model.__name__.replace("Query", "Parameters")
     made = create_model(title, __base__=Parameters, **definitions)
-    made.model, made.fields = model, {name: field for name, field, *_ in described} | _RESPONSE
+    made.model, made.fields = model, {name: field for name, field, *_ in described}
     return made
 
 

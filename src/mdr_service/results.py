@@ -81,18 +81,10 @@ def _finite(values: list[Any] | Array) -> bool:
     return values.dtype.kind != "f" or bool(np.isfinite(values).all())
 
 
-def about(source: Contact | Wear, warnings: Iterable[Notice]) -> Result:
+def about(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Result:
     """Return the method, the error estimate and the warnings of a response."""
-    return {
-        "method": source.method,
-        "error_estimate": source.error_estimate,
-        "warnings": written(warnings),
-    }
-
-
-def written(warnings: Iterable[Notice]) -> list[dict[str, str]]:
-    """Return the warnings as the response holds them."""
-    return [{"code": notice.code, "message": notice.message} for notice in warnings]
+    listed = [vars(notice) for notice in warnings]
+    return {"method": method, "error_estimate": error_estimate, "warnings": listed}
 
 
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:

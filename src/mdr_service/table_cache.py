@@ -1,7 +1,6 @@
 """Cache of resolved tables, for repeated queries about one table."""
 
 from collections import OrderedDict
-from hashlib import blake2b
 from typing import Final
 
 import numpy as np
@@ -12,7 +11,7 @@ from mdr_service.settings import SETTINGS
 
 
 class TableCache:
-    """Resolved tables by the digest of their points, up to `max_bytes`.
+    """Resolved tables by their points, up to `max_bytes`.
 
     The least recently used table is dropped first. Resolving a table of 200 points takes several
     times as long as the contact itself.
@@ -20,24 +19,21 @@ class TableCache:
 
     def __init__(self, max_bytes: int) -> None:
         self._max_bytes = max_bytes
-        self._tables: OrderedDict[bytes, Tabulated] = OrderedDict()
+        self._tables: OrderedDict[tuple[str | bytes, ...], Tabulated] = OrderedDict()
         self.size = 0
         """Memory of the tables [bytes]."""
 
     def resolved(self, model: TabulatedProfile) -> Tabulated:
         """Return the profile through the points of a table."""
         points = [np.array(each, dtype=float) for each in (model.r, model.f, model.breaks)]
-        key = blake2b(repr((model.interpolation, *(each.size for each in points))).encode())
-        for each in points:
-            key.update(each.tobytes())
-        digest = key.digest()
-        if digest in self._tables:
-            self._tables.move_to_end(digest)
-            return self._tables[digest]
+        key = (model.interpolation, *(each.tobytes() for each in points))
+        if key in self._tables:
+            self._tables.move_to_end(key)
+            return self._tables[key]
         r, f, breaks = points
         table = Tabulated(r, f, model.interpolation, tuple(breaks.tolist()))
         if table.nbytes <= self._max_bytes:
-            self._tables[digest] = table
+            self._tables[key] = table
             self.size += table.nbytes
         while self.size > self._max_bytes:
             self.size -= self._tables.popitem(last=False)[1].nbytes

@@ -138,6 +138,18 @@ def test_health_and_explorer_endpoints(client: Client) -> None:
     assert root.headers["content-type"].startswith("text/html")
 
 
+def test_page_files_are_compressed_and_revalidated(client: Client) -> None:
+    first = client.request("GET", "/explorer/plotly.min.js", headers={"Accept-Encoding": "gzip"})
+    assert first.headers["content-encoding"] == "gzip"
+    assert "default-src 'self'" in first.headers["content-security-policy"]
+    again = {"If-None-Match": first.headers["etag"]}
+    assert client.request("GET", "/explorer/plotly.min.js", headers=again).status_code == 304
+    plain = client.request("GET", "/explorer/plotly.min.js", headers={"Accept-Encoding": ""})
+    assert "content-encoding" not in plain.headers
+    assert plain.content == first.content
+    assert client.get("/explorer/missing.js").status_code == 404
+
+
 def test_numbers_keep_all_their_digits(client: Client) -> None:
     load = 0.1 + 0.2
     text = client.post("/v1/normal", query("cone", normal_force=load)).content

@@ -27,7 +27,7 @@ def _catalogue() -> Catalogue:
         profiles=[
             ProfileKind(
                 kind=kind,
-                formula=known.formula,
+                formula=profiles.KINDS[kind].formula,
                 fields=[
                     ProfileField(
                         name=name,
@@ -38,9 +38,9 @@ def _catalogue() -> Catalogue:
                     for name, field in model.model_fields.items()
                     if isinstance(extra := field.json_schema_extra, dict)
                 ],
-                closed_forms=list(known.closed_forms),
+                closed_forms=list(profiles.KINDS[kind].closed_forms),
             )
-            for (kind, known), model in zip(profiles.KINDS.items(), MODELS, strict=True)
+            for kind, model in MODELS.items()
         ]
     )
 

@@ -3,6 +3,7 @@
 from typing import Any, Final, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdr_core import fields
 from mdr_core.history import LoadHistory
@@ -25,7 +26,7 @@ from mdr_service.plots.plot import (
 )
 from mdr_service.queries.fields import at_end, field, solve_stress
 from mdr_service.queries.wear import evolution_grid, solve_wear
-from mdr_service.results import Contact, Result, unworn
+from mdr_service.results import Contact, Result, Wear, unworn
 from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
@@ -70,20 +71,15 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
     """Return the initial and the limiting profile over the radius, and other requested fields."""
     shown = limit if query.loads <= MOST_CURVES else solve_wear(_first_loads(query))
     loads = min(query.loads, MOST_CURVES)
-    profile = unworn(shown).normal.profile
-    requested = result.get("radius", NOTHING)
-    radius = _to_last(shown.grid(POINTS + 3 * loads + len(profile.breaks)), requested)
+    breaks = len(unworn(shown).normal.profile.breaks)
+    radius = _to_last(shown.grid(POINTS + 3 * loads + breaks), result)
     bounded = np.isfinite(np.ravel(shown.wear_radius))
     names = [
         (name or "limiting") + ("" if ends else ": unbounded")
         for name, ends in zip(_load_names(query), bounded, strict=True)
     ]
-    panels = []
-    for name in ("limiting_profile", *(n for n in ("worn_depth", "pressure") if n in result)):
-        dense = np.atleast_2d(getattr(shown, name)(radius))
-        panels.append(_panel(name, radius, dense, names, requested, result.get(name)))
-    initial = Curve(radius, shown.initial_profile(radius), "initial", style="--")
-    panels[0] = panels[0]._replace(curves=[*panels[0].curves, initial])
+    drawn = ["limiting_profile", *(name for name in ("worn_depth", "pressure") if name in result)]
+    panels = _worn_panels(drawn, shown, np.arange(loads), radius, names, result)
     marks = [
         mark for index in np.flatnonzero(bounded).tolist() for mark in _wear_marks(shown, index)
     ]
@@ -96,19 +92,33 @@ def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Pl
     size = worn.cycles.size
     shown = np.unique(np.linspace(0, size - 1, min(size, MOST_CURVES)).round().astype(int))
     names = [f"N = {worn.cycles[index]:.4g}" for index in shown]
-    profile = unworn(worn).normal.profile
-    requested = result.get("radius", NOTHING)
-    radius = _to_last(evolution_grid(worn, POINTS + len(profile.breaks)), requested)
-    panels = []
-    for name in ("profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])):
-        dense = getattr(worn, name)(radius)[shown]
-        points = result[name][shown] if name in result else None
-        panels.append(_panel(name, radius, dense, names, requested, points))
-    initial = Curve(radius, profile.f(radius), "initial", style="--")
-    panels[0] = panels[0]._replace(curves=[*panels[0].curves, initial])
+    breaks = len(unworn(worn).normal.profile.breaks)
+    radius = _to_last(evolution_grid(worn, POINTS + breaks), result)
+    drawn = ["profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])]
+    panels = _worn_panels(drawn, worn, shown, radius, names, result)
     marks = [Mark(float(worn.stick_radius[-1]), "c"), Mark(float(worn.contact_radius[-1]), "a")]
     note = some(shown.size, size, "numbers of cycles")
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
+
+
+def _worn_panels(
+    drawn: list[str],
+    worn: Wear,
+    rows: NDArray[np.intp],
+    radius: Array,
+    names: list[str],
+    result: Result,
+) -> list[Panel]:
+    """Return panels of fields of a worn contact; the first, its profile, shows the initial one."""
+    panels = []
+    for name in drawn:
+        dense = np.atleast_2d(getattr(worn, name)(radius))[rows]
+        values = result[name][rows] if name in result else None
+        requested = result.get("radius", NOTHING)
+        panels.append(_panel(name, radius, dense, names, requested, values))
+    initial = Curve(radius, unworn(worn).normal.profile.f(radius), "initial", style="--")
+    panels[0] = panels[0]._replace(curves=[*panels[0].curves, initial])
+    return panels
 
 
 def _panel(
@@ -146,8 +156,9 @@ def _ends(radius: Array) -> tuple[float, float]:
     return float(radius[0]), float(radius[-1])
 
 
-def _to_last(grid: Array, requested: Array) -> Array:
+def _to_last(grid: Array, result: Result) -> Array:
     """Return the grid, extended to the largest requested radius."""
+    requested = result.get("radius", NOTHING)
     return np.unique([*grid, *_evenly(0.0, float(max(grid[-1], *requested, 0.0)))])
 
 

@@ -1,6 +1,5 @@
 """Queries about contacts: profile, material and load -> contact of the core -> result."""
 
-from collections.abc import Iterable
 from typing import Any, Final
 
 import numpy as np
@@ -8,7 +7,7 @@ import numpy as np
 from mdr_core import normal as normal_contact
 from mdr_core import profiles
 from mdr_core import tangential as tangential_contact
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service.results import Result, about, by_load, checked, members, notices
@@ -88,9 +87,7 @@ def _result(
     query: NormalQuery, source: NormalContact | TangentialContact, values: Result
 ) -> Result:
     warnings = notices(query, source)
-    infinite = dict.fromkeys(("mean_pressure", "maximum_pressure"), _is_singular(warnings))
-    return checked(query, values, infinite) | about(source, warnings)
-
-
-def _is_singular(warnings: Iterable[Notice]) -> bool:
-    return any(notice.code == "singular" for notice in warnings)
+    singular = any(notice.code == "singular" for notice in warnings)
+    infinite = dict.fromkeys(("mean_pressure", "maximum_pressure"), singular)
+    found = checked(query, values, infinite)
+    return found | about(source.method, source.error_estimate, warnings)

@@ -18,11 +18,11 @@ from mdr_service.results import (
     Contact,
     Flags,
     Result,
+    about,
     checked,
     notices,
     singular,
     without_singular,
-    written,
 )
 from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, StressQuery
 from mdr_service.settings import SETTINGS
@@ -88,15 +88,9 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     warnings = without_singular(notices(query, source)) + singular(radius, values, infinite)
     if source.error_estimate <= query.rtol < at_edges:
         warnings.append(normal_contact.not_reached(query.rtol))
-    return (
-        {"radius": radius}
-        | checked(query, values, infinite)
-        | {
-            "method": method,
-            "error_estimate": max(source.error_estimate, integrated) + at_edges,
-            "warnings": written(warnings),
-        }
-    )
+    error = max(source.error_estimate, integrated) + at_edges
+    found = {"radius": radius} | checked(query, values, infinite)
+    return found | about(method, error, warnings)
 
 
 def field(name: str, end: End, radius: Array, rtol: float) -> Array:

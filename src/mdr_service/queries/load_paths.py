@@ -74,11 +74,12 @@ def solve_points(query: HistoryQuery | LoadedQuery) -> LoadHistory:
 
 def history_result(query: HistoryQuery, path: SolvedPath) -> Result:
     """Return forces, displacements and energies at the samples of a load history."""
-    values = {name: np.asarray(getattr(path.history, name)) for name in _HISTORY}
+    history = path.history
+    values = {name: np.asarray(getattr(history, name)) for name in _HISTORY}
     if path.cycles:
         values |= {name: np.asarray(getattr(path.cycles, name)) for name in _CYCLES}
-    warnings = without_singular(notices(query, path.history))
-    return checked(query, values) | about(path.history, warnings)
+    warnings = without_singular(notices(query, history))
+    return checked(query, values) | about(history.method, history.error_estimate, warnings)
 
 
 def require_few_samples(name: str, path: LoadPath) -> None:

@@ -11,7 +11,7 @@ from mdr_core.normal import not_reached
 from mdr_core.subsurface import StressTensor
 from mdr_core.typing import Array
 from mdr_service.queries.fields import at_end, require_loads, solve_loaded
-from mdr_service.results import Contact, Result, checked, notices, without_singular, written
+from mdr_service.results import Contact, Result, about, checked, notices, without_singular
 from mdr_service.schemas.contacts import Bodies, BodyMaterial
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS
@@ -80,12 +80,9 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         more["yield_onset_force"] = _by_load(onset)
     if more:
         more["search_error_estimate"] = _OF_SEARCH
-    about = {
-        "method": "closed_form" if contact.profile.has_no_partial_slip else "quadrature",
-        "error_estimate": error,
-        "warnings": written(warnings),
-    }
-    return {"x": x, "z": z} | checked(query, values, dict.fromkeys(values, infinite)) | more | about
+    method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
+    found = {"x": x, "z": z} | checked(query, values, dict.fromkeys(values, infinite)) | more
+    return found | about(method, error, warnings)
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:

@@ -124,7 +124,7 @@ def _result(
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
         infinite[name] = flags | infinite.get(name, False)
-    return checked(query, values, infinite) | about(worn, warnings)
+    return checked(query, values, infinite) | about(worn.method, worn.error_estimate, warnings)
 
 
 def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:

@@ -1,11 +1,11 @@
 """Responses: the members that queries compute, in this order, and OpenAPI documents."""
 
 from functools import partial
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from mdr_service.schemas.quantities import drop_null_defaults, left_out, quantity
+from mdr_service.schemas.quantities import left_out, quantity
 
 _number = partial(quantity, "1")
 _length = partial(quantity, "length")
@@ -17,6 +17,10 @@ _volume = partial(quantity, "length^3")
 
 _Field = list[list[float | None]]
 _Map = list[list[list[float | None]]]
+_Regime = Annotated[
+    list[Literal["stick", "partial_slip", "full_slip"]],
+    Field(description="Slip regime: `stick`, `partial_slip` or `full_slip`."),
+]
 _NULL = "null where infinite, with a warning `singular`"
 _UNBOUNDED = "null if wear is unbounded"
 
@@ -24,9 +28,7 @@ _UNBOUNDED = "null if wear is unbounded"
 class Answer(BaseModel):
     """Part of a response; tests validate every response with it."""
 
-    model_config = ConfigDict(
-        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra=drop_null_defaults
-    )
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 
 class AnswerWarning(Answer):
@@ -91,9 +93,7 @@ class TangentialAnswer(NormalAnswer):
         "Tangential stiffness dF_x/du_x = 2 G* c on further loading"
     )
     dissipated_energy: list[float] = _energy("Energy dissipated by slip in tangential loading")
-    regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
-        description="Slip regime: `stick`, `partial_slip` or `full_slip`."
-    )
+    regime: _Regime
 
 
 class StressAnswer(Known):
@@ -190,9 +190,7 @@ class WearAnswer(Known):
     )
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
     worn_volume: list[float | None] = _volume(f"Worn volume V; {_UNBOUNDED}")
-    regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
-        description="Slip regime: `stick`, `partial_slip` or `full_slip`."
-    )
+    regime: _Regime
     radius: list[float] = _length("Radii r, requested or chosen", default=None)
     initial_profile: list[float | None] = _length(
         f"Initial profile f₀(r) by radius, the same for all loads; {_NULL}, outside a flat punch",

@@ -17,7 +17,7 @@ from mdr_service.schemas.answers import (
     WearAnswer,
 )
 from mdr_service.schemas.contacts import Query
-from mdr_service.schemas.quantities import Strict, drop_null_defaults, left_out
+from mdr_service.schemas.quantities import Strict, left_out
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.settings import SETTINGS
 
@@ -53,7 +53,7 @@ class BatchQuery(Strict):
     )
 
 
-class BatchItemAnswer(Answer, json_schema_extra=drop_null_defaults):
+class BatchItemAnswer(Answer):
     """Response to one query: its answer or its problem."""
 
     status: int = Field(description="HTTP status that the query has at its own endpoint.")

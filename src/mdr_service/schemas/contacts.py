@@ -13,7 +13,6 @@ from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
-    drop_null_defaults,
     positive,
     quantity,
 )
@@ -21,9 +20,8 @@ from mdr_service.schemas.quantities import (
 
 def _describe_choice(schema: dict[str, Any]) -> None:
     """Describe the controls as objects of which one is given, each complete with its fields."""
-    drop_null_defaults(schema)
     fields = schema.pop("properties")
-    optional = {name: field for name, field in fields.items() if "default" in field}
+    optional = {name: field for name, field in fields.items() if field.get("default") is not None}
     schema["oneOf"] = [
         {
             "title": schema["title"] + "By" + name.title().replace("_", ""),

@@ -9,7 +9,6 @@ from mdr_service.schemas.contacts import Choice, Load, Query, Tangential, fricti
 from mdr_service.schemas.load_paths import History, LoadPath
 from mdr_service.schemas.quantities import (
     Size,
-    drop_null_defaults,
     left_out,
     one_of,
     quantity,
@@ -117,13 +116,13 @@ NEEDED: Final = {
 """Members of a `LoadedQuery` that need others, as `dependentRequired`."""
 
 
-def _describe_stress(schema: dict[str, Any]) -> None:
-    drop_null_defaults(schema)
-    schema["allOf"] = [one_of("radius", "points"), one_of("load", "history")]
-    schema["dependentRequired"] = NEEDED
+_STRESS: Final[dict[str, Any]] = {
+    "allOf": [one_of("radius", "points"), one_of("load", "history")],
+    "dependentRequired": NEEDED,
+}
 
 
-class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_describe_stress):
+class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_STRESS):
     """Fields of a contact over the radius, with or without friction."""
 
     quantities: Annotated[list[FieldName], OnceEach] = quantities(

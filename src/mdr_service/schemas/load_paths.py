@@ -11,7 +11,6 @@ from mdr_service.schemas.quantities import (
     SignedScalarOrArray,
     Size,
     Strict,
-    drop_null_defaults,
     left_out,
     one_of,
     positive,
@@ -143,12 +142,7 @@ class Cycles(LoadPath):
         return 2 + 2 * self.count
 
 
-def _describe_history(schema: dict[str, Any]) -> None:
-    drop_null_defaults(schema)
-    schema["allOf"] = [one_of("history", "cycles")]
-
-
-class HistoryQuery(Query, json_schema_extra=_describe_history):
+class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles")]}):
     """Contact with friction on a load path."""
 
     friction_coefficient: float = friction()

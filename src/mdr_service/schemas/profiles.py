@@ -1,6 +1,7 @@
 """Profiles by ``kind``; fields have the names of the parameters of the core."""
 
-from typing import Annotated, Literal, get_args
+from collections.abc import Mapping
+from typing import Annotated, Final, Literal, get_args
 
 from pydantic import Field
 
@@ -183,4 +184,8 @@ Profile = Annotated[
     Field(discriminator="kind", description="The shape of the indenter, f(r), by its kind."),
 ]
 
-MODELS: tuple[type[Strict], ...] = get_args(get_args(Profile)[0])
+MODELS: Final[Mapping[str, type[Strict]]] = {
+    get_args(model.model_fields["kind"].annotation)[0]: model
+    for model in get_args(get_args(Profile)[0])
+}
+"""Models by kind."""

@@ -13,19 +13,10 @@ LARGEST: Final = 1e50
 """Largest magnitude of a number."""
 
 
-def drop_null_defaults(schema: dict[str, Any]) -> None:
-    """Remove ``default: null`` from a schema: optional fields may be absent, but not null."""
-    for field in schema.get("properties", {}).values():
-        if "default" in field and field["default"] is None:
-            del field["default"]
-
-
 class Strict(BaseModel):
     """Part of a request: no value is converted, no unknown field is ignored."""
 
-    model_config = ConfigDict(
-        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra=drop_null_defaults
-    )
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
     def has(self, name: str) -> bool:
         """Return True if a field is given."""

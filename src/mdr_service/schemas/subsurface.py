@@ -1,11 +1,11 @@
 """Requests about stresses beneath the surface."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field
 
 from mdr_service.schemas.fields import NEEDED, LoadedQuery, OnceEach
-from mdr_service.schemas.quantities import Signed, Size, drop_null_defaults, one_of, quantity
+from mdr_service.schemas.quantities import Signed, Size, one_of, quantity
 from mdr_service.settings import SETTINGS
 
 SubsurfaceName = Literal[
@@ -24,16 +24,16 @@ SubsurfaceName = Literal[
 ]
 
 
-def _describe(schema: dict[str, Any]) -> None:
-    drop_null_defaults(schema)
-    schema["allOf"] = [
+_SCHEMA: Final[dict[str, Any]] = {
+    "allOf": [
         one_of("load", "history"),
         {"oneOf": [{"required": ["x", "z"]}, {"required": ["points"]}]},
-    ]
-    schema["dependentRequired"] = {"x": ["z"], "z": ["x"], **NEEDED}
+    ],
+    "dependentRequired": {"x": ["z"], "z": ["x"], **NEEDED},
+}
 
 
-class SubsurfaceQuery(LoadedQuery, json_schema_extra=_describe):
+class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
     """Stresses in one of the bodies, with or without friction."""
 
     body: Literal[1, 2] = Field(
