@@ -64,7 +64,7 @@ class Panel(NamedTuple):
     """Axes with curves, y limits where they cut a peak, and horizontal marks."""
 
     y_label: str
-    curves: Sequence[Curve]
+    curves: list[Curve]
     y_limits: tuple[float, float] | None = None
     marks: Sequence[Mark] = ()
 

@@ -1,9 +1,9 @@
 """Fields and worn profiles over the radius."""
 
+from collections.abc import Iterable, Mapping
 from typing import Any, Final, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mdr_core import fields
 from mdr_core.history import LoadHistory
@@ -52,17 +52,18 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
         else (requested.min(), requested.max())
     )
     radius = np.unique([*grid[(grid >= window[0]) & (grid <= window[1])], *_evenly(*window)])
-    panels = []
-    for name in query.quantities:
-        dense = field(name, end, radius, VISIBLE)
-        dense = np.broadcast_to(dense, (min(query.loads, MOST_CURVES), radius.size))
-        panels.append(_panel(name, radius, dense, _load_names(query), requested, result[name]))
+    loads = min(query.loads, MOST_CURVES)
+    dense = {
+        name: np.broadcast_to(field(name, end, radius, VISIBLE), (loads, radius.size))
+        for name in query.quantities
+    }
+    panels = _panels(radius, dense, _load_names(query), result, range(loads))
     marks = [Mark(b, "b") for b in breaks[:MOST_CURVES]] + _edge_marks(edges, "a")
     if query.has("history"):
         marks += [Mark(front, "c") for front in fronts.tolist() if fronts.size <= MOST_CURVES]
     else:
         marks += _edge_marks(fronts, "c")
-    note = some(min(query.loads, MOST_CURVES), query.loads, "loads")
+    note = some(loads, query.loads, "loads")
     marks = [mark for mark in marks if mark.place > 0]
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
@@ -79,7 +80,9 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
         for name, ends in zip(_load_names(query), bounded, strict=True)
     ]
     drawn = ["limiting_profile", *(name for name in ("worn_depth", "pressure") if name in result)]
-    panels = _worn_panels(drawn, shown, np.arange(loads), radius, names, result)
+    dense = {name: np.atleast_2d(getattr(shown, name)(radius)) for name in drawn}
+    panels = _panels(radius, dense, names, result, range(loads))
+    panels[0].curves.append(_initial(shown, radius))
     marks = [
         mark for index in np.flatnonzero(bounded).tolist() for mark in _wear_marks(shown, index)
     ]
@@ -95,44 +98,38 @@ def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Pl
     breaks = len(unworn(worn).normal.profile.breaks)
     radius = _to_last(evolution_grid(worn, POINTS + breaks), result)
     drawn = ["profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])]
-    panels = _worn_panels(drawn, worn, shown, radius, names, result)
+    dense = {name: getattr(worn, name)(radius) for name in drawn}
+    panels = _panels(radius, dense, names, result, shown)
+    panels[0].curves.append(_initial(worn, radius))
     marks = [Mark(float(worn.stick_radius[-1]), "c"), Mark(float(worn.contact_radius[-1]), "a")]
     note = some(shown.size, size, "numbers of cycles")
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
 
-def _worn_panels(
-    drawn: list[str],
-    worn: Wear,
-    rows: NDArray[np.intp],
+def _panels(
     radius: Array,
-    names: list[str],
+    dense: Mapping[Any, Array],
+    labels: list[str],
     result: Result,
+    rows: Iterable[int],
 ) -> list[Panel]:
-    """Return panels of fields of a worn contact; the first, its profile, shows the initial one."""
+    """Return a panel for each of the dense fields, with a curve for each of the labelled rows.
+
+    The requested values of the same field in `result` are points on it.
+    """
+    order = np.argsort(result.get("radius", NOTHING))
     panels = []
-    for name in drawn:
-        dense = np.atleast_2d(getattr(worn, name)(radius))[rows]
-        values = result[name][rows] if name in result else None
-        requested = result.get("radius", NOTHING)
-        panels.append(_panel(name, radius, dense, names, requested, values))
-    initial = Curve(radius, unworn(worn).normal.profile.f(radius), "initial", style="--")
-    panels[0] = panels[0]._replace(curves=[*panels[0].curves, initial])
+    for name, values in dense.items():
+        curves = []
+        for row, label in zip(rows, labels, strict=True):
+            points = (result["radius"][order], result[name][row][order]) if name in result else ()
+            curves.append(Curve(radius, values[row], label, *points))
+        panels.append(Panel(LABELS[name], curves, _limits(curves) if name in _CUT else None))
     return panels
 
 
-def _panel(
-    name: str, radius: Array, dense: Array, names: list[str], requested: Array, values: Array | None
-) -> Panel:
-    """Return the panel of a field, with a curve for each row and its requested values."""
-    points: Any = [(NOTHING, NOTHING)] * len(dense)
-    if values is not None:
-        order = np.argsort(requested)
-        points = [(requested[order], row[order]) for row in values[: len(dense)]]
-    curves = [
-        Curve(radius, row, label, *at) for row, label, at in zip(dense, names, points, strict=True)
-    ]
-    return Panel(LABELS[name], curves, _limits(curves) if name in _CUT else None)
+def _initial(worn: Wear, radius: Array) -> Curve:
+    return Curve(radius, unworn(worn).normal.profile.f(radius), "initial", style="--")
 
 
 def _limits(curves: list[Curve]) -> tuple[float, float]:

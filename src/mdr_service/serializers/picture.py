@@ -1,7 +1,7 @@
 """Pictures: a plot drawn by Matplotlib, as SVG, PNG or PDF."""
 
 import io
-from itertools import groupby
+from collections.abc import Iterable
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Final
 
@@ -166,22 +166,19 @@ def _mark_infinities(axes: "Axes", curve: Curve) -> None:
         _annotate(axes, "∞", place, ("data", "axes fraction"), offset)
 
 
-def _label(axes: "Axes", marks: Any) -> None:
+def _label(axes: "Axes", marks: Iterable[Mark]) -> None:
     """Write the symbols of vertical marks above the axes, close ones together."""
     low, high = axes.get_xlim()
-    inside = sorted((mark.place, mark.symbol) for mark in marks if low <= mark.place <= high)
-    width = _CLOSE * (high - low)
-    start = [0.0]
-
-    def group(mark: tuple[float, str]) -> float:
-        if mark[0] - start[0] > width:
-            start[0] = mark[0]
-        return start[0]
-
-    for _, close in groupby(inside, group):
-        places, symbols = zip(*close, strict=True)
-        middle = (places[0] + places[-1]) / 2
-        text = ", ".join(dict.fromkeys(symbols))
+    inside = [mark for mark in marks if low <= mark.place <= high]
+    groups: list[list[Mark]] = []
+    for mark in sorted(inside, key=lambda mark: (mark.place, mark.symbol)):
+        if groups and mark.place - groups[-1][0].place <= _CLOSE * (high - low):
+            groups[-1].append(mark)
+        else:
+            groups.append([mark])
+    for close in groups:
+        middle = (close[0].place + close[-1].place) / 2
+        text = ", ".join(dict.fromkeys(mark.symbol for mark in close))
         _annotate(axes, text, (middle, 1.0), ("data", "axes fraction"), (0, 2))
 
 
