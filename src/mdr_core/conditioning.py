@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import full, number, where
+from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import force_slope, stick_from_force
 from mdr_core.inversion import Function
 from mdr_core.normal import NormalContact
@@ -54,7 +54,7 @@ def near_full_slip(
     edges : True to include c and a - c beside forces, displacements and energies.
     """
     late = partial & (ratio > _LATE)
-    if profile.has_no_partial_slip or not late.any():
+    if profile.has_no_partial_slip or not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
     load, slope = _load(profile, by_force=by_force)

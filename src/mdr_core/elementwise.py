@@ -26,6 +26,21 @@ def _number(value: Any) -> Any:
     return np.float64(value) if type(value) is float else value
 
 
+def some(flags: Any) -> bool:
+    """True if a flag is set; of a single one, in a hundredth of NumPy's time."""
+    return bool(flags.any() if isinstance(flags, np.ndarray) else flags)
+
+
+def every(flags: Any) -> bool:
+    """True if all flags are set; see `some`."""
+    return bool(flags.all() if isinstance(flags, np.ndarray) else flags)
+
+
+def least(values: Any) -> Any:
+    """Return the smallest value; see `some`."""
+    return values.min() if isinstance(values, np.ndarray) else values
+
+
 def where(condition: Any, this: Any, other: Any) -> Any:
     """Return `this` where the condition holds, else `other`."""
     if isinstance(condition, np.bool_ | bool):

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.breaks import break_below, has_many_breaks
-from mdr_core.elementwise import broadcast, full, is_number, number, where
+from mdr_core.elementwise import broadcast, every, full, is_number, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
@@ -34,9 +34,11 @@ _NODES: Final = 16
 _FEW: Final = 4096
 # Part of full slip up to which the width is the unknown; beyond it the stick edge is.
 _EARLY: Final = 0.05
+# Distance from a break, as a part of it, beyond which Newton's method converges as elsewhere.
+_NEAR_BREAK: Final = 0.01
 # Logarithms of the contact coordinate over the scale between which the curve of a kind is bent,
-# their spacing, for linear interpolation to 1e-4, and the ends of its straight tails.
-_CURVED, _SPACING, _FARTHEST = 14.0, 0.05, 150.0
+# their spacing, for linear interpolation to 2e-5, and the ends of its straight tails.
+_CURVED, _SPACING, _FARTHEST = 14.0, 0.02, 150.0
 
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
@@ -83,7 +85,7 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     ------
     InputError : the radius is beyond the end of the profile, or the profile is a flat punch.
     """
-    if not np.all(np.isinf(profile.domain)):
+    if not every(profile.domain == inf):
         _reject(contact_radius > profile.domain, profile, "contact_radius")
     coordinate = profile.coordinate_from_radius(contact_radius)
     levels = profile.coordinate_levels
@@ -156,7 +158,8 @@ def stick_from_force(
         return closed
     functions = profile.reduced_force, force_slope(profile)
     inverse = type(profile).coordinate_from_reduced_force
-    return _stick(profile, (coordinate, ratio, rest), functions, force_step, inverse)
+    load = coordinate, ratio, rest
+    return _stick(profile, load, "normal_force", functions, force_step, inverse)
 
 
 def stick_from_depth(
@@ -172,11 +175,12 @@ def stick_from_depth(
         return closed
     functions = profile.depth, profile.depth_slope
     inverse = type(profile).coordinate_from_depth
-    return _stick(profile, (coordinate, ratio, rest), functions, depth_step, inverse)
+    load = coordinate, ratio, rest
+    return _stick(profile, load, "indentation_depth", functions, depth_step, inverse)
 
 
 def _reject(outside: Flags, profile: Profile, name: str) -> None:
-    if outside.any():
+    if some(outside):
         domain = np.broadcast_to(profile.domain, outside.shape)[outside].flat[0]
         raise InputError(
             ("load", name, *first_index(outside)),
@@ -207,13 +211,21 @@ def _root(
         value = function(s)
         return value, s * slope(s) / value
 
-    smooth = not profile.coordinate_breaks.size
-    start = np.minimum(start, high)
-    return invert(sloped, target, start, low, high, profile.kind, smooth=smooth)
+    start = where(high < start, high, start)
+    return invert(sloped, target, start, low, high, profile.kind, smooth=_smooth(profile))
+
+
+def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
+    """Whether depth and force are smooth near a contact coordinate."""
+    breaks = profile.coordinate_breaks
+    if has_many_breaks(profile) or not breaks.size:
+        return not breaks.size
+    own = breaks if profile.swept else breaks[0]
+    return lambda s: abs(s - own) > _NEAR_BREAK * own
 
 
 def _start(profile: Profile, name: str, function: Function, target: Array) -> Array:
-    """First approximation of the contact coordinate: good to 1e-4 where one curve serves a kind."""
+    """First approximation of the contact coordinate: good to 2e-5 where one curve serves a kind."""
     scale = profile.scale
     if not profile.similar:
         return broadcast(scale, np.broadcast_shapes(target.shape, np.shape(scale)))
@@ -234,6 +246,7 @@ def _curve(kind: type[Profile], name: str) -> tuple[Array, Array]:
 def _stick(
     profile: Profile,
     load: tuple[Array, Array, Array],
+    name: str,
     functions: tuple[Function, Function],
     step: Callable[[Profile, Array, Array, Array], Array],
     inverse: Callable[[Profile, Array], Array | None],
@@ -252,14 +265,18 @@ def _stick(
     with np.errstate(divide="ignore", invalid="ignore"):
         first = slope(coordinate)
         late = coordinate
-        if not early.all():
+        if not every(early):
             goal = where(early, 0.0, rest * total)
-            # Else from the power that rises as the function does at the edge.
-            start = coordinate * raised(rest, total / (coordinate * first))
             closed = inverse(profile, goal)
-            start = where(start > 0, start, coordinate)
-            late = _root(profile, functions, goal, start) if closed is None else closed
-        if not early.any():
+            if closed is not None:
+                late = closed
+            elif profile.similar:
+                late = _root(profile, functions, goal, _start(profile, name, function, goal))
+            else:
+                # From the power that rises as the function does at the edge.
+                start = coordinate * raised(rest, total / (coordinate * first))
+                late = _root(profile, functions, goal, where(start > 0, start, coordinate))
+        if not some(early):
             return late, coordinate - late
         target = where(early, ratio * total, 0.0)
         reach = coordinate - profile.first_coordinate
@@ -292,13 +309,13 @@ def _step(
     below, before = break_below(profile, high)
     limit = (high - before) / 2 if has_many_breaks(profile) else _NARROW * high
     narrow = width <= limit
-    if narrow.all():
+    if every(narrow):
         return _narrow_step(slope, high, width, below)
-    if not narrow.any():
-        return function(high) - function(np.maximum(low, 0.0))
+    if not some(narrow):
+        return function(high) - function(where(low < 0, 0.0, low))
     if profile.swept:
         # The functions use the parameters of all cases, so that no case can be left out.
-        wide = function(high) - function(np.maximum(low, 0.0))
+        wide = function(high) - function(where(low < 0, 0.0, low))
         part = _narrow_step(slope, high, where(narrow, width, 0.0), below)
         return where(narrow, part, wide)
     result = np.zeros(narrow.shape)
@@ -326,7 +343,7 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
         at = np.minimum(below + past, high)
         total = half * in_order(weights, 2 * v * slope(at, below, past))
     outer = width - inner
-    if np.any(outer > 0):
+    if some(outer > 0):
         s = low + np.multiply.outer(1 + nodes, outer / 2)
         values = np.where(outer > 0, slope(s, s, np.zeros_like(s)), 0.0)
         total = total + outer / 2 * in_order(weights, values)

@@ -1,13 +1,14 @@
 """Inverse of an increasing function, accurate relative to its value at every scale."""
 
 from collections.abc import Callable
+from math import inf
 from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import where
+from mdr_core.elementwise import every, some, where
 from mdr_core.errors import DefectError
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 
 Function = Callable[[Array], Array]
 # A function and the derivative of its logarithm by that of its argument.
@@ -43,7 +44,7 @@ def invert(
     high: Array,
     name: str,
     *,
-    smooth: bool = False,
+    smooth: bool | Callable[[Array], Flags] = False,
 ) -> Array:
     """Return s with function(s) = target for an increasing function.
 
@@ -58,7 +59,8 @@ def invert(
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
     name : name of the function, for the error message.
-    smooth : True if the function has no kink, so that a short step is the last one.
+    smooth : True where the function has no kink nearby, so that a short step is the last one; a
+        function of the place if it has kinks elsewhere.
 
     Returns
     -------
@@ -73,36 +75,41 @@ def invert(
     goal = where(positive, target, 1.0)
     s, root_at_zero = start, low
     done = ~positive
-    settling, longest = ~(done | positive), _LAST_STEP if smooth else _LAST_BUT_ONE
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+    settling = done & positive
+    with np.errstate(all="ignore"):
         for _ in range(_MOST_STEPS):
             value, slope = function(s)
+            regular = smooth(s) if callable(smooth) else smooth
             residual = np.log(goal / value)
             # Without a finite slope, as at a kink, the residual gives the direction alone.
-            known = (slope > 0) & (slope < np.inf)
+            known = (slope > 0) & (slope < inf)
             step = where(known, residual / slope, residual)
-            size = np.abs(step)
-            proposed = s * np.exp(np.copysign(np.minimum(size, _LONGEST_STEP), step))
+            size = abs(step)
+            # A short step alone may only mean that the function is steep here.
+            longest = where(known, where(regular, _LAST_STEP, _LAST_BUT_ONE), _SMALLEST_STEP)
+            short = (abs(residual) <= _CLOSE) & (size <= longest)
+            converged = short & known & (regular | (size <= _SMALLEST_STEP))
+            proposed = s * np.exp(where(size < _LONGEST_STEP, step, np.sign(step) * _LONGEST_STEP))
+            if every(done | converged):
+                s, done = where(done, s, proposed), done | converged
+                break
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
-            # A short step alone may only mean that the function is steep here.
-            close = np.abs(residual) <= _CLOSE
-            short = close & (size <= where(known, longest, _SMALLEST_STEP))
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
             # On a level of a rough table the residual would creep.
             usable = ((proposed > low) & (proposed < high) & (slope != 0)) | last
-            moved = proposed if usable.all() else where(usable, proposed, _middle(low, high))
-            moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), np.inf)
+            moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
+            moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), inf)
             # A converged root stays: it does not depend on how long the others take.
             s = where(done, s, moved)
-            done = done | settling | (short & known & (smooth | (size <= _SMALLEST_STEP)))
-            if done.all():
+            done = done | settling | converged
+            if every(done):
                 break
-            settling = last | (high - low <= where(high < np.inf, _ADJACENT * high, 0.0))
-    root = where(positive, np.maximum(s, root_at_zero), root_at_zero)
-    if done.all():
+            settling = last | (high - low <= where(high < inf, _ADJACENT * high, 0.0))
+    root = where(positive, where(s < root_at_zero, root_at_zero, s), root_at_zero)
+    if every(done):
         return root
-    if np.any(known & ~done):
+    if some(known & ~done):
         raise DefectError(f"the inverse of a {name} did not converge")
     return where(done, root, np.nan)
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import validity
 from mdr_core.broadcasting import BLOCK, solve_cases
-from mdr_core.elementwise import where
+from mdr_core.elementwise import some, where
 from mdr_core.equivalent_1d import (
     coordinate_from_depth,
     coordinate_from_force,
@@ -132,7 +132,7 @@ class NormalContact(Results):
         if not isfinite(extremes(self.mean_pressure)[1]):
             message = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
             found.append(Notice("singular", message))
-        if validity.holds(validity.infinite_pressure(self)):
+        if some(validity.infinite_pressure(self)):
             radii = validity.infinite_radii(self)
             found.append(Notice("singular", f"maximum_pressure is infinite, at radius {radii}"))
         if self.error_estimate > self.rtol:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.broadcasting import in_blocks, with_parameters
-from mdr_core.elementwise import is_number
+from mdr_core.elementwise import is_number, some, where
 from mdr_core.equivalent_1d import depth_step
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import Profile
@@ -43,12 +43,13 @@ def slip_moment(
     if closed is not None:
         return closed
     with np.errstate(over="ignore", invalid="ignore"):
-        low = np.maximum(stick, profile.first_coordinate)
+        first = profile.first_coordinate
+        low = where(stick < first, first, stick)
         d, force = profile.depth(coordinate), profile.reduced_force(coordinate)
         chord = (d - profile.depth(low)) * (force + profile.reduced_force(low)) / 2
         area = chord - (energy - profile.reduced_energy(low))
         narrow = ~(area > _BOWED * d * force)
-    if not narrow.any():
+    if not some(narrow):
         return area
     ends = coordinate, width, stick
     if is_number(area):

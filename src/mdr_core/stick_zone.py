@@ -8,7 +8,7 @@ import numpy as np
 
 from mdr_core import equivalent_1d
 from mdr_core.broadcasting import solve_cases
-from mdr_core.elementwise import full, number, where
+from mdr_core.elementwise import full, least, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -108,8 +108,8 @@ def _within_limit(
 ) -> _Slipped:
     """Stick edge and annulus; full slip from the limit on, which a bounded load does not exceed."""
     left, full_slip, excess = limit - size, _NO_FULL_SLIP, _NO_EXCESS
-    if left.min() <= 0:
-        if bounded and left.min() < 0:
+    if least(left) <= 0:
+        if bounded and least(left) < 0:
             raise InputError(
                 ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
                 "no equilibrium: the force exceeds friction_coefficient x normal_force",
@@ -139,7 +139,7 @@ def _by_stick_radius(
     if profile.has_no_partial_slip:
         bad = bad | (radius > 0)
         detail = "a flat punch has no slip annulus: prescribe tangential_force or another load"
-    if bad.any():
+    if some(bad):
         index = first_index(bad) if radius.ndim else ()
         raise InputError(("tangential", "stick_radius", *index), detail, bad)
     if profile.has_no_partial_slip:

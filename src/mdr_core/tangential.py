@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
 from mdr_core.broadcasting import solve_cases
-from mdr_core.elementwise import broadcast, is_number, where
+from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.normal import NormalContact, not_reached
@@ -106,7 +106,7 @@ class TangentialContact(Results):
             partial = self.limiting_force * self.width
         else:
             partial = self._over_annulus(equivalent_1d.force_step, 1.0)
-        if self.full_slip.any():
+        if some(self.full_slip):
             partial = where(self.full_slip, self.limiting_force, partial)
         return self._signed(partial)
 
@@ -119,7 +119,7 @@ class TangentialContact(Results):
             partial = self._largest_stick * self.width
         else:
             partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
-        if self.full_slip.any():
+        if some(self.full_slip):
             partial = where(self.full_slip, self._largest_stick, partial) + self.excess
         return self._signed(partial)
 
@@ -153,7 +153,7 @@ class TangentialContact(Results):
         width = self.normal.profile.radius_width(self._coordinate, self.width)
         if self._beyond_load is not None:
             width = where(self._beyond_load, a - self.stick_radius, width)
-        return where(self.full_slip, a, width) if self.full_slip.any() else width
+        return where(self.full_slip, a, width) if some(self.full_slip) else width
 
     @cached_property
     def stick_radius(self) -> Array:
@@ -167,7 +167,7 @@ class TangentialContact(Results):
             # By rounding error c may exceed a. Without slip both are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
-        return where(self.full_slip, 0.0, c) if self.full_slip.any() else c
+        return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
 
     @cached_property
     def tangential_stiffness(self) -> Array:

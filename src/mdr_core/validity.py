@@ -11,7 +11,7 @@ from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
-from mdr_core.elementwise import full, number, where
+from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
@@ -64,12 +64,7 @@ class LoadedContact(Protocol):
 
 def notices(findings: Iterable[Finding]) -> list[Notice]:
     """Return a warning for each finding that holds in some case."""
-    return [Notice(code, message()) for code, where, message in findings if holds(where)]
-
-
-def holds(where: Flags) -> bool:
-    """Return True if a flag is set in some case; of a single one, in a tenth of NumPy's time."""
-    return bool(where.any() if where.ndim else where)
+    return [Notice(code, message()) for code, where, message in findings if some(where)]
 
 
 def findings(
@@ -241,10 +236,10 @@ def infinite_radii(contact: LoadedContact) -> str:
 def _edge_slope(contact: LoadedContact) -> Array:
     """f'(a) of loaded contacts, else zero [1]."""
     a, loaded = contact.contact_radius, contact.loaded
-    if contact.profile.has_no_partial_slip or not holds(loaded):
+    if contact.profile.has_no_partial_slip or not some(loaded):
         return full(0.0, a)
     # The slope at the tip, where nothing is loaded, may be infinite.
-    inside = a if loaded.all() else np.where(loaded, a, np.max(a))
+    inside = a if every(loaded) else np.where(loaded, a, np.max(a))
     return where(loaded, contact.profile.df(inside), 0.0)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import arcsinh_difference
-from mdr_core.elementwise import where
+from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
@@ -76,7 +76,7 @@ class Spheroid(Profile):
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         outside = contact_radius >= self.radius
-        if outside.any():
+        if some(outside):
             raise InputError(
                 ("load", "contact_radius", *first_index(outside)),
                 f"must be below the radius of the body, {self.radius}",

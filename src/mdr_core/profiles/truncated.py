@@ -10,7 +10,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, two_root_integral
-from mdr_core.elementwise import where
+from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
@@ -29,11 +29,11 @@ class FlatEnded(Profile):
     flat_radius: Parameter
 
     def contact_radius(self, coordinate: Array) -> Array:
-        return np.hypot(self.flat_radius, coordinate)
+        return np.sqrt(self.flat_radius * self.flat_radius + coordinate * coordinate)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         inside = contact_radius < self.flat_radius
-        if inside.any():
+        if some(inside):
             raise InputError(
                 ("load", "contact_radius", *first_index(inside)),
                 f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
