@@ -53,7 +53,8 @@ QUADRATURE = (
     ("mdr_core.interval_moments.IntervalMoments", "over_narrow"),
     ("mdr_core.interval_moments.IntervalMoments", "over_wide"),
     ("mdr_core.wear.worn_annulus", "annulus_integrals"),
-    ("mdr_core.fields.contact", "stress"),
+    ("mdr_core.fields.normal", "stress"),
+    ("mdr_core.fields.tangential", "stress"),
 )
 ENDPOINTS = ("normal", "tangential", "stress", "tangential/history", "wear")
 STAGES = ("validation", "root finding", "quadrature", "other", "serialisation", "HTTP")

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from mdr_core import equivalent_1d, normal, tangential
-from mdr_core.fields import contact as contact_fields
+from mdr_core.fields import normal as normal_fields
+from mdr_core.fields import tangential as tangential_fields
 from mdr_core.profiles import KINDS, Profile
 from mdr_core.profiles import base as profiles
 from mdr_service.queries.fields import solve_stress, stress_result
@@ -135,14 +136,15 @@ def test_stick_radius_needs_no_dissipated_energy(kind: str) -> None:
 def test_field_computes_no_other_field(kind: str) -> None:
     tangential_contact = solved(profile_of(kind), 1e-10)
     with (
-        patch.object(contact_fields, "slip_kernel", never),
+        patch.object(tangential_fields, "slip_kernel", never),
         patch.object(type(tangential_contact.normal.profile), "outer_displacement", never),
         patch.object(type(tangential_contact.normal.profile), "reduced_energy", never),
     ):
         field("pressure", tangential_contact, 1e-10)
         field("shear_stress", tangential_contact, 1e-10)
     with (
-        patch.object(contact_fields, "stress", never),
+        patch.object(normal_fields, "stress", never),
+        patch.object(tangential_fields, "stress", never),
         patch.object(type(tangential_contact.normal.profile), "reduced_energy", never),
     ):
         field("slip", tangential_contact, 1e-10)
@@ -158,7 +160,7 @@ def run_stress(**more: Any) -> dict[str, Any]:
 def test_pressure_needs_no_friction_slip_or_energy() -> None:
     with (
         patch.object(tangential, "solve", never),
-        patch.object(contact_fields, "slip_kernel", never),
+        patch.object(tangential_fields, "slip_kernel", never),
         patch.object(Profile, "outer_displacement", never),
         patch.object(Profile, "reduced_energy", never),
     ):
@@ -171,7 +173,7 @@ def test_pressure_needs_no_friction_slip_or_energy() -> None:
 @pytest.mark.parametrize("quantities", [["pressure"], ["pressure", "shear_stress"]])
 def test_shear_stress_needs_no_slip(quantities: list[str]) -> None:
     with (
-        patch.object(contact_fields, "slip_kernel", never),
+        patch.object(tangential_fields, "slip_kernel", never),
         patch.object(tangential, "slip_moment", never),
     ):
         answer = run_stress(quantities=quantities, **LOADED)
@@ -180,6 +182,9 @@ def test_shear_stress_needs_no_slip(quantities: list[str]) -> None:
 
 
 def test_slip_needs_no_stress() -> None:
-    with patch.object(contact_fields, "stress", never):
+    with (
+        patch.object(normal_fields, "stress", never),
+        patch.object(tangential_fields, "stress", never),
+    ):
         answer = run_stress(quantities=["slip"], **LOADED)
     assert "pressure" not in answer

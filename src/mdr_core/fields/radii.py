@@ -8,9 +8,13 @@ from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
-from mdr_core.profiles import Profile
+from mdr_core.history import ContactState
+from mdr_core.normal import NormalContact
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
 _EPS: Final = float(np.finfo(float).eps)
@@ -36,7 +40,55 @@ class Edges(NamedTuple):
     """Distance over which a field changes there [length]."""
 
 
-def edge_error(edges: Edges, radius: Array, *, root: bool) -> float:
+def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
+    """Return the contact radii and slip fronts of all loads, with their rounding errors."""
+    if isinstance(contact, ContactState):
+        radius = np.append(contact.slip_fronts, contact.contact_radius)
+        gaps = np.diff(radius, prepend=0.0)
+        scale = np.minimum(gaps, np.append(gaps[1:], gaps[-1])) / contact.profile.steepness
+        rounding = 0.0 if contact.profile.has_no_partial_slip else EDGE_ROUNDING
+        return Edges(radius, rounding * radius, scale)
+    normal = contact.normal if isinstance(contact, TangentialContact) else contact
+    profile, a = normal.profile, normal.contact_radius
+    # The coordinate resolves the distance from a flat.
+    beyond = a - profile.contact_radius(np.asarray(profile.first_coordinate))
+    exact = normal.control == "contact_radius" or profile.has_no_partial_slip
+    error, scale = beyond * (0.0 if exact else EDGE_ROUNDING), beyond / profile.steepness
+    if not isinstance(contact, TangentialContact):
+        return Edges(*map(np.ravel, (a, error, scale)))
+    exact = contact.control == "stick_radius" or profile.has_no_partial_slip
+    c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
+    # Near full slip the condition number of c amplifies the rounding error of the load.
+    condition = 1 + contact.load_rounding / normal.error_estimates
+    error_c = c * (0.0 if exact else EDGE_ROUNDING * condition)
+    parts = (a, c), (error, error_c), (scale, scale)
+    columns = [[np.ravel(broadcast(part, c.shape)) for part in pair] for pair in parts]
+    return Edges(*map(np.concatenate, columns))
+
+
+def edge_error(
+    contact: NormalContact | TangentialContact | ContactState, name: str, radius: ArrayLike
+) -> float:
+    """Return the error of a field by that of the edges, relative to its largest value [1].
+
+    Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
+    units in the last place of an edge are excluded, because the relative error at a root is
+    unbounded.
+
+    Parameters
+    ----------
+    contact : contact, or end of a load history.
+    name : `pressure`, `shear_stress`, `slip` or `foundation_shear`; other fields have no edge.
+    radius : radii of the field [length], shape (m,).
+    """
+    if name not in ("pressure", "shear_stress", "slip", "foundation_shear"):
+        return 0.0
+    stress = name in ("pressure", "shear_stress")
+    radius = np.atleast_1d(np.asarray(radius, dtype=float))
+    return error_near(edges(contact), radius, root=stress)
+
+
+def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     """Return the error of a field by the error of the edges, relative to its largest value [1].
 
     Radii within four units in the last place of an edge are excluded, because the relative error
@@ -61,23 +113,26 @@ def edge_error(edges: Edges, radius: Array, *, root: bool) -> float:
     return float(np.max(error / (2 * np.sqrt(np.minimum(below, above) * scale))))
 
 
-def grid_through(profile: Profile, edges: Edges, points: int) -> Array:
+def grid(contact: NormalContact | TangentialContact | ContactState, points: int) -> Array:
     """Return radii from 0 to 1.5 times the largest contact radius [length], shape (points,).
 
-    They cluster at the axis, the breaks of the profile and the edges. Instead of an edge with a
-    rounding error the grid takes a radius just inside, where that error is insignificant.
+    They cluster at the axis, the breaks, and the slip fronts and contact radius of every load.
+    Prescribed edges are radii of the grid; of edges that follow from a load the grid takes a radius
+    just inside, where their rounding error is insignificant.
 
     Raises
     ------
     InputError : fewer points than such radii.
     """
+    profile = (contact.normal if isinstance(contact, TangentialContact) else contact).profile
+    known = edges(contact)
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
-    end = _BEYOND * float(np.max(edges.radius)) or 1.0
+    end = _BEYOND * float(np.max(known.radius)) or 1.0
     if not profile.has_no_partial_slip:
         end = min(end, float(np.max(profile.domain)))
-    exact = edges.error == 0
-    fixed = np.unique(np.concatenate([np.zeros(1), *breaks, edges.radius[exact]]))
-    moving = np.setdiff1d(edges.radius[~exact], fixed)
+    exact = known.error == 0
+    fixed = np.unique(np.concatenate([np.zeros(1), *breaks, known.radius[exact]]))
+    moving = np.setdiff1d(known.radius[~exact], fixed)
     stops = np.union1d(fixed, moving)
     gaps = np.diff(stops, append=inf)
     place = np.searchsorted(stops, moving)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import fields
 from mdr_core.errors import InputError
-from mdr_core.fields.radii import Edges, edge_error
+from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.subsurface.annuli import Contact, every, normal_of, shape_of
@@ -227,6 +227,6 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
     known, near = fields.edges(contact), 0.0
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))
-        near = max(near, edge_error(edge, at + np.hypot(r - at, z), root=True))
+        near = max(near, error_near(edge, at + np.hypot(r - at, z), root=True))
     own = 0.0 if isinstance(contact, ContactState) else 4 * contact.error_estimate
     return _ROUNDING + own + near

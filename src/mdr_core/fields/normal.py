@@ -1,0 +1,190 @@
+"""Pressure, displacement and foundation load of a normal contact, over the radius.
+
+Every function returns an array of shape (loads, radii), or (radii,) if the load is a single number.
+"""
+
+from collections.abc import Callable
+from math import inf, prod
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core import equivalent_1d
+from mdr_core.abel import Annulus
+from mdr_core.errors import InputError
+from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+from mdr_core.validation import require_not_negative
+
+# Values of a field under the load of this index, at some radii.
+Field = Callable[[int, Array], Array]
+
+# Radii evaluated at once, which bounds the memory.
+_BLOCK: Final = 131_072
+
+
+def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+    """Return p(r) = (E*/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx [pressure].
+
+    Positive in compression, zero outside the contact, infinite at sharp tips, slope
+    discontinuities and the edge of a flat punch.
+
+    Source: mdr-5, Eqs. (5.68), (5.79).
+
+    Parameters
+    ----------
+    contact : normal contact of one profile, under any number of loads.
+    radius : radii [length], >= 0, shape (m,). Within a few units in the last place of the contact
+        radius the pressure has a root, and no accuracy relative to itself.
+    rtol : relative accuracy, 1e-13 to 1e-3.
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite.
+
+    Examples
+    --------
+    The peak of Eq. (5.38) is 2 E* a/(pi R).
+
+    >>> from mdr_core.normal import solve
+    >>> from mdr_core.profiles import Paraboloid
+    >>> contact = solve(Paraboloid(2.0), 3.0, contact_radius=0.1)
+    >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
+    [0.095493, 0.0763944, 0.0]
+    """
+    shape = contact.contact_radius.shape
+    a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
+
+    def values(load: int, r: Array) -> Array:
+        edge = np.array([a[load]]) if contact.control == "contact_radius" else None
+        annulus = Annulus(np.array([coordinate[load]]), outer_radius=edge)
+        return contact.e_star * stress(contact.profile, annulus, a[load], r, rtol)
+
+    return fill(shape, values, radius)
+
+
+def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+    """Return the normal displacement of the surface, positive into the body [length].
+
+    d - f(r) in the contact, (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx outside it.
+
+    Source: mdr-5, Eq. (5.75). Parameters, returns and errors as of `pressure`.
+    """
+    profile, shape = contact.profile, contact.contact_radius.shape
+    columns = contact.contact_radius, contact.coordinate, contact.indentation_depth
+    a, coordinate, depth = by_load(shape, *columns)
+
+    def values(load: int, r: Array) -> Array:
+        inside = r <= a[load]
+        result = np.empty(r.shape)
+        result[inside] = depth[load] - profile.f(r[inside])
+        if not inside.all():
+            outer = r[~inside]
+            edge = np.full(outer.shape, a[load])
+            result[~inside] = profile.outer_displacement(edge, outer, rtol, coordinate[load])
+        return result
+
+    return fill(shape, values, radius)
+
+
+def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
+    """Return q(x) = E* (d - g(x)) of the one-dimensional foundation [force/length].
+
+    Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23). Parameters, returns and errors
+    as of `pressure`.
+    """
+    shape = contact.contact_radius.shape
+    a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
+
+    def values(load: int, r: Array) -> Array:
+        return contact.e_star * _depth_left(contact.profile, a[load], coordinate[load], r)
+
+    return fill(shape, values, radius)
+
+
+def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:
+    """Return the field of every load at all radii.
+
+    Parameters
+    ----------
+    shape : shape of the loads.
+    field : values under one load.
+    radius : radii [length], >= 0, shape (m,).
+
+    Raises
+    ------
+    InputError : no radius, or one that is negative or not finite.
+    """
+    r = np.atleast_1d(np.asarray(radius, dtype=float))
+    if r.size == 0:
+        raise InputError(("radius",), "at least one radius is needed")
+    require_not_negative(("radius",), r)
+    out = np.empty((prod(shape), r.size))
+    for start in range(0, r.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        for load, row in enumerate(out):
+            row[part] = field(load, r[part])
+    return out.reshape(shape + r.shape)
+
+
+def stress(profile: Profile, annulus: Annulus, a: float, r: Array, rtol: float) -> Array:
+    """Return (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx at all radii, zero outside [1].
+
+    Parameters
+    ----------
+    profile : one profile.
+    annulus : its ends c and a in the contact coordinate.
+    a : contact radius [length].
+    r : radii [length], shape (m,).
+    rtol : relative accuracy.
+    """
+    result, inside = np.zeros(r.shape), r < a
+    if inside.any():
+        result[inside] = profile.pressure_kernel(annulus, r[inside], rtol)
+    if profile.has_no_partial_slip and annulus.outer[0] > 0:
+        # The stress at the edge of a flat punch.
+        result[r == a] = inf
+    return result
+
+
+def slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
+    """Return S(c; r) of one stick radius [length], zero under a flat punch.
+
+    Parameters
+    ----------
+    profile : one profile.
+    c : stick radius [length].
+    r : radii r >= c [length], shape (m,).
+    rtol : relative accuracy.
+    """
+    if profile.has_no_partial_slip:
+        return np.zeros(r.shape)
+    return profile.slip_kernel(np.full(r.shape, c), r, rtol)
+
+
+def by_load(shape: tuple[int, ...], *columns: Any) -> list[list[float]]:
+    """Return the values of each column under every load."""
+    if not shape:
+        return [[float(column)] for column in columns]
+    return [np.broadcast_to(column, shape).ravel().tolist() for column in columns]
+
+
+def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Array:
+    """d - g(r) as the step from r to a, free of cancellation near the edge [length]."""
+    result = np.zeros(r.shape)
+    inside = r < a
+    if profile.has_no_partial_slip:
+        result[r <= a] = coordinate
+    elif inside.any():
+        least = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+        x, edge, top = np.maximum(r[inside], least), np.array([a]), np.array([coordinate])
+        at = profile.coordinate_from_radius(x)
+        width = profile.coordinate_width(edge, x, top, at)
+        result[inside] = equivalent_1d.depth_step(profile, top, width, at)
+    return result

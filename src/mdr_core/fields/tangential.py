@@ -1,0 +1,259 @@
+"""Tangential fields of a contact or at the end of a load history: sums over annuli.
+
+Between two neighbouring slip fronts q_x falls by mu k per unit of q, k the slope of the anchors: 0
+where the springs stick under a monotonic load, 1 where they slip. The stress is therefore a sum of
+kernels, each over the annulus between two fronts. On the arcs that curved load steps leave, k
+varies with the radius, and the kernels are superposed.
+"""
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core import equivalent_1d
+from mdr_core.abel import Annulus, InnerEnd
+from mdr_core.fields.arc import Arc
+from mdr_core.fields.normal import by_load, fill, slip_kernel, stress
+from mdr_core.history import ContactState
+from mdr_core.profiles import Profile
+from mdr_core.tangential import TangentialContact
+from mdr_core.typing import Array
+
+# An edge that differs from the contact radius by rounding belongs to the contact.
+_EDGE: Final = 1 + 4 * float(np.finfo(float).eps)
+
+
+class _Traction(NamedTuple):
+    """Annuli of a contact under one load, from the axis, on which the anchors have one formula."""
+
+    profile: Profile
+    modulus: float
+    """mu E* [pressure]."""
+    ratio: float
+    """mu E*/G* [1]."""
+    coordinate: Array
+    """Contact coordinates of the ends, shape (n + 1,)."""
+    radius: Array
+    """The same as radii [length]."""
+    width: Array
+    """Widths in the contact coordinate, without cancellation, shape (n,)."""
+    slope: Array
+    """k [1]; zero on an arc."""
+    arcs: tuple[Arc | None, ...] = ()
+    """Arc of each annulus; none at all if no load step is curved."""
+    exact: bool = False
+    """True if the contact radius is prescribed."""
+    excess: float = 0.0
+    """Displacement beyond full slip [length]."""
+
+    def annulus(self, i: int) -> Annulus:
+        """Return the i-th annulus."""
+        end = InnerEnd(self.width[i : i + 1], self.radius[i : i + 1])
+        whole = i == 0 and not self.profile.has_no_partial_slip
+        outer = self.radius[i + 1 : i + 2] if self.exact else None
+        return Annulus(self.coordinate[i + 1 : i + 2], None if whole else end, outer)
+
+    def depth_from(self, i: int, x: Array, at: Array) -> Array:
+        """Return the depth from radii of the i-th annulus, or below it, to its upper end [length].
+
+        `at` are the contact coordinates of the radii x.
+        """
+        x, at = np.maximum(x, self.radius[i]), np.maximum(at, self.coordinate[i])
+        top = np.maximum(self.coordinate[i + 1], at)
+        edge = np.maximum(self.radius[i + 1], x)
+        width = self.profile.coordinate_width(edge, x, top, at)
+        width = np.where(at == self.coordinate[i], self.width[i], width)
+        return equivalent_1d.depth_step(self.profile, top, width, at)
+
+
+def shear_stress(
+    contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
+) -> Array:
+    """Return tau(r) = (mu E*/pi) sum k_i int g'(x)/sqrt(x^2 - r^2) dx [pressure].
+
+    The i-th integral goes over [max(r, x_i-1), x_i] between neighbouring slip fronts, under a
+    monotonic load from c to a. Positive in the direction of a positive tangential force, zero
+    outside the contact. Not a difference of pressures, it is free of cancellation.
+
+    Source: mdr-5, Eqs. (5.18), (5.34), (5.38), (5.53), (5.70); notes, §10.
+
+    Parameters
+    ----------
+    contact : tangential contact under any number of loads, or end of a load history.
+    radius : radii [length], >= 0, shape (m,).
+    rtol : relative accuracy, 1e-13 to 1e-3.
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite.
+
+    Examples
+    --------
+    After a full cycle only the last load step is in the slip memory: Eq. (5.54), on a cone.
+
+    >>> from mdr_core.history import solve
+    >>> from mdr_core.profiles import Cone
+    >>> history = solve(Cone(0.2), 1.0, 1.0, 0.5, indentation_depth=np.pi / 10,
+    ...                 tangential_displacement=[0.0, 0.05, -0.05, 0.05])
+    >>> c = 1 - 0.05 / (0.5 * np.pi / 10)
+    >>> bool(abs(shear_stress(history.state, [0.0])[0] / (0.05 * np.log(1 / c)) - 1) < 1e-13)
+    True
+    """
+
+    def values(load: _Traction, r: Array) -> Array:
+        result = np.zeros(r.shape)
+        for i in np.flatnonzero(load.slope).tolist():
+            a = float(load.radius[i + 1])
+            result += load.slope[i] * stress(load.profile, load.annulus(i), a, r, rtol)
+        for arc in filter(None, load.arcs):
+            result += arc.stress(r, rtol) / np.pi
+        return load.modulus * result
+
+    return _fill(contact, values, radius)
+
+
+def slip(
+    contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
+) -> Array:
+    """Return the slip s(r) = u_x(r) - delta_x of the surface in the contact [length].
+
+    s = -mu (E*/G*) sum (k_i - k_i-1) S(x_i-1; r), S the slip kernel; zero in the stick zone and
+    outside the contact, negative for a positive displacement. In full slip the displacement
+    beyond full slip is subtracted throughout the contact. Where the bodies came into contact under
+    a tangential displacement, part of it is not slip but the initial mismatch.
+
+    Source: mdr-5, Eqs. (5.39)-(5.45); notes, §10. Parameters, returns and errors as of
+    `shear_stress`.
+    """
+
+    def values(load: _Traction, r: Array) -> Array:
+        result = np.zeros(r.shape)
+        inside = r <= load.radius[-1] * _EDGE
+        # S(0; r) and S(b; r) are equal: g is zero on a flat.
+        fronts = [0.0, *load.radius[1:].tolist()]
+        slopes = pairwise([0.0, *load.slope.tolist(), 0.0])
+        for front, (below, above) in zip(fronts, slopes, strict=True):
+            slips = inside & (r > front)
+            if below != above and slips.any():
+                change = above - below
+                result[slips] -= change * slip_kernel(load.profile, front, r[slips], rtol)
+        for arc in filter(None, load.arcs):
+            result[inside] -= arc.slip(r[inside], rtol)
+        result *= load.ratio
+        result[inside] -= load.excess
+        return result
+
+    return _fill(contact, values, radius)
+
+
+def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
+    """Return q_x(x) of the foundation [force/length].
+
+    It is linear in g(x) between the slip fronts, except on an arc; G* u_x in the stick zone and
+    mu q(x) outside it under a monotonic load.
+
+    Source: mdr-5, Eq. (5.23); notes, §10. Parameters, returns and errors as of `shear_stress`.
+    """
+
+    def values(load: _Traction, r: Array) -> Array:
+        profile, result = load.profile, np.zeros(r.shape)
+        if profile.has_no_partial_slip:
+            # All springs carry the same load.
+            result[r <= load.radius[-1]] = load.modulus * (load.slope @ load.width)
+            return result
+        # The springs of a flat carry the load of its edge.
+        inside = r < load.radius[-1]
+        x = np.maximum(r[inside], load.radius[0])
+        at, total = profile.coordinate_from_radius(x), np.zeros(x.shape)
+        for i, slope in enumerate(load.slope):
+            below, arc = x < load.radius[i + 1], load.arcs[i] if load.arcs else None
+            if arc is not None:
+                total[below] += arc.anchor_step(np.maximum(x[below], arc.low))
+            elif slope:
+                total[below] += slope * load.depth_from(i, x[below], at[below])
+        result[inside] = load.modulus * total
+        return result
+
+    return _fill(contact, values, radius)
+
+
+def arcs(state: ContactState) -> tuple[Arc | None, ...]:
+    """Return the arc of each annulus at the end of a load history; none if none is curved."""
+    profile, segments = state.profile, state.segments
+    if not segments.rate.any():
+        return ()
+    ends = segments.coordinate
+    radius, width = profile.contact_radius(ends), profile.radius_width(ends[1:], segments.width)
+    columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], width))
+    return tuple(
+        Arc(profile, rate, segments.inverse, *interval) if rate else None
+        for rate, *interval in zip(*columns, strict=True)
+    )
+
+
+def _fill(
+    contact: TangentialContact | ContactState,
+    field: Callable[[_Traction, Array], Array],
+    radius: ArrayLike,
+) -> Array:
+    """Field of every load at all radii."""
+    if isinstance(contact, ContactState):
+        traction = _at_end(contact)
+        return fill((), lambda _load, r: field(traction, r), radius)
+    tractions = _of_loads(contact)
+    return fill(contact.width.shape, lambda load, r: field(tractions(load), r), radius)
+
+
+def _at_end(state: ContactState) -> _Traction:
+    """Traction at the end of a load history."""
+    profile, segments = state.profile, state.segments
+    modulus = state.friction_coefficient * state.e_star
+    known = profile, modulus, state.displacement_ratio
+    if not state.in_contact:
+        ends, nothing = np.zeros(1), np.zeros(0)
+        return _Traction(*known, ends, ends, nothing, nothing)
+    if profile.has_no_partial_slip:
+        depth = state.load[:1] / modulus
+        ends = np.append(profile.first_coordinate, state.coordinate[-1])
+        return _Traction(*known, ends, profile.contact_radius(ends), np.abs(depth), np.sign(depth))
+    radius = profile.contact_radius(segments.coordinate)
+    slope = np.where(segments.rate == 0, segments.slope, 0.0)
+    return _Traction(*known, segments.coordinate, radius, segments.width, slope, arcs(state))
+
+
+def _of_loads(contact: TangentialContact) -> Callable[[int], _Traction]:
+    """Traction under the load of an index."""
+    normal, profile = contact.normal, contact.normal.profile
+    first = profile.first_coordinate
+    flat = float(profile.contact_radius(np.asarray(first)))
+    modulus = contact.friction_coefficient * normal.e_star
+    columns = by_load(
+        contact.width.shape,
+        *(modulus, contact.displacement_ratio, normal.coordinate, normal.contact_radius),
+        *(contact.stick_coordinate, contact.stick_radius, contact.width),
+        *(contact.sign, contact.full_slip, contact.sign * contact.excess),
+    )
+    exact = normal.control == "contact_radius"
+
+    def traction(load: int) -> _Traction:
+        mu_e, ratio, top, a, edge, c, width, sign, slides, excess = (part[load] for part in columns)
+        ends, radii, widths, slopes = [first, top], [flat, a], [top - first], [0.0]
+        if profile.has_no_partial_slip:
+            # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
+            widths, slopes = [top if slides else width * top], [sign]
+        elif slides:
+            slopes = [sign]
+        elif width > 0:
+            ends, radii = [first, edge, top], [flat, c, a]
+            widths, slopes = [edge - first, width], [0.0, sign]
+        rows = np.array(ends), np.array(radii), np.array(widths), np.array(slopes)
+        return _Traction(profile, mu_e, ratio, *rows, exact=exact, excess=excess)
+
+    return traction
