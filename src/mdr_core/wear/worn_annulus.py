@@ -7,26 +7,25 @@ Source: notes, §9.
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import factorial
 from typing import Final
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from mdr_core.abel.displacement import Kernel, annulus_integrals, arccosine
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
-# Annuli handled at once: bounds the memory, whatever their number.
-_BLOCK: Final = 4096
 # Relative tolerance of the integrals, about 500 times the rounding error. A looser one would save
 # less than a tenth of the time, and the worn depth is a difference.
 RTOL: Final = 1e-13
 # A pole of g' is approached up to here: beyond, its distance is dominated by rounding error.
 _BEFORE_POLE: Final = 1e-12
-# Angle up to which t - sin t is summed as a series.
-_THRESHOLD: Final = 1.0
-# 1/((2k + 2)(2k + 3)), from the last term of the series used to the first.
-_SINE: Final = tuple(1 / ((2 * k + 2) * (2 * k + 3)) for k in range(9, 0, -1))
+# Angle up to which t - sin t is summed as a series, and its coefficients of t^3, t^5, ...
+_SMALL: Final = 1.0
+_SINE: Final = [(-1) ** k / factorial(2 * k + 3) for k in range(9)]
 
 
 @dataclass(frozen=True)
@@ -128,23 +127,17 @@ class WornAnnulus:
 
     def _integrals(self, width: Array, *kernels: Kernel) -> Array:
         """Return int_c^r g'(x) K dx for each kernel K, shape (k, m)."""
-        result = np.zeros((len(kernels), width.size))
         if self.profile.has_no_partial_slip:
-            return result
+            return np.zeros((len(kernels), width.size))
         panels = self.profile.panels
         if panels is not None:
+            result = np.empty((len(kernels), width.size))
             for i, (c, w) in enumerate(zip(self.stick.tolist(), width.tolist(), strict=True)):
                 below = self.chosen(np.array([i])).below
                 result[:, i] = panels.annulus_integrals(c, w, below, kernels)
             return result
         branches = self.profile.branches
-        for start in range(0, width.size, _BLOCK):
-            part = np.arange(start, min(start + _BLOCK, width.size))
-            some = self.chosen(part)
-            result[:, part] = annulus_integrals(
-                branches, some.stick, width[part], some.below, kernels, RTOL
-            )
-        return result
+        return annulus_integrals(branches, self.stick, width, self.below, kernels, RTOL)
 
 
 def _rate(x: Array, leg: Array) -> Array:
@@ -153,19 +146,8 @@ def _rate(x: Array, leg: Array) -> Array:
 
 
 def _segment(x: Array, leg: Array) -> Array:
-    """Return int_x^r sqrt(r^2 - t^2) dt = (r^2/4) (2 theta - sin(2 theta)), theta = arccos(x/r)."""
-    r2 = x * x + leg * leg
-    return np.asarray(r2 / 4 * sine_gap(2 * np.arctan2(leg, x)))
-
-
-def sine_gap(t: Array) -> Array:
-    """Return t - sin(t) for 0 <= t <= pi [1], about t^3/6 for small t.
-
-    >>> float(f"{sine_gap(np.array(1e-3)):.6g}")
-    1.66667e-10
-    """
-    small = np.minimum(t, _THRESHOLD)
-    t2, series = small * small, np.ones_like(small)
-    for factor in _SINE:
-        series = 1 - t2 * factor * series
-    return np.asarray(np.where(t < _THRESHOLD, small * t2 / 6 * series, t - np.sin(t)))
+    """Return int_x^r sqrt(r^2 - t^2) dt = (r^2/4) (t - sin(t)), t = 2 arccos(x/r)."""
+    t = 2 * np.arctan2(leg, x)
+    small = np.minimum(t, _SMALL)
+    series = small**3 * polyval(small * small, _SINE)
+    return np.asarray((x * x + leg * leg) / 4 * np.where(t < _SMALL, series, t - np.sin(t)))
