@@ -105,6 +105,33 @@ def test_largest_stress_is_not_exceeded_by_samples(profile: Profile, stick: floa
         assert getattr(at, measure) == pytest.approx(float(peak.value), rel=1e-5, abs=0)
 
 
+@pytest.mark.parametrize(
+    ("profile", "nu", "friction", "stick", "highest"),
+    [
+        # At x > 0, where a peak at x < 0 has almost the same height.
+        (Power(0.3, 20.0), 0.0, 0.054, 0.79, (0.92, 0.98)),
+        # Beside the plane of the tangential force.
+        (RoundedPunch(0.5, 2.0), 0.06, 0.023, 0.51, (0.4, 1.0)),
+    ],
+)
+def test_weak_friction_lifts_one_of_many_peaks(
+    profile: Profile, nu: float, friction: float, stick: float, highest: tuple[float, float]
+) -> None:
+    contact = normal.solve(profile, 3.0, contact_radius=1.0)
+    case = tangential.solve(contact, 2.5, friction, stick_radius=stick)
+    for measure in MEASURES:
+        peak = float(largest(case, measure, poissons_ratio=nu).value)
+        r, z = np.linspace(*highest, 61), np.geomspace(1e-3, 0.4, 81)[:, None]
+        sampled = [
+            getattr(
+                stress(case, r * np.cos(turn), r * np.sin(turn), z, poissons_ratio=nu), measure
+            ).max()
+            for turn in np.linspace(0, np.pi, 13)
+        ]
+        assert max(sampled) < peak * (1 + 1e-7)
+        assert max(sampled) > peak * (1 - 3e-3)
+
+
 @pytest.mark.parametrize("measure", MEASURES)
 def test_friction_moves_the_largest_stress_off_the_axis(measure: str) -> None:
     contact = normal.solve(Hyperboloid(0.2, 0.02), 3.0, contact_radius=0.1)

@@ -32,9 +32,8 @@ from mdr_core.typing import Array, Chosen, Indices
 KERNELS: Final = 7
 # Longest panel in t: the nearest singularity lies pi/2 beside the axis, or log(2) beyond an end.
 _PANEL: Final = 2.0
-# Nodes of a panel, and the part of its distance from the nearest edge or break by which a point is
-# moved off the surface: up to rounding error, or to 5e-8 of the largest stress.
-_EXACT, _COARSE = (14, 1e-18), (10, 1e-9)
+# Nodes of a panel.
+_NODES: Final = 14
 # Nodes of a block, and the least distance of a far singularity from it over its length, both in
 # x^2: interpolation errs by 5.8^-n.
 _JOINED, _FAR = 18, 1.0
@@ -65,10 +64,10 @@ class _Blocks(NamedTuple):
 
 
 class Foundation:
-    """Loads of the foundation under a single load, exact or for a search."""
+    """Loads of the foundation under a single load."""
 
-    def __init__(self, contact: Contact, *, exact: bool = True) -> None:
-        normal, (self._nodes, self.lift) = normal_of(contact), _EXACT if exact else _COARSE
+    def __init__(self, contact: Contact) -> None:
+        normal = normal_of(contact)
         self.profile, self.modulus = normal.profile, float(normal.e_star) / np.pi
         self.annuli, self.loaded = annuli_of(contact), bool(normal.loaded)
         if not self.loaded:
@@ -82,7 +81,7 @@ class Foundation:
             return
         self._pieces = self._cut(float(normal.coordinate))
         low, high, base, s_low, s_high, step = self._pieces
-        u, shares = (part[:, None] for part in composite_rule(self._nodes, 1))
+        u, shares = (part[:, None] for part in composite_rule(_NODES, 1))
         past = step * u
         s = s_low + past
         x = np.sqrt(base**2 + s * s)
@@ -199,9 +198,9 @@ class Foundation:
         bottom = np.arcsinh(-np.where(nearer, past_low, past_high + step) / q)
         top = np.arcsinh(-np.where(nearer, past_low - step, past_high) / q)
         length = top - bottom
-        count = np.maximum(np.ceil(length / _PANEL), 1).astype(int)
+        count = 2 ** np.ceil(np.log2(np.maximum(length / _PANEL, 1))).astype(int)
         for panels in np.unique(count):
-            u, shares = (part[:, None] for part in composite_rule(self._nodes, int(panels)))
+            u, shares = (part[:, None] for part in composite_rule(_NODES, int(panels)))
             for part in _in_cache(np.flatnonzero(count == panels), u.size):
                 sinh = np.sinh(top[part] - u * length[part])
                 s = np.maximum(p[part] + q[part] * sinh, s_low[part])

@@ -16,6 +16,9 @@ from mdr_core.subsurface.foundation import Foundation
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
 
+# Part of its distance from the nearest edge or break by which a point is moved off the surface, up
+# to rounding error.
+_SURFACE: Final = 1e-18
 # A point at an edge is moved off the surface by this part of the contact radius: stresses have at
 # worst a root there.
 _SURFACE_AT_EDGE: Final = 1e-34
@@ -166,7 +169,7 @@ def on_rings(under: Foundation, place: Place, nu: float, body: int) -> StressTen
     breaks = [float(np.asarray(b)) for b in under.profile.breaks]
     near = np.abs(np.subtract.outer([0.0, *under.annuli.radius, *breaks], r)).min(axis=0)
     # In points with depths > 0 the kernels are regular.
-    depth = np.maximum(z, under.lift * near + _SURFACE_AT_EDGE * a)
+    depth = np.maximum(z, _SURFACE * near + _SURFACE_AT_EDGE * a)
     pressed, *sheared = under.moments(r, depth)
     along = sheared[0] if body == 2 and sheared else -sheared[0] if sheared else 0 * pressed
     found = under.modulus * of_moments(pressed, along, (r, depth, *direction), nu)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, lru_cache
-from math import exp, inf, isclose, isnan, log, nan
+from math import exp, inf, isclose, log
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -15,16 +15,14 @@ from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.annuli import Contact, normal_of, single
-from mdr_core.subsurface.peaks import MEASURES, largest
+from mdr_core.subsurface.peaks import MEASURES, infinite_radii, largest
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import require_positive
-from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
+from mdr_core.validity import ASSUMED_RATIO, Finding
 
-# Refinements of the grid at the onset, and where only the excess over the yield strength matters.
-_ROUNDS, _FEW_ROUNDS = 5, 3
 # Accuracy of the stress at the onset, and of the contact coordinate's logarithm.
-_ONSET_RTOL: Final = 3e-6
+_ONSET_RTOL: Final = 1e-5
 # First step of that logarithm over the logarithm of the stress, which is exact for the exponent
 # 5/3, and the largest distance.
 _STEP, _REACH = 1.5, 60.0
@@ -117,9 +115,7 @@ def yielding(
         columns, shape = _columns(contact)
 
         def reaches(one: Contact) -> bool:
-            peaks = (
-                largest(one, MEASURES[1], poissons_ratio=nu, rounds=_FEW_ROUNDS) for nu in ratios
-            )
+            peaks = (largest(one, MEASURES[1], poissons_ratio=nu) for nu in ratios)
             return any(2 * peak.value >= yield_strength for peak in peaks)
 
         def under(i: int, place: Array) -> bool:
@@ -203,9 +199,13 @@ def _onset(
 ) -> float:
     """Normal force at which a measure reaches a limit, the ratio of the loads held constant."""
     profile, start = pressed.profile, log(pressed.coordinate)
-    singular = _infinite_from(profile, options["poissons_ratio"], 0.0 if ratio > _SLIDES else inf)
-    if singular == 0:
+    radii = infinite_radii(profile, options["poissons_ratio"], 0.0 if ratio > _SLIDES else inf)
+    if any(b <= profile.contact_radius(np.zeros(())) for b in radii):
         return 0.0
+    # The stress becomes infinite when the contact reaches this coordinate.
+    singular = min(
+        (float(profile.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf
+    )
 
     def force(coordinate: float) -> float:
         return float(replace(pressed, coordinate=np.asarray(coordinate)).normal_force)
@@ -214,47 +214,19 @@ def _onset(
     def excess(place: float) -> float:
         """Logarithm of the measure over the limit, by that of the contact coordinate."""
         with np.errstate(all="ignore"):
-            value = float(
-                largest(
-                    _under(pressed, friction, exp(place), ratio), rounds=_ROUNDS, **options
-                ).value
-            )
-        if isclose(value, limit, rel_tol=_ONSET_RTOL):
+            peak = largest(_under(pressed, friction, exp(place), ratio), **options)
+        if isclose(peak.value, limit, rel_tol=_ONSET_RTOL):
             return 0.0
-        return log(value / limit) if value > 0 else nan
+        # Next to the equator of a body no double tells the contact from it, and nothing is loaded.
+        return log(peak.value / limit) if peak.value > 0 else -_REACH
 
-    exponent = _exponent(profile)
-    if exponent is not None:
-        n, over = float(np.asarray(exponent)), excess(start)
-        if n == 1:
-            return 0.0 if over >= 0 else inf
-        # The stresses grow like a^(n - 1), and the force like a^(n + 1).
-        with np.errstate(over="ignore"):
-            return float(pressed.normal_force * np.exp(-over * (n + 1) / (n - 1)))
-    last = log(min(singular, profile.last_coordinate or inf)) - _ONSET_RTOL
-    before = place = min(start, last)
-    above, step = excess(place) > 0, _STEP
-    # Next to the equator of a body no double tells the contact from it, and the excess is nan.
-    while excess(place) > 0 if above else excess(place) < 0:
-        if abs(place - start) > _REACH or (place == last and not above):
-            break
-        before, place = place, min(place - step * excess(place), last)
+    lowest = start - _REACH
+    highest = min(start + _REACH, log(min(singular, profile.last_coordinate or inf)) - _ONSET_RTOL)
+    before = place = min(start, highest)
+    sign, step = (1, _STEP) if excess(place) > 0 else (-1, _STEP)
+    while sign * excess(place) > 0:
+        if place == (lowest if sign > 0 else highest):
+            return 0.0 if sign > 0 else force(singular) if singular < inf else inf
+        before, place = place, min(max(place - step * excess(place), lowest), highest)
         step *= 2
-    else:
-        if not isnan(excess(place)):
-            return force(
-                exp(brentq(excess, min(before, place), max(before, place), xtol=_ONSET_RTOL))
-            )
-    return 0.0 if above else force(singular) if singular < inf else inf
-
-
-def _infinite_from(profile: Profile, poissons_ratio: float, slips_from: float) -> float:
-    """Contact coordinate from which on the deviatoric stress is infinite; 0 under any load."""
-    radii = [
-        float(np.asarray(b))
-        for b in profile.infinite_pressure_radii
-        if infinite_deviator(profile, b, (poissons_ratio,), slips_from)
-    ]
-    if any(b <= profile.contact_radius(np.zeros(())) for b in radii):
-        return 0.0
-    return min((float(profile.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf)
+    return force(exp(brentq(excess, before, place, xtol=_ONSET_RTOL)))
