@@ -237,9 +237,13 @@ class Profile(ABC):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
-        return energy_integral(
-            lambda s: self.reduced_force(s) * self.depth_slope(s), coordinate, self.scale
-        )
+        depth = self.depth(coordinate)
+
+        def density(s: Array) -> Array:
+            return np.square(depth - self.depth(s)) * self.radius_slope(s)
+
+        flat = self.contact_radius(full(0.0, coordinate)) * np.square(depth)
+        return flat + energy_integral(density, coordinate, self.scale)
 
     def coordinate_from_depth(self, depth: Array) -> Array | None:
         """Inverse of `depth` where it has a closed form, else None."""

@@ -6,12 +6,13 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.elementwise import full, where
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Parameter
+from mdr_core.validation import extremes
 
-# Length in w = arcsinh(s/scale) beyond which the energy has decayed by exp(-2 x 20), below rounding
-# error.
-_DECAY: Final = 20.0
+# Length in w = arcsinh(s/scale) beyond which a density has decayed to rounding error.
+_DECAY: Final = 40.0
 # Gauss-Legendre nodes of a piece.
 _NODES: Final = 16
 # Longest piece in w: the integrand grows at most like exp(5 w), for which the a priori bound of 16
@@ -24,26 +25,24 @@ _BLOCK: Final = 12_288
 def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Parameter) -> Array:
     """Return int_0^upper density(s) ds of a positive density that is a power of s at either end.
 
-    With density = (F/E*) dd/ds this is the elastic energy without any cancellation.
     s = scale sinh(w) resolves it also where s is much larger than the scale.
     """
-    scale = np.asarray(scale, dtype=float)
     top = np.arcsinh(upper / scale)
-    length = np.minimum(top, _DECAY)
+    length = where(top < _DECAY, top, _DECAY)
     # Every load has its own pieces, summed in order: its result does not depend on other loads.
-    count = np.maximum(np.ceil(length / _LONGEST), 1.0)
-    places, weights = _rule(int(np.max(count, initial=1.0)))
+    count = where(length > _LONGEST, np.ceil(length / _LONGEST), 1.0)
+    places, weights = _rule(int(extremes(count)[1]) if top.size else 1)
     step = max(_BLOCK // max(top.size, 1), 1)
-    total = np.zeros_like(top)
+    total = full(0.0, top)
     for start in range(0, places.size, step):
         part = slice(start, start + step)
         fraction = np.divide.outer(places[part], count)
-        own = fraction < 1
-        w = top - np.where(own, fraction, 0.0) * length
-        values = np.where(own, density(scale * np.sinh(w)) * np.cosh(w), 0.0)
+        w = top - fraction * length
+        values = density(scale * np.sinh(w)) * np.cosh(w)
+        values = np.where(fraction < 1, values, 0.0)
         values *= weights[part].reshape(-1, *[1] * top.ndim)
         values[0] += total
-        total = np.cumsum(values, axis=0)[-1] if len(values) > 1 else values[0]
+        total = np.add.accumulate(values)[-1]
     return total * scale * length / (2 * count)
 
 
