@@ -48,9 +48,6 @@ class Settings(BaseModel):
         ge=0,
         description="Total length of long bodies in transfer, beside one [bytes].",
     )
-    table_cache_bytes: int = Field(
-        32 * 1024**2, ge=0, description="Memory of the tables that a process keeps [bytes]."
-    )
     compute_processes: int = Field(2, ge=1, le=1_000, description="Number of compute processes.")
     budget_seconds: float = Field(
         10.0, gt=0, le=86_400, description="Time of a query in a compute process [s]."

@@ -79,12 +79,6 @@ class Multipoles:
     above: bool
     """True if the points lie above the panels."""
 
-    @property
-    def nbytes(self) -> int:
-        """Memory of the arrays [byte]."""
-        arrays = self.edge, self.length, self.masses, self.first, self.last, self.parent
-        return sum(array.nbytes for array in arrays)
-
     def usable(self, first: int, last: int) -> Flags:
         """Return True for the blocks of panels first <= i < last."""
         return np.asarray((self.first >= first) & (self.last <= last))

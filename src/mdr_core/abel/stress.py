@@ -54,12 +54,6 @@ class StressPanels:
     smooth_tip: bool
     """True if the slope on the axis is zero up to interpolation error: its stress is finite."""
 
-    @property
-    def nbytes(self) -> int:
-        """Memory of the arrays, which are computed here [byte]."""
-        arrays = self.edges, self.length, self.weight, self._rows
-        return sum(array.nbytes for array in arrays) + self._multipoles.nbytes
-
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
         """Panels as intervals for the displacement integrals."""

@@ -105,12 +105,6 @@ class Subpanels:
     error: float
     """Largest of the last coefficients, relative to the largest value of a subpanel."""
 
-    @property
-    def nbytes(self) -> int:
-        """Memory of the arrays, all of which are computed here [byte]."""
-        arrays = self.edges, self.length, self.depth, self.half_force, self.at_edges
-        return sum(array.nbytes for array in (*arrays, self.over_axis, self._largest))
-
     def depth_at(self, panel: Indices, s: Array) -> Array:
         """Return g at s in the given subpanels [length], shape (m,)."""
         above = _sum(self.depth, panel, s / self.length[panel])

@@ -53,11 +53,6 @@ class ResolvedTable:
         return np.asarray(radii[apart & (radii > first) & (radii < self.r[-1])])
 
     @property
-    def nbytes(self) -> int:
-        """Memory of the arrays, including those of the stress, which are computed here [byte]."""
-        return int(self.r.nbytes + self.rows.nbytes) + self.panels.nbytes + self.stress.nbytes
-
-    @property
     def smooth_tip(self) -> bool:
         """True where the slope on the axis is no more than the interpolation's error."""
         return bool(self.rows[1, 0] <= _SMOOTH_TIP * self.rows[1].max())

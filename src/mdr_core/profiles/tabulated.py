@@ -67,11 +67,6 @@ class Tabulated(FlatEnded):
         self.rounding = max(_ROUNDING, self.resolved.panels.error)
 
     @property
-    def nbytes(self) -> int:
-        """Memory of the arrays once all of them are used [byte]."""
-        return self.values.nbytes + self.resolved.nbytes
-
-    @property
     def normal_method(self) -> str:
         return "panel_moments"
 

@@ -1,5 +1,6 @@
 """Queries about contacts: profile, material and load -> contact of the core -> result."""
 
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -16,9 +17,11 @@ from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQ
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.wear import WearQuery
-from mdr_service.table_cache import TABLES
 
 Arguments = dict[str, Any]
+
+# Resolving a table of 200 points takes several times as long as a contact. One of 2000 has 2 MB.
+_tabulated: Final = lru_cache(maxsize=16)(profiles.Tabulated)
 
 _NORMAL: Final = members(NormalAnswer)
 _PARTIAL_SLIP: Final = members(TangentialAnswer, _NORMAL)
@@ -49,7 +52,7 @@ def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Res
 def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
     if model.kind == "tabulated":
-        return TABLES.resolved(model)
+        return _tabulated(tuple(model.r), tuple(model.f), model.interpolation, tuple(model.breaks))
     given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
