@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from mdr_service import observability
 from mdr_service.dispatch import parse, respond
 from mdr_service.queries import contacts
 from mdr_service.schemas.profiles import TabulatedProfile
@@ -55,3 +56,10 @@ def test_cached_table_gives_identical_bytes(name: str) -> None:
     assert contacts._tabulated.cache_info().misses == 1
     assert respond(name, query, FORMATS["json"]) == first
     assert contacts._tabulated.cache_info().misses == 1
+
+
+def test_few_tables_are_kept_and_counted_in_the_metrics() -> None:
+    contacts._tabulated.cache_clear()
+    for factor in range(20):
+        contacts.profile(table(curvature=1.0 + factor))
+    assert b"\nmdr_tables 16.0\n" in observability.metrics()

@@ -11,6 +11,7 @@ from mdr_core import tangential as tangential_contact
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
+from mdr_service import observability
 from mdr_service.results import Result, about, by_load, checked, members, notices
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
@@ -20,8 +21,10 @@ from mdr_service.schemas.wear import WearQuery
 
 Arguments = dict[str, Any]
 
-# Resolving a table of 200 points takes several times as long as a contact. One of 2000 has 2 MB.
+# Resolving a table of 200 points takes several times as long as a contact. One of 2000 points, the
+# most that a query may have by default, takes 4 MB.
 _tabulated: Final = lru_cache(maxsize=16)(profiles.Tabulated)
+observability.TABLES.set_function(lambda: _tabulated.cache_info().currsize)
 
 _NORMAL: Final = members(NormalAnswer)
 _PARTIAL_SLIP: Final = members(TangentialAnswer, _NORMAL)
