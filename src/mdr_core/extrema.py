@@ -34,6 +34,9 @@ _NARROWER: Final = 16.0
 _WIDER: Final = 4.0
 # Bound on the number of rounds.
 _ROUNDS: Final = 12
+# Relative difference to the last polynomial up to which that of an interval narrower by this factor
+# has rounding error.
+_AGREED: Final = 1e-10
 # Relative change that ends the search, a few units in the last place.
 _SETTLED: Final = 4 * float(np.finfo(float).eps)
 # Samples evaluated at once, so that temporaries stay in the processor's cache.
@@ -166,6 +169,7 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
     """
     load, low, high, sample = brackets
     outer, highest, peak = np.array([low, high]), low, np.zeros(load.size)
+    expected = peak
     for _ in range(_ROUNDS):
         rows, middle, half = np.arange(load.size), (low + high) / 2, (high - low) / 2
         at = _within(middle[:, None] + half[:, None] * _LOBATTO, low[:, None], high[:, None])
@@ -183,7 +187,10 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         neighbours = at[rows, np.maximum(place - 1, 0)], at[rows, np.minimum(place + 1, _NODES - 1)]
         outer[0] = np.where(rises & ~first, neighbours[0], outer[0])
         outer[1] = np.where(rises & ~last, neighbours[1], outer[1])
-        top, height = _vertex(values @ _TO_FINE.T)
+        top, height = _vertex(values @ _TO_SERIES.T)
+        # The error of the polynomial falls by more than the width of its interval.
+        agreed = inside & (abs(height - expected) <= _AGREED * height)
+        np.maximum.at(best, load[agreed], height[agreed])
         centre = np.where(inside, middle + half * top, highest)
         reach = half * np.where(inside, 1 / _NARROWER, _WIDER)
         low, high = _within(centre - reach, *outer), _within(centre + reach, *outer)
@@ -191,19 +198,20 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         if not left.any():
             break
         load, low, high, sample = load[left], low[left], high[left], sample[left]
-        outer, highest, peak = outer[:, left], highest[left], peak[left]
+        outer, highest, peak, expected = outer[:, left], highest[left], peak[left], height[left]
 
 
-def _vertex(curve: Array) -> tuple[Array, Array]:
-    """Place in [-1, 1] and height of the highest point of each curve, by the parabola there."""
+def _vertex(series: Array) -> tuple[Array, Array]:
+    """Place in [-1, 1] and height of the highest point of each Chebyshev series."""
+    curve = series @ _FINE_GRID.T
     rows, at = np.arange(len(curve)), _within(np.argmax(curve, axis=1), 1, _FINE - 1)
     before, highest, after = (curve[rows, at + step] for step in (-1, 0, 1))
     bend = 2 * highest - before - after
     with np.errstate(divide="ignore", invalid="ignore"):
         offset = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
-    offset = _within(offset, -1.0, 1.0)
-    height = np.maximum(np.max(curve, axis=1), highest + offset * (after - before) / 4)
-    return (at + offset) * (2 / _FINE) - 1, height
+    top = (at + _within(offset, -1.0, 1.0)) * (2 / _FINE) - 1
+    angle = np.multiply.outer(np.arccos(_within(top, -1.0, 1.0)), np.arange(_NODES))
+    return top, (series * np.cos(angle)).sum(axis=1)
 
 
 def _within(values: Any, low: Any, high: Any) -> Any:
@@ -212,7 +220,7 @@ def _within(values: Any, low: Any, high: Any) -> Any:
 
 
 _LOBATTO: Final = -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))
-# From values at the nodes to those of the polynomial at evenly spaced points of [-1, 1].
-_TO_FINE: Final = chebyshev.chebvander(np.linspace(-1, 1, _FINE + 1), _NODES - 1) @ np.linalg.inv(
-    chebyshev.chebvander(_LOBATTO, _NODES - 1)
-)
+# From values at the nodes to the coefficients of the polynomial, and from these to its values at
+# evenly spaced points of [-1, 1].
+_TO_SERIES: Final = np.linalg.inv(chebyshev.chebvander(_LOBATTO, _NODES - 1))
+_FINE_GRID: Final = chebyshev.chebvander(np.linspace(-1, 1, _FINE + 1), _NODES - 1)

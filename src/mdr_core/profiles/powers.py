@@ -331,6 +331,9 @@ class Power(Profile):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return (coordinate >= 0) & (self.exponent <= 2)
 
+    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
+        return self.dg(coordinate) / (pi * (self.exponent - 1))
+
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: mdr-5, Eqs. (5.68), (5.70). Parameters: see `Profile`."""
         moment = power_moment(float(self.exponent) - 1, annulus, radius, rtol)

@@ -206,7 +206,13 @@ class Series(Profile):
         )
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        return (coordinate >= 0) & self._positive & (self._powers[-1][1] <= 2)
+        if not self._positive or any(2 < n < 4 for _, n in self._powers):
+            return coordinate < 0
+        return _total(n * (n - 3 if n >= 4 else -1) * d for d, n in self._depths(coordinate)) <= 0
+
+    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
+        slopes = ((kappa(n) * power_slope(c, coordinate, n), n) for c, n in self._powers)
+        return _total(slope / (pi * (n - 1)) for slope, n in slopes)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: mdr-5, Eqs. (5.68), (5.70), superposed. Parameters: see `Profile`."""
