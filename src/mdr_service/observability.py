@@ -7,7 +7,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache
-from time import perf_counter, time
+from time import perf_counter
 from typing import Any, Final
 
 import orjson
@@ -78,7 +78,7 @@ def end(record: RequestRecord, route: str | None) -> None:
     histogram.observe(seconds)
     if _requests.isEnabledFor(logging.INFO):
         line = {
-            "time": _time(time()),
+            "time": datetime.now(UTC),
             "level": "info",
             "message": "request",
             "id": record.id,
@@ -104,17 +104,13 @@ def metrics() -> bytes:
     return generate_latest(REGISTRY)
 
 
-def _time(seconds: float) -> str:
-    return datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds")
-
-
 class JsonLines(logging.Formatter):
     """One line of JSON per log record, with the id of the current request."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the line."""
         line: dict[str, Any] = {
-            "time": _time(record.created),
+            "time": datetime.fromtimestamp(record.created, UTC),
             "level": record.levelname.lower(),
             "message": record.getMessage(),
         }
