@@ -63,9 +63,12 @@ def piecewise(
     """
     if is_number(place) and is_number(start):
         return _number(below(place) if place < start else beyond(place))
-    return np.where(
-        place < start, below(np.minimum(place, start)), beyond(np.maximum(place, start))
-    )
+    first = place < start
+    if not first.any():
+        return broadcast(beyond(place), first.shape)
+    if first.all():
+        return broadcast(below(place), first.shape)
+    return np.where(first, below(np.minimum(place, start)), beyond(np.maximum(place, start)))
 
 
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:

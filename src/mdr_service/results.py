@@ -89,11 +89,10 @@ def about(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Res
 
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
-    if isinstance(source, NormalContact | TangentialContact):
+    if isinstance(source, Contact):
         return [*_notices(query, source), *source.warnings_without_bodies]
-    contact = source if isinstance(source, LoadHistory) else unworn(source)
     own = [each for each in source.warnings if each.code not in validity.OF_BODIES]
-    return [*_notices(query, contact), *own]
+    return [*_notices(query, unworn(source)), *own]
 
 
 def _notices(query: Query, contact: Contact) -> list[Notice]:

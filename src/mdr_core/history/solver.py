@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import conditioning, normal
+from mdr_core import conditioning, normal, validity
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import curved_legs, load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
@@ -169,7 +169,15 @@ class LoadHistory(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the normal contacts, and `accuracy` if rtol is not reached."""
-        found = [notice for notice in self.contact.warnings if notice.code != "accuracy"]
+        return (
+            *validity.notices(validity.of_normal_contact(self.contact)),
+            *self.warnings_without_bodies,
+        )
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        found = [each for each in self.contact.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.rtol:
             text = f"rtol = {self.rtol:.1e} was not reached on this load path; see error_estimate"
             found.append(Notice("accuracy", text))

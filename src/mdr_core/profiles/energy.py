@@ -36,7 +36,8 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
     total = full(0.0, top)
     for start in range(0, places.size, step):
         part = slice(start, start + step)
-        fraction = np.divide.outer(places[part], count)
+        # Loads with fewer pieces have no nodes beyond the lower end.
+        fraction = np.minimum(np.divide.outer(places[part], count), 1.0)
         w = top - fraction * length
         values = density(scale * np.sinh(w)) * np.cosh(w)
         values = np.where(fraction < 1, values, 0.0)
