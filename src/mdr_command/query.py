@@ -104,11 +104,8 @@ def _content(arguments: argparse.Namespace) -> bytes:
         return respond(name, query, media_type, size=size)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")
-    query = parameters.query()
-    try:
-        return respond(name, query, media_type, parameters.members, size)
-    except problems.FAILURES as error:
-        raise parameters.pointed(problems.to_problem(error)) from None
+    with parameters.pointing():
+        return respond(name, parameters.query(), media_type, parameters.members, size)
 
 
 def _options(model: type[Parameters]) -> list[str]:

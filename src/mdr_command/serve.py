@@ -5,7 +5,6 @@ import signal
 import socket
 import sys
 from functools import partial
-from types import FrameType
 
 import uvicorn
 from uvicorn.supervisors import Multiprocess
@@ -66,13 +65,10 @@ def run(arguments: argparse.Namespace) -> int:
         run_server = Multiprocess(config, [listener]).run
     else:
         run_server = partial(uvicorn.Server(config).run, [listener])
-    signal.signal(signal.SIGHUP, signal.SIG_IGN if ignored else _terminate)
+    hang_up = signal.SIG_IGN if ignored else lambda *_: signal.raise_signal(signal.SIGTERM)
+    signal.signal(signal.SIGHUP, hang_up)
     run_server()
     return 0
-
-
-def _terminate(_signal: int, _frame: FrameType | None) -> None:
-    signal.raise_signal(signal.SIGTERM)
 
 
 def _bind(host: str, port: int) -> socket.socket:

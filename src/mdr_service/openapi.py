@@ -40,13 +40,7 @@ TAGS: Final = [
     {"name": "catalogue", "description": "Kinds of profile."},
     {"name": "operation", "description": "Health, metrics and limits."},
 ]
-
-
 _REFERENCE: Final = "#/components/schemas/{model}"
-
-
-def _reference(model: str) -> dict[str, str]:
-    return {"$ref": _REFERENCE.format(model=model)}
 
 
 def _describe_defaults(schema: dict[str, Any]) -> None:
@@ -82,7 +76,8 @@ def extend(app: FastAPI) -> None:
         # The service validates each request of a batch alone, so that its model has any object.
         request = schemas["BatchItem"]["properties"]["request"]
         del request["type"], request["additionalProperties"]
-        request["anyOf"] = [_reference(query.model.__name__) for query in SCHEMAS.values()]
+        models = [query.model.__name__ for query in SCHEMAS.values()]
+        request["anyOf"] = [{"$ref": _REFERENCE.format(model=model)} for model in models]
         schemas["Settings"]["additionalProperties"] = False
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])

@@ -6,6 +6,7 @@ validated like any other; an error in it is reported for the parameter.
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
@@ -15,7 +16,6 @@ from pydantic import (
     ConfigDict,
     Field,
     SkipValidation,
-    ValidationError,
     create_model,
 )
 from pydantic_core import PydanticCustomError
@@ -98,10 +98,8 @@ class Parameters(BaseModel):
         return self.answers.split(",") if self.answers else []
 
     def query(self) -> contacts.Query:
-        """Return the request; raise InputError or ServiceError that points at a parameter."""
-        given = self.model_dump(
-            exclude_unset=True, exclude={"n", "scale", "format", "size", "answers"}
-        )
+        """Return the request; raise InputError or ValidationError, see `pointing`."""
+        given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
         bodies = {f"material.bodies.{index}" for index in "01"}
@@ -116,18 +114,20 @@ class Parameters(BaseModel):
         for group in ("material", "load", "oscillation", "cycles"):
             if group in self.model.model_fields:
                 request.setdefault(group, {})
-        try:
-            return self.model.model_validate(request)
-        except ValidationError as error:
-            raise self.pointed(problems.from_validation(error)) from None
+        return self.model.model_validate(request)
 
-    def pointed(self, error: ServiceError) -> ServiceError:
-        """Return the failure of the request with pointers to the parameters."""
-        errors = [
-            (problems.pointer([self._parameter(place[1:].replace("/", "."))]), detail)
-            for place, detail in error.errors
-        ]
-        return ServiceError(error.type, error.detail, errors, error.retry_after)
+    @contextmanager
+    def pointing(self) -> Iterator[None]:
+        """Convert failures within the context to problems that point at parameters."""
+        try:
+            yield
+        except problems.FAILURES as error:
+            found = problems.to_problem(error)
+            errors = [
+                (problems.pointer([self._parameter(place[1:].replace("/", "."))]), detail)
+                for place, detail in found.errors
+            ]
+            raise ServiceError(found.type, found.detail, errors, found.retry_after) from None
 
     def _join_range(self, given: dict[str, Any]) -> None:
         """Replace the ends of a range by its values."""

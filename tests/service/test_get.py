@@ -458,7 +458,9 @@ def test_head_has_the_headers_of_get(client: Client) -> None:
 
 def test_problem_without_pointers_has_none_for_parameters() -> None:
     given = PARAMETERS["normal"].model_validate({"kind": "cone"})
-    assert given.pointed(problems.INTERNAL_ERROR).errors == ()
+    with pytest.raises(problems.ServiceError) as raised, given.pointing():
+        raise problems.INTERNAL_ERROR
+    assert raised.value.errors == ()
 
 
 NAMES = sorted({name for model in PARAMETERS.values() for name in model.fields})

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Final
 from fastapi import APIRouter, Depends, Query, Request
 from starlette.responses import Response
 
-from mdr_service import problems
 from mdr_service.api.documentation import GET_RESPONSES
 from mdr_service.api.queries import Responder, url_parameters
 from mdr_service.middleware import header
@@ -40,11 +39,8 @@ def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """
         respond = Responder(request, parameters.format, parameters.size)
-        query = parameters.query()
-        try:
-            response = await respond(name, query, parameters.members)
-        except problems.FAILURES as error:
-            raise parameters.pointed(problems.to_problem(error)) from None
+        with parameters.pointing():
+            response = await respond(name, parameters.query(), parameters.members)
         return _cacheable(request, response)
 
     return get
