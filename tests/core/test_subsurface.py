@@ -417,6 +417,15 @@ def test_shapes_of_loads_and_points() -> None:
     assert np.array_equal(alone.xx, result.xx[1])
 
 
+def test_prescribed_radii_of_many_loads_are_exact() -> None:
+    """Next to the edge the pressure has a root, which magnifies rounding errors of the radius."""
+    r, profile = np.array([1 - 1e-9, 1.0]), RoundedPunch(0.5, 2.0)
+    many, one = (normal.solve(profile, E_STAR, contact_radius=a) for a in ([1.0, 2.0], 1.0))
+    result, alone = (stress(each, r, 0.0, 0.0, poissons_ratio=0.3).zz for each in (many, one))
+    assert np.array_equal(result[0], alone)
+    assert np.abs(alone + fields.pressure(one, r)).max() < 1e-12 * float(one.mean_pressure)
+
+
 def test_no_load_gives_no_stress() -> None:
     contact = normal.solve(Paraboloid(2.0), E_STAR, normal_force=0.0)
     result = stress(contact, [0.0, 1.0], 0.0, [0.0, 1.0], poissons_ratio=0.3)

@@ -1,7 +1,6 @@
 """Annuli of the contact on which the tangential load of the foundation has one formula."""
 
 from collections.abc import Iterator
-from dataclasses import fields, replace
 from math import inf, prod
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
@@ -101,9 +100,11 @@ def single(contact: _Loaded, index: int, shape: tuple[int, ...]) -> _Loaded:
             return np.asarray(np.broadcast_to(value, shape).flat[index])
         return value
 
-    return replace(
-        contact, **{each.name: chosen(getattr(contact, each.name)) for each in fields(contact)}
-    )
+    # With the results that are known, because a prescribed radius is more accurate than its
+    # coordinate.
+    part = object.__new__(type(contact))
+    vars(part).update({name: chosen(value) for name, value in vars(contact).items()})
+    return part
 
 
 def every(contact: Contact) -> Iterator[Contact]:

@@ -28,8 +28,8 @@ from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.subsurface.annuli import Contact, annuli_of, normal_of
 from mdr_core.typing import Array, Chosen, Indices
 
-# Number of kernels.
-KERNELS: Final = 7
+# Number of the kernels K.
+_KERNELS: Final = 7
 # Longest panel in t: the nearest singularity lies pi/2 beside the axis, or log(2) beyond an end.
 _PANEL: Final = 2.0
 # Nodes of a panel.
@@ -154,11 +154,8 @@ class Foundation:
         return np.stack([found, k * found])
 
     def moments(self, r: Array, z: Array) -> Array:
-        """Return the moments of q and q_x at points, z > 0, shape (1 or 2, 7, m).
-
-        The last two kernels are those of q_x alone, and zero without it.
-        """
-        total = np.zeros((len(self._levels[0].mass), KERNELS, r.size))
+        """Return the moments of q and q_x, if there is one, at points, z > 0, (1 or 2, 7, m)."""
+        total = np.zeros((1 + self.annuli.sheared, _KERNELS, r.size))
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
         for size, level in reversed(list(enumerate(self._levels))):
             at_r, at_z, high = r[point], z[point], level.high[block]
@@ -198,7 +195,7 @@ class Foundation:
         bottom = np.arcsinh(-np.where(nearer, past_low, past_high + step) / q)
         top = np.arcsinh(-np.where(nearer, past_low - step, past_high) / q)
         length = top - bottom
-        count = 2 ** np.ceil(np.log2(np.maximum(length / _PANEL, 1))).astype(int)
+        count = np.maximum(np.ceil(length / _PANEL), 1).astype(int)
         for panels in np.unique(count):
             u, shares = (part[:, None] for part in composite_rule(_NODES, int(panels)))
             for part in _in_cache(np.flatnonzero(count == panels), u.size):
@@ -245,23 +242,14 @@ def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
 
 def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: Array) -> None:
     """Add sums of mass Im K over nodes, from Re rho^2 there (nodes, m), at points (m,)."""
-    # The root of rho^2 in real numbers takes half the time of a complex one.
-    imaginary = 2 * x * z
-    size = np.hypot(square, imaginary)
-    larger = np.sqrt((size + np.abs(square)) / 2)
-    smaller = imaginary / (2 * larger)
-    inverse, u = np.empty((2, *larger.shape), dtype=complex)
-    inverse.real = np.where(square < 0, smaller, larger)
-    inverse.imag = -np.where(square < 0, larger, smaller)
-    u.real, u.imag = z + inverse.real, x - inverse.imag
-    inverse *= 1 / size
-    second = 1 / u
+    zeta = z + 1j * x
+    rho = np.sqrt(square + 2j * (x * z))
+    inverse, second = 1 / rho, 1 / (rho + zeta)
     mixed, cube = inverse * second, inverse * inverse * inverse
-    kernels = [inverse, (z + 1j * x) * cube, mixed, cube, second]
+    kernels = [inverse, zeta * cube, mixed, cube, second]
     if len(total) > 1:
         kernels += [second * second, mixed * second]
     for number, kernel in enumerate(kernels):
-        for row, sums in zip(
-            total[:, number], np.einsum("knm,nm->km", mass, kernel.imag), strict=True
-        ):
-            np.add.at(row, point, sums)
+        sums = np.einsum("knm,nm->km", mass, kernel.imag)
+        for row, each in zip(total[:, number], sums, strict=True):
+            np.add.at(row, point, each)

@@ -37,19 +37,16 @@ MEASURES: Final = ("von_mises", "maximum_shear")
 
 
 class Peak(NamedTuple):
-    """Largest value of a measure of stress under each load, and its place; shape of the loads.
+    """Largest stress under each load [pressure], and its place [length]; shape of the loads.
 
-    Where the stress is infinite, the place is a radius of infinite pressure on the surface.
+    The field is symmetric, so that y >= 0. Where the stress is infinite, the place is a radius of
+    infinite pressure on the surface.
     """
 
     value: Array
-    """[pressure]"""
     x: Array
-    """[length]"""
     y: Array
-    """[length], >= 0: the field is symmetric."""
     z: Array
-    """[length]"""
 
 
 def largest(

@@ -31,24 +31,18 @@ Place: TypeAlias = tuple[Array, Array, Array, Array]
 
 
 class StressTensor(NamedTuple):
-    """Stresses at points, tension positive, x along the tangential force, z into the body.
+    """Stresses [pressure], tension positive, x along the tangential force, z into the body.
 
     Each has the shape of the points, or of loads and points. Where the pressure is infinite, the
     normal stresses are -inf.
     """
 
     xx: Array
-    """[pressure]"""
     yy: Array
-    """[pressure]"""
     zz: Array
-    """[pressure]"""
     xy: Array
-    """[pressure]"""
     xz: Array
-    """[pressure]"""
     yz: Array
-    """[pressure]"""
 
     @property
     def mean_stress(self) -> Array:
@@ -60,9 +54,8 @@ class StressTensor(NamedTuple):
         """Von Mises' equivalent stress [pressure]; infinite where the stress is."""
         xx, yy, zz, xy, xz, yz = self._finite
         normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-        return np.sqrt(normal / 2 + 3 * (xy**2 + xz**2 + yz**2)) + np.where(
-            np.isinf(self.zz), inf, 0.0
-        )
+        values = np.sqrt(normal / 2 + 3 * (xy**2 + xz**2 + yz**2))
+        return np.where(np.isinf(self.zz), inf, values)
 
     @property
     def principal(self) -> Array:
@@ -75,8 +68,8 @@ class StressTensor(NamedTuple):
     @property
     def maximum_shear(self) -> Array:
         """Largest shear stress, half the difference of the extreme principal ones [pressure]."""
-        values = self._finite.principal
-        return (values[..., 2] - values[..., 0]) / 2 + np.where(np.isinf(self.zz), inf, 0.0)
+        low, _, high = np.moveaxis(self._finite.principal, -1, 0)
+        return np.where(np.isinf(self.zz), inf, (high - low) / 2)
 
     @property
     def _finite(self) -> "StressTensor":
@@ -144,12 +137,13 @@ def stress(
         # Powers next to a cone approach the tractions there slowly. V_r/r and Om_r/r are halves of
         # V_rr and Om_rr.
         p = np.broadcast_to(fields.pressure(normal_of(contact), [0.0])[..., 0], shape).ravel()
-        in_plane = -(1 + 2 * poissons_ratio) / 2 * p
-        along = shear = np.where(np.isinf(p), inf, 0.0)
+        in_plane, none = -(1 + 2 * poissons_ratio) / 2 * p, np.zeros(p.shape)
+        along = none
         if not isinstance(contact, NormalContact):
-            traction = np.ravel(fields.shear_stress(contact, [0.0]))
-            along = np.where(np.isinf(p), inf, traction if body == 1 else -traction)
-        found[..., origin] = np.array([in_plane, in_plane, -p, shear, along, shear])[..., None]
+            along = np.ravel(fields.shear_stress(contact, [0.0])) * (1 if body == 1 else -1)
+        exact = np.array([in_plane, in_plane, -p, none, along, none])
+        infinite = np.isinf(p)[:, None]
+        found[..., origin] = np.where(infinite, found[..., origin], exact[..., None])
     return StressTensor(*found.reshape(6, *shape, *points))
 
 
@@ -170,9 +164,9 @@ def on_rings(under: Foundation, place: Place, nu: float, body: int) -> StressTen
     near = np.abs(np.subtract.outer([0.0, *under.annuli.radius, *breaks], r)).min(axis=0)
     # In points with depths > 0 the kernels are regular.
     depth = np.maximum(z, _SURFACE * near + _SURFACE_AT_EDGE * a)
-    pressed, *sheared = under.moments(r, depth)
-    along = sheared[0] if body == 2 and sheared else -sheared[0] if sheared else 0 * pressed
-    found = under.modulus * of_moments(pressed, along, (r, depth, *direction), nu)
+    moments = under.moments(r, depth)
+    sign = under.annuli.sheared * (1 if body == 2 else -1)
+    found = under.modulus * of_moments(moments[0], sign * moments[-1], (r, depth, *direction), nu)
     for b in under.profile.infinite_pressure_radii:
         infinite = (r == b) & (z == 0) & bool(b <= a)
         found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf

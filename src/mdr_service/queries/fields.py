@@ -25,6 +25,7 @@ from mdr_service.results import (
     without_singular,
 )
 from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, StressQuery
+from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS
 
 # Closed form wherever the equivalent profile is: these take no tolerance.
@@ -122,12 +123,12 @@ def at_end(source: Contact) -> End:
     return end, source.state
 
 
-def require_few_numbers(query: FieldQuery, rows: str = "loads") -> None:
-    """Raise InputError if the response would hold too many numbers."""
-    if query.numbers > SETTINGS.max_numbers:
-        place = "points" if query.points else "radius"
-        detail = f"{rows} times radii times quantities must not exceed {SETTINGS.max_numbers}"
-        raise InputError((place,), detail)
+def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius") -> None:
+    """Raise InputError if the response would hold too many numbers along its axis."""
+    most = SETTINGS.max_numbers
+    if query.numbers > most:
+        detail = f"the response would hold {query.numbers} numbers, and must not exceed {most}"
+        raise InputError(("points" if query.points else axis,), detail)
 
 
 def _require_consistent(query: StressQuery) -> None:

@@ -10,11 +10,10 @@ from mdr_core.history import LoadHistory
 from mdr_core.normal import not_reached
 from mdr_core.subsurface import StressTensor
 from mdr_core.typing import Array
-from mdr_service.queries.fields import at_end, require_loads, solve_loaded
+from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
 from mdr_service.results import Contact, Result, about, checked, notices, without_singular
-from mdr_service.schemas.contacts import Bodies, BodyMaterial
+from mdr_service.schemas.contacts import Bodies
 from mdr_service.schemas.subsurface import SubsurfaceQuery
-from mdr_service.settings import SETTINGS
 
 # A grid that the service chooses extends to this multiple of the largest contact radius.
 _BEYOND: Final = 1.5
@@ -31,10 +30,7 @@ def solve_subsurface(query: SubsurfaceQuery) -> Contact:
     for name in ("x", "z"):
         if query.has(name) == query.has("points"):
             raise InputError((name,), "either x and z or points are needed")
-    if query.numbers > SETTINGS.max_numbers:
-        place = "points" if query.points else "x"
-        detail = f"loads times points times quantities must not exceed {SETTINGS.max_numbers}"
-        raise InputError((place,), detail)
+    require_few_numbers(query, "x")
     body_of(query)
     return solve_loaded(query)
 
@@ -72,9 +68,9 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
             message = "the largest stress is infinite: see its place in `largest`"
             warnings.append(Notice("singular", message))
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
-        given = source, query.material.yield_strength
+        strength = query.material.yield_strength
         onset = {
-            criterion: subsurface.yield_onset_force(*given, measure, **body)
+            criterion: subsurface.yield_onset_force(source, strength, measure, **body)
             for criterion, measure in _CRITERIA.items()
         }
         more["yield_onset_force"] = _by_load(onset)
@@ -93,16 +89,12 @@ def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
     InputError : the body is rigid, or its Poisson's ratio is not given.
     """
     material = query.material
-    if isinstance(material, Bodies):
-        body = material.bodies[query.body - 1]
-        if not isinstance(body, BodyMaterial):
-            raise InputError(("body",), "is rigid: request the stresses of the other body")
-        ratio = body.poissons_ratio
-    else:
-        if not material.has("poissons_ratio"):
-            raise InputError(("material", "poissons_ratio"), "is needed for stresses in a body")
-        ratio = material.poissons_ratio
-    return {"poissons_ratio": ratio, "body": query.body}
+    known = material.bodies[query.body - 1] if isinstance(material, Bodies) else material
+    if isinstance(known, str):
+        raise InputError(("body",), "is rigid: request the stresses of the other body")
+    if not known.has("poissons_ratio"):
+        raise InputError(("material", "poissons_ratio"), "is needed for stresses in a body")
+    return {"poissons_ratio": known.poissons_ratio, "body": query.body}
 
 
 def _by_name(tensor: StressTensor, name: str) -> Array:

@@ -47,7 +47,7 @@ _GRID_END: Final = 1.25
 
 def solve_wear(query: WearQuery) -> LimitingWear:
     """Return the limiting state of fretting wear of a query."""
-    _require_radii(query, "loads")
+    _require_radii(query)
     amplitude = paired("oscillation", query.oscillation, query.load)
     try:
         return wear_limit.solve(solve_normal(query), **friction(query), **amplitude)
@@ -64,7 +64,7 @@ def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
 
 def solve_evolution(query: EvolutionQuery) -> WearEvolution:
     """Return fretting wear over the cycles of a query."""
-    _require_radii(query, "cycles")
+    _require_radii(query)
     try:
         return wear_evolution.solve(
             # The tolerance is that of the integration over the cycles.
@@ -136,13 +136,13 @@ def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQ
     return np.ascontiguousarray(values.reshape(shape))
 
 
-def _require_radii(query: WearQuery | EvolutionQuery, rows: str) -> None:
+def _require_radii(query: WearQuery | EvolutionQuery) -> None:
     """Raise InputError unless radii are given once at most, and where fields need them."""
     if query.radius and query.points:
         raise InputError(("points",), "at most one of radius, points is needed")
     if "quantities" in query.model_fields_set and not query.radii:
         raise InputError(("radius",), "quantities over the radius need radius or points")
-    require_few_numbers(query, rows)
+    require_few_numbers(query)
 
 
 def _in_request(error: InputError) -> InputError:

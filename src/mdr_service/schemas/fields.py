@@ -7,12 +7,7 @@ from pydantic_core import PydanticCustomError
 
 from mdr_service.schemas.contacts import Choice, Load, Query, Tangential, friction
 from mdr_service.schemas.load_paths import History, LoadPath
-from mdr_service.schemas.quantities import (
-    Size,
-    left_out,
-    one_of,
-    quantity,
-)
+from mdr_service.schemas.quantities import Size, left_out, one_of, places, quantity
 from mdr_service.settings import SETTINGS
 
 _Name = TypeVar("_Name", bound=str)
@@ -30,14 +25,9 @@ SHEAR_FIELDS: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
 class FieldQuery(Query):
     """Query of fields at radii that are given, or that the service chooses."""
 
-    radius: list[Size] = quantity(
-        "length",
+    radius: list[Size] = places(
         "Radii r of the fields, in any order. Within four units in the last place of a contact "
-        "radius or slip front a stress has a root, and its rounding is not in `error_estimate`",
-        default=None,
-        min_length=1,
-        max_length=SETTINGS.max_radii,
-        fail_fast=True,
+        "radius or slip front a stress has a root, and its rounding is not in `error_estimate`"
     )
     points: int = quantity(
         "1",

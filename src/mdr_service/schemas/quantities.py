@@ -47,6 +47,13 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
     )
 
 
+def places(meaning: str) -> Any:
+    """Return the optional field of a list of radii, coordinates or depths."""
+    # The first invalid element is reported, not all of a hundred thousand.
+    size = {"min_length": 1, "max_length": SETTINGS.max_radii, "fail_fast": True}
+    return quantity("length", meaning, default=None, **size)
+
+
 def left_out(description: str) -> Any:
     """Return a field that is optional, but not null."""
     return Field(default=None, description=description)

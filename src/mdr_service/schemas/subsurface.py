@@ -4,9 +4,8 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.fields import NEEDED, LoadedQuery, OnceEach
-from mdr_service.schemas.quantities import Signed, Size, one_of, quantity
-from mdr_service.settings import SETTINGS
+from mdr_service.schemas.fields import NEEDED, LoadedQuery, OnceEach, quantities
+from mdr_service.schemas.quantities import Signed, Size, one_of, places, quantity
 
 SubsurfaceName = Literal[
     "stress_xx",
@@ -22,8 +21,6 @@ SubsurfaceName = Literal[
     "principal_3",
     "mean_stress",
 ]
-
-
 _SCHEMA: Final[dict[str, Any]] = {
     "allOf": [
         one_of("load", "history"),
@@ -40,23 +37,9 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
         default=1,
         description="Body 1, with the profile, on which the tangential force acts, or body 2.",
     )
-    x: list[Signed] = quantity(
-        "length",
-        "Coordinates from the axis along a positive tangential force",
-        default=None,
-        min_length=1,
-        max_length=SETTINGS.max_radii,
-        fail_fast=True,
-    )
+    x: list[Signed] = places("Coordinates from the axis along a positive tangential force")
     y: Signed = quantity("length", "Coordinate across it, of all points", default=0.0)
-    z: list[Size] = quantity(
-        "length",
-        "Depths in the body, 0 on its surface",
-        default=None,
-        min_length=1,
-        max_length=SETTINGS.max_radii,
-        fail_fast=True,
-    )
+    z: list[Size] = places("Depths in the body, 0 on its surface")
     points: int = quantity(
         "1",
         "In place of `x` and `z`: number of each to choose, to 1.5 times the largest contact "
@@ -65,12 +48,8 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
         ge=2,
         le=1000,
     )
-    quantities: Annotated[list[SubsurfaceName], OnceEach] = Field(
-        default=["von_mises"],
-        description="Stresses to compute, each once; tension is positive, and principal_1 ≥ "
-        "principal_2 ≥ principal_3",
-        min_length=1,
-        json_schema_extra={"uniqueItems": True},
+    quantities: Annotated[list[SubsurfaceName], OnceEach] = quantities(
+        "tension is positive, and principal_1 ≥ principal_2 ≥ principal_3", default=["von_mises"]
     )
     largest: bool = Field(
         default=False,
