@@ -24,12 +24,13 @@ from mdr_core.profiles import (
     Tabulated,
     TruncatedCone,
 )
-from mdr_core.wear import evolution, limit
-from mdr_core.wear.rates import WearModel
+from mdr_core.wear import evolution, integrator, limit
 from tests.oracles.wear_explicit import Controls, Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from mdr_core.wear.annulus_state import AnnulusModel
 
     Array = NDArray[np.float64]
 
@@ -300,13 +301,13 @@ def test_error_within_estimate(kind: str, control: str) -> None:
 def test_cost_is_independent_of_the_number_of_cycles(monkeypatch: pytest.MonkeyPatch) -> None:
     # Counts evaluations of the rate, which dominate the run time.
     called: list[int] = []
-    rates = WearModel.rates
+    rates = integrator.rates
 
-    def counted(model: WearModel, vector: Array) -> Array:
+    def counted(model: AnnulusModel, vector: Array) -> Array:
         called[-1] += 1
         return rates(model, vector)
 
-    monkeypatch.setattr(WearModel, "rates", counted)
+    monkeypatch.setattr(integrator, "rates", counted)
     for last in (1e4, 1e9):
         called.append(0)
         assert worn.__wrapped__("paraboloid", CONTROLS[1], cycles=(last,)).worn_volume[0] > 0

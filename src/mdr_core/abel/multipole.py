@@ -26,8 +26,6 @@ _BEYOND: Final = 1 + 2 * FAR + 2 * np.sqrt(FAR + FAR * FAR)
 _SHIFT: Final = (_BEYOND - 1) / 2
 # Pairs of a block and a point that are processed at once: their arrays stay in cache.
 _PAIRS: Final = 4096
-# Blocks that are joined at once, for the same reason.
-_BLOCKS: Final = 512
 # Replaces a distance of zero from a node.
 _TINY: Final = 1e-290
 
@@ -111,8 +109,6 @@ class Multipoles:
         total = np.zeros_like(base)
         count = self.masses.shape[1]
         places = _nodes(count)[2]
-        room, taken = np.empty((2, _PAIRS, count))
-        ones = np.ones(count)
         for block, point in pairs(low, high):
             at, edge = base[point], self.edge[block]
             gap = at - edge
@@ -123,13 +119,8 @@ class Multipoles:
             gap *= at + edge
             np.abs(gap, out=gap)
             gap /= self.length[block]
-            root = room[: block.size]
-            np.add(gap[:, None], places, out=root)
-            np.sqrt(root, out=root)
-            # Without a mode, `take` would copy the rows once more.
-            masses = self.masses.take(block, axis=0, out=taken[: block.size], mode="clip")
-            np.divide(masses, root, out=root)
-            add(total, point, root @ ones)
+            root = np.sqrt(gap[:, None] + places)
+            add(total, point, (self.masses[block] / root).sum(axis=1))
         return total
 
 
@@ -150,11 +141,7 @@ def pairs(low: Indices, high: Indices) -> Iterator[tuple[Indices, Indices]]:
 
 def add(total: Array, point: Indices, values: Array) -> None:
     """Add the values of pairs, some of them at the same point, to the totals of their points."""
-    # The pairs of a portion are mostly of neighbouring points.
-    low, high = (
-        (0, total.size) if total.size <= _PAIRS else (int(point.min()), int(point.max()) + 1)
-    )
-    total[low:high] += np.bincount(point - low, weights=values, minlength=high - low)
+    total += np.bincount(point, weights=values, minlength=total.size)
 
 
 def multipoles(edges: Array, masses: Array, *, above: bool) -> Multipoles:
@@ -178,9 +165,7 @@ def multipoles(edges: Array, masses: Array, *, above: bool) -> Multipoles:
         near, far = (part[1], part[0]) if above else part
         v = np.concatenate([np.multiply.outer(places, near), near + np.multiply.outer(places, far)])
         both = np.concatenate([upper, lower] if above else [lower, upper])
-        for start in range(0, joined, _BLOCKS):
-            some = slice(start, start + _BLOCKS)
-            total[:, block][:, some] = at_nodes(v[:, some], both[:, some], count)
+        total[:, block] = at_nodes(v, both, count)
         children += size
     total /= np.sqrt(length)
     rows = np.ascontiguousarray(total.T)

@@ -9,7 +9,6 @@ import numpy as np
 from mdr_core.abel.piecewise_quadratic import PiecewiseQuadratic, slope_source
 from mdr_core.abel.subpanels import FEW, LONGEST, Subpanels, fit_points, fitted
 from mdr_core.abel.two_root import inverse_hypot
-from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array
 
 # Points in a subpanel where those of a spline do not suffice.
@@ -67,8 +66,12 @@ def resolve(knots: Array, slope: Array, levels: Array, *, spline: bool = False) 
     by_depth, by_force, error = _fitted(
         source, left, length, pole, (FEW, _MANY) if spline else (_MANY,)
     )
-    first = _behind_flat if left[0] > 0 else _at_axis
-    by_depth[0], by_force[0] = first(slope[:, 0], left[0], length[0], by_depth.shape[1])
+    if left[0] > 0:
+        by_depth[0], by_force[0] = _behind_flat(source, left[0], length[0], pole[0])
+    else:
+        # Next to the axis s = x and g' is a polynomial.
+        by_depth[0, :3] = slope[:, 0] * [np.pi / 2, 2.0, 3 * np.pi / 4] * length[0] ** np.arange(3)
+        by_force[0, 1:4] = by_depth[0, :3] * length[0]
     for low, high in levels.tolist():
         by_depth[(left >= low) & (right <= high)] = 0.0
         by_force[(left >= low) & (right <= high)] = 0.0
@@ -119,34 +122,16 @@ def _fitted(
     return by_depth, by_force, error
 
 
-def _at_axis(slope: Array, left: float, length: float, count: int) -> tuple[Array, Array]:
-    """Coefficients as of `_fitted` next to the axis, where s = x and g' is a polynomial."""
-    del left
-    by_depth, by_force = np.zeros((2, count))
-    by_depth[:3] = slope * [np.pi / 2, 2.0, 3 * np.pi / 4] * length ** np.arange(3)
-    by_force[1:4] = by_depth[:3] * length
-    return by_depth, by_force
-
-
-def _behind_flat(slope: Array, left: float, length: float, count: int) -> tuple[Array, Array]:
-    """Coefficients as of `_fitted` next to a flat, where both are series in s^2.
-
-    With r^2 = b^2 + s^2 (1 - y^2) G is a sum of s^(2k + 1) int_0^1 (1 - y^2)^k/(r (b + r)^k) dy.
-    """
+def _behind_flat(
+    source: PiecewiseQuadratic, left: float, length: float, pole: float
+) -> tuple[Array, Array]:
+    """Coefficients as of `_fitted` next to a flat, where G/s is a series in s^2."""
     points, _, _ = fit_points(_TERMS)
-    nodes, weights = gauss_legendre(2 * _TERMS)
-    y, weights = nodes[_TERMS:], weights[_TERMS:]
-    square = length * length
-    r = np.sqrt(left * left + np.multiply.outer(square * points, 1 - y * y))
-    x = np.sqrt(left * left + square * points)
-    c0, c1, c2 = slope
-    h = c0 + left * c1, 2 * (c1 + left * c2), 3 * c2
-    series = np.zeros((2, _TERMS + 3))
-    for divisor, row in zip((x, np.ones_like(x)), series, strict=True):
-        row[:_TERMS] = fitted(c0 * left / divisor)
-        for k in range(3):
-            part = ((1 - y * y) ** k / (r * (left + r) ** k)) @ weights
-            row[k + 1 : k + 1 + _TERMS] += h[k] * square ** (k + 1) * fitted(part / divisor)
-    result = np.zeros((2, count))
-    result[:, : 2 * _TERMS + 6 : 2] = series[:, : (count + 1) // 2]
-    return result[0], result[1]
+    s = length * np.sqrt(points)
+    x = np.hypot(left, s)
+    value = source.transform(np.full(_TERMS, left), s * s / (left + x)) / s * length**2
+    by_depth, by_force = np.zeros((2, _MANY + 1))
+    by_force[0], by_force[2 : 2 * _TERMS + 2 : 2] = pole, fitted(value)
+    by_depth[: 2 * _TERMS : 2] = pole * fitted(1 / x)
+    by_depth[2 : 2 * _TERMS + 2 : 2] += fitted(value / x)
+    return by_depth, by_force

@@ -10,13 +10,21 @@ divided by mu E*/G*. Source: notes, §11.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.profiles import Profile
+from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps
-from mdr_core.wear.surface_tilt import SurfaceTilt
+from mdr_core.wear.surface_tilt import COUNT, SurfaceTilt
+
+# Up to this part of the stick radius a step of g is the integral of its slope: a difference has
+# a rounding error of 1e-16/_NARROW, the rule of 8 points an error of _NARROW^16.
+_NARROW: Final = 0.05
+# Points of this rule.
+_POINTS: Final = 8
 
 
 class Held(NamedTuple):
@@ -43,14 +51,43 @@ class Held(NamedTuple):
         return self.force == self.displacement
 
 
-class UnwornShape(Protocol):
+@dataclass(frozen=True)
+class UnwornShape:
     """Equivalent profile g_0 before wear, in the units of the annulus."""
+
+    profile: Profile
+    stick: float
+    """c_0 [length]."""
+    length_unit: float
+    """b_0 [length]."""
+    depth_unit: float
+    """D_0 [length]."""
+    end: float
+    """Radius up to which the profile is evaluated [length]."""
+
+    @cached_property
+    def singular(self) -> Array:
+        """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
+        profile = self.profile
+        inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
+        return np.append(profile.contact_radius(inner), profile.domain)
 
     def rise(self, shift: float, offset: Array) -> Array:
         """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
+        stick, by = self.stick + self.length_unit * shift, self.length_unit * offset
+        # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
+        near = np.abs(self.singular - stick) < 2 * by[-1]
+        if by[-1] > _NARROW * stick or near.any():
+            g = self.profile.g(np.minimum(np.append(stick, stick + by), self.end))
+            return np.asarray((g[1:] - g[0]) / self.depth_unit)
+        nodes, weights = gauss_legendre(_POINTS)
+        at = stick + np.multiply.outer(by, (1 + nodes) / 2)
+        return np.asarray(by / 2 * (self.profile.dg(at) @ weights) / self.depth_unit)
 
     def slope(self, x: Array) -> Array:
         """Return g_0'(x)."""
+        slope = self.profile.dg(np.minimum(x * self.length_unit, self.end))
+        return np.asarray(slope * (self.length_unit / self.depth_unit))
 
 
 @dataclass(frozen=True)
@@ -58,7 +95,7 @@ class AnnulusState:
     """The worn annulus at one number of cycles, from the vector of the integrator.
 
     The vector holds (sigma - S_0)/s at all nodes but the last, S_0 being sigma of the unworn
-    shape; b, c - c_0, d - d_0, the work so far; and the surface's tilt outside the contact.
+    shape; b, c - c_0, d - d_0, the work so far; and the series of the tilt outside the contact.
     """
 
     model: "AnnulusModel"
@@ -132,8 +169,11 @@ class AnnulusState:
     @cached_property
     def tilt(self) -> tuple[float, float]:
         """Tilt of the surface at the contact's edge, and its slope."""
-        tilt = self.model.tilt
-        return tilt.at(self.vector[-tilt.count :], self.growth) if tilt else (0.0, 0.0)
+        if not self.model.tilt:
+            return 0.0, 0.0
+        series = self.vector[self.model.first_edge + 4 :]
+        value, slope = (terms @ series for terms in self.model.tilt.basis(self.growth))
+        return float(value), float(slope)
 
     @cached_property
     def worn(self) -> Array:
@@ -200,5 +240,5 @@ class AnnulusModel:
     def start(self) -> Array:
         """Vector before the first cycle."""
         edges = (1.0, 0.0, 0.0, 0.0)
-        tilt = np.zeros(self.tilt.count if self.tilt else 0)
+        tilt = np.zeros(COUNT if self.tilt else 0)
         return np.concatenate([np.zeros(self.first_edge), edges, tilt])

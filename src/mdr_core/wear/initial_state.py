@@ -1,4 +1,4 @@
-"""Partial slip before the first cycle: what is held, the units of the rates, the unworn shape."""
+"""Partial slip before the first cycle: what is held, and the units of the rates."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,12 +7,9 @@ from typing import Final
 import numpy as np
 
 from mdr_core.normal import NormalContact
-from mdr_core.quadrature import gauss_legendre
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import annulus_maps
-from mdr_core.wear.annulus_state import Held
-from mdr_core.wear.rates import WearModel
+from mdr_core.wear.annulus_state import AnnulusModel, Held, UnwornShape
 from mdr_core.wear.surface_tilt import SurfaceTilt
 
 # Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
@@ -22,11 +19,6 @@ _GROWTH: Final = 4.0
 _VANISHED: Final = 1e-3
 # As near to the end of a profile as its functions are evaluated: they may be infinite there.
 _ALMOST: Final = 1 - 1e-9
-# Up to this part of the stick radius a step of g is the integral of its slope: a difference has
-# a rounding error of 1e-16/_NARROW, the rule of 8 points an error of _NARROW^16.
-_NARROW: Final = 0.05
-# Points of this rule.
-_POINTS: Final = 8
 
 
 @dataclass(frozen=True)
@@ -98,7 +90,7 @@ class InitialState:
         least = flat + _VANISHED * (self.stick - flat)
         return self.reach / self.length_unit, least / self.length_unit
 
-    def model(self, nodes: int) -> WearModel:
+    def model(self, nodes: int) -> AnnulusModel:
         """Return the rates of wear on so many nodes, in their units.
 
         A shrinking stick zone takes half as many again: the front behind it is eight times thinner
@@ -108,39 +100,6 @@ class InitialState:
         unit = self.length_unit
         stick, width = self.stick / unit, float(self.sideways.slip_width) / unit
         tilt = SurfaceTilt(stick, width, self.reach / unit) if self.held.stick_grows else None
-        return WearModel(annulus_maps(nodes), _Unworn(self), self.held, stick, width, tilt)
-
-
-@dataclass(frozen=True)
-class _Unworn:
-    """Equivalent profile before wear, in the units of the rates."""
-
-    state: InitialState
-
-    @cached_property
-    def singular(self) -> Array:
-        """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
-        profile = self.state.contact.profile
-        inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
-        return np.append(profile.contact_radius(inner), profile.domain)
-
-    def rise(self, shift: float, offset: Array) -> Array:
-        """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
-        state, profile = self.state, self.state.contact.profile
-        unit = state.length_unit
-        stick, by = state.stick + unit * shift, unit * offset
-        # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
-        near = np.abs(self.singular - stick) < 2 * by[-1]
-        if by[-1] > _NARROW * stick or near.any():
-            end = state.domain
-            g = profile.g(np.minimum(np.append(stick, stick + by), end))
-            return np.asarray((g[1:] - g[0]) / state.depth_unit)
-        nodes, weights = gauss_legendre(_POINTS)
-        at = stick + np.multiply.outer(by, (1 + nodes) / 2)
-        return np.asarray(by / 2 * (profile.dg(at) @ weights) / state.depth_unit)
-
-    def slope(self, x: Array) -> Array:
-        """Return g_0'(x)."""
-        state, unit = self.state, self.state.length_unit
-        slope = state.contact.profile.dg(np.minimum(x * unit, state.domain))
-        return np.asarray(slope * (unit / state.depth_unit))
+        parts = self.stick, unit, self.depth_unit, self.domain
+        shape = UnwornShape(self.contact.profile, *parts)
+        return AnnulusModel(annulus_maps(nodes), shape, self.held, stick, width, tilt)

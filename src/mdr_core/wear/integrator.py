@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 from mdr_core.errors import AccuracyError
 from mdr_core.typing import Array
-from mdr_core.wear.annulus_state import AnnulusState
-from mdr_core.wear.rates import WearModel
+from mdr_core.wear.annulus_state import AnnulusModel, AnnulusState
+from mdr_core.wear.rates import jacobian, rates
 
 # Absolute tolerance, as a part of the relative one and of the wear so far.
 _ABSOLUTE: Final = 0.01
@@ -64,7 +64,7 @@ class Integration(NamedTuple):
 
 
 def integrate(
-    model: WearModel, cycles: Array, rtol: float, ends: tuple[float, float]
+    model: AnnulusModel, cycles: Array, rtol: float, ends: tuple[float, float]
 ) -> Integration:
     """Return the states of the annulus at ascending numbers of cycles.
 
@@ -88,13 +88,13 @@ def integrate(
         raise AccuracyError(detail, ("cycles",))
     calls = 0
 
-    def rates(_time: float, vector: Array) -> Array:
+    def counted(_time: float, vector: Array) -> Array:
         nonlocal calls
         calls += 1
         if calls > _MOST_CALLS:
             detail = "the wear over the cycles takes too many steps: fewer nodes may take less"
             raise AccuracyError(detail, ("resolution",))
-        return model.rates(vector)
+        return rates(model, vector)
 
     vector, now, stopped = model.start, 0.0, [inf, inf, inf]
     steps, states = [vector], []
@@ -102,14 +102,14 @@ def integrate(
         # A failure of LSODA is reported by an error below, not by a warning.
         with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
             run = solve_ivp(
-                rates,
+                counted,
                 (now, halt),
                 vector,
                 method="LSODA",
                 dense_output=True,
                 rtol=rtol,
                 atol=_ABSOLUTE * rtol * min(halt, 1.0) * _scale(model),
-                jac=lambda _time, vector: model.jacobian(vector),
+                jac=lambda _time, vector: jacobian(model, vector),
                 events=_events(model, rtol, ends),
             )
         if run.status < 0 or not np.isfinite(run.y).all():
@@ -143,7 +143,7 @@ def _halts(cycles: Array) -> Iterator[float]:
         yield last
 
 
-def _scale(model: WearModel) -> Array:
+def _scale(model: AnnulusModel) -> Array:
     """Return the sizes of the changes of the vector by wear."""
     edge = model.first_edge
     # In a narrow annulus all but b and the work change by a part b_0/a_0 only.
@@ -153,7 +153,7 @@ def _scale(model: WearModel) -> Array:
     return scale
 
 
-def _events(model: WearModel, rtol: float, ends: tuple[float, float]) -> list[Any]:
+def _events(model: AnnulusModel, rtol: float, ends: tuple[float, float]) -> list[Any]:
     """Return the events that end the integration, in the order of `Integration`."""
     latest = AnnulusState(model, model.start)
 
@@ -176,7 +176,7 @@ def _events(model: WearModel, rtol: float, ends: tuple[float, float]) -> list[An
     ]
 
 
-def _trail(model: WearModel, steps: list[Array]) -> StickTrail:
+def _trail(model: AnnulusModel, steps: list[Array]) -> StickTrail:
     """Return the trail of a growing stick zone."""
     if not model.held.stick_grows:
         return NO_TRAIL

@@ -1,58 +1,200 @@
 """Rates of change of the worn annulus with the number of cycles, and their Jacobian matrix.
 
-In the units of `mdr_core.wear.annulus_state`. Source: notes, §11.
+The contact's edge, the stick edge and the depth follow from the quantities that are constant. In
+the units of `mdr_core.wear.annulus_state`. Source: notes, §11.
 """
 
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
+from mdr_core.errors import AccuracyError
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusModel, AnnulusState
-from mdr_core.wear.edge_rates import EdgeBalance
 
 # Step of a difference quotient, about the root of the rounding error.
 _STEP: Final = 1e-7
+# Rate at which the integrator's error of gamma(a) - D decays: fast beside the wear, whose unit is
+# 1, and slow beside the steps of the first cycles.
+_RETURN: Final = 10.0
 
 
-class WearModel(AnnulusModel):
-    """Right-hand side of the wear law on the nodes of the annulus."""
+def rates(model: AnnulusModel, vector: Array) -> Array:
+    """Return the derivative of the vector with respect to the scaled number of cycles."""
+    return _EdgeBalance(AnnulusState(model, vector)).rates
 
-    def rates(self, vector: Array) -> Array:
-        """Return the derivative of the vector with respect to the scaled number of cycles."""
-        return self._rates(EdgeBalance(AnnulusState(self, vector)))
 
-    def _rates(self, balance: EdgeBalance) -> Array:
-        edges = balance.edges
-        worn = balance.worn @ np.append(1.0, edges)
-        found = [worn[:-1], edges, np.array([balance.state.power])]
-        if self.tilt:
-            found.append(self.tilt.rates(balance.state.shift) * balance.passing)
+def jacobian(model: AnnulusModel, vector: Array) -> Array:
+    """Return the derivative of the rates with respect to the vector, for Newton's method.
+
+    By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
+    rates is neglected.
+    """
+    balance = _EdgeBalance(AnnulusState(model, vector))
+    state, n, maps = balance.state, model.first_edge, model.maps
+    in_worn, in_edges = balance.gradients()
+    in_omega = state.end**2 * maps.mean * (state.drive - 2 * state.gamma)
+    gradient = np.concatenate([in_worn[:-1], in_edges, (in_omega @ maps.from_slip)[None]])
+    found = np.zeros((vector.size, vector.size))
+    if model.tilt:
+        passing = in_edges[2] - balance.stick_slope * in_edges[1]
+        rows = np.multiply.outer(model.tilt.rates(state.shift), passing)
+        gradient = np.concatenate([gradient, rows])
+        values, _ = model.tilt.basis(state.growth)
+        found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], values / state.end)
+    found[:, :n] = gradient[:, :-1]
+    for edge in balance.unknown:
+        step = _STEP * (state.offset[-1] if edge == 1 else 1.0)
+        moved = vector.copy()
+        moved[n + edge] += step
+        found[:, n + edge] = (rates(model, moved) - balance.rates) / step
+    return found
+
+
+class _EdgeBalance:
+    """Rates of the edges from what stays constant; all others are linear in them.
+
+    Columns: by wear alone, and per unit of the rates of b, c and d.
+    """
+
+    def __init__(self, state: AnnulusState) -> None:
+        self.state = state
+        self.model, self.held, self.maps = state.model, state.model.held, state.model.maps
+        self.moves = self.held.stick_moves
+        stick = np.array([state.stick])
+        self.stick_slope = float(self.model.shape.slope(stick)[0]) if self.moves else 0.0
+        # dx/dN of the nodes per unit of the rates of b and c.
+        b, c = state.end, state.stick
+        self.motion = np.stack([b * self.maps.squares, np.full(state.x.size, c)]) / state.x
+
+    @cached_property
+    def inward(self) -> tuple[Array, Array]:
+        """2 z d worn/dz for material that moves inwards, and its gradient in `worn`."""
+        return self.maps.inward @ self.state.worn, self.maps.inward
+
+    @cached_property
+    def outward(self) -> tuple[Array, Array]:
+        """2 z d worn/dz for material that moves outwards, and its gradient in `worn`.
+
+        It has worn exponentially with its distance from the edge of the shrinking stick zone, so
+        that v differs by orders of magnitude between neighbours: the slope is that of ln(v/z).
+        """
+        maps, state = self.maps, self.state
+        v, first = state.slip, state.slip - state.worn
+        steep = 2 + maps.outward @ np.log(v / maps.squares)
+        along = state.worn * steep + first * (maps.outward @ np.log1p(state.worn / first))
+        return along, np.diag(steep) + v[:, None] * maps.outward / v
+
+    @property
+    def past_stick(self) -> tuple[Array, Array]:
+        """Rate of `worn` per unit of the rate of c, and its gradient in `worn`."""
+        along, gradient = self.inward if self.held.stick_grows else self.outward
+        state = self.state
+        scale = state.stick / (state.end**2 * self.maps.squares)
+        return scale * (state.worn + along), scale[:, None] * (np.eye(along.size) + gradient)
+
+    @cached_property
+    def worn(self) -> Array:
+        """Rates of `worn` at nodes that move with the edges, (n, 4)."""
+        state, b = self.state, self.state.end
+        columns = np.zeros((state.x.size, 4))
+        columns[:, 0] = state.pressure * state.slip
+        columns[:, 1] = self.inward[0] / b
+        if self.moves:
+            columns[:, 2] = self.past_stick[0]
+        if self.held.stick_grows:
+            # The growth of w_c lowers all slip outside.
+            zeta = b * np.sqrt(self.maps.squares)
+            lever = 2 / np.pi * np.arctan2(zeta, state.stick) / zeta
+            columns[:, 2] += lever * self.stick_slope
+            columns[:, 3] = -lever
+            value, slope = state.tilt
+            columns[-1, 1] = (slope * self.motion[0, -1] - value / b) / b
+            columns[-1, 2] = slope * self.motion[1, -1] / b + lever[-1] * self.stick_slope
+        return columns
+
+    @cached_property
+    def edges(self) -> Array:
+        """Rates of b, c and d."""
+        found = np.zeros(3)
+        found[self.unknown] = self._solve(self.rows[:, 0])
+        return found
+
+    @cached_property
+    def rates(self) -> Array:
+        """Rates of the whole vector."""
+        worn = self.worn @ np.append(1.0, self.edges)
+        found = [worn[:-1], self.edges, np.array([self.state.power])]
+        if self.model.tilt:
+            passing = self.edges[2] - self.stick_slope * self.edges[1]
+            found.append(self.model.tilt.rates(self.state.shift) * passing)
         return np.concatenate(found)
 
-    def jacobian(self, vector: Array) -> Array:
-        """Return the derivative of the rates with respect to the vector, for Newton's method.
+    @property
+    def unknown(self) -> list[int]:
+        """Indices of the edges that move, of b, c and d."""
+        return [0] + [1] * self.moves + [2] * self.held.force
 
-        By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
-        rates is neglected.
+    def _solve(self, right: Array) -> Array:
+        square = self.rows[:, 1:][:, self.unknown]
+        try:
+            return np.asarray(-np.linalg.solve(square, right))
+        except np.linalg.LinAlgError:
+            # Where the surface at the edge is flat the edge may move at any rate.
+            raise AccuracyError("the wear over the cycles was not resolved at its edges") from None
+
+    @cached_property
+    def rows(self) -> Array:
+        """Rates that are zero: of gamma(a) - D, of the constant force, of gamma(c).
+
+        One row for each unknown edge, (k, 4).
         """
-        balance = EdgeBalance(AnnulusState(self, vector))
-        state, n = balance.state, self.first_edge
-        in_worn, in_edges = balance.gradients()
-        in_omega = state.end**2 * self.maps.mean * (state.drive - 2 * state.gamma)
-        gradient = np.concatenate([in_worn[:-1], in_edges, (in_omega @ self.maps.from_slip)[None]])
-        found = np.zeros((vector.size, vector.size))
-        if self.tilt:
-            passing = in_edges[2] - balance.stick_slope * in_edges[1]
-            rows = np.multiply.outer(self.tilt.rates(state.shift), passing)
-            gradient = np.concatenate([gradient, rows])
-            weights = self.tilt.weights(state.growth) / state.end
-            found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], weights)
-        found[:, :n] = gradient[:, :-1]
-        base = self._rates(balance)
-        for edge in balance.unknown:
-            step = _STEP * (state.offset[-1] if edge == 1 else 1.0)
-            moved = vector.copy()
-            moved[n + edge] += step
-            found[:, n + edge] = (self.rates(moved) - base) / step
-        return found
+        state, held, maps = self.state, self.held, self.maps
+        a, b, c = state.x[-1], state.end, state.stick
+        # Rates of (gamma - gamma_0)/x at the moving nodes, and of omega at the edge.
+        worn = maps.from_slip @ self.worn
+        omega = worn[-1].copy()
+        slope = float(self.model.shape.slope(state.x[-1:])[0])
+        omega[1:3] += (slope - state.unworn[-1]) / a * self.motion[:, -1]
+        omega[2] -= self.stick_slope / a
+        # Rates of D and of the level d - D.
+        drive = np.array([0.0, 0.0, 0.0, float(held.force and not held.displacement)])
+        level = np.array([0.0, 0.0, 0.0, float(held.stick_grows)])
+        if held.stick_shrinks:
+            drive[2], level[2] = -self.stick_slope, self.stick_slope
+        edge = np.array([0.0, *self.motion[:, -1], 0.0])
+        rows = [a * omega + edge * state.omega[-1] - drive]
+        rows[0][0] += _RETURN * (state.gamma[-1] - state.drive)
+        if held.force or held.stick_shrinks:
+            # Rate of int_c^a (gamma - D) dx, with gamma(a) = D. The integral of gamma_0 changes at
+            # its ends only: by values at nodes it would jump where one passes a break of the slope.
+            risen = b * b * (maps.mean @ worn) - edge * a * state.worn_omega[-1]
+            risen[1] += 2 * state.lifted / b
+            risen[2] -= (a - c) * self.stick_slope
+            risen += (a - c) * level
+            rows.append(np.array([0, 0, 0, a]) - risen if held.force else c * drive - risen)
+        if held.stick_grows:
+            rows.append(np.array([0.0, 0.0, state.gamma[0] / state.offset[0], -1.0]))
+        return np.array(rows)
+
+    def gradients(self) -> tuple[Array, Array]:
+        """Return the gradients in `worn` of its own rates and of the edges', (n, n) and (3, n)."""
+        state, maps = self.state, self.maps
+        b, (end, stick, _) = state.end, self.edges
+        stress = maps.to_pressure @ (state.x[:, None] * maps.from_slip) / b
+        direct = state.slip[:, None] * stress + end / b * self.inward[1]
+        direct += np.diag(state.pressure)
+        if self.moves:
+            direct += stick * self.past_stick[1]
+        direct[-1] = 0.0
+        last, mean = maps.from_slip[-1], maps.mean @ maps.from_slip
+        edge = end * self.motion[0, -1] + stick * self.motion[1, -1]
+        rows = [state.x[-1] * (last @ direct) + (edge + _RETURN * state.x[-1]) * last]
+        if self.held.force or self.held.stick_shrinks:
+            rows.append(-b * b * (mean @ direct) - 2 * b * end * mean)
+        if self.held.stick_grows:
+            rows.append(stick * state.x[0] / state.offset[0] * maps.from_slip[0])
+        edges = np.zeros((3, state.x.size))
+        edges[self.unknown] = self._solve(np.array(rows))
+        return direct + self.worn[:, 1:] @ edges, edges
