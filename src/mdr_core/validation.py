@@ -64,3 +64,20 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
     if bad.any():
         detail = "the contact under this load leaves the range of double precision"
         raise InputError((*path, *first_index(bad)), detail, bad)
+
+
+def checked_radii(radius: ArrayLike, end: float = inf) -> Array:
+    """Return the radii as an array (m,).
+
+    Raises
+    ------
+    InputError : no radius; one that is negative, not finite or beyond the end.
+    """
+    r = np.atleast_1d(np.asarray(radius, dtype=float))
+    if not r.size:
+        raise InputError(("radius",), "at least one radius is needed")
+    require_not_negative(("radius",), r)
+    if r.max() > end:
+        detail = f"the profile ends at radius {end:.12g}"
+        raise InputError(("radius", *first_index(r > end)), detail)
+    return r

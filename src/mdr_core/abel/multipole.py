@@ -109,6 +109,8 @@ class Multipoles:
         total = np.zeros_like(base)
         count = self.masses.shape[1]
         places = _nodes(count)[2]
+        room, taken = np.empty((2, _PAIRS, count))
+        ones = np.ones(count)
         for block, point in pairs(low, high):
             at, edge = base[point], self.edge[block]
             gap = at - edge
@@ -119,8 +121,13 @@ class Multipoles:
             gap *= at + edge
             np.abs(gap, out=gap)
             gap /= self.length[block]
-            root = np.sqrt(gap[:, None] + places)
-            add(total, point, (self.masses[block] / root).sum(axis=1))
+            root = room[: block.size]
+            np.add(gap[:, None], places, out=root)
+            np.sqrt(root, out=root)
+            # Without a mode, `take` would copy the rows once more.
+            masses = self.masses.take(block, axis=0, out=taken[: block.size], mode="clip")
+            np.divide(masses, root, out=root)
+            add(total, point, root @ ones)
         return total
 
 
@@ -141,7 +148,11 @@ def pairs(low: Indices, high: Indices) -> Iterator[tuple[Indices, Indices]]:
 
 def add(total: Array, point: Indices, values: Array) -> None:
     """Add the values of pairs, some of them at the same point, to the totals of their points."""
-    total += np.bincount(point, weights=values, minlength=total.size)
+    # The pairs of a portion are mostly of neighbouring points.
+    low, high = (
+        (0, total.size) if total.size <= _PAIRS else (int(point.min()), int(point.max()) + 1)
+    )
+    total[low:high] += np.bincount(point - low, weights=values, minlength=high - low)
 
 
 def multipoles(edges: Array, masses: Array, *, above: bool) -> Multipoles:

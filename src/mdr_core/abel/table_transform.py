@@ -67,7 +67,7 @@ def resolve(knots: Array, slope: Array, levels: Array, *, spline: bool = False) 
         source, left, length, pole, (FEW, _MANY) if spline else (_MANY,)
     )
     if left[0] > 0:
-        by_depth[0], by_force[0] = _behind_flat(source, left[0], length[0], pole[0])
+        by_depth[0], by_force[0] = _behind_flat(source, left[0], length[0], slope[0, 0] * left[0])
     else:
         # Next to the axis s = x and g' is a polynomial.
         by_depth[0, :3] = slope[:, 0] * [np.pi / 2, 2.0, 3 * np.pi / 4] * length[0] ** np.arange(3)

@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel import Annulus
-from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import require_not_negative
+from mdr_core.validation import checked_radii
 
 # Values of a field under the load of this index, at some radii.
 Field = Callable[[int, Array], Array]
@@ -121,10 +120,7 @@ def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:
     ------
     InputError : no radius, or one that is negative or not finite.
     """
-    r = np.atleast_1d(np.asarray(radius, dtype=float))
-    if r.size == 0:
-        raise InputError(("radius",), "at least one radius is needed")
-    require_not_negative(("radius",), r)
+    r = checked_radii(radius)
     out = np.empty((prod(shape), r.size))
     for start in range(0, r.size, _BLOCK):
         part = slice(start, start + _BLOCK)

@@ -1,13 +1,11 @@
 """Arguments that the limiting state and the wear over the cycles have in common."""
 
-from math import inf
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
-from mdr_core.validation import first_index, require_not_negative
+from mdr_core.validation import require_not_negative
 
 
 def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tuple[str, Array]:
@@ -26,20 +24,3 @@ def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tu
         raise InputError(path, "at least one amplitude is needed")
     require_not_negative(path, values)
     return named[0], values
-
-
-def checked_radii(radius: ArrayLike, end: float = inf) -> Array:
-    """Return the radii as an array (m,).
-
-    Raises
-    ------
-    InputError : no radius; one that is negative, not finite or beyond the end.
-    """
-    r = np.atleast_1d(np.asarray(radius, dtype=float))
-    if not r.size:
-        raise InputError(("radius",), "at least one radius is needed")
-    require_not_negative(("radius",), r)
-    if r.max() > end:
-        detail = f"the profile ends at radius {end:.12g}"
-        raise InputError(("radius", *first_index(r > end)), detail)
-    return r

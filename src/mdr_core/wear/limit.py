@@ -14,9 +14,9 @@ from mdr_core.normal import NormalContact
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
-from mdr_core.validation import first_index
+from mdr_core.validation import checked_radii, first_index
 from mdr_core.wear import limit_fields, limiting_stick
-from mdr_core.wear.arguments import checked_radii, one_amplitude
+from mdr_core.wear.arguments import one_amplitude
 from mdr_core.wear.worn_annulus import WornAnnulus
 
 # The grid extends beyond the worn annulus up to this multiple of its radius.
@@ -107,7 +107,7 @@ class LimitingWear(Results):
         # g(c), and zero in full slip.
         edge = np.where(sticks, self.stuck.coordinate, profile.first_coordinate)
         grown = np.where(sticks, profile.depth(edge), 0.0) + self.stuck.step
-        return np.where(self.stuck.endless, inf, held if profile.has_no_partial_slip else grown)
+        return np.where(self.stuck.endless, inf, grown)
 
     @cached_property
     def normal_force(self) -> Array:
@@ -116,9 +116,8 @@ class LimitingWear(Results):
         Source: mdr-5, Eq. (5.90), for any profile.
         """
         contact, profile = self._normal, self._normal.profile
-        if not self._holds_depth or profile.has_no_partial_slip:
-            held = np.broadcast_to(contact.normal_force, self.stuck.step.shape)
-            return np.where(self.stuck.lost, 0.0, held)
+        if not self._holds_depth:
+            return np.broadcast_to(contact.normal_force, self.stuck.step.shape)
         edge = np.where(self.stuck.lost, profile.first_coordinate, self.stuck.coordinate)
         inside = np.where(self.stuck.lost, 0.0, profile.reduced_force(edge))
         return contact.e_star * (inside + 2 * self.stuck.radius * self.stuck.step)

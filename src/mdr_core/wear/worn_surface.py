@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from mdr_core import fields, normal
 from mdr_core.errors import AccuracyError, InputError
 from mdr_core.typing import Array
+from mdr_core.validation import checked_radii
 from mdr_core.wear import surface_fields
 from mdr_core.wear.annulus_state import AnnulusState
-from mdr_core.wear.arguments import checked_radii
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.integrator import NO_TRAIL, StickTrail, integrate
 
