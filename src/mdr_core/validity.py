@@ -37,10 +37,6 @@ _SIMILARITY: Final = 0.05
 _MODULI: Final = (0.75 * (1 - 1e-9), 1.5 * (1 + 1e-9))
 
 
-# Codes of the findings about a normal contact that depend on Poisson's ratio.
-OF_BODIES: Final = frozenset({"half_space", "plastic"})
-
-
 class Finding(NamedTuple):
     """A limit of validity, and the cases that exceed it."""
 

@@ -89,10 +89,8 @@ def about(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Res
 
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
-    if isinstance(source, Contact):
-        return [*_notices(query, source), *source.warnings_without_bodies]
-    own = [each for each in source.warnings if each.code not in validity.OF_BODIES]
-    return [*_notices(query, unworn(source)), *own]
+    contact = unworn(source) if isinstance(source, Wear) else source
+    return [*_notices(query, contact), *source.warnings_without_bodies]
 
 
 def _notices(query: Query, contact: Contact) -> list[Notice]:

@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import tangential
+from mdr_core import tangential, validity
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.results import Results
@@ -149,7 +149,13 @@ class WearEvolution(Results, WornSurface):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the contact before wear, and `limit_reached`."""
-        found = list(self.initial.sideways.warnings)
+        bodies = validity.notices(validity.of_normal_contact(self.initial.sideways.normal))
+        return (*bodies, *self.warnings_without_bodies)
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        found = list(self.initial.sideways.warnings_without_bodies)
         if isfinite(self.settled):
             found.append(
                 Notice(

@@ -8,7 +8,8 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import fields, tangential
+from mdr_core import fields, tangential, validity
+from mdr_core.elementwise import some
 from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.results import Results
@@ -246,9 +247,15 @@ class LimitingWear(Results):
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the contact before wear, and those of the limit.
+        """Warnings of the contact before wear, and those of the limit."""
+        bodies = validity.notices(validity.of_normal_contact(self._normal))
+        return (*bodies, *self.warnings_without_bodies)
 
-        `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`.
+
+        Of the limit: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
         """
         wears = self.stuck.step > 0
         path_dependent = not self._holds_depth and self.amplitude == "tangential_displacement"
@@ -259,8 +266,8 @@ class LimitingWear(Results):
             "contact_lost": self.stuck.lost,
             "endless_wear": self.stuck.endless,
         }
-        own = [Notice(code, _WARNINGS[code]) for code, flags in where.items() if np.any(flags)]
-        return (*self.first.warnings, *own)
+        own = [Notice(code, _WARNINGS[code]) for code, flags in where.items() if some(flags)]
+        return (*self.first.warnings_without_bodies, *own)
 
 
 def solve(
