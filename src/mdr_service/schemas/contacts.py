@@ -105,15 +105,11 @@ class BodyMaterial(Strict):
     poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
 
 
-def _word_or_body(value: object) -> str:
-    return "word" if isinstance(value, str) else "body"
-
-
 # As an enumeration, because a generator of clients takes no constant in a choice.
 _Rigid = Annotated[Literal["rigid"], WithJsonSchema({"type": "string", "enum": ["rigid"]})]
 BodyOrRigid = Annotated[
     Annotated[_Rigid, Tag("word")] | Annotated[BodyMaterial, Tag("body")],
-    Discriminator(_word_or_body),
+    Discriminator(lambda value: "word" if isinstance(value, str) else "body"),
 ]
 
 
@@ -175,13 +171,11 @@ class Moduli(Elastic):
         return materials.Material(self.e_star, self.g_star, poissons_ratios=known)
 
 
-def _bodies_or_moduli(value: object) -> str:
-    return "bodies" if isinstance(value, dict) and "bodies" in value else "moduli"
-
-
 Material = Annotated[
     Annotated[Moduli, Tag("moduli")] | Annotated[Bodies, Tag("bodies")],
-    Discriminator(_bodies_or_moduli),
+    Discriminator(
+        lambda value: "bodies" if isinstance(value, dict) and "bodies" in value else "moduli"
+    ),
     Field(description="Elastic constants: effective moduli, or two bodies."),
 ]
 

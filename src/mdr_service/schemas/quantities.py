@@ -64,10 +64,6 @@ def one_of(*names: str) -> dict[str, Any]:
     return {"oneOf": [{"required": [name]} for name in names]}
 
 
-def _scalar_or_array(value: object) -> str:
-    return "array" if isinstance(value, list) else "scalar"
-
-
 def _not_tiny(value: float) -> float:
     if -SMALLEST < value < SMALLEST and value != 0:
         raise PydanticCustomError("tiny", f"Input should be 0 or at least {SMALLEST} in magnitude")
@@ -81,12 +77,13 @@ Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYW
 # The first invalid element is reported, not all of a hundred thousand.
 _Many = Field(min_length=1, max_length=SETTINGS.max_loads, fail_fast=True)
 
-# The discriminator reports errors for the branch that the value belongs to only.
+# It reports errors for the branch that the value belongs to only.
+_BY_TYPE: Final = Discriminator(lambda value: "array" if isinstance(value, list) else "scalar")
 ScalarOrArray = Annotated[
     Annotated[Size, Tag("scalar")] | Annotated[list[Size], _Many, Tag("array")],
-    Discriminator(_scalar_or_array),
+    _BY_TYPE,
 ]
 SignedScalarOrArray = Annotated[
     Annotated[Signed, Tag("scalar")] | Annotated[list[Signed], _Many, Tag("array")],
-    Discriminator(_scalar_or_array),
+    _BY_TYPE,
 ]
