@@ -1,6 +1,5 @@
 """Annuli of the contact on which the tangential load of the foundation has one formula."""
 
-from collections.abc import Iterator
 from math import inf, prod
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
@@ -14,7 +13,7 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
-_Loaded = TypeVar("_Loaded", bound=NormalContact | TangentialContact)
+_Loaded = TypeVar("_Loaded", bound=Contact)
 
 
 class Annuli(NamedTuple):
@@ -107,13 +106,10 @@ def single(contact: _Loaded, index: int, shape: tuple[int, ...]) -> _Loaded:
     return part
 
 
-def every(contact: Contact) -> Iterator[Contact]:
-    """Yield the contact under each load."""
-    if isinstance(contact, ContactState):
-        yield contact
-        return
-    for index in range(prod(shape_of(contact))):
-        yield single(contact, index, shape_of(contact))
+def every(contact: Contact) -> list[Contact]:
+    """Return the contact under each load."""
+    shape = shape_of(contact)
+    return [single(contact, index, shape) for index in range(prod(shape))] if shape else [contact]
 
 
 def slips_from(contact: TangentialContact | LoadHistory) -> Array:

@@ -6,11 +6,9 @@ With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are Im int
 
 k = 1 for the normal load, and the slope of q_x over q for the tangential load.
 
-In x^2 the kernels are singular at w = (r + i z)^2 alone. The contact is cut into pieces on which
-k g' is smooth, and pieces are merged in pairs into blocks. A block that is far from w acts like
-masses at a few nodes. On a piece that is near, s = sqrt(x^2 - b^2) = p + q sinh(t) moves the
-singularity p + i q = sqrt(w - b^2) to t = i pi/2, however close to the surface the point is. The
-values of g' are needed on the real axis only.
+The contact is cut into pieces on which k g' is smooth, and pieces are merged in pairs into blocks.
+A block acts like masses at a few nodes on points that are far from it. On points that are near a
+piece, it is integrated by a substitution that moves their singularity away.
 
 Source: notes, §14.
 """

@@ -23,9 +23,8 @@ from mdr_core.validity import ASSUMED_RATIO, Finding
 
 # Accuracy of the stress at the onset, and of the contact coordinate's logarithm.
 _ONSET_RTOL: Final = 1e-5
-# First step of that logarithm over the logarithm of the stress, which is exact for the exponent
-# 5/3, and the largest distance.
-_STEP, _REACH = 1.5, 60.0
+# Largest distance of that logarithm from the prescribed load.
+_REACH: Final = 60.0
 # Ratio of the forces that stands for full slip: but for a stick radius of 1e-4 a, it is.
 _SLIDES: Final = 1 - 1e-12
 
@@ -91,16 +90,11 @@ def yielding(
 ) -> Finding:
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
 
-    The largest stress grows with the load, and with the ratio of the forces. Along a load history
-    the forces of every sample count as applied once; at its end the traction is that of the path.
+    `yield_strength` is that of the softer body, in uniaxial tension [pressure]. Poisson's ratio 0.3
+    is assumed if none are known. Along a load history the forces of every sample count as applied
+    once; at its end the traction is that of the path.
 
     Source: johnson, section 4.2; notes, §14.
-
-    Parameters
-    ----------
-    contact : a contact under any loads, or a load history.
-    poissons_ratios : of the elastic bodies; empty if they are unknown, 0.3 is assumed then.
-    yield_strength : of the softer body, in uniaxial tension [pressure].
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), normal_of(contact)
     sheared = not isinstance(contact, NormalContact) and bool(np.any(contact.tangential_force))
@@ -164,7 +158,10 @@ def _under(pressed: NormalContact, friction: float, coordinate: float, ratio: fl
 def _mark(
     flags: Flags, index: Indices, places: Array, reaches: Callable[[int, Array], bool]
 ) -> None:
-    """Set the flags of cases that yield, which differ in load alone, by bisection of the loads."""
+    """Set the flags of cases that yield, which differ in load alone, by bisection of the loads.
+
+    The largest stress grows with the load, and with the ratio of the forces.
+    """
     if not index.size:
         return
     low, high = places[:, index].min(axis=1), places[:, index].max(axis=1)
@@ -207,8 +204,8 @@ def _onset(
         (float(profile.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf
     )
 
-    def force(coordinate: float) -> float:
-        return float(replace(pressed, coordinate=np.asarray(coordinate)).normal_force)
+    def at(coordinate: float) -> NormalContact:
+        return replace(pressed, coordinate=np.asarray(coordinate))
 
     @cache
     def excess(place: float) -> float:
@@ -223,10 +220,15 @@ def _onset(
     lowest = start - _REACH
     highest = min(start + _REACH, log(min(singular, profile.last_coordinate or inf)) - _ONSET_RTOL)
     before = place = min(start, highest)
-    sign, step = (1, _STEP) if excess(place) > 0 else (-1, _STEP)
+    sign = 1 if excess(place) > 0 else -1
+    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
+    nearby = [at(exp(place - gap)).mean_pressure for gap in (0.0, _ONSET_RTOL)]
+    growth = log(nearby[0] / nearby[1]) / _ONSET_RTOL
+    step = 1 / max(growth, 1 / _REACH)
     while sign * excess(place) > 0:
         if place == (lowest if sign > 0 else highest):
-            return 0.0 if sign > 0 else force(singular) if singular < inf else inf
+            return 0.0 if sign > 0 else float(at(singular).normal_force) if singular < inf else inf
         before, place = place, min(max(place - step * excess(place), lowest), highest)
         step *= 2
-    return force(exp(brentq(excess, before, place, xtol=_ONSET_RTOL)))
+    onset = exp(brentq(excess, before, place, xtol=_ONSET_RTOL))
+    return float(at(onset).normal_force)
