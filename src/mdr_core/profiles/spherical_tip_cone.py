@@ -132,9 +132,10 @@ class SphericalTipCone(TippedCone):
             return coordinate >= 0
         return (coordinate <= self.scale) & self._tip.falls_from_axis(coordinate)
 
-    def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
+    def _tip_kernel(self, a: Array, inner: InnerEnd | None, r: Array, rtol: float) -> Array:
         v = artanh_ratio(a, self.tip_radius)
-        wide = v - artanh_ratio(inner.radius, self.tip_radius)
-        width = artanh_ratio_difference(inner.width, a, inner.radius, self.tip_radius, wide)
-        ends = Annulus(v, InnerEnd(width, inner.radius), a)
-        return sphere_kernel(self.tip_radius, ends, r, rtol)
+        if inner is not None:
+            wide = v - artanh_ratio(inner.radius, self.tip_radius)
+            width = artanh_ratio_difference(inner.width, a, inner.radius, self.tip_radius, wide)
+            inner = InnerEnd(width, inner.radius)
+        return sphere_kernel(self.tip_radius, Annulus(v, inner, a), r, rtol)

@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
-from mdr_core.elementwise import piecewise
+from mdr_core.elementwise import piecewise, some
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.powers import Paraboloid
@@ -61,7 +61,7 @@ class TippedCone(Profile):
         """F_N(x)/E* beyond b [length^2]."""
 
     @abstractmethod
-    def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
+    def _tip_kernel(self, a: Array, inner: InnerEnd | None, r: Array, rtol: float) -> Array:
         """Stress integral of the tip over radii up to a <= b [1]."""
 
     @property
@@ -162,31 +162,36 @@ class TippedCone(Profile):
 
         a, b = spread(outer), spread(self.tangent_radius)
         width, c = (a, 0 * a) if inner is None else map(spread, inner)
-        flank = a > b
+        flank, ends = a > b, None
         total = np.zeros(radius.shape)
         # A narrow annulus that ends on b lies in the tip, even if rounding moves c onto b.
         tip = (radius < b) & ((c < b) | ~flank)
-        if tip.any():
+        if some(tip):
             top = np.minimum(a, b)
-            part = np.where(width < b / 2, width - (a - top), top - c)
-            ends = InnerEnd(np.maximum(part, 0.0)[tip], np.minimum(c, b)[tip])
+            if inner is not None:
+                part = np.where(width < b / 2, width - (a - top), top - c)
+                ends = InnerEnd(np.maximum(part, 0.0)[tip], np.minimum(c, b)[tip])
             total[tip] = self._tip_kernel(top[tip], ends, radius[tip], rtol)
-        if flank.any():
-            ends = InnerEnd(width[flank], c[flank])
+        if some(flank):
+            ends = None if inner is None else InnerEnd(width[flank], c[flank])
             total[flank] += self._flank_kernel(a[flank], ends, b[flank], radius[flank], rtol)
         return total
 
-    def _flank_kernel(self, a: Array, inner: InnerEnd, b: Array, r: Array, rtol: float) -> Array:
+    def _flank_kernel(
+        self, a: Array, inner: InnerEnd | None, b: Array, r: Array, rtol: float
+    ) -> Array:
         """Stress integral of the flank over radii up to a > b [1]."""
-        width, c = inner
         s = inverse_hypot(a, b)
-        square = np.where(c > b, width * (2 * a - width), 0.0)
-        span = np.where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
+        if inner is not None:
+            width, c = inner
+            square = np.where(c > b, width * (2 * a - width), 0.0)
+            span = np.where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
+            inner = InnerEnd(span, c)
         value = two_root_integral(
             lambda x, s, _: self._flank_weight(x, s),
             b,
             r,
-            Annulus(s, InnerEnd(span, c), a),
+            Annulus(s, inner, a),
             odd=False,
             rtol=rtol,
             analytic=self._flank_analytic,
@@ -245,5 +250,5 @@ class RoundedCone(TippedCone):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return coordinate >= 0
 
-    def _tip_kernel(self, a: Array, inner: InnerEnd, r: Array, rtol: float) -> Array:
+    def _tip_kernel(self, a: Array, inner: InnerEnd | None, r: Array, rtol: float) -> Array:
         return self._tip.pressure_kernel(Annulus(a, inner), r, rtol)
