@@ -3,7 +3,7 @@
 Cases that the call does not solve are solved one by one.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -164,14 +164,10 @@ def _warnings(
     flags["table_end"] = validity.table_end(contact).where
     flags["singular"] = validity.infinite_pressure(contact)
     flags["accuracy"] = source.error_estimates > query.rtol
-    flags = {code: where for code, where in flags.items() if np.any(where)}
-    bits = np.zeros(size, dtype=np.intp)
-    for place, where in enumerate(flags.values()):
-        bits |= np.asarray(where, dtype=np.intp) << place
     found = np.full(size, None)
-    for mask in np.unique(bits).tolist():
-        named = (code for place, code in enumerate(flags) if mask >> place & 1)
-        found[bits == mask] = _joined(named)
+    for code, where in flags.items():
+        here = np.broadcast_to(where, (size,))
+        found[here] = [f"{known} {code}" if known else code for known in found[here]]
     return found
 
 
@@ -187,7 +183,8 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
                 name: result[name][0] if name in result else np.ravel(getattr(source, name))[0]
                 for name in spec.quantities
             }
-        return values | {WARNING: _joined(warning["code"] for warning in result["warnings"])}
+        codes = dict.fromkeys(warning["code"] for warning in result["warnings"])
+        return values | {WARNING: " ".join(codes) or None}
     except problems.FAILURES as error:
         failure = problems.to_problem(error)
     except Exception:  # noqa: BLE001 -- an internal error of one case must not end the sweep
@@ -200,8 +197,3 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
 def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:
     """Return the request with the given fields; raise InputError or ValidationError."""
     return SCHEMAS[spec.query].model.model_validate(nested(given))
-
-
-def _joined(codes: Iterable[str]) -> str | None:
-    """Return the different codes of warnings as one text, None if there are none."""
-    return " ".join(dict.fromkeys(codes)) or None
