@@ -1,11 +1,18 @@
-"""Arguments that the limiting state and the wear over the cycles have in common."""
+"""Amplitudes and grids of the limiting state and of the wear over the cycles."""
+
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
+from mdr_core.fields import graded
+from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
+
+# The grid extends beyond the worn annulus up to this multiple of its radius.
+_GRID_END: Final = 1.25
 
 
 def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tuple[str, Array]:
@@ -24,3 +31,18 @@ def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tu
         raise InputError(path, "at least one amplitude is needed")
     require_not_negative(path, values)
     return named[0], values
+
+
+def grid(profile: Profile, edges: Array, points: int) -> Array:
+    """Return radii from 0 to a quarter beyond the largest edge [length], shape (points,).
+
+    They cluster at the axis, the breaks and the edges that are finite.
+
+    Raises
+    ------
+    InputError : fewer points than there are such radii.
+    """
+    known = edges[np.isfinite(edges)]
+    last = min(_GRID_END * float(known.max()) or 1.0, float(profile.domain))
+    stops = np.unique([0.0, *map(float, profile.breaks), *known])
+    return graded(np.append(stops[stops < last], last), points)

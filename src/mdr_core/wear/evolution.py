@@ -16,7 +16,7 @@ from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
 from mdr_core.wear.annulus_state import Held
-from mdr_core.wear.arguments import one_amplitude
+from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.worn_surface import WornSurface, worn_surface
 
@@ -123,6 +123,17 @@ class WearEvolution(Results, WornSurface):
                 worst = max(worst, difference / largest)
         safety = _SAFETY_OF_PEAK if self.initial.held.stick_shrinks else _SAFETY
         return safety * worst + self.initial.sideways.error_estimate
+
+    def grid(self, points: int) -> Array:
+        """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
+
+        They cluster at the axis, the breaks, the first and the last contact radius, and a stick
+        radius at rest; one that moves has an error. Errors as of `limit.LimitingWear.grid`.
+        """
+        edges = self.contact_radius[[0, -1]]
+        if not self.initial.held.stick_moves:
+            edges = np.append(edges, self.stick_radius[0])
+        return grid(self.initial.contact.profile, edges, points)
 
     def _difference_near(self, name: str, radius: Array) -> float:
         """Return the largest difference of a field between the two runs near some radii.

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import fields, tangential, validity
+from mdr_core import tangential, validity
 from mdr_core.elementwise import some
 from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
@@ -17,11 +17,9 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import checked_radii, first_index
 from mdr_core.wear import limit_fields, limiting_stick
-from mdr_core.wear.arguments import one_amplitude
+from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.worn_annulus import WornAnnulus
 
-# The grid extends beyond the worn annulus up to this multiple of its radius.
-_GRID_END: Final = 1.25
 # Width over that of the rise of g by the step, where both are narrow: the mean of r cos(t) - c up
 # to the angle arccos(c/r) is two thirds of r - c.
 _NARROW: Final = 1.5
@@ -221,15 +219,10 @@ class LimitingWear(Results):
         ------
         InputError : fewer points than there are such radii.
         """
-        profile = self._normal.profile
-        edges = (self.stick_radius, self._normal.contact_radius, self.wear_radius)
-        special = [np.zeros(1), *(np.ravel(edge) for edge in edges)]
-        special += [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
-        stops = np.unique(np.concatenate(special))
-        stops = stops[np.isfinite(stops)]
-        largest = max(float(e[np.isfinite(e)].max(initial=0.0)) for e in map(np.ravel, edges))
-        last = min(_GRID_END * largest or 1.0, float(profile.domain))
-        return fields.graded(np.append(stops[stops < last], last), points)
+        edges = self.stick_radius, self._normal.contact_radius, self.wear_radius
+        return grid(
+            self._normal.profile, np.concatenate([np.ravel(part) for part in edges]), points
+        )
 
     def _radii(self, radius: ArrayLike) -> Array:
         return checked_radii(radius, float(self._normal.profile.domain))

@@ -25,7 +25,7 @@ from mdr_service.plots.plot import (
     some,
 )
 from mdr_service.queries.fields import at_end, field, solve_stress
-from mdr_service.queries.wear import evolution_grid, solve_wear
+from mdr_service.queries.wear import solve_wear
 from mdr_service.results import Contact, Result, Wear, unworn
 from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
@@ -96,7 +96,7 @@ def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Pl
     shown = np.unique(np.linspace(0, size - 1, min(size, MOST_CURVES)).round().astype(int))
     names = [f"N = {worn.cycles[index]:.4g}" for index in shown]
     breaks = len(unworn(worn).normal.profile.breaks)
-    radius = _to_last(evolution_grid(worn, POINTS + breaks), result)
+    radius = _to_last(worn.grid(POINTS + breaks), result)
     drawn = ["profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])]
     dense = {name: getattr(worn, name)(radius) for name in drawn}
     panels = _panels(radius, dense, names, result, shown)

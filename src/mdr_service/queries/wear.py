@@ -4,7 +4,6 @@ from typing import Any, Final, get_args
 
 import numpy as np
 
-from mdr_core import fields
 from mdr_core import normal as normal_contact
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
@@ -41,8 +40,6 @@ _UNBOUNDED: Final = frozenset(
 )
 # Radii at which a worn surface is computed at once: bounds the memory.
 _RADII_AT_ONCE: Final = 2_000
-# The chosen radii end at this multiple of the contact radius, outside what wears.
-_GRID_END: Final = 1.25
 
 
 def solve_wear(query: WearQuery) -> LimitingWear:
@@ -82,27 +79,13 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
 
 def evolution_result(query: EvolutionQuery, worn: WearEvolution) -> Result:
     """Return fretting wear at the listed numbers of cycles."""
-    radius = evolution_grid(worn, query.points) if query.points else np.array(query.radius or ())
+    radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
     estimate: Result = {}
     if radius.size:
         estimate["field_error_estimate"] = worn.field_error_estimate(radius, query.quantities)
     values = by_load(worn, _EVOLUTION, query.loads)
     bounded = np.zeros(query.loads, dtype=bool)
     return _result(query, worn, values, radius, bounded) | estimate
-
-
-def evolution_grid(worn: WearEvolution, points: int) -> Array:
-    """Return radii from 0 to beyond the largest contact, clustered at its first and last edges.
-
-    Not at a stick radius that moves: the pressure is singular there, its position has an error.
-    """
-    profile = unworn(worn).normal.profile
-    edges = worn.contact_radius[[0, -1]]
-    if not worn.initial.held.stick_moves:
-        edges = np.append(edges, worn.stick_radius[0])
-    last = min(_GRID_END * float(edges.max()) or 1.0, float(profile.domain))
-    stops = np.unique([0.0, *map(float, profile.breaks), *edges])
-    return fields.graded(np.append(stops[stops < last], last), points)
 
 
 def _result(
