@@ -62,12 +62,13 @@ class _Blocks(NamedTuple):
 
 
 class Foundation:
-    """Loads of the foundation under a single load."""
+    """Loads of the foundation under a single load, as they act on body 1 or 2."""
 
-    def __init__(self, contact: Contact) -> None:
-        normal = normal_of(contact)
+    def __init__(self, contact: Contact, body: int) -> None:
+        normal, annuli, sign = normal_of(contact), annuli_of(contact), 1 if body == 2 else -1
         self.profile, self.modulus = normal.profile, float(normal.e_star) / np.pi
-        self.annuli, self.loaded = annuli_of(contact), bool(normal.loaded)
+        self.annuli = annuli._replace(slope=sign * annuli.slope, rate=sign * annuli.rate)
+        self.loaded = bool(normal.loaded)
         if not self.loaded:
             return
         if self.profile.has_no_partial_slip:

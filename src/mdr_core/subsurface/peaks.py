@@ -80,7 +80,7 @@ def largest(
     """
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
-    found = [_peak(Foundation(one), measure, poissons_ratio, body) for one in every(contact)]
+    found = [_peak(Foundation(one, body), measure, poissons_ratio) for one in every(contact)]
     return Peak(*np.array(found).T.reshape(4, *shape_of(contact)))
 
 
@@ -90,7 +90,7 @@ def infinite_radii(profile: Profile, poissons_ratio: float, slips_from: float) -
     return [b for b in radii if infinite_deviator(profile, b, (poissons_ratio,), slips_from)]
 
 
-def _peak(under: Foundation, measure: str, nu: float, body: int) -> tuple[float, ...]:
+def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     """Value and place of the largest stress in one case; parameters: see `largest`."""
     if not under.loaded:
         return 0.0, 0.0, 0.0, 0.0
@@ -103,7 +103,7 @@ def _peak(under: Foundation, measure: str, nu: float, body: int) -> tuple[float,
         turn, rings = angle[:, None], [x.ravel() for x in np.meshgrid(r, z, indexing="ij")]
         sign = np.where(rings[0] < 0, -1, 1)
         place = sign * rings[0], rings[1], sign * np.cos(turn), np.sin(turn)
-        values = np.asarray(getattr(on_rings(under, place, nu, body), measure))
+        values = np.asarray(getattr(on_rings(under, place, nu), measure))
         return np.where(np.isinf(values), 0.0, values).reshape(angle.size, r.size, z.size)
 
     r, z = _grid(under)

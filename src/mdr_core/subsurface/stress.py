@@ -130,8 +130,8 @@ def stress(
     r = np.hypot(across, aside)
     away = np.where(r > 0, r, 1.0)
     place = r, depth, np.where(r > 0, across / away, 1.0), aside / away
-    under = (Foundation(one) for one in every(contact))
-    found = np.stack([on_rings(each, place, poissons_ratio, body) for each in under], axis=1)
+    under = (Foundation(one, body) for one in every(contact))
+    found = np.stack([on_rings(each, place, poissons_ratio) for each in under], axis=1)
     origin = (r == 0) & (depth == 0)
     if origin.any():
         # Powers next to a cone approach the tractions there slowly. V_r/r and Om_r/r are halves of
@@ -147,16 +147,8 @@ def stress(
     return StressTensor(*found.reshape(6, *shape, *points))
 
 
-def on_rings(under: Foundation, place: Place, nu: float, body: int) -> StressTensor:
-    """Return the stress tensor at points that share radii and depths, of shape (..., m).
-
-    Parameters
-    ----------
-    under : the loads of the foundation.
-    place : radii and depths [length], shape (m,), and cosines and sines of directions, (..., m).
-    nu : Poisson's ratio of this body [1].
-    body : 1 for the body of the profile, 2 for the other.
-    """
+def on_rings(under: Foundation, place: Place, nu: float) -> StressTensor:
+    """Return the stress tensor under a load at points that share radii and depths, (..., m)."""
     (r, z, *direction), a = place, under.annuli.radius[-1]
     if not under.loaded:
         return StressTensor(*np.zeros((6, *direction[0].shape)))
@@ -165,8 +157,8 @@ def on_rings(under: Foundation, place: Place, nu: float, body: int) -> StressTen
     # In points with depths > 0 the kernels are regular.
     depth = np.maximum(z, _SURFACE * near + _SURFACE_AT_EDGE * a)
     moments = under.moments(r, depth)
-    sign = under.annuli.sheared * (1 if body == 2 else -1)
-    found = under.modulus * of_moments(moments[0], sign * moments[-1], (r, depth, *direction), nu)
+    sheared = under.annuli.sheared * moments[-1]
+    found = under.modulus * of_moments(moments[0], sheared, (r, depth, *direction), nu)
     for b in under.profile.infinite_pressure_radii:
         infinite = (r == b) & (z == 0) & bool(b <= a)
         found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
@@ -181,7 +173,7 @@ def of_moments(pressed: Array, sheared: Array, place: Place, nu: float) -> Array
     Parameters
     ----------
     pressed, sheared : moments of the normal and of the tangential load, shape (7, m).
-    place : see `on_rings`.
+    place : radii and depths [length], shape (m,), and cosines and sines of directions, (..., m).
     nu : Poisson's ratio of this body [1].
     """
     r, z, k, m = place
