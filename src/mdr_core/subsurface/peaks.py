@@ -55,7 +55,7 @@ def largest(
     """Return the largest von Mises or shear stress in a body under each load, and its place.
 
     The highest peaks of a grid over the plane y = 0 are climbed, at last in all directions, to a
-    relative accuracy of about 1e-6. Parameters: see `stress`.
+    relative accuracy of about 1e-5. Parameters: see `stress`.
 
     Source: notes, §14.
 
