@@ -20,23 +20,23 @@ _Field = Callable[[Indices, Array], Array]
 _RTOL: Final = 1e-13
 # Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
 # narrowest smooth peak, next to the contact edge: four samples lie above half its height.
-_SAMPLES: Final = 24
+_SAMPLES: Final = 64
 # Samples in each interval of a table, whose interpolation may have a peak in every one.
 _FEWEST: Final = 6
 # Nodes of the polynomial through a stress around its peak.
 _NODES: Final = 9
 # Intervals in which the highest point of that polynomial is searched.
 _FINE: Final = 128
-# Factor by which a round narrows the bracket of a smooth peak: three rounds reach rounding error.
+# Factor by which a round narrows the bracket of a smooth peak: two rounds reach rounding error.
 _NARROWER: Final = 16.0
 # Factor by which the bracket widens next to a discontinuity of the curvature, where the polynomial
 # misses the peak.
 _WIDER: Final = 4.0
 # Bound on the number of rounds.
 _ROUNDS: Final = 12
-# Relative difference to the last polynomial up to which that of an interval narrower by this factor
-# has rounding error.
-_AGREED: Final = 1e-10
+# Part of a polynomial's height up to which its last two coefficients are those of a series that has
+# converged to rounding error: they fall by more than a factor of five each.
+_CONVERGED: Final = 1e-12
 # Relative change that ends the search, a few units in the last place.
 _SETTLED: Final = 4 * float(np.finfo(float).eps)
 # Samples evaluated at once, so that temporaries stay in the processor's cache.
@@ -169,36 +169,34 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
     """
     load, low, high, sample = brackets
     outer, highest, peak = np.array([low, high]), low, np.zeros(load.size)
-    expected = peak
     for _ in range(_ROUNDS):
         rows, middle, half = np.arange(load.size), (low + high) / 2, (high - low) / 2
         at = _within(middle[:, None] + half[:, None] * _LOBATTO, low[:, None], high[:, None])
         values = field(np.repeat(load, _NODES), at.ravel()).reshape(at.shape)
         place = np.argmax(values, axis=1)
-        first, last = place == 0, place == _NODES - 1
         rises = values[rows, place] >= peak
-        peak, highest = (
-            np.maximum(peak, values[rows, place]),
-            np.where(rises, at[rows, place], highest),
-        )
+        peak = np.where(rises, values[rows, place], peak)
+        highest = np.where(rises, at[rows, place], highest)
         np.maximum.at(best, load, peak)
-        # The top lies between the neighbours of the highest node, or beyond the last one.
-        inside = rises & ~(first & (low > outer[0])) & ~(last & (high < outer[1]))
-        neighbours = at[rows, np.maximum(place - 1, 0)], at[rows, np.minimum(place + 1, _NODES - 1)]
-        outer[0] = np.where(rises & ~first, neighbours[0], outer[0])
-        outer[1] = np.where(rises & ~last, neighbours[1], outer[1])
-        top, height = _vertex(values @ _TO_SERIES.T)
-        # The error of the polynomial falls by more than the width of its interval.
-        agreed = inside & (abs(height - expected) <= _AGREED * height)
-        np.maximum.at(best, load[agreed], height[agreed])
-        centre = np.where(inside, middle + half * top, highest)
+        # The top lies between the points on either side of the highest one.
+        below, above = at < highest[:, None], at > highest[:, None]
+        outer[0] = np.where(below, at, outer[0][:, None]).max(axis=1)
+        outer[1] = np.where(above, at, outer[1][:, None]).min(axis=1)
+        series = values @ _TO_SERIES.T
+        top, height = _vertex(series)
+        top = middle + half * top
+        # Else it lies beyond the nodes, or the polynomial is no approximation yet.
+        inside = (low <= outer[0]) & (outer[1] <= high) & (outer[0] <= top) & (top <= outer[1])
+        converged = inside & (np.abs(series[:, -2:]).sum(axis=1) <= _CONVERGED * height)
+        np.maximum.at(best, load[converged], height[converged])
+        centre = np.where(inside, top, highest)
         reach = half * np.where(inside, 1 / _NARROWER, _WIDER)
         low, high = _within(centre - reach, *outer), _within(centre + reach, *outer)
         left = ~inside | (peak < sample) | (height > best[load] * (1 + _SETTLED))
         if not left.any():
             break
         load, low, high, sample = load[left], low[left], high[left], sample[left]
-        outer, highest, peak, expected = outer[:, left], highest[left], peak[left], height[left]
+        outer, highest, peak = outer[:, left], highest[left], peak[left]
 
 
 def _vertex(series: Array) -> tuple[Array, Array]:

@@ -65,6 +65,7 @@ def test_maximum_is_not_exceeded_on_a_dense_grid(profile: Profile) -> None:
         assert float(largest) == pytest.approx(field.max(), rel=1e-6, abs=0)
 
 
+STEEP = [{"coefficient": 1.0, "exponent": 100.0}, {"coefficient": 0.3, "exponent": 170.0}]
 #: Maxima on the axis, at the contact edge, beyond a flat and next to a tangent point.
 PEAKS = [
     ({"kind": "sphere", "radius": 1.0}, 0.3),
@@ -76,6 +77,11 @@ PEAKS = [
     ({"kind": "power", "coefficient": 1.0, "exponent": 100.0}, 0.5),
     ({"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 1.0}, 0.5001),
     ({"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 1.0}, 50.0),
+    # Hardly more than the pressure in the middle, next to a logarithm.
+    ({"kind": "rounded_punch", "flat_radius": 1.2e-6, "rounding_radius": 1.0}, 1.0),
+    ({"kind": "rounded_punch", "flat_radius": 1.3e-6, "rounding_radius": 1.0}, 1.0),
+    # Two hundredths of the contact radius from the edge.
+    ({"kind": "series", "terms": STEEP}, 2.0),
     ({"kind": "rounded_cone", "slope": 0.2, "tip_radius": 1.0}, 0.7),
     ({"kind": "spherical_tip_cone", "slope": 3.0, "tip_radius": 1.0}, 1.7),
     ({"kind": "hyperboloid", "slope": 0.2, "tip_radius": 1.0}, 0.7),
