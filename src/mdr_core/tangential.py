@@ -195,9 +195,9 @@ class TangentialContact(Results):
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Regime: "stick", "partial_slip" or "full_slip"."""
         at_once = self.normal.profile.has_no_partial_slip
-        partial = "stick" if at_once else "partial_slip"
-        slipping = np.where(self.width > 0, partial, "stick").astype("U12")
-        return np.where(self.full_slip, "full_slip", slipping)
+        partial = np.str_("stick" if at_once else "partial_slip")
+        slipping = where(self.width > 0, partial, np.str_("stick"))
+        return where(self.full_slip, np.str_("full_slip"), slipping)
 
     @cached_property
     def dissipated_energy(self) -> Array:

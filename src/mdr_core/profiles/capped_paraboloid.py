@@ -126,10 +126,13 @@ class CappedParaboloid(Profile):
 
     def _outer(self, coordinate: Array) -> Array:
         """s = sqrt(a^2 - b^2), zero within the cap [length]."""
-        return np.maximum(coordinate - self._break, 0.0) / self._ratio
+        past = coordinate - self._break
+        return where(past < 0, 0.0, past) / self._ratio
 
     def contact_radius(self, coordinate: Array) -> Array:
-        return np.hypot(np.minimum(coordinate, self._break), self._outer(coordinate))
+        b, s = self._break, self._outer(coordinate)
+        inner = where(coordinate > b, b, coordinate)
+        return np.sqrt(inner * inner + s * s)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         return self._coordinate(contact_radius, inverse_hypot(contact_radius, self._break))
