@@ -9,14 +9,12 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
-from starlette.middleware.gzip import GZipMiddleware
-from starlette.staticfiles import StaticFiles
 
 from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, parameters, queries
 from mdr_service.settings import SETTINGS
-from mdr_service.transfers import LONG, Transfers
+from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
 
 if TYPE_CHECKING:
@@ -68,14 +66,9 @@ def create_app() -> FastAPI:
     app.state.workers = WorkerPool(SETTINGS, app.state.transfers)
     middleware.install(app)
     openapi.extend(app)
-    pages = {
-        "/docs/swagger": StaticFiles(packages=[("fastapi_swagger", "resources")]),
-        "/docs/page": StaticFiles(packages=[("mdr_service", "page")]),
-        "/explorer": explorer.FILES,
-    }
+    app.mount("/docs/swagger", explorer.Pages(packages=[("fastapi_swagger", "resources")]))
+    app.mount("/docs/page", explorer.Pages(packages=[("mdr_service", "page")]))
+    app.mount("/explorer", explorer.FILES)
     if explorer.MANUAL.is_dir():
-        pages["/manual/"] = explorer.Pages(directory=explorer.MANUAL, html=True)
-    for path, files in pages.items():
-        # Compresses in threads, so that the event loop stays free.
-        app.mount(path, GZipMiddleware(files, compresslevel=1, thread_minimum_size=LONG))
+        app.mount("/manual/", explorer.Pages(directory=explorer.MANUAL, html=True))
     return app
