@@ -247,7 +247,8 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], _Traction]:
         ends, radii, widths, slopes = [first, top], [flat, a], [top - first], [0.0]
         if profile.has_no_partial_slip:
             # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
-            widths, slopes = [top if slides else width * top], [sign]
+            widths = [top if slides else width * top]
+            slopes = [sign if widths[0] > 0 else 0.0]
         elif slides:
             slopes = [sign]
         elif width > 0:
