@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mdr_core.typing import Array, Flags, Indices
+from mdr_core.typing import Array, Indices
 
 # Least distance of a block from the points in its far field, over its length, both in x^2.
 FAR: Final = 0.5
@@ -77,24 +77,22 @@ class Multipoles:
     above: bool
     """True if the points lie above the panels."""
 
-    def usable(self, first: int, last: int) -> Flags:
-        """Return True for the blocks of panels first <= i < last."""
-        return np.asarray((self.first >= first) & (self.last <= last))
-
-    def far_from(self, place: Array, usable: Flags) -> tuple[Indices, Indices]:
+    def far_from(self, place: Array, first: int, last: int) -> tuple[Indices, Indices]:
         """Return the ranges low <= i < high of ascending points for which each block is masses.
 
-        These points are far from the block but not from its parent.
+        These points are far from the block but not from its parent. None for blocks that are not
+        of the panels first <= i < last.
         """
+        other = (self.first < first) | (self.last > last)
         bound = self.edge * self.edge
         if self.above:
             index = np.searchsorted(place, np.sqrt(bound + FAR * self.length))
-            index[~usable] = place.size
+            index[other] = place.size
             index = np.append(index, place.size)
             return index[:-1], np.maximum(index[self.parent], index[:-1])
         bound -= FAR * self.length
         index = np.searchsorted(place, np.sqrt(np.maximum(bound, 0.0)), side="right")
-        index[~usable | (bound < 0)] = 0
+        index[other | (bound < 0)] = 0
         index = np.append(index, 0)
         return np.minimum(index[self.parent], index[:-1]), index[:-1]
 

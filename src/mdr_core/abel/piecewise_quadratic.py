@@ -53,7 +53,7 @@ class PiecewiseQuadratic:
         """
         place = base + offset
         far = self._multipoles
-        low, high = far.far_from(place, far.usable(0, self.edges.size))
+        low, high = far.far_from(place, 0, self.edges.size)
         total = far.sums(base, offset, low, high)
         # A point may lie above an edge by less than the rounding of its radius.
         begin = np.searchsorted(place, self.edges[:-1])

@@ -132,9 +132,7 @@ class StressPanels:
         return result
 
     def _sorted(self, annulus: _Ends, r: Array) -> Array:
-        if bool((r[1:] >= r[:-1]).all()):
-            return self._over(annulus, r)
-        order = np.argsort(r)
+        order = np.argsort(r, kind="stable")
         result = np.empty_like(r)
         result[order] = self._over(annulus, r[order])
         return result
@@ -152,7 +150,7 @@ class StressPanels:
 
     def _whole(self, first: int, last: int, r: Array) -> Array:
         """Panels first <= i < last: as multipoles in the far field, the others one by one."""
-        low, high = self._multipoles.far_from(r, self._multipoles.usable(first, last))
+        low, high = self._multipoles.far_from(r, first, last)
         total = self._multipoles.sums(r, None, low, high)
         end = np.searchsorted(r, self.edges[first + 1 : last + 1])
         for number, point in pairs(np.minimum(high[first:last], end), end):
