@@ -216,7 +216,7 @@ def _root(
 
 
 def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
-    """Whether depth and force are smooth near a contact coordinate."""
+    """Return True, or a test of it, if depth and force are smooth near a contact coordinate."""
     breaks = profile.coordinate_breaks
     if has_many_breaks(profile) or not breaks.size:
         return not breaks.size

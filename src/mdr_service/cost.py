@@ -103,9 +103,9 @@ def _beneath(query: SubsurfaceQuery) -> float:
     by_force = query.material.has("yield_strength") and not query.has("history")
     points = query.loads * (query.positions + 2 * _SEARCHED * query.largest)
     if by_force:
-        # Loads in one ratio of the forces share the onset. Under a power it follows from one peak.
+        # Loads in one ratio of the forces share the onset. Under a power the first step is exact.
         onsets = query.loads if query.has("friction_coefficient") else 1
-        points += _SEARCHED * onsets * (2 if query.profile.kind in _SIMILAR else _ONSETS)
+        points += _SEARCHED * onsets * (4 if query.profile.kind in _SIMILAR else _ONSETS)
     return _START[NormalQuery] + points * _point(query) + _yielding(query)
 
 

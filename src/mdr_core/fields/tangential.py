@@ -59,7 +59,11 @@ class _Traction(NamedTuple):
     def depth_from(self, i: int, x: Array, at: Array) -> Array:
         """Return the depth from radii of the i-th annulus, or below it, to its upper end [length].
 
-        `at` are the contact coordinates of the radii x.
+        Parameters
+        ----------
+        i : index of the annulus, from the axis.
+        x : radii [length], shape (m,).
+        at : their contact coordinates, shape (m,).
         """
         x, at = np.maximum(x, self.radius[i]), np.maximum(at, self.coordinate[i])
         top = np.maximum(self.coordinate[i + 1], at)
