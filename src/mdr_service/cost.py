@@ -25,24 +25,26 @@ AT_ONCE_SECONDS: Final = 5e-4
 """Computation on the event loop at any load; a round trip to a compute process takes as long."""
 # Sum of such computations, for which a small query may have to wait.
 _AT_ONCE_IN_ALL: Final = 5e-3
-# Times on one core of a server of 2023 [s]: of a query about a single load of a cone, ...
+# Times on one core of a server of 2023 [s]: of a query about a single load of a cone, of stresses
+# beneath the surface under each load, ...
 _START: Final[dict[type[Query], float]] = {
     NormalQuery: 1e-4,
     TangentialQuery: 2e-4,
     StressQuery: 1e-4,
-    HistoryQuery: 7e-4,
+    HistoryQuery: 1e-3,
     WearQuery: 6e-4,
     EvolutionQuery: 1e-3,
+    SubsurfaceQuery: 1e-3,
 }
 # ... of the step from one load to many, for which arrays take the place of single numbers, ...
 _ARRAYS: Final = 2e-4
 # ... of each load, load with friction or sample, load with wear, number of cycles, ...
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
-# ... normal load of a table with a flat, and of a load of other profiles, whose largest pressure is
-# searched for, ...
-_SEARCH, _SEARCH_OF_ONE = 1e-5, 2e-4
-# ... value over the radius, and of drawing a picture.
-_VALUE, _PICTURE = 2.5e-7, 0.3
+# ... normal load of a table with a flat, and of one and each load of other profiles, whose largest
+# pressure is searched for, ...
+_SEARCH, _SEARCH_OF_ONE, _SEARCH_OF_EACH = 1e-5, 2e-4, 2e-5
+# ... field of a load, its value at a radius, and of drawing a picture.
+_FIELD, _VALUE, _PICTURE = 3e-5, 2.5e-7, 0.3
 # Multiples of these for profiles without closed inverses, per term of a series, for tables.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
@@ -72,12 +74,13 @@ def seconds(query: Query | BatchQuery) -> float:
     scale, path = _complexity(query.profile), query.path
     # Times that are multiplied in full, and those multiplied by the fourth root.
     # A table is resolved once for many queries.
-    evaluated, integrated = 0.0, _START[type(query)]
+    evaluated, integrated = 0.0, _START[HistoryQuery if path else type(query)]
     if query.numbers and isinstance(query, FieldQuery):
+        fields = query.loads * len(query.quantities) * (_FIELD + _VALUE * query.radii)
         if "normal_displacement" in query.quantities:
-            evaluated += _VALUE * query.numbers
+            evaluated += fields
         else:
-            integrated += _VALUE * query.numbers
+            integrated += fields
     if path:
         evaluated += _FRICTION * path.samples
         integrated += _NONLINEAR_STEP * path.steps if path.nonlinear else 0.0
@@ -86,7 +89,7 @@ def seconds(query: Query | BatchQuery) -> float:
         evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
         evaluated += _ARRAYS if query.loads > 1 else 0.0
         if isinstance(query, NormalQuery) and query.profile.kind in _SEARCHED_PROFILES:
-            integrated += _SEARCH_OF_ONE
+            integrated += _SEARCH_OF_ONE + _SEARCH_OF_EACH * query.loads
         flat = query.profile.kind == "tabulated" and query.profile.f[1:2] == [0.0]
         if flat and isinstance(query, NormalQuery):
             evaluated += _SEARCH * query.load.count
@@ -106,7 +109,8 @@ def _beneath(query: SubsurfaceQuery) -> float:
         # Loads in one ratio of the forces share the onset. Under a power the first step is exact.
         onsets = query.loads if query.has("friction_coefficient") else 1
         points += _SEARCHED * onsets * (4 if query.profile.kind in _SIMILAR else _ONSETS)
-    return _START[NormalQuery] + points * _point(query) + _yielding(query)
+    start = _START[SubsurfaceQuery] * query.loads
+    return start + points * _point(query) + _yielding(query)
 
 
 def _yielding(query: Query) -> float:
