@@ -20,7 +20,7 @@ from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
 from mdr_core.profiles.power_functions import raised
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.quadrature import gauss_legendre, in_order
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import first_index
 
@@ -29,9 +29,6 @@ from mdr_core.validation import first_index
 _NARROW: Final = 0.05
 # Gauss-Legendre nodes of that integral: they integrate powers up to 100 to rounding error.
 _NODES: Final = 16
-# Products of weights and cases that are summed faster in one call than term by term, by
-# measurement.
-_FEW: Final = 4096
 # Part of full slip up to which the width is the unknown; beyond it the stick edge is.
 _EARLY: Final = 0.05
 # Distance from a break, as a part of it, beyond which Newton's method converges as elsewhere.
@@ -347,16 +344,4 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
         s = low + np.multiply.outer(1 + nodes, outer / 2)
         values = np.where(outer > 0, slope(s, s, np.zeros_like(s)), 0.0)
         total = total + outer / 2 * in_order(weights, values)
-    return total
-
-
-def in_order(weights: Array, values: Array) -> Array:
-    """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
-    if weights.size * values.shape[-1] <= _FEW:
-        added = (1,) * (values.ndim - weights.ndim)
-        spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
-        return np.add.accumulate(spread * values)[-1]
-    total = np.zeros(values.shape[1:])
-    for weight, value in zip(weights, values, strict=True):
-        total = total + weight * value
     return total

@@ -20,10 +20,10 @@ from numpy.polynomial import legendre
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.broadcasting import with_parameters
-from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force, in_order
+from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.quadrature import gauss_legendre, in_order
 from mdr_core.typing import Array, Flags, Indices
 
 # Gauss nodes on an interval without a break. Beyond a break the remainder is of the order of

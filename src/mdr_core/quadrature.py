@@ -41,6 +41,9 @@ _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 _NEAREST: Final = 2.0**-52
 # Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
+# Products of weights and cases that are summed faster in one call than term by term, by
+# measurement.
+_FEW: Final = 4096
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,18 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
     nodes, weights = roots_legendre(points)
     nodes.flags.writeable = weights.flags.writeable = False
     return nodes, weights
+
+
+def in_order(weights: Array, values: Array) -> Array:
+    """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
+    if weights.size * values.shape[-1] <= _FEW:
+        added = (1,) * (values.ndim - weights.ndim)
+        spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
+        return np.add.accumulate(spread * values)[-1]
+    total = np.zeros(values.shape[1:])
+    for weight, value in zip(weights, values, strict=True):
+        total = total + weight * value
+    return total
 
 
 def error_bound(points: int | Indices, half_length: float | Array, analytic: Analytic) -> Array:

@@ -80,8 +80,12 @@ class Multipoles:
     def far_from(self, place: Array, first: int, last: int) -> tuple[Indices, Indices]:
         """Return the ranges low <= i < high of ascending points for which each block is masses.
 
-        These points are far from the block but not from its parent. None for blocks that are not
-        of the panels first <= i < last.
+        These points are far from the block but not from its parent.
+
+        Parameters
+        ----------
+        place : points, ascending [length], shape (m,).
+        first, last : of blocks that are not of the panels first <= i < last the range is empty.
         """
         other = (self.first < first) | (self.last > last)
         bound = self.edge * self.edge
