@@ -23,8 +23,8 @@ from mdr_service.settings import SETTINGS
 
 AT_ONCE_SECONDS: Final = 5e-4
 """Computation on the event loop at any load; a round trip to a compute process takes as long."""
-# Sum of such computations, for which a small query may have to wait.
-_AT_ONCE_IN_ALL: Final = 5e-3
+# The same with no other request in progress; beside others, the processes use more cores.
+_AT_ONCE_ALONE: Final = 2e-3
 # Times on one core of a server of 2023 [s]: of a query about a single load of a cone, of stresses
 # beneath the surface under each load, ...
 _START: Final[dict[type[Query], float]] = {
@@ -157,7 +157,7 @@ def is_short(expected: float, requests: int) -> bool:
     expected : expected time of the query [s].
     requests : number of requests in progress, this one included.
     """
-    return expected <= max(AT_ONCE_SECONDS, _AT_ONCE_IN_ALL / (requests + 1))
+    return expected <= max(AT_ONCE_SECONDS, _AT_ONCE_ALONE / max(requests, 1))
 
 
 def _complexity(profile: Profile) -> float:

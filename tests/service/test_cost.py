@@ -96,9 +96,9 @@ def test_plots_are_drawn_in_a_compute_process() -> None:
 def test_fewer_computations_run_on_the_event_loop_the_more_requests_there_are() -> None:
     longest = [
         max(t for t in range(100, 10_000, 10) if cost.is_short(1e-6 * t, n))
-        for n in (1, 4, 9, 1000)
+        for n in (1, 2, 4, 1000)
     ]
-    assert longest == [2500, 1000, 500, 500]
+    assert longest == [2000, 1000, 500, 500]
 
 
 def test_batch_estimate_is_the_sum_of_its_queries() -> None:
