@@ -258,10 +258,7 @@ class TangentialContact(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the normal contact, and `accuracy` if rtol is not reached."""
-        return (
-            *validity.notices(validity.of_normal_contact(self.normal)),
-            *self.warnings_without_bodies,
-        )
+        return validity.with_bodies(self.normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -5,14 +5,13 @@ from math import isfinite
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mdr_core import subsurface, validity
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.schemas.answers import Known
@@ -20,7 +19,6 @@ from mdr_service.schemas.contacts import Query
 
 Result = dict[str, Any]
 """The members of a JSON response in their order, with arrays for long lists."""
-Flags = NDArray[np.bool_]
 Wear = LimitingWear | WearEvolution
 Contact = NormalContact | TangentialContact | LoadHistory
 

@@ -106,7 +106,7 @@ def single(contact: _Loaded, index: int, shape: tuple[int, ...]) -> _Loaded:
     return part
 
 
-def every(contact: Contact) -> list[Contact]:
+def single_loads(contact: Contact) -> list[Contact]:
     """Return the contact under each load."""
     shape = shape_of(contact)
     return [single(contact, index, shape) for index in range(prod(shape))] if shape else [contact]

@@ -10,7 +10,7 @@ from scipy.ndimage import maximum_filter
 from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.profiles import Profile
-from mdr_core.subsurface.annuli import Contact, every, shape_of
+from mdr_core.subsurface.annuli import Contact, shape_of, single_loads
 from mdr_core.subsurface.foundation import Foundation
 from mdr_core.subsurface.stress import on_rings
 from mdr_core.typing import Array
@@ -80,7 +80,7 @@ def largest(
     """
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
-    found = [_peak(Foundation(one, body), measure, poissons_ratio) for one in every(contact)]
+    found = [_peak(Foundation(one, body), measure, poissons_ratio) for one in single_loads(contact)]
     return Peak(*np.array(found).T.reshape(4, *shape_of(contact)))
 
 

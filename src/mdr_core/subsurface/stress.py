@@ -11,7 +11,7 @@ from mdr_core.errors import InputError
 from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
-from mdr_core.subsurface.annuli import Contact, every, normal_of, shape_of
+from mdr_core.subsurface.annuli import Contact, normal_of, shape_of, single_loads
 from mdr_core.subsurface.foundation import Foundation
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
@@ -130,7 +130,7 @@ def stress(
     r = np.hypot(across, aside)
     away = np.where(r > 0, r, 1.0)
     place = r, depth, np.where(r > 0, across / away, 1.0), aside / away
-    under = (Foundation(one, body) for one in every(contact))
+    under = (Foundation(one, body) for one in single_loads(contact))
     found = np.stack([on_rings(each, place, poissons_ratio) for each in under], axis=1)
     origin = (r == 0) & (depth == 0)
     if origin.any():

@@ -160,8 +160,7 @@ class WearEvolution(Results, WornSurface):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the contact before wear, and `limit_reached`."""
-        bodies = validity.notices(validity.of_normal_contact(self.initial.sideways.normal))
-        return (*bodies, *self.warnings_without_bodies)
+        return validity.with_bodies(self.initial.sideways.normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -241,8 +241,7 @@ class LimitingWear(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the contact before wear, and those of the limit."""
-        bodies = validity.notices(validity.of_normal_contact(self._normal))
-        return (*bodies, *self.warnings_without_bodies)
+        return validity.with_bodies(self._normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -179,7 +179,7 @@ class _EdgeBalance:
         return np.array(rows)
 
     def gradients(self) -> tuple[Array, Array]:
-        """Return the gradients in `worn` of its own rates and of the edges', (n, n) and (3, n)."""
+        """Return the gradients by `worn`, of its rates (n, n) and of the edges' rates (3, n)."""
         state, maps = self.state, self.maps
         b, (end, stick, _) = state.end, self.edges
         stress = maps.to_pressure @ (state.x[:, None] * maps.from_slip) / b

@@ -61,8 +61,9 @@ class Pages(StaticFiles):
             return response
         file = str(response.path), response.stat_result.st_mtime
         body = await to_thread.run_sync(_compressed, *file)
-        kept = {name: value for name, value in response.headers.items() if name != "content-length"}
-        return Response(body, response.status_code, {**kept, "Content-Encoding": "gzip"})
+        response.headers["Content-Encoding"] = "gzip"
+        del response.headers["content-length"]
+        return Response(body, response.status_code, response.headers)
 
 
 FILES: Final = Pages(packages=[("mdr_service", "explorer"), ("plotly", "package_data")])

@@ -11,12 +11,11 @@ from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 from mdr_service.queries.contacts import solve_normal, solve_tangential
 from mdr_service.queries.load_paths import require_few_samples, solve_points
 from mdr_service.results import (
     Contact,
-    Flags,
     Result,
     about,
     checked,
@@ -76,6 +75,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         edges = np.ravel(contact.contact_radius)
         at_singular = np.isin(radius, [0.0, *map(float, contact.profile.breaks), *edges])
         infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
+        checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
     integrated = 0.0 if method == "closed_form" else query.rtol
     names = set(query.quantities)
@@ -90,8 +90,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     if source.error_estimate <= query.rtol < at_edges:
         warnings.append(normal_contact.not_reached(query.rtol))
     error = max(source.error_estimate, integrated) + at_edges
-    found = {"radius": radius} | checked(query, values, infinite)
-    return found | about(method, error, warnings)
+    return {"radius": radius} | values | about(method, error, warnings)
 
 
 def field(name: str, end: End, radius: Array, rtol: float) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from mdr_core import normal as normal_contact
 from mdr_core.errors import InputError
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
 from mdr_core.wear.evolution import WearEvolution
@@ -14,7 +14,6 @@ from mdr_core.wear.limit import LimitingWear
 from mdr_service.queries.contacts import body, control, friction, paired, solve_normal
 from mdr_service.queries.fields import require_few_numbers
 from mdr_service.results import (
-    Flags,
     Result,
     Wear,
     about,
