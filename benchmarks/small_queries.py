@@ -27,7 +27,6 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.core.evaluations import PROFILES
 
-from mdr_service.dispatch import parse
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import NormalQuery
 
@@ -78,7 +77,7 @@ def requests(kind: str) -> dict[str, dict[str, Any]]:
     part = {"profile": profile(kind), "material": {"e_star": 1.0, "g_star": 0.9}}
     load = {"indentation_depth": 0.05} if kind == "flat_punch" else {"contact_radius": 1.0}
     normal = QUERIES["normal"]
-    found = normal.solve(parse(NormalQuery, json.dumps({**part, "load": load}).encode()))
+    found = normal.solve(NormalQuery.model_validate_json(json.dumps({**part, "load": load})))
     force = float(found.normal_force)
     limit, held = FRICTION * force, {**part, "load": {"normal_force": force}}
     rubbed = {**held, "friction_coefficient": FRICTION}

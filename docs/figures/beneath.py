@@ -10,7 +10,7 @@ from make_figures import STYLE
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mdr_service.dispatch import parse, respond
+from mdr_service.dispatch import respond
 from mdr_service.queries import QUERIES
 from mdr_service.serializers.json import MEDIA_TYPE
 
@@ -26,7 +26,7 @@ def ask(name: str, query: dict[str, Any]) -> dict[str, Any]:
     """Return the response to a request, as JSON."""
     content = json.dumps(query).encode()
     found: dict[str, Any] = json.loads(
-        respond(name, parse(QUERIES[name].model, content), MEDIA_TYPE)
+        respond(name, QUERIES[name].model.model_validate_json(content), MEDIA_TYPE)
     )
     return found
 

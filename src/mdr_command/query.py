@@ -14,7 +14,7 @@ from typing import Final
 from mdr_command.exit_status import ExitStatus
 from mdr_core.errors import InputError
 from mdr_service import content_negotiation, problems
-from mdr_service.dispatch import parse, respond
+from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS, Parameters
 from mdr_service.schemas.queries import SCHEMAS
@@ -100,7 +100,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
     size = None if size is None else content_negotiation.picture_size(size, media_type)
     parameters = _parameters(arguments)
     if parameters is None:
-        query = parse(SCHEMAS[name].model, _read(arguments.file or _STANDARD_INPUT))
+        query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, size=size)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")

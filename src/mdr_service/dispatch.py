@@ -5,10 +5,10 @@ Endpoints, compute processes and the command line call these functions, and get 
 
 import logging
 from collections.abc import Mapping, Sequence
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 import numpy as np
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from mdr_core.errors import InputError
 from mdr_service import cost, problems
@@ -21,22 +21,7 @@ from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import PICTURES, WRITE, json
 from mdr_service.settings import SETTINGS
 
-_Model = TypeVar("_Model", bound=BaseModel)
-
 _logger: Final = logging.getLogger(__name__)
-
-
-def parse(model: type[_Model], text: bytes) -> _Model:
-    """Return the request in a JSON text.
-
-    Raises
-    ------
-    ServiceError : the text is not JSON, or not a valid request.
-    """
-    try:
-        return model.model_validate_json(text)
-    except ValidationError as error:
-        raise problems.from_validation(error) from None
 
 
 def respond(
@@ -85,7 +70,7 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
 def respond_to_body(
     name: str, text: bytes, media_type: str, size: tuple[int, int] | None = None
 ) -> bytes:
-    """Return the response content of a query in the body of a request; see `parse` and `respond`.
+    """Return the response content of a query in the body of a request; see `respond`.
 
     Parameters
     ----------
@@ -93,7 +78,7 @@ def respond_to_body(
     text : the request.
     """
     model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
-    query = parse(model, text)
+    query = model.model_validate_json(text)
     cost.require_feasible(query, media_type)
     return respond(name, query, media_type, size=size)
 

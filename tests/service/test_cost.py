@@ -8,7 +8,7 @@ import pytest
 
 from mdr_core.errors import InputError
 from mdr_service import cost
-from mdr_service.dispatch import parse, respond
+from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchQuery
@@ -34,7 +34,7 @@ SERIES = {
 
 
 def query(name: str, value: dict[str, Any]) -> Query:
-    return parse(SCHEMAS[name].model, json.dumps(value).encode())
+    return SCHEMAS[name].model.model_validate_json(json.dumps(value).encode())
 
 
 @pytest.mark.parametrize(("name", "value"), CASES)

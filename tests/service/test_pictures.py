@@ -11,7 +11,6 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mdr_service.dispatch import parse
 from mdr_service.plots import PLOTS, Map, Plot
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EXAMPLES
@@ -38,7 +37,7 @@ HISTORY = EXAMPLES["history"]["mindlin_deresiewicz"]["value"]
 def plotted(name: str, value: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
     """Return the plot and the result of a query."""
     kind = QUERIES[name]
-    query = parse(SCHEMAS[name].model, json.dumps(value).encode())
+    query = SCHEMAS[name].model.model_validate_json(json.dumps(value).encode())
     with np.errstate(all="ignore"):
         source = kind.solve(query)
         result = kind.result(query, source)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mdr_service import observability
-from mdr_service.dispatch import parse, respond
+from mdr_service.dispatch import respond
 from mdr_service.queries import contacts
 from mdr_service.schemas.profiles import TabulatedProfile
 from mdr_service.schemas.queries import SCHEMAS
@@ -50,7 +50,7 @@ def test_cached_table_gives_identical_bytes(name: str) -> None:
         request[sideways] = {"tangential_force": 0.2}
     if name == "stress":
         request |= {"points": 20, "quantities": ["pressure", "shear_stress"]}
-    query = parse(SCHEMAS[name].model, json.dumps(request).encode())
+    query = SCHEMAS[name].model.model_validate_json(json.dumps(request).encode())
     contacts._tabulated.cache_clear()
     first = respond(name, query, FORMATS["json"])
     assert contacts._tabulated.cache_info().misses == 1

@@ -12,7 +12,7 @@ from starlette.responses import Response
 from mdr_service import cost, problems
 from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES
 from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
-from mdr_service.dispatch import parse, respond, respond_to_body
+from mdr_service.dispatch import respond, respond_to_body
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
 from mdr_service.schemas import contacts
@@ -113,7 +113,7 @@ class QueryRoute(APIRoute):
             text = await read_body(request)
             if len(text) > respond_.at_once_bytes:
                 return await respond_.respond_to_body(name, text)
-            return await endpoint(parse(model, text), respond_)
+            return await endpoint(model.model_validate_json(text), respond_)
 
         return handle
 
