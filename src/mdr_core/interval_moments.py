@@ -291,21 +291,17 @@ class IntervalMoments:
             estimate = span / slope
         thin = (stop - start < _THIN * stop) & (estimate > 0)
         width = np.where(thin, np.minimum(estimate, stop), stop - start)
-        nodes, weights = gauss_legendre(_POINTS)
-        share, weights = ((1 + nodes) / 2)[:, None], (weights / 2)[:, None]
-        # By rounding an interval may end below the break at its start.
-        top = np.sqrt(np.where(beyond, np.maximum(stop - base, 0.0), 0.0))
-        below = np.where(thin, top * top - width, start - base)
-        bottom = np.sqrt(np.where(beyond, np.maximum(below, 0.0), 0.0))
-        climb = np.where(beyond, width / np.where(top > 0, top + bottom, 1.0), 0.0)
-        root = bottom + climb * share
-        part = np.where(beyond, 0.0, np.minimum(width / stop, 1 - _EPS))
-        stretch = -np.log1p(-part)
-        log_place = stop * np.exp(-stretch * (1 - share))
-        place = np.where(beyond, np.minimum(base + root * root, stop), log_place)
-        moved = np.where(beyond, 2 * root * climb, log_place * stretch)
-        origin = np.where(beyond, base, place)
-        rise = moved * profile.depth_slope_beyond(place, origin, np.where(beyond, root * root, 0.0))
+        share, weights, cumulative = _rule()
+        place, moved = _in_logarithm(stop, width, share)
+        origin, past = place, np.zeros_like(place)
+        if beyond.any():
+            # By rounding an interval may end below the break at its start.
+            below = np.where(thin, (stop - base) - width, start - base)
+            root, climb = _in_root(stop - base, below, width, share)
+            place = np.where(beyond, np.minimum(base + root * root, stop), place)
+            moved = np.where(beyond, 2 * root * climb, moved)
+            origin, past = np.where(beyond, base, place), np.where(beyond, root * root, 0.0)
+        rise = moved * profile.depth_slope_beyond(place, origin, past)
         twice = 2 * profile.contact_radius(place)
         measure = 2 * weights * moved * profile.radius_slope(place)
         if self.by_force:
@@ -314,7 +310,7 @@ class IntervalMoments:
         total = in_order(weights, rise)
         # Where g is constant between the breaks of a table, the span is rounding error.
         total = np.where(total > 0, total, inf)
-        t = in_order(_cumulative().T[:, :, None], rise[:, None]) / total
+        t = in_order(cumulative, rise[:, None]) / total
         measure = measure * (span / total)
         parts = np.array([np.square(1 - t), 2 * t * (1 - t), t * t])
         return in_order(measure, parts.swapaxes(0, 1))
@@ -325,11 +321,32 @@ def _from_below(function: Function, breaks: Array) -> Array:
     return 2 * function(breaks * (1 - _BELOW)) - function(breaks * (1 - 2 * _BELOW))
 
 
+def _in_logarithm(stop: Array, width: Array, share: Array) -> tuple[Array, Array]:
+    """Return the places at parts `share` of intervals in the logarithm, and their derivatives."""
+    stretch = -np.log1p(-np.minimum(width / stop, 1 - _EPS))
+    place = stop * np.exp(-stretch * (1 - share))
+    return place, place * stretch
+
+
+def _in_root(top: Array, bottom: Array, width: Array, share: Array) -> tuple[Array, Array]:
+    """Return the roots of the distances from a break at parts `share`, and their derivatives.
+
+    `top` and `bottom` are the distances of the ends of the intervals, `width` their difference.
+    """
+    high, low = (np.sqrt(np.maximum(distance, 0.0)) for distance in (top, bottom))
+    climb = width / np.where(high > 0, high + low, inf)
+    return low + climb * share, climb
+
+
 @lru_cache(maxsize=1)
-def _cumulative() -> Array:
-    """Matrix of the integrals from 0 to each node of [0, 1], of the values at the nodes."""
-    nodes, _ = gauss_legendre(_POINTS)
+def _rule() -> tuple[Array, Array, Array]:
+    """Nodes and weights of Gauss' rule on [0, 1], and the weights of the integrals from 0 to each.
+
+    Shapes (n, 1), (n, 1) and (n, n, 1): the weights of the node j come first.
+    """
+    nodes, weights = gauss_legendre(_POINTS)
     vander = legendre.legvander(nodes, _POINTS - 1)
     integrals = [legendre.legint(row, lbnd=-1) for row in np.eye(_POINTS)]
     values = np.stack([legendre.legval(nodes, row) for row in integrals], axis=1)
-    return np.asarray(values @ np.linalg.inv(vander)) / 2
+    cumulative = (values @ np.linalg.inv(vander)).T / 2
+    return ((1 + nodes) / 2)[:, None], (weights / 2)[:, None], cumulative[:, :, None]

@@ -41,9 +41,6 @@ _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 _NEAREST: Final = 2.0**-52
 # Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
-# Products of weights and cases that are summed faster in one call than term by term, by
-# measurement.
-_FEW: Final = 4096
 
 
 @dataclass(frozen=True)
@@ -74,14 +71,16 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
 
 def in_order(weights: Array, values: Array) -> Array:
     """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
-    if weights.size * values.shape[-1] <= _FEW:
-        added = (1,) * (values.ndim - weights.ndim)
-        spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
-        return np.add.accumulate(spread * values)[-1]
-    total = np.zeros(values.shape[1:])
-    for weight, value in zip(weights, values, strict=True):
-        total = total + weight * value
-    return total
+    if weights.size * values.shape[-1] > _BLOCK:
+        total = np.zeros(values.shape[1:])
+        for weight, value in zip(weights, values, strict=True):
+            total = total + weight * value
+        return total
+    added = (1,) * (values.ndim - weights.ndim)
+    spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
+    terms = np.multiply(spread, values, order="C")
+    # NumPy adds numbers that are contiguous in pairs, rows in their order.
+    return np.add.accumulate(terms)[-1] if terms[0].size == 1 else np.add.reduce(terms)
 
 
 def error_bound(points: int | Indices, half_length: float | Array, analytic: Analytic) -> Array:
