@@ -134,6 +134,8 @@ class IntervalMoments:
 
     def _by_break(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments for a profile with one break at most, or one in each case."""
+        if not self.profile.coordinate_breaks.size:
+            return self._smooth(low, span, ends, np.zeros_like(span))
         base, _ = break_below(self.profile, ends[1])
         crossed = base > ends[0]
         if not crossed.any():

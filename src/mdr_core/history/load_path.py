@@ -175,6 +175,8 @@ def build(
 
 def _along(points: Array, count: int) -> Array:
     """Samples that divide the steps between points evenly, the last of which is the point."""
+    if count == 1:
+        return points
     start = np.append(0.0, points[:-1])[:, None]
     stop = points[:, None]
     share = np.arange(1, count + 1)

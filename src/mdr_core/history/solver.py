@@ -143,7 +143,11 @@ class LoadHistory(Results):
     @property
     def slip_fronts(self) -> Array:
         """Radii of the slip fronts at the end of the history, ascending [length]."""
-        return self.state.slip_fronts
+        profile, steps = self.start.profile, self.results
+        if profile.has_no_partial_slip or isinstance(steps, ExtrapolatedResults):
+            return self.state.slip_fronts
+        part, at = steps.last_branches
+        return profile.contact_radius(part.coordinate[at[1:-1]])
 
     @property
     def method(self) -> str:
