@@ -144,12 +144,6 @@ class SlipSegments(NamedTuple):
     full: Flags
     """Slip of all springs, with the front on the axis; `lower_gap` is at the end of the step."""
 
-    def joined(self, others: "SlipSegments") -> "SlipSegments":
-        """Return all segments on which the anchors move."""
-        some = np.concatenate([self.slip, others.slip]) > 0
-        rows = zip(self, others, strict=True)
-        return SlipSegments._make(np.concatenate(both)[some] for both in rows)
-
 
 def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontPath, Polyline]:
     """Return the polyline vertices after each of a sequence of straight load steps.
@@ -213,11 +207,14 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
 
 def slip_segments(path: FrontPath) -> SlipSegments:
     """Return the segments between the visits of the slip front, and the slip of all springs."""
-    follows = path.step[1:] == path.step[:-1]
-    pair = np.flatnonzero(follows)
-    step, moved = path.step[pair], path.moved[path.step[pair]]
-    upper, lower = path.behind[pair], path.behind[pair + 1]
-    normal = np.maximum(path.normal[pair + 1], 0.0)
+    follows = np.append(path.step[1:] == path.step[:-1], False)
+    # After the last visit, on the axis, all springs slip until the end of the step.
+    visit = np.flatnonzero(follows | (path.normal < 0))
+    full, below = ~follows[visit], np.minimum(visit + 1, follows.size - 1)
+    step, upper = path.step[visit], path.behind[visit]
+    moved = path.moved[step]
+    lower = np.where(full[:, None], moved, path.behind[below])
+    normal = np.maximum(np.where(full, 0.0, path.normal[below]), 0.0)
     side, lower_side = _side(upper, moved), _side(lower, moved)
     crossed = np.flatnonzero(side * lower_side < 0)
     if crossed.size:
@@ -227,23 +224,15 @@ def slip_segments(path: FrontPath) -> SlipSegments:
         rest = (lower[crossed] - middle).sum(axis=1) / 2
         step, moved = np.append(step, step[crossed]), np.append(moved, moved[crossed], axis=0)
         upper, lower = np.append(upper, middle, axis=0), np.append(lower, lower[crossed], axis=0)
-        normal = np.append(normal, normal[crossed])
+        normal, full = np.append(normal, normal[crossed]), np.append(full, full[crossed])
         lower[crossed], normal[crossed] = middle, normal[crossed] + rest
         lower_side[crossed] = 0.0
         side, lower_side = np.append(side, 0 * share), np.append(lower_side, -side[crossed])
-    span = (lower - upper).sum(axis=1) / 2
     slip, gaps = _slip(np.array([upper, lower]), moved, side + lower_side)
-    partial = np.zeros(step.shape, dtype=bool)
-    segments = SlipSegments(step, normal, span, slip, gaps[0], gaps[1], partial)
-    # After the last visit, on the axis, all springs slip until the end of the step.
-    last = np.flatnonzero(~np.append(follows, False) & (path.normal < 0))
-    step, behind = path.step[last], path.behind[last]
-    moved, nothing = path.moved[step], np.zeros(last.size)
-    slip, gaps = _slip(np.array([behind, moved]), moved, _side(behind, moved))
-    slides = SlipSegments(
-        step, nothing, nothing, slip, gaps[0], path.load[step], np.ones(last.size, dtype=bool)
-    )
-    return segments.joined(slides)
+    span = np.where(full, 0.0, (lower - upper).sum(axis=1) / 2)
+    end = np.where(full, path.load[step], gaps[1])
+    found = SlipSegments(step, normal, span, slip, gaps[0], end, full)
+    return SlipSegments._make(row[slip > 0] for row in found)
 
 
 def _side(behind: Array, moved: Array) -> Array:
