@@ -16,6 +16,7 @@ from mdr_core.errors import Notice
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.validation import extremes
 
 # Relative error of the half-space approximation above which it is reported, with room for rounding:
 # a cone of slope 0.1 on incompressible bodies has one per cent.
@@ -96,7 +97,7 @@ def table_end(contact: LoadedContact) -> Finding:
     near = a > _NEAR_END * (end if contact.profile.kind == "tabulated" else np.inf)
 
     def message() -> str:
-        part = float(np.max(a) / np.max(end))
+        part = extremes(a)[1] / extremes(end)[1]
         return (
             f"the contact reaches {part:.3f} of the table's last radius: "
             "extend the table beyond the contact edge"
@@ -128,12 +129,12 @@ def of_normal_contact(
     error = slope * (radial + slope)
 
     def size() -> str:
-        steepest = float(np.max(slope))
+        steepest = extremes(slope)[1]
         square = steepest * steepest
         assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if beta is None else ""
         return (
             f"the half-space approximation has an estimated error of "
-            f"{_per_cent(float(np.max(error)))}: {_per_cent(radial * steepest)} by the neglected "
+            f"{_per_cent(extremes(error)[1])}: {_per_cent(radial * steepest)} by the neglected "
             f"radial displacement{assumed}, and of order {_per_cent(square)} by the slope "
             f"{steepest:.2g} at the contact edge"
         )
@@ -229,8 +230,8 @@ def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool
 
 def infinite_radii(contact: LoadedContact) -> str:
     """Return the radii of infinite pressure inside the largest contact, as text."""
-    radii = (float(np.min(b)) for b in contact.profile.infinite_pressure_radii)
-    largest = np.max(contact.contact_radius)
+    radii = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)
+    largest = extremes(contact.contact_radius)[1]
     return ", ".join(f"{b:.12g}" for b in radii if b <= largest)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import log_ratio, power_moment, root_step
-from mdr_core.elementwise import full, where
+from mdr_core.elementwise import full, some, where
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
@@ -258,7 +258,7 @@ class Power(Profile):
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         sharp = where(self.exponent <= 1, 0.0, np.inf)
-        return (sharp,) if np.any(sharp == 0) else ()
+        return (sharp,) if some(sharp == 0) else ()
 
     @property
     def tip_pressure(self) -> Parameter:
