@@ -318,6 +318,16 @@ class IntervalMoments:
         return in_order(measure, parts.swapaxes(0, 1))
 
 
+def interval_moments(profile: Profile, *, by_force: bool) -> IntervalMoments:
+    """Return the moments of a profile over intervals of depth, or of reduced force."""
+    return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, by_force)
+
+
+# The sums between the breaks of a table take as long as a short history. Those of a table of 2000
+# points have 1 MB.
+_of_table: Final = lru_cache(maxsize=16)(IntervalMoments)
+
+
 def _from_below(function: Function, breaks: Array) -> Array:
     """Limit of a function from below: above, an infinite slope magnifies rounding errors."""
     return 2 * function(breaks * (1 - _BELOW)) - function(breaks * (1 - 2 * _BELOW))

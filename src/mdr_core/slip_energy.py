@@ -10,7 +10,7 @@ import numpy as np
 from mdr_core.broadcasting import in_blocks, with_parameters
 from mdr_core.elementwise import is_number, some, where
 from mdr_core.equivalent_1d import depth_step
-from mdr_core.interval_moments import IntervalMoments
+from mdr_core.interval_moments import interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
@@ -66,7 +66,7 @@ def _by_springs(profile: Profile, *ends: Array) -> Array:
 
     def _moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
         span = depth_step(profile, high, width, low)
-        moments = IntervalMoments(profile, by_force=False)
+        moments = interval_moments(profile, by_force=False)
         found = moments.over(profile.depth(low), span, np.array([low, high]))
         return (np.square(span) * found.weights[1] / 4,)
 

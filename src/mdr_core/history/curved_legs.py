@@ -19,7 +19,7 @@ from mdr_core.history.contact_state import ContactState, TractionSegments, width
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import StepResults
-from mdr_core.interval_moments import IntervalMoments
+from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
@@ -67,7 +67,7 @@ class CurvedLegs:
     @property
     def moments(self) -> IntervalMoments:
         """Normal coordinate, and the inverse, of the contact coordinate."""
-        return IntervalMoments(self.profile, self.path.by_force)
+        return interval_moments(self.profile, by_force=self.path.by_force)
 
     def along(self, s: Array) -> Array:
         """Return the conjugate of a contact coordinate."""

@@ -15,14 +15,14 @@ prescribed the identity holds with the reduced force in place of the depth and t
 import numpy as np
 
 from mdr_core.history.slip_memory import SlipSegments
-from mdr_core.interval_moments import IntervalMoments
+from mdr_core.interval_moments import interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
 
 def per_segment(profile: Profile, segments: SlipSegments, *, by_force: bool) -> Array:
     """Return D/(mu E*) of every segment [length^3]."""
-    moments = IntervalMoments(profile, by_force)
+    moments = interval_moments(profile, by_force=by_force)
     dissipated = np.zeros(segments.step.size)
     full = np.flatnonzero(segments.full)
     if full.size and not by_force:

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.history.slip_memory import VertexTree
-from mdr_core.interval_moments import IntervalMoments
+from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
@@ -36,7 +36,7 @@ class TractionBranches:
 
     @cached_property
     def _moments(self) -> IntervalMoments:
-        return IntervalMoments(self.profile, self.by_force)
+        return interval_moments(self.profile, by_force=self.by_force)
 
     @cached_property
     def coordinate(self) -> Array:
@@ -84,7 +84,7 @@ class TractionBranches:
         tree, radius = self.tree, self.radius
         below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
         some = np.flatnonzero((tree.parent >= 0) & (self.depth_step > 0))
-        moments = IntervalMoments(self.profile, by_force=False)
+        moments = interval_moments(self.profile, by_force=False)
         given = self.depth[below], self.depth_step, self.coordinate[np.array([below, own])]
         # The measure of the moments is 2 dx.
         weights = np.zeros((3, tree.normal.size))
