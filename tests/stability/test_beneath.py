@@ -73,12 +73,12 @@ def closed_moments(profile: Profile, low: float, r: mpf, z: mpf) -> np.ndarray:
 def exact_stress(profile: Profile, c: float | None, place: list[float]) -> Array:
     with mp.workdps(CLOSED_DIGITS):
         x, y, z = map(mpf, place)
-        r, nu = mp.hypot(x, y), mpf(NU)
-        where = tuple(np.array([part], dtype=object) for part in (r, z, x / r, y / r))
+        r = mp.hypot(x, y)
+        where = tuple(np.array([part]) for part in (float(r), float(z), complex(x, y) / float(r)))
         pressed = closed_moments(profile, 0.0, r, z)
         sheared = mpf(0) if c is None else mpf(FRICTION) * closed_moments(profile, c, r, z)
-        total = of_moments(pressed, sheared + 0 * pressed, where, nu)
-        return np.array([float(value / mp.pi) for value in total[:, 0]])
+        moments = ((part / mp.pi).astype(float) for part in (pressed, sheared + 0 * pressed))
+        return np.asarray(of_moments(*moments, where, NU)[:, 0])
 
 
 def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) -> Array:
@@ -87,7 +87,7 @@ def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) 
     profile = (contact.normal if sheared else contact).profile
     first = float(profile.contact_radius(np.zeros(())))
     r, z = np.array([np.hypot(*place[:2])]), np.array([place[2]])
-    where = (r, z, place[0] / r, place[1] / r)
+    where = (r, z, (place[0] + 1j * place[1]) / r)
 
     def moments(low: float) -> Array:
         x = low + (1 - low) * (1 + NODES) / 2

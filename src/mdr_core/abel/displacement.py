@@ -58,6 +58,23 @@ class Branch:
     pole: float = inf
     behind: float = inf
 
+    def cuts(self, low: float, high: float, near: float, growth: float = 1.0) -> list[float]:
+        """Return radii from `low` on, between which the weight is resolved up to `high`.
+
+        Parameters
+        ----------
+        low, high : ends of the interval, base <= low <= high < pole [length].
+        near : distance in s from s = 0 to a singularity below [length].
+        growth : of s + near from one radius to the next [1].
+        """
+        found: list[float] = []
+        ends = low, high, self.pole
+        s, last, pole = (sqrt(max(x - self.base, 0.0) * (x + self.base)) for x in ends)
+        while s < last:
+            found.append(sqrt(self.base**2 + s * s) if found else low)
+            s += min(growth * (s + near), (pole - s) / 2)
+        return found
+
 
 # K(x, sqrt(r^2 - x^2)), by which the slope is multiplied.
 Kernel = Callable[[Array, Array], Array]

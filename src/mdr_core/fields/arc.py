@@ -7,7 +7,6 @@ profile, with an analytic factor. Source: notes, §10.
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf, sqrt
 from typing import Final
 
 import numpy as np
@@ -25,8 +24,6 @@ from mdr_core.typing import Array, Chosen
 _NEAR_AXIS: Final = 1e-8
 # The same part of the radius at which an arc that starts on the axis ends.
 _NEXT_TO_AXIS: Final = 1e-120
-# Pieces end half way to a pole.
-_HALF: Final = 0.5
 # Nodes on every piece: a subpanel of a table is a polynomial through up to 22 points.
 _NODES: Final = 24
 # Least power to integrate: the polynomial of a spline's subpanel, times x of the factor and of dx.
@@ -98,7 +95,7 @@ class Arc:
         growth = max(branch.steepness + 1, _DEGREE)
         analytic = Analytic(growth=growth, zeros=2, fewest=_NODES)
         total = np.zeros(r.shape)
-        for start, stop in pairwise([low, *_cuts(branch, low, high), high]):
+        for start, stop in pairwise([*branch.cuts(low, high, branch.behind), high]):
             seen = np.flatnonzero(r < stop)
             if not seen.size:
                 continue
@@ -117,23 +114,3 @@ class Arc:
                 analytic=analytic,
             )
         return total
-
-
-def _cuts(branch: Branch, low: float, high: float) -> list[float]:
-    """Radii between pieces that are no longer than their distance from a pole."""
-    cuts, at = [], low
-    while branch.pole < inf:
-        at = branch.pole - _HALF * (branch.pole - at)
-        if at >= high:
-            break
-        cuts.append(at)
-    if branch.behind < inf:
-        s, base = sqrt((low - branch.base) * (low + branch.base)), branch.base
-        while True:
-            s = 2 * s + branch.behind
-            at = sqrt(base * base + s * s)
-            if at >= high:
-                break
-            if at > low:
-                cuts.append(at)
-    return sorted(cuts)

@@ -26,10 +26,11 @@ from mdr_core.typing import Array
 _EDGE: Final = 1 + 4 * float(np.finfo(float).eps)
 
 
-class _Traction(NamedTuple):
+class Traction(NamedTuple):
     """Annuli of a contact under one load, from the axis, on which the anchors have one formula."""
 
     profile: Profile
+    e_star: float
     modulus: float
     """mu E* [pressure]."""
     ratio: float
@@ -55,6 +56,16 @@ class _Traction(NamedTuple):
         whole = i == 0 and not self.profile.has_no_partial_slip
         outer = self.radius[i + 1 : i + 2] if self.exact else None
         return Annulus(self.coordinate[i + 1 : i + 2], None if whole else end, outer)
+
+    def stress(self, r: Array, rtol: float) -> Array:
+        """Return the stress at radii, over mu E* [1], shape (m,)."""
+        result = np.zeros(r.shape)
+        for i in np.flatnonzero(self.slope).tolist():
+            a = float(self.radius[i + 1])
+            result += self.slope[i] * stress(self.profile, self.annulus(i), a, r, rtol)
+        for arc in filter(None, self.arcs):
+            result += arc.stress(r, rtol) / np.pi
+        return result
 
     def depth_from(self, i: int, x: Array, at: Array) -> Array:
         """Return the depth from radii of the i-th annulus, or below it, to its upper end [length].
@@ -110,17 +121,7 @@ def shear_stress(
     >>> bool(abs(shear_stress(history.state, [0.0])[0] / (0.05 * np.log(1 / c)) - 1) < 1e-13)
     True
     """
-
-    def values(load: _Traction, r: Array) -> Array:
-        result = np.zeros(r.shape)
-        for i in np.flatnonzero(load.slope).tolist():
-            a = float(load.radius[i + 1])
-            result += load.slope[i] * stress(load.profile, load.annulus(i), a, r, rtol)
-        for arc in filter(None, load.arcs):
-            result += arc.stress(r, rtol) / np.pi
-        return load.modulus * result
-
-    return _fill(contact, values, radius)
+    return _fill(contact, lambda load, r: load.modulus * load.stress(r, rtol), radius)
 
 
 def slip(
@@ -137,7 +138,7 @@ def slip(
     `shear_stress`.
     """
 
-    def values(load: _Traction, r: Array) -> Array:
+    def values(load: Traction, r: Array) -> Array:
         result = np.zeros(r.shape)
         inside = r <= load.radius[-1] * _EDGE
         # S(0; r) and S(b; r) are equal: g is zero on a flat.
@@ -166,7 +167,7 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
     Source: mdr-5, Eq. (5.23); notes, §10. Parameters, returns and errors as of `shear_stress`.
     """
 
-    def values(load: _Traction, r: Array) -> Array:
+    def values(load: Traction, r: Array) -> Array:
         profile, result = load.profile, np.zeros(r.shape)
         if profile.has_no_partial_slip:
             # All springs carry the same load.
@@ -204,35 +205,42 @@ def arcs(state: ContactState) -> tuple[Arc | None, ...]:
 
 def _fill(
     contact: TangentialContact | ContactState,
-    field: Callable[[_Traction, Array], Array],
+    field: Callable[[Traction, Array], Array],
     radius: ArrayLike,
 ) -> Array:
     """Field of every load at all radii."""
+    shape, traction = tractions(contact)
+    return fill(shape, lambda load, r: field(traction(load), r), radius)
+
+
+def tractions(
+    contact: TangentialContact | ContactState,
+) -> tuple[tuple[int, ...], Callable[[int], Traction]]:
+    """Return the shape of the loads, and the traction under the load of an index."""
     if isinstance(contact, ContactState):
         traction = _at_end(contact)
-        return fill((), lambda _load, r: field(traction, r), radius)
-    tractions = _of_loads(contact)
-    return fill(contact.width.shape, lambda load, r: field(tractions(load), r), radius)
+        return (), lambda _load: traction
+    return contact.width.shape, _of_loads(contact)
 
 
-def _at_end(state: ContactState) -> _Traction:
+def _at_end(state: ContactState) -> Traction:
     """Traction at the end of a load history."""
     profile, segments = state.profile, state.segments
     modulus = state.friction_coefficient * state.e_star
-    known = profile, modulus, state.displacement_ratio
+    known = profile, state.e_star, modulus, state.displacement_ratio
     if not state.in_contact:
         ends, nothing = np.zeros(1), np.zeros(0)
-        return _Traction(*known, ends, ends, nothing, nothing)
+        return Traction(*known, ends, ends, nothing, nothing)
     if profile.has_no_partial_slip:
         depth = state.load[:1] / modulus
         ends = np.append(profile.first_coordinate, state.coordinate[-1])
-        return _Traction(*known, ends, profile.contact_radius(ends), np.abs(depth), np.sign(depth))
+        return Traction(*known, ends, profile.contact_radius(ends), np.abs(depth), np.sign(depth))
     radius = profile.contact_radius(segments.coordinate)
     slope = np.where(segments.rate == 0, segments.slope, 0.0)
-    return _Traction(*known, segments.coordinate, radius, segments.width, slope, arcs(state))
+    return Traction(*known, segments.coordinate, radius, segments.width, slope, arcs(state))
 
 
-def _of_loads(contact: TangentialContact) -> Callable[[int], _Traction]:
+def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
     """Traction under the load of an index."""
     normal, profile = contact.normal, contact.normal.profile
     first = profile.first_coordinate
@@ -240,14 +248,16 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], _Traction]:
     modulus = contact.friction_coefficient * normal.e_star
     columns = by_load(
         contact.width.shape,
-        *(modulus, contact.displacement_ratio, normal.coordinate, normal.contact_radius),
+        *(normal.e_star, modulus, contact.displacement_ratio),
+        *(normal.coordinate, normal.contact_radius),
         *(contact.stick_coordinate, contact.stick_radius, contact.width),
         *(contact.sign, contact.full_slip, contact.sign * contact.excess),
     )
     exact = normal.control == "contact_radius"
 
-    def traction(load: int) -> _Traction:
-        mu_e, ratio, top, a, edge, c, width, sign, slides, excess = (part[load] for part in columns)
+    def traction(load: int) -> Traction:
+        e_star, mu_e, ratio, *places, sign, slides, excess = (part[load] for part in columns)
+        top, a, edge, c, width = places
         ends, radii, widths, slopes = [first, top], [flat, a], [top - first], [0.0]
         if profile.has_no_partial_slip:
             # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
@@ -259,6 +269,6 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], _Traction]:
             ends, radii = [first, edge, top], [flat, c, a]
             widths, slopes = [edge - first, width], [0.0, sign]
         rows = np.array(ends), np.array(radii), np.array(widths), np.array(slopes)
-        return _Traction(profile, mu_e, ratio, *rows, exact=exact, excess=excess)
+        return Traction(profile, e_star, mu_e, ratio, *rows, exact=exact, excess=excess)
 
     return traction

@@ -1,9 +1,8 @@
 """Stresses beneath the surface of a contact."""
 
-from mdr_core.subsurface.annuli import slips_from
 from mdr_core.subsurface.peaks import MEASURES, Peak, largest
 from mdr_core.subsurface.stress import StressTensor, error_estimate, stress
-from mdr_core.subsurface.yielding import yield_onset_force, yielding
+from mdr_core.subsurface.yielding import slips_from, yield_onset_force, yielding
 
 __all__ = [
     "MEASURES",

@@ -14,17 +14,23 @@ Source: notes, §14.
 """
 
 from collections.abc import Iterator
-from math import hypot, inf, sqrt
-from typing import Final, NamedTuple
+from math import ceil, inf, log2, prod
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.polynomial import polynomial
+from numpy.polynomial import legendre, polynomial
 
+from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
+from mdr_core.fields.tangential import Traction, tractions
+from mdr_core.history import ContactState
+from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid
 from mdr_core.quadrature import composite_rule, gauss_legendre
-from mdr_core.subsurface.annuli import Contact, annuli_of, normal_of
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Chosen, Indices
+
+Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
 # Number of the kernels K.
 _KERNELS: Final = 7
@@ -40,8 +46,6 @@ _STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
 # error beyond 1e16 times this distance.
 _NEAREST: Final = 1e-32
-# Replaces a distance of zero from a node.
-_TINY: Final = 1e-290
 # Nodes times points evaluated at once: larger complex arrays leave the cache, and those above
 # 128 kB are allocated anew.
 _BLOCK: Final = 4_096
@@ -53,7 +57,7 @@ class _Blocks(NamedTuple):
     low: Array
     high: Array
     width: Array
-    """high^2 - low^2, accurate however narrow, shape (n,); the last block may be empty."""
+    """high^2 - low^2, accurate however narrow, shape (n,)."""
     offset: Array
     """x^2 - low^2 of the nodes, shape (nodes, n)."""
     x: Array
@@ -64,21 +68,28 @@ class _Blocks(NamedTuple):
 class Foundation:
     """Loads of the foundation under a single load, as they act on body 1 or 2."""
 
-    def __init__(self, contact: Contact, body: int) -> None:
-        normal, annuli, sign = normal_of(contact), annuli_of(contact), 1 if body == 2 else -1
-        self.profile, self.modulus = normal.profile, float(normal.e_star) / np.pi
-        self.annuli = annuli._replace(slope=sign * annuli.slope, rate=sign * annuli.rate)
-        self.loaded = bool(normal.loaded)
+    def __init__(self, load: Traction, body: int) -> None:
+        self.load, profile = load, load.profile
+        rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
+        self.share = (1 if body == 2 else -1) * load.modulus / load.e_star
+        """Unit of the slopes k of the anchors, as the body feels them [1]."""
+        self._slope, self._rate = self.share * load.slope, self.share * np.array(rate)
+        self._inverse = any(arc and arc.inverse for arc in load.arcs)
+        slopes = (self._slope != 0) | (self._rate != 0)
+        self.sheared = bool(slopes.any())
+        # Least radius at which q_x has a slope, infinite if it has none.
+        self.slips_from = float(load.radius[:-1][slopes].min(initial=inf))
+        self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
         if not self.loaded:
             return
-        if self.profile.has_no_partial_slip:
+        if profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
-            a, zero = self.annuli.radius, np.zeros((1, 1))
-            k = np.append(1.0, self.annuli.slope)[: 1 + self.annuli.sheared, None, None]
-            mass = k * float(normal.indentation_depth)
+            a, zero = load.radius[-1:], np.zeros((1, 1))
+            depths = [load.coordinate[-1], self._slope @ load.width][: 1 + self.sheared]
+            mass = np.array(depths)[:, None, None]
             self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
             return
-        self._pieces = self._cut(float(normal.coordinate))
+        self._pieces = self._cut()
         low, high, base, s_low, s_high, step = self._pieces
         u, shares = (part[:, None] for part in composite_rule(_NODES, 1))
         past = step * u
@@ -88,53 +99,49 @@ class Foundation:
         width, offset = step * (s_low + s_high), past * (s_low + s)
         self._levels = [_Blocks(low, high, width, offset, x, mass)]
         while self._levels[-1].low.size > 1:
-            self._levels[-1] = _paired(self._levels[-1])
             self._levels.append(_merged(self._levels[-1]))
 
-    def _cut(self, coordinate: float) -> Array:
+    def _cut(self) -> Array:
         """Pieces low <= x <= high on which k g' is smooth in s = sqrt(x^2 - b^2), ascending.
 
         low, high, b, s(low), s(high) and their difference, however narrow; shape (6, n) [length].
+        Empty ones at the end make n a power of two.
         """
-        radius, width = self.annuli.radius, self.annuli.width
-        self._panels, self._branches = self.profile.panels, self.profile.branches
+        (inner, outer), ends = (self.load.radius[:-1], self.load.radius[1:]), self.load.coordinate
+        self._panels, self._branches = self.load.profile.panels, self.load.profile.branches
         starts = np.array([max(branch.base, branch.start) for branch in self._branches])
-        ends = [starts[starts < radius[-1]], radius[radius > starts[0]]]
-        if self._panels is None or self.annuli.rate.any():
-            ends += [self._cuts(branch) for branch in self._branches]
-        cuts = np.unique(np.concatenate(ends))
+        stops = [outer[outer > starts[0]], *(self._cuts(branch) for branch in self._branches)]
+        cuts = np.unique(np.concatenate(stops))
+        cuts = np.append(cuts, [cuts[-1]] * (2 ** ceil(log2(cuts.size - 1)) + 1 - cuts.size))
         low, high = cuts[:-1], cuts[1:]
         self._owner = np.searchsorted(starts, low, side="right") - 1
-        self._part = part = np.searchsorted(radius, high)
+        self._part = part = np.searchsorted(outer, high)
         base = np.array([branch.base for branch in self._branches])[self._owner]
         s_low, s_high = (np.sqrt((x - base) * (x + base)) for x in (low, high))
         if base[-1] == starts[0] > 0:
             # The coordinate is sqrt(a^2 - b^2), accurate however narrow the annulus around a flat.
-            s_high[-1] = coordinate
+            s_low[low == cuts[-1]] = s_high[high == cuts[-1]] = ends[-1]
         # An annulus may be too narrow for its radii to resolve it.
-        narrow = (np.append(0.0, radius)[part] == low) & (radius[part] == high)
-        step = np.where(narrow, width[part] * (low + high) / (s_low + s_high), s_high - s_low)
+        width = self.load.profile.radius_width(ends[1:], self.load.width)[part]
+        narrow = (inner[part] == low) & (outer[part] == high)
+        step = np.where(narrow, width * (low + high) / (s_low + s_high), s_high - s_low)
         return np.array([low, high, base, s_low, s_high, step])
 
     def _cuts(self, branch: Branch) -> list[float]:
-        """Radii between which k g' of a branch changes over more than their distance."""
-        base, curved = branch.base, bool(self.annuli.rate.any())
-        ends = max(base, branch.start), min(branch.stop, self.annuli.radius[-1]), branch.pole
-        s, last, pole = (sqrt(max(x - base, 0.0) * (x + base)) for x in ends)
-        near = min(base, branch.behind) if base > 0 else _NEAREST * last
-        ended = min(branch.stop, branch.pole) < inf or isinstance(self.profile, Cone | Paraboloid)
+        """Radii between which k g' of a branch is smooth."""
+        base, curved = branch.base, bool(self._rate.any())
+        start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
+        near = min(base, branch.behind) if base > 0 else _NEAREST * stop
+        ended = min(branch.stop, branch.pole) < inf or isinstance(
+            self.load.profile, Cone | Paraboloid
+        )
         if base == 0 and ended and not curved:
             near = inf
-        growth = min(1.0, _STEEP / (branch.steepness + curved))
-        found = []
-        while s < last:
-            found.append(sqrt(base * base + s * s))
-            s += min(growth * hypot(near, s), (pole - s) / 2)
-        return found
+        return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Array:
         """k dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,), shape (1 or 2, nodes, m)."""
-        owner, part = self._owner[index], self._part[index]
+        owner = self._owner[index]
         if self._panels is not None:
             u = np.minimum(s / self._panels.length[owner], 1.0)
             found = polynomial.polyval(u, self._panels.weight.T[:, owner], tensor=False)
@@ -146,15 +153,15 @@ class Foundation:
                     found = branch.weight(x, s, slice(0, 1))
                     break
                 found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
-        if not self.annuli.sheared:
+        if not self.sheared:
             return np.asarray(found[None])
-        _, _, slope, rate, inverse = self.annuli
-        k = slope[part] + rate[part] * (0.5 / x if inverse else 2 * x)
+        part = self._part[index]
+        k = self._slope[part] + self._rate[part] * (0.5 / x if self._inverse else 2 * x)
         return np.stack([found, k * found])
 
     def moments(self, r: Array, z: Array) -> Array:
-        """Return the moments of q and q_x, if there is one, at points, z > 0, (1 or 2, 7, m)."""
-        total = np.zeros((1 + self.annuli.sheared, _KERNELS, r.size))
+        """Return the moments of q and q_x at points, z > 0, shape (2, 7, m)."""
+        total = np.zeros((2, _KERNELS, r.size))
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
         for size, level in reversed(list(enumerate(self._levels))):
             at_r, at_z, high = r[point], z[point], level.high[block]
@@ -167,7 +174,7 @@ class Foundation:
             above_low = np.where(nearer, above_low, above_high + width)
             gap = np.maximum(np.maximum(-above_low, above_low - width), 0.0)
             far = np.hypot(gap, 2 * at_r * at_z) >= _FAR * width
-            for part in _in_cache(np.flatnonzero(far & (high > 0)), len(level.x)):
+            for part in _in_cache(np.flatnonzero(far), len(level.x)):
                 depth, own = at_z[part], block[part]
                 square = above_low[part] + 2 * depth * depth - level.offset[:, own]
                 _add(total, point[part], square, level.x[:, own], depth, level.mass[..., own])
@@ -209,11 +216,13 @@ class Foundation:
                 _add(total, point[part], square, x, depth, mass)
 
 
-def _paired(blocks: _Blocks) -> _Blocks:
-    """An even number of blocks, the last of which may be empty."""
-    if blocks.low.size % 2 == 0:
-        return blocks
-    return _Blocks(*(np.append(part, np.zeros_like(part[..., :1]), -1) for part in blocks))
+def foundations(contact: Contact, body: int) -> tuple[list[Foundation], tuple[int, ...]]:
+    """Return the foundation under each load, as it acts on body 1 or 2, and the loads' shape."""
+    if isinstance(contact, NormalContact):
+        # It sticks under no tangential force.
+        contact = tangential.solve(contact, contact.e_star, 1.0, tangential_force=0.0)
+    shape, traction = tractions(contact)
+    return [Foundation(traction(load), body) for load in range(prod(shape))], shape
 
 
 def _merged(blocks: _Blocks) -> _Blocks:
@@ -221,17 +230,18 @@ def _merged(blocks: _Blocks) -> _Blocks:
     low, high = (_Blocks(*(part[..., i::2] for part in blocks)) for i in (0, 1))
     width = low.width + high.width
     at, weights = gauss_legendre(_JOINED)
-    place = (1 + at[:, None]) / 2
-    known = np.concatenate([low.offset, low.width + high.offset]) / width
-    # Barycentric weights of Gauss points, whose signs alternate.
-    signed = np.sqrt((1 - at) * (1 + at) * weights) * (-1.0) ** np.arange(_JOINED)
-    shares = signed[:, None, None] / (known - place[..., None] + _TINY)
-    shares /= shares.sum(axis=0)
+    offset = (1 + at[:, None]) / 2 * width
+    known = np.concatenate([low.offset, low.width + high.offset]) / np.where(width > 0, width, 1.0)
+    # Sums of Legendre polynomials, which are orthogonal at the nodes.
+    norms = weights[:, None] * (np.arange(_JOINED) + 0.5)
+    shares = (
+        legendre.legvander(2 * known - 1, _JOINED - 1)
+        @ (legendre.legvander(at, _JOINED - 1) * norms).T
+    )
     mass = np.concatenate([low.mass * low.x, high.mass * high.x], axis=1)
-    offset = place * width
     x = np.sqrt(low.low**2 + offset)
-    top = np.maximum(low.high, high.high)
-    return _Blocks(low.low, top, width, offset, x, np.einsum("jin,kin->kjn", shares, mass) / x)
+    mass = np.einsum("jin,ink->jkn", mass, shares) / x
+    return _Blocks(low.low, high.high, width, offset, x, mass)
 
 
 def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
@@ -246,9 +256,8 @@ def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: 
     inverse, second = 1 / rho, 1 / (rho + zeta)
     mixed, cube = inverse * second, inverse * inverse * inverse
     kernels = [inverse, zeta * cube, mixed, cube, second]
-    if len(total) > 1:
+    if len(mass) > 1:
         kernels += [second * second, mixed * second]
     for number, kernel in enumerate(kernels):
-        sums = np.einsum("knm,nm->km", mass, kernel.imag)
-        for row, each in zip(total[:, number], sums, strict=True):
-            np.add.at(row, point, each)
+        for row, each in enumerate(np.einsum("knm,nm->km", mass, kernel.imag)):
+            np.add.at(total[row, number], point, each)

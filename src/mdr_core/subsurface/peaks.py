@@ -10,8 +10,7 @@ from scipy.ndimage import maximum_filter
 from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.profiles import Profile
-from mdr_core.subsurface.annuli import Contact, shape_of, single_loads
-from mdr_core.subsurface.foundation import Foundation
+from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import on_rings
 from mdr_core.typing import Array
 from mdr_core.validity import infinite_deviator
@@ -80,8 +79,9 @@ def largest(
     """
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
-    found = [_peak(Foundation(one, body), measure, poissons_ratio) for one in single_loads(contact)]
-    return Peak(*np.array(found).T.reshape(4, *shape_of(contact)))
+    under, shape = foundations(contact, body)
+    found = [_peak(each, measure, poissons_ratio) for each in under]
+    return Peak(*np.array(found).T.reshape(4, *shape))
 
 
 def infinite_radii(profile: Profile, poissons_ratio: float, slips_from: float) -> list[float]:
@@ -94,15 +94,15 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     """Value and place of the largest stress in one case; parameters: see `largest`."""
     if not under.loaded:
         return 0.0, 0.0, 0.0, 0.0
-    for b in infinite_radii(under.profile, nu, under.annuli.slips_from):
-        if b <= under.annuli.radius[-1]:
+    for b in infinite_radii(under.load.profile, nu, under.slips_from):
+        if b <= under.load.radius[-1]:
             return inf, b, 0.0, 0.0
 
     def on(angle: Array, r: Array, z: Array) -> Array:
         """The measure by direction, r of either sign, and z; zero where it is infinite."""
         turn, rings = angle[:, None], [x.ravel() for x in np.meshgrid(r, z, indexing="ij")]
         sign = np.where(rings[0] < 0, -1, 1)
-        place = sign * rings[0], rings[1], sign * np.cos(turn), np.sin(turn)
+        place = sign * rings[0], rings[1], sign * np.cos(turn) + 1j * np.sin(turn)
         values = np.asarray(getattr(on_rings(under, place, nu), measure))
         return np.where(np.isinf(values), 0.0, values).reshape(angle.size, r.size, z.size)
 
@@ -117,7 +117,7 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
             top, at = _climbed(on, np.array([0.0, r[i], z[j]]), around)
             if top > value:
                 value, place, box = top, at, around
-    if under.annuli.sheared:
+    if under.sheared:
         value, place = _climbed(on, place, np.array([_TURN, *box[1:]]))
     angle, radius, depth = place.tolist()
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
@@ -125,11 +125,11 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
 
 def _grid(under: Foundation) -> tuple[Array, Array]:
     """Radii, of either sign if there is a tangential load, and depths."""
-    edges = under.annuli.radius
+    edges = under.load.radius
     a = float(edges[-1])
-    stops = np.unique([0.0, *edges, *(float(b) for b in under.profile.breaks if b < a)])
+    stops = np.unique([0.0, *edges, *(float(b) for b in under.load.profile.breaks if b < a)])
     r = graded(np.append(stops, 1.5 * a), max(_RADII, 4 * stops.size))
-    if under.annuli.sheared:
+    if under.sheared:
         r = np.append(-r[:0:-1], r)
     shallow, deep = min(_SHALLOWEST * a, 0.1 * float(np.diff(stops).min())), _DEEPEST * a
     depths = np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow)))

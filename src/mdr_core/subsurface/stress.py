@@ -1,18 +1,16 @@
 """Stress tensor of a contact at any points of either body."""
 
 from math import inf
-from typing import Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from mdr_core import fields
 from mdr_core.errors import InputError
 from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
-from mdr_core.normal import NormalContact
-from mdr_core.subsurface.annuli import Contact, normal_of, shape_of, single_loads
-from mdr_core.subsurface.foundation import Foundation
+from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
 
@@ -22,12 +20,14 @@ _SURFACE: Final = 1e-18
 # A point at an edge is moved off the surface by this part of the contact radius: stresses have at
 # worst a root there.
 _SURFACE_AT_EDGE: Final = 1e-34
+# Relative accuracy of the tractions at the origin.
+_AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
 
 
-# r, z, cos and sin of the direction.
-Place: TypeAlias = tuple[Array, Array, Array, Array]
+# r, z, and the direction e^(i phi).
+Place: TypeAlias = tuple[Array, Array, NDArray[Any]]
 
 
 class StressTensor(NamedTuple):
@@ -125,42 +125,37 @@ def stress(
         if not np.isfinite(given).all():
             raise InputError((name,), "must be finite")
     require_not_negative(("z",), where[2])
-    points, shape = np.broadcast_shapes(*(part.shape for part in where)), shape_of(contact)
-    across, aside, depth = (np.broadcast_to(part, points).ravel() for part in where)
+    across, aside, depth = np.broadcast_arrays(*where)
     r = np.hypot(across, aside)
-    away = np.where(r > 0, r, 1.0)
-    place = r, depth, np.where(r > 0, across / away, 1.0), aside / away
-    under = (Foundation(one, body) for one in single_loads(contact))
+    direction = np.where(r > 0, across + 1j * aside, 1.0) / np.where(r > 0, r, 1.0)
+    place = r.ravel(), depth.ravel(), direction.ravel()
+    under, shape = foundations(contact, body)
     found = np.stack([on_rings(each, place, poissons_ratio) for each in under], axis=1)
-    origin = (r == 0) & (depth == 0)
-    if origin.any():
-        # Powers next to a cone approach the tractions there slowly. V_r/r and Om_r/r are halves of
-        # V_rr and Om_rr.
-        p = np.broadcast_to(fields.pressure(normal_of(contact), [0.0])[..., 0], shape).ravel()
-        in_plane, none = -(1 + 2 * poissons_ratio) / 2 * p, np.zeros(p.shape)
-        along = none
-        if not isinstance(contact, NormalContact):
-            along = np.ravel(fields.shear_stress(contact, [0.0])) * (1 if body == 1 else -1)
-        exact = np.array([in_plane, in_plane, -p, none, along, none])
-        infinite = np.isinf(p)[:, None]
-        found[..., origin] = np.where(infinite, found[..., origin], exact[..., None])
-    return StressTensor(*found.reshape(6, *shape, *points))
+    return StressTensor(*found.reshape(6, *shape, *depth.shape))
 
 
 def on_rings(under: Foundation, place: Place, nu: float) -> StressTensor:
     """Return the stress tensor under a load at points that share radii and depths, (..., m)."""
-    (r, z, *direction), a = place, under.annuli.radius[-1]
+    (r, z, direction), load = place, under.load
     if not under.loaded:
-        return StressTensor(*np.zeros((6, *direction[0].shape)))
-    breaks = [float(np.asarray(b)) for b in under.profile.breaks]
-    near = np.abs(np.subtract.outer([0.0, *under.annuli.radius, *breaks], r)).min(axis=0)
+        return StressTensor(*np.zeros((6, *direction.shape)))
+    edges = [0.0, *load.radius, *(float(np.asarray(b)) for b in load.profile.breaks)]
+    near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
     # In points with depths > 0 the kernels are regular.
-    depth = np.maximum(z, _SURFACE * near + _SURFACE_AT_EDGE * a)
-    moments = under.moments(r, depth)
-    sheared = under.annuli.sheared * moments[-1]
-    found = under.modulus * of_moments(moments[0], sheared, (r, depth, *direction), nu)
-    for b in under.profile.infinite_pressure_radii:
-        infinite = (r == b) & (z == 0) & bool(b <= a)
+    depth = np.maximum(z, _SURFACE * near + _SURFACE_AT_EDGE * load.radius[-1])
+    pressed, sheared = moments = under.moments(r, depth)
+    origin = (r == 0) & (z == 0)
+    singular = load.profile.infinite_pressure_radii
+    if origin.any() and not (load.profile.has_no_partial_slip or 0.0 in singular):
+        # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
+        whole = load._replace(slope=np.ones_like(load.slope), arcs=())
+        moments[..., origin] = 0.0
+        pressed[0, origin] = -np.pi * whole.stress(np.zeros(1), _AXIS_RTOL)
+        pressed[4, origin] = pressed[0, origin] / 2
+        sheared[0, origin] = -np.pi * under.share * load.stress(np.zeros(1), _AXIS_RTOL)
+    found = load.e_star / np.pi * of_moments(pressed, sheared, (r, depth, direction), nu)
+    for b in singular:
+        infinite = (r == b) & (z == 0) & bool(b <= load.radius[-1])
         found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
     return StressTensor(*found)
 
@@ -168,38 +163,34 @@ def on_rings(under: Foundation, place: Place, nu: float) -> StressTensor:
 def of_moments(pressed: Array, sheared: Array, place: Place, nu: float) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
 
-    The sum and the difference of the in-plane stresses have few harmonics of the direction.
+    Sum and difference of the in-plane stresses have few harmonics of the direction.
 
     Parameters
     ----------
     pressed, sheared : moments of the normal and of the tangential load, shape (7, m).
-    place : radii and depths [length], shape (m,), and cosines and sines of directions, (..., m).
+    place : radii and depths [length], shape (m,), and directions e^(i phi), (..., m).
     nu : Poisson's ratio of this body [1].
     """
-    r, z, k, m = place
-    cos2, sin2 = k * k - m * m, 2 * k * m
-    cos3, sin3 = k * cos2 - m * sin2, k * sin2 + m * cos2
+    r, z, e = place
     v_z, zz, mixed, rz, om, _, _ = pressed
     zz, mixed, rz = z * zz, z * mixed, z * r * rz
-    total, second = (1 + 2 * nu) * v_z - zz, (1 - 2 * nu) * (v_z - 2 * om) + 2 * mixed - zz
+    second = (1 - 2 * nu) * (v_z - 2 * om) + 2 * mixed - zz
     shear, t_zz, t_mixed, t_rz, _, ring, z_ring = sheared
     t_zz, t_r, t_rz = z * t_zz, r * t_mixed, z * r * t_rz
-    # tau_xz = along + across cos 2 phi.
-    along, across = shear - t_zz / 2, z * t_mixed - t_zz / 2
-    total = total + k * ((2 + 2 * nu) * t_r - t_rz)
-    first, third = (
-        (2 - nu) * t_r - t_rz / 2,
-        nu * (2 * r * ring - t_r) + r * (2 * z * z_ring) - t_rz / 2,
-    )
-    difference = second * cos2 + first * k + third * cos3
+    first = (2 - nu) * t_r - t_rz / 2
+    third = nu * (2 * r * ring - t_r) + r * (2 * z * z_ring) - t_rz / 2
+    total = (1 + 2 * nu) * v_z - zz + ((2 + 2 * nu) * t_r - t_rz) * e.real
+    # sigma_xx - sigma_yy + 2i tau_xy and tau_xz + i tau_yz.
+    difference = e * (first + e * (second + e * third))
+    along = shear - t_zz / 2 + e * (rz + e * (z * t_mixed - t_zz / 2))
     return np.stack(
         np.broadcast_arrays(
-            (total + difference) / 2,
-            (total - difference) / 2,
-            v_z + zz + k * t_rz,
-            (second * sin2 + first * m + third * sin3) / 2,
-            k * rz + along + across * cos2,
-            m * rz + across * sin2,
+            (total + difference.real) / 2,
+            (total - difference.real) / 2,
+            v_z + zz + t_rz * e.real,
+            difference.imag / 2,
+            along.real,
+            along.imag,
         )
     )
 

@@ -1,23 +1,22 @@
 """Normal force at which yield begins, and the loads under which a contact has yielded."""
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from math import exp, inf, isclose, log
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from scipy.optimize import brentq
 
 from mdr_core import normal, tangential
+from mdr_core.broadcasting import with_parameters
 from mdr_core.errors import InputError
 from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
-from mdr_core.subsurface.annuli import Contact, normal_of, single
-from mdr_core.subsurface.peaks import MEASURES, infinite_radii, largest
+from mdr_core.subsurface.foundation import Contact
+from mdr_core.subsurface.peaks import MEASURES, Peak, infinite_radii, largest
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Parameter
 from mdr_core.validation import require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding
 
@@ -72,16 +71,13 @@ def yield_onset_force(
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
     limit = yield_strength if measure == "von_mises" else yield_strength / 2
-    options = {"measure": measure, "poissons_ratio": poissons_ratio, "body": body}
-    pressed, (columns, shape) = normal_of(contact), _columns(contact)
+    search = partial(largest, measure=measure, poissons_ratio=poissons_ratio, body=body)
+    pressed, (columns, shape) = _pressed(contact), _columns(contact)
     if not np.all(pressed.loaded):
         raise InputError(("load",), "the onset of yield needs a load that is not zero")
     # Loads in one ratio of the forces share the onset.
     _, first, which = np.unique(columns[1:], axis=1, return_index=True, return_inverse=True)
-    onset = [
-        _onset(single(pressed, i, shape), columns[1, i], columns[2, i], limit, options)
-        for i in first.tolist()
-    ]
+    onset = [_onset(pressed.profile, search, limit, *columns[:, i].tolist()) for i in first]
     return np.array(onset)[which].reshape(shape)
 
 
@@ -96,33 +92,42 @@ def yielding(
 
     Source: johnson, section 4.2; notes, §14.
     """
-    ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), normal_of(contact)
-    sheared = not isinstance(contact, NormalContact) and bool(np.any(contact.tangential_force))
-    exponent = _exponent(pressed.profile)
-    if exponent is not None and not sheared:
+    ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), _pressed(contact)
+    (columns, shape), exponent = _columns(contact), _exponent(pressed.profile)
+    if exponent is not None and not columns[1].any():
         # Under a power the stresses are similar at all loads.
         factor = np.max(
             [np.vectorize(_factor, otypes=[float])(exponent, nu) for nu in ratios], axis=0
         )
         where = pressed.loaded & (2 * factor * pressed.mean_pressure >= yield_strength)
     else:
-        columns, shape = _columns(contact)
 
-        def reaches(one: Contact) -> bool:
+        def yields(one: Contact) -> bool:
             peaks = (largest(one, MEASURES[1], poissons_ratio=nu) for nu in ratios)
             return any(2 * peak.value >= yield_strength for peak in peaks)
 
-        def under(i: int, place: Array) -> bool:
-            return reaches(_under(single(pressed, i, shape), columns[2, i], *place.tolist()))
+        @cache
+        def reaches(*case: float) -> bool:
+            return yields(_under(pressed.profile, *case))
 
-        flags = np.zeros(columns.shape[1], dtype=bool)
-        loaded = np.broadcast_to(pressed.loaded, shape).ravel()
-        _, group = np.unique(columns[2:], axis=1, return_inverse=True)
-        for number in range(int(group.max()) + 1):
-            _mark(flags, np.flatnonzero((group == number) & loaded), columns[:2], under)
-        if isinstance(contact, LoadHistory) and not flags[-1]:
-            flags[-1] = reaches(contact.state)
-        where = flags.reshape(shape)
+        where = np.zeros(shape, dtype=bool)
+        loaded = np.flatnonzero(np.broadcast_to(pressed.loaded, shape))
+        _, group = np.unique(columns[2:, loaded], axis=1, return_inverse=True)
+        boxes = [loaded[group == number] for number in np.unique(group)]
+        # The largest stress grows with the load, and with the ratio of the forces: a box of both is
+        # cut in two unless a corner decides about all of it.
+        while boxes:
+            box = boxes.pop()
+            low, high = columns[:, box].min(axis=1), columns[:, box].max(axis=1)
+            if not reaches(*high.tolist()):
+                continue
+            if reaches(*low.tolist()):
+                where.flat[box] = True
+            else:
+                order = np.argsort(columns[int(low[0] == high[0]), box], kind="stable")
+                boxes += np.array_split(box[order], 2)
+        if isinstance(contact, LoadHistory) and not where[-1]:
+            where[-1] = yields(contact.state)
 
     def message() -> str:
         least = float(np.min(np.broadcast_to(pressed.normal_force, where.shape)[where]))
@@ -131,9 +136,23 @@ def yielding(
     return Finding("yield", where, message)
 
 
+def slips_from(contact: TangentialContact | LoadHistory) -> Array:
+    """Return the least radius with slip under each load [length]; infinite without slip."""
+    if isinstance(contact, LoadHistory):
+        return np.where(contact.regime == "full_slip", 0.0, inf)
+    slips = contact.full_slip | (contact.width > 0)
+    return np.where(slips, contact.stick_radius, inf)
+
+
+def _pressed(contact: _Contact | LoadHistory) -> NormalContact:
+    if isinstance(contact, LoadHistory):
+        return contact.contact
+    return contact.normal if isinstance(contact, TangentialContact) else contact
+
+
 def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     """Coordinate, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of loads."""
-    pressed, ratio, friction = normal_of(contact), np.zeros(()), np.zeros(())
+    pressed, ratio, friction = _pressed(contact), np.zeros(()), np.zeros(())
     if not isinstance(contact, NormalContact):
         start = contact.start if isinstance(contact, LoadHistory) else contact
         friction = np.asarray(start.friction_coefficient)
@@ -145,34 +164,17 @@ def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     return np.array([np.ravel(each) for each in columns]), columns[0].shape
 
 
-def _under(pressed: NormalContact, friction: float, coordinate: float, ratio: float) -> _Contact:
-    """Return a contact under another load, of this contact coordinate and ratio of the forces."""
-    there = replace(pressed, coordinate=np.asarray(coordinate))
+def _under(
+    profile: Profile, coordinate: float, ratio: float, friction: float, e_star: float, *swept: float
+) -> _Contact:
+    """Contact under one load; parameters: see `_columns`."""
+    one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
+    pressed = NormalContact(one, e_star, np.asarray(coordinate))
     if ratio == 0:
-        return there
+        return pressed
     # The stresses depend on the ratio of the forces alone, not on G*.
-    force = min(ratio, _SLIDES) * (friction * there.normal_force)
-    return tangential.solve(there, there.e_star, friction, tangential_force=force)
-
-
-def _mark(
-    flags: Flags, index: Indices, places: Array, reaches: Callable[[int, Array], bool]
-) -> None:
-    """Set the flags of cases that yield, which differ in load alone, by bisection of the loads.
-
-    The largest stress grows with the load, and with the ratio of the forces.
-    """
-    if not index.size:
-        return
-    low, high = places[:, index].min(axis=1), places[:, index].max(axis=1)
-    if not reaches(int(index[0]), high):
-        return
-    if np.array_equal(low, high) or reaches(int(index[0]), low):
-        flags[index] = True
-        return
-    order = index[np.argsort(places[int(low[0] == high[0]), index], kind="stable")]
-    for half in np.array_split(order, 2):
-        _mark(flags, half, places, reaches)
+    force = min(ratio, _SLIDES) * (friction * pressed.normal_force)
+    return tangential.solve(pressed, e_star, friction, tangential_force=force)
 
 
 @lru_cache(maxsize=256)
@@ -192,39 +194,35 @@ def _exponent(profile: Profile) -> Parameter | None:
 
 
 def _onset(
-    pressed: NormalContact, ratio: float, friction: float, limit: float, options: dict[str, Any]
+    profile: Profile, search: "partial[Peak]", limit: float, start: float, *case: float
 ) -> float:
-    """Normal force at which a measure reaches a limit, the ratio of the loads held constant."""
-    profile, start = pressed.profile, log(pressed.coordinate)
-    radii = infinite_radii(profile, options["poissons_ratio"], 0.0 if ratio > _SLIDES else inf)
-    if any(b <= profile.contact_radius(np.zeros(())) for b in radii):
-        return 0.0
-    # The stress becomes infinite when the contact reaches this coordinate.
-    singular = min(
-        (float(profile.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf
-    )
+    """Normal force at which a measure reaches a limit, the ratio of the forces held constant."""
 
     def at(coordinate: float) -> NormalContact:
-        return replace(pressed, coordinate=np.asarray(coordinate))
+        return _pressed(_under(profile, coordinate, 0.0, *case[1:]))
 
     @cache
     def excess(place: float) -> float:
         """Logarithm of the measure over the limit, by that of the contact coordinate."""
         with np.errstate(all="ignore"):
-            peak = largest(_under(pressed, friction, exp(place), ratio), **options)
-        if isclose(peak.value, limit, rel_tol=_ONSET_RTOL):
+            value = float(search(_under(profile, exp(place), *case)).value)
+        if isclose(value, limit, rel_tol=_ONSET_RTOL):
             return 0.0
         # Next to the equator of a body no double tells the contact from it, and nothing is loaded.
-        return log(peak.value / limit) if peak.value > 0 else -_REACH
+        return log(value / limit) if value > 0 else -_REACH
 
-    lowest = start - _REACH
-    highest = min(start + _REACH, log(min(singular, profile.last_coordinate or inf)) - _ONSET_RTOL)
-    before = place = min(start, highest)
-    sign = 1 if excess(place) > 0 else -1
-    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
-    nearby = [at(exp(place - gap)).mean_pressure for gap in (0.0, _ONSET_RTOL)]
-    growth = log(nearby[0] / nearby[1]) / _ONSET_RTOL
-    step = 1 / max(growth, 1 / _REACH)
+    one = at(start).profile
+    slip = 0.0 if case[0] > _SLIDES else inf
+    radii = infinite_radii(one, search.keywords["poissons_ratio"], slips_from=slip)
+    if any(b <= one.contact_radius(np.zeros(())) for b in radii):
+        return 0.0
+    # The stress becomes infinite when the contact reaches this coordinate.
+    singular = min((float(one.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf)
+    lowest, highest = log(start) - _REACH, log(min(singular, one.last_coordinate or inf))
+    highest = min(log(start) + _REACH, highest - _ONSET_RTOL)
+    before = place = min(log(start), highest)
+    # Under a ball the stress grows like the contact radius.
+    sign, step = 1 if excess(place) > 0 else -1, 1
     while sign * excess(place) > 0:
         if place == (lowest if sign > 0 else highest):
             return 0.0 if sign > 0 else float(at(singular).normal_force) if singular < inf else inf
