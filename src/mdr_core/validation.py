@@ -77,7 +77,7 @@ def checked_radii(radius: ArrayLike, end: float = inf) -> Array:
     if not r.size:
         raise InputError(("radius",), "at least one radius is needed")
     require_not_negative(("radius",), r)
-    if r.max() > end:
+    if end < inf and r.max() > end:
         detail = f"the profile ends at radius {end:.12g}"
         raise InputError(("radius", *first_index(r > end)), detail)
     return r

@@ -66,7 +66,7 @@ def arcsinh_difference(
 
 def two_root_integral(
     weight: Weight,
-    b: Parameter,
+    b: float,
     r: Array,
     annulus: Annulus,
     *,
@@ -84,7 +84,7 @@ def two_root_integral(
     Parameters
     ----------
     weight : F(x) s/x, analytic in s.
-    b, r : break b > 0 and points 0 <= r < a [length], b of shape (1,) or (m,), r of shape (m,).
+    b, r : break b > 0 and points 0 <= r < a [length], r of shape (m,).
     annulus : a and c in the coordinate s; c <= b stands for c = b.
     odd : True if F is odd in s, which halves the nodes for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
@@ -129,7 +129,7 @@ class _Problem(NamedTuple):
     analytic: Analytic
 
 
-def _two_roots(problem: _Problem, b: Parameter, r: Array) -> Array:
+def _two_roots(problem: _Problem, b: float, r: Array) -> Array:
     """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
     upper, inner, edge = problem.annulus
     signed2 = (b - r) * (b + r)
@@ -152,8 +152,7 @@ def _two_roots(problem: _Problem, b: Parameter, r: Array) -> Array:
         roots = np.sqrt(edge2) * np.where(above & (inner2 == 0), epsilon, lower) + root * upper
         length = np.arcsinh(gap2 / np.maximum(roots, _TINY))
         start = np.arcsinh(np.minimum(root, lower) / epsilon)
-    weight, shift, base2 = problem.weight, np.abs(signed2) * above, np.asarray(b * b)
-    each = base2.size > 1
+    weight, shift, base2 = problem.weight, np.where(above, -signed2, 0.0), b * b
 
     def h(y: Array, index: Chosen) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
@@ -161,7 +160,7 @@ def _two_roots(problem: _Problem, b: Parameter, r: Array) -> Array:
         s *= epsilon[index]
         s *= s
         s += shift[index]
-        x = s + (base2[index] if each else base2)
+        x = s + base2
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
     even: Flags | bool = problem.odd or above
@@ -174,8 +173,8 @@ def _coincident_roots(problem: _Problem, index: Indices, r: Array) -> Array:
     `index` selects these points. Infinite where F ~ 1/s and the annulus begins at b.
     """
     upper, inner, _ = problem.annulus.at(index)
-    upper = np.broadcast_to(upper, r.shape)
-    width = upper if inner is None else np.broadcast_to(inner.width, r.shape)
+    upper = np.full(r.shape, upper)
+    width = upper if inner is None else np.full(r.shape, inner.width)
     result = np.empty_like(r)
     here = (width < upper).nonzero()[0]
     if here.size:
@@ -206,7 +205,9 @@ def _from_break(problem: _Problem, index: Indices, r: Array, upper: Array) -> Ar
 
     nothing = np.zeros(r.size)
     length = np.arcsinh(upper / r)
-    result = integrate_plain(integrand, nothing, length, problem.rtol, problem.analytic)
     pole = problem.weight(r[None], nothing[None], index)[0]
+    if pole.all():
+        return np.full(r.shape, np.inf)
+    result = integrate_plain(integrand, nothing, length, problem.rtol, problem.analytic)
     result[pole != 0] = np.inf
     return result

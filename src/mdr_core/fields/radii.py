@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.elementwise import broadcast
+from mdr_core.elementwise import broadcast, number, some
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
@@ -51,7 +51,7 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
     normal = contact.normal if isinstance(contact, TangentialContact) else contact
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
-    beyond = a - profile.contact_radius(np.asarray(profile.first_coordinate))
+    beyond = a - profile.contact_radius(number(profile.first_coordinate))
     exact = normal.control == "contact_radius" or profile.has_no_partial_slip
     error, scale = beyond * (0.0 if exact else EDGE_ROUNDING), beyond / profile.steepness
     if not isinstance(contact, TangentialContact):
@@ -62,8 +62,7 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
     condition = 1 + contact.load_rounding / normal.error_estimates
     error_c = c * (0.0 if exact else EDGE_ROUNDING * condition)
     parts = (a, c), (error, error_c), (scale, scale)
-    columns = [[np.ravel(broadcast(part, c.shape)) for part in pair] for pair in parts]
-    return Edges(*map(np.concatenate, columns))
+    return Edges(*(np.ravel([broadcast(part, c.shape) for part in pair]) for pair in parts))
 
 
 def edge_error(
@@ -101,16 +100,17 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     root : True for stresses, which have a root at the edges, unlike displacements.
     """
     used = (edges.error > 0) & (edges.scale > 0)
-    if not used.any():
+    if not some(used):
         return 0.0
     at, error, scale = (part[used] for part in edges)
     if not root:
-        return float(np.max(2 * error / scale))
+        return float((2 * error / scale).max())
     # The nearest radii on either side of each edge.
-    r, away = np.concatenate([[-inf], np.sort(radius), [inf]]), at * (_TOO_CLOSE * _EPS)
-    below = at - r[np.searchsorted(r, at - away, side="left") - 1]
-    above = r[np.searchsorted(r, at + away, side="right")] - at
-    return float(np.max(error / (2 * np.sqrt(np.minimum(below, above) * scale))))
+    r, away = np.concatenate([(-inf, inf), radius]), at * (_TOO_CLOSE * _EPS)
+    r.sort()
+    below = at - r[r.searchsorted(at - away) - 1]
+    above = r[r.searchsorted(at + away, side="right")] - at
+    return float((error / (2 * np.sqrt(np.minimum(below, above) * scale))).max())
 
 
 def grid(contact: NormalContact | TangentialContact | ContactState, points: int) -> Array:

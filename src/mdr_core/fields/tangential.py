@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel import Annulus, InnerEnd
+from mdr_core.elementwise import number
 from mdr_core.fields.arc import Arc
 from mdr_core.fields.normal import by_load, fill, slip_kernel, stress
 from mdr_core.history import ContactState
@@ -244,7 +245,7 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
     """Traction under the load of an index."""
     normal, profile = contact.normal, contact.normal.profile
     first = profile.first_coordinate
-    flat = float(profile.contact_radius(np.asarray(first)))
+    flat = float(profile.contact_radius(number(first)))
     modulus = contact.friction_coefficient * normal.e_star
     columns = by_load(
         contact.width.shape,

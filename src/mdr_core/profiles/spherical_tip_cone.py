@@ -132,7 +132,8 @@ class SphericalTipCone(TippedCone):
             return coordinate >= 0
         return (coordinate <= self.scale) & self._tip.falls_from_axis(coordinate)
 
-    def _tip_kernel(self, a: Array, inner: InnerEnd | None, r: Array, rtol: float) -> Array:
+    def _tip_kernel(self, annulus: Annulus, r: Array, rtol: float) -> Array:
+        a, inner, _ = annulus
         v = artanh_ratio(a, self.tip_radius)
         if inner is not None:
             wide = v - artanh_ratio(inner.radius, self.tip_radius)

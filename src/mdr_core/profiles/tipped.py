@@ -61,7 +61,7 @@ class TippedCone(Profile):
         """F_N(x)/E* beyond b [length^2]."""
 
     @abstractmethod
-    def _tip_kernel(self, a: Array, inner: InnerEnd | None, r: Array, rtol: float) -> Array:
+    def _tip_kernel(self, annulus: Annulus, r: Array, rtol: float) -> Array:
         """Stress integral of the tip over radii up to a <= b [1]."""
 
     @property
@@ -155,32 +155,27 @@ class TippedCone(Profile):
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""
-        outer, inner, _ = self.radial(annulus)
-
-        def spread(part: Parameter) -> Array:
-            return np.broadcast_to(np.asarray(part, dtype=float), radius.shape)
-
-        a, b = spread(outer), spread(self.tangent_radius)
-        width, c = (a, 0 * a) if inner is None else map(spread, inner)
-        flank, ends = a > b, None
-        total = np.zeros(radius.shape)
-        # A narrow annulus that ends on b lies in the tip, even if rounding moves c onto b.
-        tip = (radius < b) & ((c < b) | ~flank)
+        annulus, b = self.radial(annulus), float(self.tangent_radius)
+        a, inner, _ = annulus
+        total, tip, ends = np.zeros(radius.shape), radius < b, None
+        flank = np.full(radius.shape, a > b)
+        if inner is not None:
+            # A narrow annulus that ends on b lies in the tip, even if rounding moves c onto b.
+            tip &= (inner.radius < b) | ~flank
         if some(tip):
             top = np.minimum(a, b)
             if inner is not None:
+                width, c = inner
                 part = np.where(width < b / 2, width - (a - top), top - c)
-                ends = InnerEnd(np.maximum(part, 0.0)[tip], np.minimum(c, b)[tip])
-            total[tip] = self._tip_kernel(top[tip], ends, radius[tip], rtol)
+                ends = InnerEnd(np.maximum(part, 0.0), np.minimum(c, b))
+            total[tip] = self._tip_kernel(Annulus(top, ends).at(tip), radius[tip], rtol)
         if some(flank):
-            ends = None if inner is None else InnerEnd(width[flank], c[flank])
-            total[flank] += self._flank_kernel(a[flank], ends, b[flank], radius[flank], rtol)
+            total[flank] += self._flank_kernel(annulus.at(flank), b, radius[flank], rtol)
         return total
 
-    def _flank_kernel(
-        self, a: Array, inner: InnerEnd | None, b: Array, r: Array, rtol: float
-    ) -> Array:
+    def _flank_kernel(self, annulus: Annulus, b: float, r: Array, rtol: float) -> Array:
         """Stress integral of the flank over radii up to a > b [1]."""
+        a, inner, _ = annulus
         s = inverse_hypot(a, b)
         if inner is not None:
             width, c = inner
@@ -250,5 +245,5 @@ class RoundedCone(TippedCone):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return coordinate >= 0
 
-    def _tip_kernel(self, a: Array, inner: InnerEnd | None, r: Array, rtol: float) -> Array:
-        return self._tip.pressure_kernel(Annulus(a, inner), r, rtol)
+    def _tip_kernel(self, annulus: Annulus, r: Array, rtol: float) -> Array:
+        return self._tip.pressure_kernel(annulus, r, rtol)
