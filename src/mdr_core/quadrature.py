@@ -204,19 +204,21 @@ def _by_groups(
     nodes : evaluations of each rule.
     """
     if half_length.size * nodes[-1] <= _CALL:
-        finest = int(np.searchsorted(longest, half_length.max(initial=0.0)))
+        finest = int(longest.searchsorted(half_length.max(initial=0.0)))
         return by_rule(finest, slice(0, half_length.size))
-    rule = np.searchsorted(longest, half_length)
-    counts = np.bincount(rule)
-    present = [int(number) for number in counts.nonzero()[0]]
+    rule = longest.searchsorted(half_length)
+    counts = np.bincount(rule).tolist()
+    present = [number for number, count in enumerate(counts) if count]
     result = np.empty_like(half_length)
     first, waiting, more = 0, 0, 0
     for this, finer in pairwise([*present, len(nodes)]):
-        waiting += int(counts[this])
+        waiting += counts[this]
         if finer < len(nodes):
             more += waiting * (nodes[finer] - nodes[this])
             if more <= _CALL:
                 continue
+        if waiting == half_length.size:
+            return by_rule(this, slice(0, waiting))
         index = _chosen(((rule >= first) & (rule <= this)).nonzero()[0])
         result[index] = by_rule(this, index)
         first, waiting, more = this + 1, 0, 0

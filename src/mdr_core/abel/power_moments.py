@@ -93,13 +93,13 @@ def power_moment(m: float, annulus: Annulus, r: Array, rtol: float) -> Array:
         start = np.arcsinh(root / safe)
     # A steep power is significant only next to the edge: cosh y < 2 cosh(Y) e^(y-Y).
     longest = (_ROUNDING_LOG + log(m)) / m + log(2) if m > 1 else inf
-    if np.any(length > longest):
+    if longest < inf and np.any(length > longest):
         top = length if start is None else start + length
         length = np.minimum(length, longest)
         start = top - length
     value = integrate(h, length, rtol, start, analytic=Analytic(growth=growth))
     if any_on_axis:
-        value[on_axis] = np.broadcast_to(_axis_moment(m, annulus), value.shape)[on_axis]
+        value[on_axis] = _axis_moment(m, annulus.at(on_axis))
     return value
 
 

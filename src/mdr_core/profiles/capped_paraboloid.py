@@ -211,7 +211,7 @@ class CappedParaboloid(Profile):
             beyond = InnerEnd(np.where(past, inner.width / self._ratio, s), inner.radius)
         total = root_step(self.radial(annulus), radius)
         total *= 2 / (pi * self.tip_radius)
-        flank = np.broadcast_to(s > 0, radius.shape)
+        flank = np.full(radius.shape, s > 0)
         if flank.any() and self._curvature_step > 0:
             total[flank] += (self._curvature_step / pi) * two_root_integral(
                 lambda x, root, _: (x * x + root * root) / x,

@@ -66,10 +66,10 @@ class Hyperboloid(Profile):
         Source: notes, §2. Parameters: see `Profile`.
         """
         (a, inner, _), r, h = annulus, radius, self.scale
-        rho = np.hypot(h, r)
-        root = root_step(Annulus(a), r)
-        top = root / rho
         r2 = r * r
+        rho2 = r2 + h * h
+        rho = np.sqrt(rho2)
+        top = root_step(Annulus(a), r) / rho
 
         def integrand(y: Array, index: Chosen) -> Array:
             x = np.sinh(y)
@@ -89,13 +89,13 @@ class Hyperboloid(Profile):
             pole = np.arctan(top)
         else:
             width, c = inner.width, np.maximum(inner.radius, r)
-            step = root_step(annulus, r)
-            bottom = np.maximum(root - step, 0.0) / rho
-            gap2 = width * (2 * a - width) / (rho * rho)
-            cosh_top, cosh_bottom = np.hypot(h, a) / rho, np.hypot(h, c) / rho
+            bottom = np.sqrt((c - r) * (c + r)) / rho
+            gap2 = np.minimum(width * (2 * a - width) / rho2, top * top)
+            cosh_top, cosh_bottom = np.hypot(h, a) / rho, np.sqrt(1 + bottom * bottom)
             length = arcsinh_difference(top, cosh_top, bottom, cosh_bottom, gap2)
             smooth = integrate(integrand, length, rtol, np.arcsinh(bottom))
-            pole = np.arctan2(step / rho, 1 + top * bottom)
+            # arctan(top) - arctan(bottom), of which gap2 is the difference of the squares.
+            pole = np.arctan(gap2 / ((top + bottom) * (1 + top * bottom)))
         smooth += h / rho * pole
         smooth *= self.slope / pi
         return smooth

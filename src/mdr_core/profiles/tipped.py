@@ -193,10 +193,10 @@ class TippedCone(Profile):
         )
         return value / pi
 
-    @property
+    @cached_property
     def _flank_analytic(self) -> Analytic:
         """Strip in which the flank's weight is analytic."""
-        distance = float(np.min(np.arcsinh(self._behind / np.asarray(self.tangent_radius))))
+        distance = float(np.arcsinh(self._behind / self.tangent_radius))
         return Analytic(strip=min(DEFAULT.strip, _INSIDE * distance))
 
 
