@@ -204,7 +204,7 @@ class CappedParaboloid(Profile):
 
         Source: notes, §2. Parameters: see `Profile`.
         """
-        b, (outer, inner, edge) = self._break, annulus
+        b, step, (outer, inner, edge) = float(self._break), float(self._curvature_step), annulus
         s, beyond = self._outer(outer), None
         if inner is not None:
             past = outer - inner.width > b
@@ -212,8 +212,8 @@ class CappedParaboloid(Profile):
         total = root_step(self.radial(annulus), radius)
         total *= 2 / (pi * self.tip_radius)
         flank = np.full(radius.shape, s > 0)
-        if flank.any() and self._curvature_step > 0:
-            total[flank] += (self._curvature_step / pi) * two_root_integral(
+        if flank.any() and step > 0:
+            total[flank] += (step / pi) * two_root_integral(
                 lambda x, root, _: (x * x + root * root) / x,
                 b,
                 radius[flank],

@@ -91,7 +91,7 @@ class Truncated(FlatEnded):
         """Source: notes, §5. Parameters: see `Profile`."""
         value = two_root_integral(
             lambda x, s, _: self.weight(x, s),
-            self.flat_radius,
+            float(self.flat_radius),
             radius,
             annulus,
             odd=True,

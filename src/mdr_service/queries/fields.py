@@ -66,7 +66,8 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     """Return the requested fields by load and radius."""
     contact, partial = end = at_end(source)
     radius = np.array(query.radius or fields.grid(partial or contact, query.points))
-    values, shape = {}, (query.loads, radius.size)
+    values: Result = {}
+    shape = query.loads, radius.size
     for name in query.quantities:
         rows = broadcast(field(name, end, radius, query.rtol), shape)
         values[name] = np.ascontiguousarray(rows)
