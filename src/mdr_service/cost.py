@@ -31,7 +31,7 @@ _START: Final[dict[type[Query], float]] = {
     NormalQuery: 1e-4,
     TangentialQuery: 2e-4,
     StressQuery: 1e-4,
-    HistoryQuery: 1e-3,
+    HistoryQuery: 5e-4,
     WearQuery: 6e-4,
     EvolutionQuery: 1e-3,
     SubsurfaceQuery: 1e-3,
@@ -40,6 +40,8 @@ _START: Final[dict[type[Query], float]] = {
 _ARRAYS: Final = 2e-4
 # ... of each load, load with friction or sample, load with wear, number of cycles, ...
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
+# ... of the energies at each sample, ...
+_SAMPLE: Final = 3e-6
 # ... normal load of a table with a flat, and of one and each load of other profiles, whose largest
 # pressure is searched for, ...
 _SEARCH, _SEARCH_OF_ONE, _SEARCH_OF_EACH = 1e-5, 2e-4, 2e-5
@@ -83,7 +85,9 @@ def seconds(query: Query | BatchQuery) -> float:
             integrated += fields
     if path:
         evaluated += _FRICTION * path.samples
-        integrated += _NONLINEAR_STEP * path.steps if path.nonlinear else 0.0
+        integrated += _SAMPLE * path.samples + (
+            _NONLINEAR_STEP * path.steps if path.nonlinear else 0.0
+        )
     elif isinstance(query, (NormalQuery, LoadedQuery)):
         with_friction = query.has("friction_coefficient")
         evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
