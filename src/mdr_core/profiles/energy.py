@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import full, where
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.elementwise import full, some, where
+from mdr_core.quadrature import gauss_legendre, sum_in_order
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import extremes
 
@@ -28,6 +28,8 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
     s = scale sinh(w) resolves it also where s is much larger than the scale.
     """
     top = np.arcsinh(upper / scale)
+    if not some(top):
+        return top
     length = where(top < _DECAY, top, _DECAY)
     # Every load has its own pieces, summed in order: its result does not depend on other loads.
     count = where(length > _LONGEST, np.ceil(length / _LONGEST), 1.0)
@@ -43,7 +45,7 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
         values = np.where(fraction < 1, values, 0.0)
         values *= weights[part].reshape(-1, *[1] * top.ndim)
         values[0] += total
-        total = np.add.accumulate(values)[-1]
+        total = sum_in_order(values)
     return total * scale * length / (2 * count)
 
 
