@@ -20,6 +20,7 @@ from numpy.polynomial import legendre
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.broadcasting import with_parameters
+from mdr_core.elementwise import every, some
 from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
@@ -138,7 +139,7 @@ class IntervalMoments:
             return self._smooth(low, span, ends, np.zeros_like(span))
         base, _ = break_below(self.profile, ends[1])
         crossed = base > ends[0]
-        if not crossed.any():
+        if not some(crossed):
             return self._smooth(low, span, ends, base)
         part = np.where(crossed, np.clip(_from_below(self.normal, base) - low, 0.0, span), 0.0)
         inside = np.maximum(base, ends[0])
@@ -206,11 +207,11 @@ class IntervalMoments:
             return lower
         span, weights = lower.span.copy(), lower.weights.copy()
         for k, chain in enumerate(self._chains):
-            some = np.flatnonzero(count >> k & 1)
-            if some.size:
-                part = Moments(span[some], weights[:, some]).joined(chain.at(at[some]))
-                span[some], weights[:, some] = part
-                at[some] += 1 << k
+            index = np.flatnonzero(count >> k & 1)
+            if index.size:
+                part = Moments(span[index], weights[:, index]).joined(chain.at(at[index]))
+                span[index], weights[:, index] = part
+                at[index] += 1 << k
         return Moments(span, weights)
 
     def _smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
@@ -222,12 +223,12 @@ class IntervalMoments:
         wide = (ends[1] > limit * ends[0]) | ((base == 0) & (low + span > _WIDE * low))
         closed, by_rule = wide & ~shallow & (span > 0), (~wide | shallow) & (span > 0)
         beyond = shallow | (base > 0)
-        if by_rule.all():
+        if every(by_rule):
             return Moments(span, self.over_narrow(span, ends, base, beyond))
-        if closed.any():
+        if some(closed):
             found = self._part(closed).over_wide(span[closed], ends[:, closed], base[closed])
             weights[:, closed] = found
-        if by_rule.any():
+        if some(by_rule):
             at = span[by_rule], ends[:, by_rule], base[by_rule], beyond[by_rule]
             weights[:, by_rule] = self._part(by_rule).over_narrow(*at)
         return Moments(span, weights)
@@ -254,7 +255,7 @@ class IntervalMoments:
 
         def values(function: Function) -> Array:
             found = function(ends)
-            if at_break.any():
+            if some(at_break):
                 found[0] = np.where(at_break, _from_below(function, base), found[0])
             return found
 
@@ -286,7 +287,7 @@ class IntervalMoments:
         """
         profile, (start, stop) = self.profile, ends
         slope = self._slope(stop)
-        if not slope.all():
+        if not every(slope):
             # An interval may end where g becomes constant.
             slope = np.where(slope > 0, slope, self._slope(start))
         with np.errstate(divide="ignore"):
@@ -296,7 +297,7 @@ class IntervalMoments:
         share, weights, cumulative = _rule()
         place, moved = _in_logarithm(stop, width, share)
         origin, past = place, np.zeros_like(place)
-        if beyond.any():
+        if some(beyond):
             # By rounding an interval may end below the break at its start.
             below = np.where(thin, (stop - base) - width, start - base)
             root, climb = _in_root(stop - base, below, width, share)

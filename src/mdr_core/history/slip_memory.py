@@ -201,7 +201,7 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
     if tops[-1] < 0:
         return tree, path, separated(float(points.normal[-1]), float(points.tangential[-1]))
     own = slice(_AXIS, stack.top + 1)
-    forward, backward = np.stack([high[own], low[own]], axis=2).swapaxes(0, 1)
+    forward, backward = np.array([high[own], low[own]]).T
     return tree, path, Polyline(forward, backward, leg[own].copy())
 
 
