@@ -10,12 +10,10 @@ import numpy as np
 from mdr_core.broadcasting import in_blocks, with_parameters
 from mdr_core.elementwise import is_number, some, where
 from mdr_core.equivalent_1d import depth_step
-from mdr_core.interval_moments import interval_moments
+from mdr_core.interval_moments import BLOCK, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
-# Cases evaluated at once, so that their nodes stay in the processor's cache.
-_BLOCK: Final = 4096
 # Area over F d from which on it is a difference of energies: cancellation costs less than three of
 # the digits that the estimate leaves.
 _BOWED: Final = 2e-3
@@ -70,7 +68,7 @@ def _by_springs(profile: Profile, *ends: Array) -> Array:
         found = moments.over(profile.depth(low), span, np.array([low, high]))
         return (np.square(span) * found.weights[1] / 4,)
 
-    if ends[0].size <= _BLOCK:
+    if ends[0].size <= BLOCK:
         return _moment(profile, *ends)[0]
-    (result,) = in_blocks(_moment, profile, ends, _BLOCK)
+    (result,) = in_blocks(_moment, profile, ends, BLOCK)
     return result
