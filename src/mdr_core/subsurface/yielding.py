@@ -1,7 +1,7 @@
 """Normal force at which yield begins, and the loads under which a contact has yielded."""
 
 from functools import cache, lru_cache, partial
-from math import exp, inf, isclose, log
+from math import exp, inf, log
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -20,12 +20,10 @@ from mdr_core.typing import Array, Parameter
 from mdr_core.validation import require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding
 
-# Accuracy of the stress at the onset, and of the contact coordinate's logarithm.
-_ONSET_RTOL: Final = 1e-5
+# Decimals of the logarithm of the stress at the onset, and accuracy of the contact coordinate's.
+_DIGITS, _XTOL = 5, 1e-5
 # Largest distance of that logarithm from the prescribed load.
 _REACH: Final = 60.0
-# Ratio of the forces that stands for full slip: but for a stick radius of 1e-4 a, it is.
-_SLIDES: Final = 1 - 1e-12
 
 _Contact: TypeAlias = NormalContact | TangentialContact
 
@@ -68,8 +66,6 @@ def yield_onset_force(
     1.613
     """
     require_positive(("yield_strength",), yield_strength)
-    if measure not in MEASURES:
-        raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
     limit = yield_strength if measure == "von_mises" else yield_strength / 2
     search = partial(largest, measure=measure, poissons_ratio=poissons_ratio, body=body)
     pressed, (columns, shape) = _pressed(contact), _columns(contact)
@@ -172,9 +168,12 @@ def _under(
     pressed = NormalContact(one, e_star, np.asarray(coordinate))
     if ratio == 0:
         return pressed
+    if ratio < 1:
+        load = {"tangential_force": ratio * friction * pressed.normal_force}
+    else:
+        load = {"tangential_displacement": 2 * friction * pressed.indentation_depth}
     # The stresses depend on the ratio of the forces alone, not on G*.
-    force = min(ratio, _SLIDES) * (friction * pressed.normal_force)
-    return tangential.solve(pressed, e_star, friction, tangential_force=force)
+    return tangential.solve(pressed, e_star, friction, **load)
 
 
 @lru_cache(maxsize=256)
@@ -194,32 +193,34 @@ def _exponent(profile: Profile) -> Parameter | None:
 
 
 def _onset(
-    profile: Profile, search: "partial[Peak]", limit: float, start: float, *case: float
+    profile: Profile,
+    search: "partial[Peak]",
+    limit: float,
+    start: float,
+    ratio: float,
+    *case: float,
 ) -> float:
     """Normal force at which a measure reaches a limit, the ratio of the forces held constant."""
 
     def at(coordinate: float) -> NormalContact:
-        return _pressed(_under(profile, coordinate, 0.0, *case[1:]))
+        return _pressed(_under(profile, coordinate, 0.0, *case))
 
     @cache
     def excess(place: float) -> float:
         """Logarithm of the measure over the limit, by that of the contact coordinate."""
         with np.errstate(all="ignore"):
-            value = float(search(_under(profile, exp(place), *case)).value)
-        if isclose(value, limit, rel_tol=_ONSET_RTOL):
-            return 0.0
-        # Next to the equator of a body no double tells the contact from it, and nothing is loaded.
-        return log(value / limit) if value > 0 else -_REACH
+            value = search(_under(profile, exp(place), ratio, *case)).value
+            # Next to the equator of a body no double tells the contact from it: nothing is loaded.
+            return round(float(np.clip(np.log(value / limit), -_REACH, _REACH)), _DIGITS)
 
     one = at(start).profile
-    slip = 0.0 if case[0] > _SLIDES else inf
+    slip = 0.0 if ratio >= 1 else inf
     radii = infinite_radii(one, search.keywords["poissons_ratio"], slips_from=slip)
-    if any(b <= one.contact_radius(np.zeros(())) for b in radii):
-        return 0.0
     # The stress becomes infinite when the contact reaches this coordinate.
-    singular = min((float(one.coordinate_from_radius(np.asarray(b))) for b in radii), default=inf)
-    lowest, highest = log(start) - _REACH, log(min(singular, one.last_coordinate or inf))
-    highest = min(log(start) + _REACH, highest - _ONSET_RTOL)
+    beyond = [np.asarray(b) for b in radii if b > one.contact_radius(np.zeros(()))]
+    singular = min((float(one.coordinate_from_radius(b)) for b in beyond), default=inf)
+    lowest, end = log(start) - _REACH, log(min(singular, one.last_coordinate or inf)) - _XTOL
+    highest = min(log(start) + _REACH, end)
     before = place = min(log(start), highest)
     # Under a ball the stress grows like the contact radius.
     sign, step = 1 if excess(place) > 0 else -1, 1
@@ -228,5 +229,4 @@ def _onset(
             return 0.0 if sign > 0 else float(at(singular).normal_force) if singular < inf else inf
         before, place = place, min(max(place - step * excess(place), lowest), highest)
         step *= 2
-    onset = exp(brentq(excess, before, place, xtol=_ONSET_RTOL))
-    return float(at(onset).normal_force)
+    return float(at(exp(brentq(excess, before, place, xtol=_XTOL))).normal_force)
