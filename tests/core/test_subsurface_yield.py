@@ -286,6 +286,33 @@ def test_yielding_with_arrays_of_profiles() -> None:
     assert yielding(contact, (0.3,), strength).where.tolist() == expected
 
 
+def test_onset_in_full_slip_next_to_a_cone() -> None:
+    """Slip reaches the tip, next to which the stress changes over many decades."""
+    profile, strength = Power(0.4, 1.1), 2.0
+    contact = normal.solve(profile, 3.0, normal_force=1e-3)
+    slides = tangential.solve(contact, 2.5, 0.3, tangential_force=0.3 * contact.normal_force)
+    force = yield_onset_force(slides, strength, poissons_ratio=0.25)
+    contact = normal.solve(profile, 3.0, normal_force=force)
+    slides = tangential.solve(contact, 2.5, 0.3, tangential_displacement=contact.indentation_depth)
+    assert bool(slides.full_slip)
+    peak = largest(slides, poissons_ratio=0.25).value
+    assert float(peak) == pytest.approx(strength, rel=1e-4, abs=0)
+
+
+def test_contact_that_no_double_tells_from_its_flat() -> None:
+    """Its stresses are those of a flat punch."""
+    x, force = np.array([0.0, 0.2, 0.5, 0.9]), 1e-40
+    rounded, flat = (
+        normal.solve(profile, 3.0, normal_force=force)
+        for profile in (RoundedPunch(0.5, 2.0), FlatPunch(0.5))
+    )
+    assert float(rounded.contact_radius) == 0.5
+    one, other = (
+        np.array(stress(each, x, 0.0, 0.1, poissons_ratio=0.3)) for each in (rounded, flat)
+    )
+    assert np.abs(one - other).max() < 1e-12 * np.abs(other).max()
+
+
 def test_unreachable_stress_has_no_onset() -> None:
     sphere = normal.solve(Sphere(1.0), 3.0, contact_radius=0.1)
     assert np.isinf(yield_onset_force(sphere, 1e20, poissons_ratio=0.3))

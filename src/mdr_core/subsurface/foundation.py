@@ -107,36 +107,34 @@ class Foundation:
         low, high, b, s(low), s(high) and their difference, however narrow; shape (6, n) [length].
         Empty ones at the end make n a power of two.
         """
-        (inner, outer), ends = (self.load.radius[:-1], self.load.radius[1:]), self.load.coordinate
-        self._panels, self._branches = self.load.profile.panels, self.load.profile.branches
+        load, a = self.load, self.load.radius[-1]
+        inner, outer = load.radius[:-1], load.radius[1:]
+        self._panels, self._branches = load.profile.panels, load.profile.branches
         starts = np.array([max(branch.base, branch.start) for branch in self._branches])
-        stops = [outer[outer > starts[0]], *(self._cuts(branch) for branch in self._branches)]
-        cuts = np.unique(np.concatenate(stops))
-        cuts = np.append(cuts, [cuts[-1]] * (2 ** ceil(log2(cuts.size - 1)) + 1 - cuts.size))
-        low, high = cuts[:-1], cuts[1:]
+        cuts = [self._cuts(branch) for branch in self._branches]
+        low = np.unique(np.concatenate([starts[:1], inner[inner > starts[0]], *cuts]))
+        count = low.size
+        low = np.append(low, np.full(2 ** ceil(log2(count)) - count, a))
+        high = np.append(low[1:], a)
         self._owner = np.searchsorted(starts, low, side="right") - 1
         self._part = part = np.searchsorted(outer, high)
         base = np.array([branch.base for branch in self._branches])[self._owner]
         s_low, s_high = (np.sqrt((x - base) * (x + base)) for x in (low, high))
         if base[-1] == starts[0] > 0:
             # The coordinate is sqrt(a^2 - b^2), accurate however narrow the annulus around a flat.
-            s_low[low == cuts[-1]] = s_high[high == cuts[-1]] = ends[-1]
+            s_low[count:] = s_high[count - 1 :] = load.coordinate[-1]
         # An annulus may be too narrow for its radii to resolve it.
-        width = self.load.profile.radius_width(ends[1:], self.load.width)[part]
+        width = load.profile.radius_width(load.coordinate[1:], load.width)[part]
         narrow = (inner[part] == low) & (outer[part] == high)
         step = np.where(narrow, width * (low + high) / (s_low + s_high), s_high - s_low)
         return np.array([low, high, base, s_low, s_high, step])
 
     def _cuts(self, branch: Branch) -> list[float]:
         """Radii between which k g' of a branch is smooth."""
-        base, curved = branch.base, bool(self._rate.any())
+        base, curved, profile = branch.base, bool(self._rate.any()), self.load.profile
         start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
-        near = min(base, branch.behind) if base > 0 else _NEAREST * stop
-        ended = min(branch.stop, branch.pole) < inf or isinstance(
-            self.load.profile, Cone | Paraboloid
-        )
-        if base == 0 and ended and not curved:
-            near = inf
+        smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
+        near = min(base, branch.behind) or (inf if smooth and not curved else _NEAREST * stop)
         return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Array:
@@ -149,9 +147,6 @@ class Foundation:
             found = np.empty_like(x)
             for number, branch in enumerate(self._branches):
                 own = owner == number
-                if own.all():
-                    found = branch.weight(x, s, slice(0, 1))
-                    break
                 found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
         if not self.sheared:
             return np.asarray(found[None])

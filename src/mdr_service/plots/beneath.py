@@ -4,15 +4,14 @@ import numpy as np
 
 from mdr_core import subsurface
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
-from mdr_service.plots.plot import POINTS, Map, some
+from mdr_service.plots.plot import Map, some
 from mdr_service.queries.fields import at_end
 from mdr_service.queries.subsurface import body_of
 from mdr_service.results import Contact, Result
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 
-# Points of the map along x and z, and its extent in contact radii.
-_ACROSS, _DOWN, _EXTENT = 161, 81, 1.5
+# Points of the map along z, and its extent in contact radii.
+_DOWN, _EXTENT = 101, 1.5
 
 
 def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> Map:
@@ -20,22 +19,16 @@ def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> M
     contact, partial = at_end(source)
     a = float(np.ravel(contact.contact_radius)[0])
     end = _EXTENT * a or 1.0
-    x, z = np.linspace(-end, end, _ACROSS), np.linspace(0.0, end, _DOWN)
-    depth = np.linspace(0.0, end, POINTS)
-
-    def von_mises(*place: Array | float) -> Array:
-        loaded, body = partial or contact, body_of(query)
-        return subsurface.stress(loaded, *place, **body).von_mises
-
-    first = von_mises(x, query.y, z[:, None]).reshape(-1, z.size, x.size)[0]
-    on_axis = von_mises(0.0, query.y, depth).reshape(-1, depth.size)[0]
-    stick = (
-        float(np.ravel(source.stick_radius)[0]) if isinstance(source, TangentialContact) else None
-    )
+    x, z = np.linspace(-end, end, 2 * _DOWN - 1), np.linspace(0.0, end, _DOWN)
+    tensor = subsurface.stress(partial or contact, x, query.y, z[:, None], **body_of(query))
+    first = tensor.von_mises.reshape(-1, z.size, x.size)[0]
+    stick = None
+    if isinstance(source, TangentialContact):
+        stick = float(np.ravel(source.stick_radius)[0])
     top = np.unravel_index(int(np.argmax(first)), first.shape)
     peak = (float(x[top[1]]), float(z[top[0]]))
     if "largest" in result and query.y == 0:
         found = result["largest"]["von_mises"]
         peak = (float(found["x"][0]), float(found["z"][0]))
     loads = some(1, query.loads, "loads")
-    return Map(x, z, first, depth, on_axis, "von Mises stress", a, stick, peak, loads)
+    return Map(x, z, first, "von Mises stress", a, stick, peak, loads)

@@ -82,15 +82,15 @@ class Plot(NamedTuple):
 
 
 class Map(NamedTuple):
-    """Filled contours over x and z, with marks on the surface and a point, and z on the axis."""
+    """Filled contours over x and z, with marks on the surface and a point, and z on the axis.
+
+    The axis lies in the middle of x.
+    """
 
     x: Array
     z: Array
     values: Array
     """[z][x]"""
-    depth: Array
-    on_axis: Array
-    """Values on the axis at `depth`."""
     label: str
     contact: float
     """Contact radius."""

@@ -109,8 +109,8 @@ def _draw_map(figure: "Figure", plot: Map) -> None:
         left.plot(*plot.peak, "x", color="C3", label="maximum", clip_on=False, zorder=5)
     left.set(xlabel="x", ylabel="depth z   (in the units of the request)", aspect="equal")
     left.legend(title=plot.note or None, loc="lower right")
-    on_axis = np.where(np.isfinite(plot.on_axis), plot.on_axis, np.nan)
-    right.plot(on_axis, plot.depth)
+    on_axis = plot.values[:, plot.x.size // 2]
+    right.plot(np.where(np.isfinite(on_axis), on_axis, np.nan), plot.z)
     right.set(xlabel=f"{plot.label}\non the axis", xlim=(0, None))
     left.invert_yaxis()
 
