@@ -19,7 +19,7 @@ BOUND = 16 * EPS
 
 def truth(slope: object, r: float) -> mpf:
     """(2/pi) int_0^a g'(x) arcsin(x/r) dx: Eq. (5.75) for d - g, integrated by parts."""
-    with mp.workdps(40):
+    with mp.workdps(25):
         a, point = mpf(A), mpf(r)
         # x = a sin t is smooth at the edge r = a, too.
         return (2 / mp.pi) * mp.quad(

@@ -207,14 +207,14 @@ KINDS = [name for name in PROFILES if name != "flat-punch"]
 controls = pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
 
 
-@pytest.mark.every(14)
+@pytest.mark.every(6)
 @controls
 @pytest.mark.parametrize("name", KINDS)
 def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
-    """int F_x du up to the end of each load step, by Gauss quadrature on many panels per step."""
+    """int F_x du up to the end of each load step, by Gauss quadrature on 25 panels per step."""
     path = random_path(name, control, 4, 3)
     nodes, weights = leggauss(8)
-    panels = 200
+    panels = 25
     # Panels cluster at both ends of a load step, where F_x behaves like a root.
     edges = np.sin(np.linspace(0, np.pi / 2, panels + 1)) ** 2
     width = np.diff(edges)
@@ -235,7 +235,7 @@ def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
     ends = slice(shares.size, None, shares.size + 1)
     balance = (result.tangential_energy + result.dissipated_energy)[ends]
     size = np.max(np.abs(balance))
-    assert balance == pytest.approx(np.cumsum(done), rel=0, abs=2e-6 * size)
+    assert balance == pytest.approx(np.cumsum(done), rel=0, abs=2e-7 * size)
     plain = solve(name, **path)
     bound = result.error_estimate + plain.error_estimate
     assert plain.error_estimate < _LARGEST_ERROR

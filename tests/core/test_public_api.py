@@ -87,6 +87,7 @@ def test_step_in_full_stick_dissipates_nothing() -> None:
     assert state.tangential_energy > 0
 
 
+@pytest.mark.long
 def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
     path = ROOT / "examples" / "bouncing_sphere.py"
     done = subprocess.run([sys.executable, path], check=True, capture_output=True, text=True)

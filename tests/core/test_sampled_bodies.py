@@ -70,21 +70,14 @@ BODIES = {
 }
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(2)
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
-@pytest.mark.parametrize("intervals", [10, 20, 50, 100, 400])
-def test_error_order_of_a_smooth_table(body: Body, intervals: int) -> None:
-    r = np.linspace(0, END, intervals + 1)
-    contact = solve(Tabulated(r, body.f(r)), 1.0, contact_radius=A)
-    assert not {notice.code for notice in contact.warnings} & {"interpolation", "rough_table"}
-    step = END / intervals / A
+def test_error_order_of_a_smooth_table(body: Body) -> None:
     a = mpf(A)
     with mp.workdps(20):
-        depth = a * mp.quad(lambda t: body.df(a * mp.sin(t)), [0, mp.pi / 2])
+        depth = float(a * mp.quad(lambda t: body.df(a * mp.sin(t)), [0, mp.pi / 2]))
         mean = mp.quad(lambda t: mp.sin(t) ** 2 * body.df(a * mp.sin(t)), [0, mp.pi / 2])
-        force = 2 * a * a * mean
-    assert contact.indentation_depth == pytest.approx(float(depth), rel=step**OF_LOAD, abs=0)
-    assert contact.normal_force == pytest.approx(float(force), rel=step**OF_LOAD, abs=0)
+        force = float(2 * a * a * mean)
     # int_R^A g'/sqrt(x^2 - R^2) dx in y = sqrt(x^2 - R^2), g' = int (r f')' dt, r = x sin t.
     leg = mp.sqrt((a - R) * (a + R))
 
@@ -92,6 +85,13 @@ def test_error_order_of_a_smooth_table(body: Body, intervals: int) -> None:
         x = mp.hypot(R, y)
         return mp.quad(lambda t: body.source(x * mp.sin(t)), [0, mp.pi / 2], maxdegree=4) / x
 
-    pressure = mp.quad(slope_over_x, [0, leg], maxdegree=4) / mp.pi
-    result = fields.pressure(contact, [R])[0]
-    assert abs(result - float(pressure)) <= step**OF_PRESSURE * float(contact.mean_pressure)
+    pressure = float(mp.quad(slope_over_x, [0, leg], maxdegree=4) / mp.pi)
+    for intervals in (10, 20, 50, 100, 400):
+        r = np.linspace(0, END, intervals + 1)
+        contact = solve(Tabulated(r, body.f(r)), 1.0, contact_radius=A)
+        assert not {notice.code for notice in contact.warnings} & {"interpolation", "rough_table"}
+        step = END / intervals / A
+        assert contact.indentation_depth == pytest.approx(depth, rel=step**OF_LOAD, abs=0)
+        assert contact.normal_force == pytest.approx(force, rel=step**OF_LOAD, abs=0)
+        result = fields.pressure(contact, [R])[0]
+        assert abs(result - pressure) <= step**OF_PRESSURE * float(contact.mean_pressure)

@@ -158,6 +158,7 @@ def test_final_profile_is_the_limiting_profile(kind: str, control: str, part: fl
     assert "limit_reached" in {notice.code for notice in result.warnings}
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("control", CONTROLS[:2])
 def test_distance_from_the_limit_decreases_with_resolution(control: str) -> None:
     result = [distance(worn("cone", control, 0.9, resolution=n, rtol=1e-8)) for n in (8, 16, 32)]
@@ -281,7 +282,7 @@ def test_agreement_with_the_explicit_scheme(control: str) -> None:
         assert state.stick_radius == pytest.approx(result.stick_radius[cycle], rel=6e-3, abs=0)
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", ["paraboloid", "cone"])
 def test_error_within_estimate(kind: str, control: str) -> None:

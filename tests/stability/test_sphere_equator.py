@@ -134,7 +134,7 @@ def pressure(fraction: float) -> Curve:
 
         low, top = mp.atanh(r), mp.atanh(a)
         end = mp.sqrt(top - low)
-        return mp.quad(density, mp.linspace(0, end, 5)) / mp.pi
+        return mp.quad(density, mp.linspace(0, end, 3)) / mp.pi
 
     def naive(a: float) -> float:
         r = fraction * a
@@ -144,7 +144,7 @@ def pressure(fraction: float) -> Curve:
 
         return plain_quad(density, r, a) / pi
 
-    with mp.workdps(25):
+    with mp.workdps(20):
         truth = [exact(mpf(float(a))) for a in EDGES]
     return curve(
         f"sphere-pressure-{fraction}",
