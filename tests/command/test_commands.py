@@ -50,6 +50,7 @@ def test_missing_module_raises(monkeypatch: pytest.MonkeyPatch) -> None:
         command.main(["broken"])
 
 
+@pytest.mark.long
 def test_missing_packages_are_reported_with_the_install_command() -> None:
     code = (
         "import sys\nsys.modules['orjson'] = None\nfrom mdr_command.__main__ import main\n"

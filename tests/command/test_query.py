@@ -32,8 +32,8 @@ PAST_THE_EQUATOR = json.dumps(
     }
 ).encode()
 HISTORY = EXAMPLES["evolution"]["held_forces"]["value"] | {"resolution": 8}
-# Takes at least a second, so that it can be interrupted.
-LONG = HISTORY | {"resolution": 96, "rtol": 1e-9}
+# Takes several seconds, so that it can be interrupted on fast machines, too.
+LONG = HISTORY | {"resolution": 96, "rtol": 1e-9, "cycles": [10.0 * n for n in range(2000)]}
 
 
 class InProcess:
@@ -75,6 +75,7 @@ def test_output_is_the_response_of_the_service(
         assert in_process(NAMES[path], text, format_name) == (2, b"", output.content + b"\n")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("where", ["standard input", "a file"])
 def test_request_is_read_from_file_or_standard_input(
     client: Client, where: str, tmp_path: Path
@@ -135,6 +136,7 @@ def test_missing_file_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().err == "mdr: /nowhere/request.json: No such file or directory\n"
 
 
+@pytest.mark.long
 def test_query_imports_no_server(tmp_path: Path) -> None:
     file = tmp_path / "request.json"
     file.write_bytes(BODY)
@@ -157,6 +159,7 @@ def terminal() -> Iterator[tuple[int, int]]:
         os.close(response)
 
 
+@pytest.mark.long
 def test_output_on_a_terminal_ends_with_a_newline(client: Client) -> None:
     with terminal() as (ours, response):
         subprocess.run([*MDR, "normal"], input=BODY, stdout=response, check=True, timeout=PATIENCE)
@@ -164,6 +167,7 @@ def test_output_on_a_terminal_ends_with_a_newline(client: Client) -> None:
     assert shown == client.post_text("/v1/normal", BODY).content + b"\r\n"
 
 
+@pytest.mark.long
 def test_interrupt_ends_the_command_without_a_traceback() -> None:
     process = subprocess.Popen(
         [*MDR, "evolution"],
@@ -183,6 +187,7 @@ def test_interrupt_ends_the_command_without_a_traceback() -> None:
     assert b"Traceback" not in told
 
 
+@pytest.mark.long
 def test_closed_output_pipe_ends_silently() -> None:
     many = BALL | {"load": {"normal_force": [1.0 + i for i in range(10_000)]}}
     process = subprocess.Popen(

@@ -123,6 +123,7 @@ def test_curl_example_shows_the_table(client: Client, command: str, shown: str) 
         assert list(map(float, one)) == pytest.approx(list(map(float, other)), rel=1e-12, abs=0)
 
 
+@pytest.mark.long
 def test_python_examples_print_their_output() -> None:
     port = free_port()
     with running(service(port), port):
@@ -153,6 +154,7 @@ def test_request_is_solved(client: Client, path: str, request_text: str) -> None
     assert client.post_text(path, one_case.encode()).status_code == 200
 
 
+@pytest.mark.long
 def test_sweep_of_the_manual_can_start(tmp_path: Path) -> None:
     (command,) = re.findall(r"```\n(mdr sweep [^`]*)```", TEXTS["sweeps.md"])
     (study,) = re.findall(r"```json\n([^`]*)```", TEXTS["sweeps.md"])

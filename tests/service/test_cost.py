@@ -37,6 +37,8 @@ def query(name: str, value: dict[str, Any]) -> Query:
     return SCHEMAS[name].model.model_validate_json(json.dumps(value).encode())
 
 
+@pytest.mark.long
+@pytest.mark.alone
 @pytest.mark.parametrize(("name", "value"), CASES)
 def test_examples_take_about_the_estimated_time(name: str, value: dict[str, Any]) -> None:
     # The first call imports modules. The event loop must not be blocked.

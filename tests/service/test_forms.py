@@ -3,8 +3,6 @@
 import csv
 import io
 import json
-import subprocess
-import sys
 from math import inf
 from xml.etree import ElementTree as ET
 
@@ -188,11 +186,9 @@ def parse_svg(response: httpx.Response) -> ET.Element:
     return root
 
 
-@pytest.mark.parametrize(
-    ("path", "query"),
-    [case[::2] for case in CASES],
-    ids=[f"{path} {name}" for path, name, _ in CASES],
-)
+# test_pictures.py draws every example in process.
+@pytest.mark.every(4)
+@EVERY_EXAMPLE
 def test_every_example_has_a_plot(client: Client, path: str, query: dict[str, object]) -> None:
     response = ask(client, path, query, "image/svg+xml")
     axes = [part.get("id", "") for part in parse_svg(response).iter(f"{SVG}g")]
@@ -317,11 +313,3 @@ def test_problems_are_json_for_any_accept_header(client: Client) -> None:
     assert response.status_code == 422
     assert response.headers["content-type"] == "application/problem+json"
     json.loads(response.content)
-
-
-def test_matplotlib_is_imported_lazily() -> None:
-    code = (
-        "import sys; from mdr_service.app import create_app; create_app(); "
-        "sys.exit('matplotlib' in sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)

@@ -424,10 +424,12 @@ def test_rows_are_independent_of_the_batch_size(tmp_path: Path) -> None:
     assert whole["x"].to_pylist() == values.tolist()
 
 
-def test_core_service_and_command_line_import_no_sweep_packages() -> None:
+@pytest.mark.long
+def test_service_and_command_line_import_neither_matplotlib_nor_sweep_packages() -> None:
     code = (
-        "import sys, mdr_service.app, mdr_command.__main__;"
-        "sys.exit(bool({'dask', 'distributed', 'pyarrow', 'tqdm'} & set(sys.modules)))"
+        "import sys, mdr_service.app, mdr_command.__main__; mdr_service.app.create_app();"
+        "names = {'matplotlib', 'dask', 'distributed', 'pyarrow', 'tqdm'};"
+        "sys.exit(bool(names & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
@@ -446,6 +448,7 @@ def without_packages(*options: str) -> "subprocess.CompletedProcess[str]":
     return subprocess.run(command, check=False, capture_output=True, text=True)
 
 
+@pytest.mark.long
 def test_help_needs_no_sweep_packages() -> None:
     done = without_packages("--help")
     assert done.returncode == 0
@@ -453,6 +456,7 @@ def test_help_needs_no_sweep_packages() -> None:
     assert "mdr[" not in done.stdout
 
 
+@pytest.mark.long
 def test_missing_package_is_reported_with_the_install_command() -> None:
     done = without_packages("normal", "--grid", "load.normal_force=1:2:3", "--out", "a.csv")
     assert done.returncode == 1
@@ -460,6 +464,7 @@ def test_missing_package_is_reported_with_the_install_command() -> None:
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.long
 def test_local_sweep_does_not_import_dask() -> None:
     code = (
         "import sys, mdr_sweep.sweep, mdr_sweep.scheduler;"
