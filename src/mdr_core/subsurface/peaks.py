@@ -102,8 +102,8 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     def on(angle: Array, r: Array, z: Array) -> Array:
         """The measure by direction, r of either sign, and z; zero where it is infinite."""
         x, depth = (part.ravel() for part in np.meshgrid(r, z, indexing="ij"))
-        place = np.abs(x), depth, np.exp(1j * angle[:, None]) * np.where(x < 0, -1, 1)
-        values = np.asarray(getattr(on_rings(under, place, nu), measure))
+        e = np.exp(1j * angle[:, None]) * np.where(x < 0, -1, 1)
+        values = np.asarray(getattr(on_rings(under, np.abs(x), depth, e, nu), measure))
         return np.where(np.isinf(values), 0.0, values).reshape(angle.size, r.size, z.size)
 
     r, z = _grid(under)

@@ -14,20 +14,17 @@ from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
 
-# Part of its distance from the nearest edge or break by which a point is moved off the surface, up
-# to rounding error.
-_SURFACE: Final = 1e-18
-# A point at an edge is moved off the surface by this part of the contact radius: stresses have at
-# worst a root there.
-_SURFACE_AT_EDGE: Final = 1e-34
+# Part of the contact radius by which a point is moved off the surface, where the kernels are
+# singular: stresses have at worst a root there.
+_SURFACE: Final = 1e-30
 # Relative accuracy of the tractions at the origin.
 _AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
 
 
-# r, z, and the direction e^(i phi).
-Place: TypeAlias = tuple[Array, Array, NDArray[Any]]
+# e^(i phi).
+Direction: TypeAlias = NDArray[Any]
 
 
 class StressTensor(NamedTuple):
@@ -127,22 +124,22 @@ def stress(
     require_not_negative(("z",), where[2])
     across, aside, depth = np.broadcast_arrays(*where)
     r = np.hypot(across, aside)
-    direction = np.where(r > 0, across + 1j * aside, 1.0) / np.where(r > 0, r, 1.0)
-    place = r.ravel(), depth.ravel(), direction.ravel()
+    e = np.where(r > 0, across + 1j * aside, 1.0) / np.where(r > 0, r, 1.0)
     under, shape = foundations(contact, body)
-    found = np.stack([on_rings(each, place, poissons_ratio) for each in under], axis=1)
+    place = r.ravel(), depth.ravel(), e.ravel()
+    found = np.stack([on_rings(each, *place, poissons_ratio) for each in under], axis=1)
     return StressTensor(*found.reshape(6, *shape, *depth.shape))
 
 
-def on_rings(under: Foundation, place: Place, nu: float) -> StressTensor:
-    """Return the stress tensor under a load at points that share radii and depths, (..., m)."""
-    (r, z, direction), load = place, under.load
+def on_rings(under: Foundation, r: Array, z: Array, e: Direction, nu: float) -> StressTensor:
+    """Return the stress tensor under a load at points that share radii and depths, (..., m).
+
+    Parameters: see `of_moments`.
+    """
+    load = under.load
     if not under.loaded:
-        return StressTensor(*np.zeros((6, *direction.shape)))
-    edges = [0.0, *load.radius, *(float(np.asarray(b)) for b in load.profile.breaks)]
-    near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
-    # In points with depths > 0 the kernels are regular.
-    depth = np.maximum(z, _SURFACE * near + _SURFACE_AT_EDGE * load.radius[-1])
+        return StressTensor(*np.zeros((6, *e.shape)))
+    depth = np.maximum(z, _SURFACE * load.radius[-1])
     pressed, sheared = moments = under.moments(r, depth)
     origin = (r == 0) & (z == 0)
     singular = load.profile.infinite_pressure_radii
@@ -153,14 +150,16 @@ def on_rings(under: Foundation, place: Place, nu: float) -> StressTensor:
         pressed[0, origin] = -np.pi * whole.stress(np.zeros(1), _AXIS_RTOL)
         pressed[4, origin] = pressed[0, origin] / 2
         sheared[0, origin] = -np.pi * under.share * load.stress(np.zeros(1), _AXIS_RTOL)
-    found = load.e_star / np.pi * of_moments(pressed, sheared, (r, depth, direction), nu)
+    found = load.e_star / np.pi * of_moments(pressed, sheared, r, depth, e, nu)
     for b in singular:
         infinite = (r == b) & (z == 0) & bool(b <= load.radius[-1])
         found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
     return StressTensor(*found)
 
 
-def of_moments(pressed: Array, sheared: Array, place: Place, nu: float) -> Array:
+def of_moments(
+    pressed: Array, sheared: Array, r: Array, z: Array, e: Direction, nu: float
+) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
 
     Sum and difference of the in-plane stresses have few harmonics of the direction.
@@ -168,10 +167,10 @@ def of_moments(pressed: Array, sheared: Array, place: Place, nu: float) -> Array
     Parameters
     ----------
     pressed, sheared : moments of the normal and of the tangential load, shape (7, m).
-    place : radii and depths [length], shape (m,), and directions e^(i phi), (..., m).
+    r, z : radii and depths [length], shape (m,).
+    e : directions e^(i phi), shape (..., m).
     nu : Poisson's ratio of this body [1].
     """
-    r, z, e = place
     v_z, zz, mixed, rz, om, _, _ = pressed
     zz, mixed, rz = z * zz, z * mixed, z * r * rz
     second = (1 - 2 * nu) * (v_z - 2 * om) + 2 * mixed - zz
