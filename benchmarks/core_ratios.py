@@ -243,10 +243,10 @@ def punch_traction(state: str) -> list[measure.Row]:
     r = np.linspace(0.0, a, 1000, endpoint=False)
     contact = solve(RoundedPunch(b, 0.02), e_star, contact_radius=a, rtol=1e-12)
     friction, c = 0.3, (a + b) / 2
-    sideways = tangential.solve(contact, g_star, friction, stick_radius=c)
+    tangential_contact = tangential.solve(contact, g_star, friction, stick_radius=c)
 
     def mdr() -> Array:
-        return fields.shear_stress(sideways, r, rtol=1e-12)
+        return fields.shear_stress(tangential_contact, r, rtol=1e-12)
 
     def hertz() -> Array:
         return 2 * e_star / (np.pi * 0.02) * np.sqrt(a * a - r * r)

@@ -108,7 +108,8 @@ def _notices(query: Query, contact: Contact) -> list[Notice]:
 
 def unworn(worn: Wear) -> TangentialContact:
     """Return the contact before any wear."""
-    return worn.first if isinstance(worn, LimitingWear) else worn.initial.sideways
+    state = worn if isinstance(worn, LimitingWear) else worn.initial
+    return state.tangential_contact
 
 
 def without_singular(warnings: Iterable[Notice]) -> list[Notice]:

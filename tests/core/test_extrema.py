@@ -178,6 +178,6 @@ def test_maxima_of_paraboloid_sweep_match_single_profiles() -> None:
     tangential_contact = tangential.solve(swept, G_STAR, MU, tangential_force=force * MU / 2)
     for i in range(3):
         alone = normal.solve(Paraboloid(float(R[i])), E_STAR, normal_force=float(force[i]))
-        sideways = tangential.solve(alone, G_STAR, MU, tangential_force=float(force[i] * MU / 2))
+        single = tangential.solve(alone, G_STAR, MU, tangential_force=float(force[i] * MU / 2))
         assert swept.maximum_pressure[i] == alone.maximum_pressure
-        assert tangential_contact.maximum_shear_stress[i] == sideways.maximum_shear_stress
+        assert tangential_contact.maximum_shear_stress[i] == single.maximum_shear_stress

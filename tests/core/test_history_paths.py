@@ -139,16 +139,16 @@ def force_path(name: str, steps: int, normal: str, tangential: str) -> dict[str,
     # With linear depth, the force stays below its linear interpolation.
     part = 0.95 if normal == "normal_force" else 0.3
     least = force if normal == "normal_force" else np.minimum(force, np.append(0, force[:-1]))
-    sideways = {
+    loads = {
         "tangential_force": random.uniform(-part, part, steps) * MATERIAL.mu * least,
         "tangential_displacement": random.uniform(-1.0, 1.0, steps) * MOST,
     }
-    for pushed in sideways.values():
+    for load in loads.values():
         # Pure normal loading first: depth grows like a root of the force, which chords resolve
         # poorly.
-        pushed[0] = 0.0
+        load[0] = 0.0
     forward = {"normal_force": force, "indentation_depth": d}
-    return {normal: forward[normal], tangential: sideways[tangential]}
+    return {normal: forward[normal], tangential: loads[tangential]}
 
 
 @pytest.mark.parametrize(

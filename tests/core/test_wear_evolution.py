@@ -105,7 +105,7 @@ def test_initial_wear_follows_the_friction_work(kind: str, control: str, resolut
     result = worn(kind, control, cycles=(0.0,))
     step = 1e-6 * result.initial.cycle_unit
     early = worn(kind, control, cycles=(step,), resolution=resolution)
-    work = 4 * float(result.initial.sideways.dissipated_energy)
+    work = 4 * float(result.initial.tangential_contact.dissipated_energy)
     expected = pytest.approx(WEAR * work * step, rel=1e-4 if resolution == 24 else 1e-6, abs=0)
     assert early.worn_volume[0] == expected
 
@@ -124,7 +124,7 @@ def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
 
 
 def limiting(result: evolution.WearEvolution) -> limit.LimitingWear:
-    tangential_contact = result.initial.sideways
+    tangential_contact = result.initial.tangential_contact
     held = result.initial.held.displacement
     name = "tangential_displacement" if held else "tangential_force"
     return limit.solve(
@@ -238,7 +238,7 @@ def test_pressure_integrates_to_the_force(control: str) -> None:
 def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:
     """a - c grows by a half; depth and stick edge change to second order only."""
     result = worn("paraboloid", control, part)
-    width = float(result.initial.sideways.slip_width)
+    width = float(result.initial.tangential_contact.slip_width)
     grown = (result.contact_radius - result.stick_radius)[-1] / width
     assert grown == pytest.approx(1.5, rel=max(1e-4, part), abs=0)
     assert result.stick_radius[-1] - result.stick_radius[0] <= 2 * width**2 + 1e-9 * width
@@ -262,7 +262,7 @@ def test_agreement_with_the_explicit_scheme(control: str) -> None:
     result = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
     r = np.arange(EXPLICIT_GRID) * (1.8 / EXPLICIT_GRID)
     scene = Scene(r, r * r / 2, E_STAR, G_STAR, MU, WEAR)
-    tangential_contact, contact = result.initial.sideways, result.initial.contact
+    tangential_contact, contact = result.initial.tangential_contact, result.initial.contact
     force, moved = float(contact.normal_force), float(tangential_contact.tangential_displacement)
     held = {
         CONTROLS[0]: Controls(depth=float(contact.indentation_depth), displacement=moved),
@@ -326,7 +326,7 @@ def test_results_scale_with_units(control: str) -> None:
         if control == CONTROLS[0]
         else {"normal_force": float(contact.normal_force) * force}
     )
-    tangential_contact = old.initial.sideways
+    tangential_contact = old.initial.tangential_contact
     moved: dict[str, float] = {
         "tangential_displacement": float(tangential_contact.tangential_displacement) * length
     }

@@ -107,7 +107,7 @@ def test_equations_5_85_to_5_88_paraboloid(part: float) -> None:
 
 def test_equation_5_89_the_wear_radius_without_a_stick_zone() -> None:
     wear = constant_depth_limit(Paraboloid(1.3), [1 - 1e-12, 1.0, 2.0], 0.3)
-    ratio = wear.wear_radius / wear.first.normal.contact_radius
+    ratio = wear.wear_radius / wear.tangential_contact.normal.contact_radius
     assert ratio == pytest.approx([2**0.5] * 3, rel=1e-6, abs=0)
     assert ratio[1:] == pytest.approx([2**0.5] * 2, rel=1e-15, abs=0)
 
@@ -174,7 +174,7 @@ def test_narrow_worn_annulus_is_half_wider_than_the_slip_annulus(profile: Profil
     """For linear g: w = (3/2)(d - g(c))/g'(c), V = (16/15) sqrt(2c) w^(3/2) (d - g)."""
     wear = constant_depth_limit(profile, [1e-6, 1e-12, 1e-100])
     w, c, step = wear.wear_width, wear.stick_radius, wear.stuck.step
-    assert w / wear.first.slip_width == pytest.approx(1.5, rel=1e-4, abs=0)
+    assert w / wear.tangential_contact.slip_width == pytest.approx(1.5, rel=1e-4, abs=0)
     volume = 16 / 15 * np.sqrt(2 * c) * w**1.5 * step
     assert wear.worn_volume == pytest.approx(volume, rel=1e-4, abs=0)
     assert (wear.worn_volume / volume)[1:] == pytest.approx(1.0, rel=1e-10, abs=0)
@@ -197,7 +197,7 @@ def test_wear_never_adds_material(profile: Profile, part: float, places: list[fl
     assert (worn[~outside] <= float(wear.indentation_depth)).all()
     assert (wear.pressure(r)[r > edge] == 0).all()
     assert (wear.pressure(r)[r < edge] > 0).all()
-    assert edge <= float(wear.first.normal.contact_radius) <= outer * (1 + 1e-15)
+    assert edge <= float(wear.tangential_contact.normal.contact_radius) <= outer * (1 + 1e-15)
 
 
 @pytest.mark.parametrize(("control", "amplitude"), PAIRS)
@@ -242,8 +242,8 @@ def test_forces_are_those_of_the_stick_zone(control: str, amplitude: str) -> Non
     p = wear.pressure(c * np.sin(turn))
     total = np.pi / 4 * 2 * np.pi * c * c * (weights @ (p * np.sin(turn) * np.cos(turn)))
     assert total == pytest.approx(float(wear.normal_force), rel=1e-12, abs=0)
-    sideways = 2 * G_STAR * c * float(wear.tangential_displacement)
-    assert sideways == pytest.approx(float(wear.tangential_force), rel=1e-14, abs=0)
+    carried = 2 * G_STAR * c * float(wear.tangential_displacement)
+    assert carried == pytest.approx(float(wear.tangential_force), rel=1e-14, abs=0)
     assert float(getattr(wear, control)) == load
     assert float(getattr(wear, amplitude)) == size
     # No point of the stick zone exceeds the friction limit: mu p >= tau = F_x/(2 pi c s).

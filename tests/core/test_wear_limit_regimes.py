@@ -61,7 +61,7 @@ def test_no_wear_without_slip(profile: Profile, load: dict[str, Any], name: str)
     # A flat punch is in full stick up to full slip.
     sizes = [0.0, 1e-3] if profile.kind == "flat_punch" else [0.0, 0.0]
     wear = worn(profile, load, {name: sizes})
-    first, result = wear.first.normal, values(wear)
+    first, result = wear.tangential_contact.normal, values(wear)
     assert list(wear.regime) == ["stick", "stick"]
     assert codes(wear) - codes_of(first) == {"no_wear"}
     for edge in ("stick_radius", "wear_radius"):
@@ -254,7 +254,7 @@ def test_grid_includes_every_edge() -> None:
     radii = wear.grid(60)
     assert radii.shape == (60,)
     assert (np.diff(radii) > 0).all()
-    edges = [0.0, 0.5, float(wear.first.normal.contact_radius)]
+    edges = [0.0, 0.5, float(wear.tangential_contact.normal.contact_radius)]
     edges += [*wear.stick_radius.tolist(), *wear.wear_radius.tolist()]
     assert set(edges) <= set(radii.tolist())
     with pytest.raises(InputError, match="at least"):

@@ -46,8 +46,8 @@ def test_cached_table_gives_identical_bytes(name: str) -> None:
     }
     if name != "normal":
         request["friction_coefficient"] = 0.3
-        sideways = "oscillation" if name == "wear" else "tangential"
-        request[sideways] = {"tangential_force": 0.2}
+        member = "oscillation" if name == "wear" else "tangential"
+        request[member] = {"tangential_force": 0.2}
     if name == "stress":
         request |= {"points": 20, "quantities": ["pressure", "shear_stress"]}
     query = SCHEMAS[name].model.model_validate_json(json.dumps(request).encode())

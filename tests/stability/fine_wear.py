@@ -56,11 +56,11 @@ def worn(kind: str, name: str, resolution: int, rtol: float = 1e-6) -> evolution
     if held.force:
         contact = normal.solve(profile, E_STAR, normal_force=float(contact.normal_force))
     force = PART * MU * float(contact.normal_force)
-    sideways = tangential.solve(contact, G_STAR, MU, tangential_force=force)
+    tangential_contact = tangential.solve(contact, G_STAR, MU, tangential_force=force)
     amplitude = {"tangential_force": force}
     if held.displacement:
-        amplitude = {"tangential_displacement": float(sideways.tangential_displacement)}
-    unit = InitialState(sideways, WEAR, held).cycle_unit
+        amplitude = {"tangential_displacement": float(tangential_contact.tangential_displacement)}
+    unit = InitialState(tangential_contact, WEAR, held).cycle_unit
     return evolution.solve(
         contact,
         G_STAR,

@@ -80,7 +80,7 @@ class WearEvolution(Results, WornSurface):
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
-        return _SAFETY * worst + self.initial.sideways.error_estimate
+        return _SAFETY * worst + self.initial.tangential_contact.error_estimate
 
     def field_error_estimate(self, radius: ArrayLike, names: Sequence[str] = FIELDS) -> float:
         """Return a bound on the error of the fields at some radii [1].
@@ -99,7 +99,7 @@ class WearEvolution(Results, WornSurface):
         """
         r = self._radii(radius)
         if not self.states or not r.size:
-            return self.initial.sideways.error_estimate
+            return self.initial.tangential_contact.error_estimate
         c, a = self.stick_radius, self.contact_radius
         annulus = np.pi * (a - c) * (a + c)
         least = {
@@ -122,7 +122,7 @@ class WearEvolution(Results, WornSurface):
             if largest > 0:
                 worst = max(worst, difference / largest)
         safety = _SAFETY_OF_PEAK if self.initial.held.stick_shrinks else _SAFETY
-        return safety * worst + self.initial.sideways.error_estimate
+        return safety * worst + self.initial.tangential_contact.error_estimate
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
@@ -155,17 +155,19 @@ class WearEvolution(Results, WornSurface):
     @property
     def method(self) -> str:
         """The slope of a worn profile is an integral."""
-        return "quadrature" if self.initial.slips else self.initial.sideways.method
+        return "quadrature" if self.initial.slips else self.initial.tangential_contact.method
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the contact before wear, and `limit_reached`."""
-        return validity.with_bodies(self.initial.sideways.normal, self.warnings_without_bodies)
+        return validity.with_bodies(
+            self.initial.tangential_contact.normal, self.warnings_without_bodies
+        )
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
-        found = list(self.initial.sideways.warnings_without_bodies)
+        found = list(self.initial.tangential_contact.warnings_without_bodies)
         if isfinite(self.settled):
             found.append(
                 Notice(
@@ -248,14 +250,14 @@ def solve(
     ):
         if np.ndim(number):
             raise InputError((place,), "a single number is needed: wear has one initial state")
-    sideways = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    if sideways.full_slip.any():
+    tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
+    if tangential_contact.full_slip.any():
         raise InputError(
             ("tangential", name),
             "the whole contact slides: no part of it keeps its profile, and wear is unbounded",
         )
     held = Held(contact.control == "normal_force", name == "tangential_displacement")
-    initial = InitialState(sideways, float(wear_coefficient), held)
+    initial = InitialState(tangential_contact, float(wear_coefficient), held)
     numbers = _checked_cycles(cycles)
     nodes = int(resolution) + _FEWEST
     run = partial(worn_surface, initial, numbers)

@@ -25,42 +25,42 @@ _ALMOST: Final = 1 - 1e-9
 class InitialState:
     """A contact in partial slip before the first cycle."""
 
-    sideways: TangentialContact
+    tangential_contact: TangentialContact
     wear_coefficient: float
     held: Held
 
     @property
     def contact(self) -> NormalContact:
         """Normal contact before wear."""
-        return self.sideways.normal
+        return self.tangential_contact.normal
 
     @property
     def slips(self) -> bool:
         """There is a slip annulus, and so wear."""
-        return float(self.sideways.slip_width) > 0
+        return float(self.tangential_contact.slip_width) > 0
 
     @cached_property
     def stick(self) -> float:
         """c_0 [length]."""
-        return float(self.sideways.stick_radius)
+        return float(self.tangential_contact.stick_radius)
 
     @cached_property
     def length_unit(self) -> float:
         """b_0 = sqrt(a_0^2 - c_0^2) [length]."""
-        width = float(self.sideways.slip_width)
+        width = float(self.tangential_contact.slip_width)
         return float(np.sqrt(width * (2 * self.stick + width)))
 
     @cached_property
     def depth_unit(self) -> float:
         """D_0 = d_0 - g(c_0) [length], u_x/(mu E*/G*)."""
-        moved = abs(float(self.sideways.tangential_displacement))
-        return moved / float(self.sideways.displacement_ratio)
+        moved = abs(float(self.tangential_contact.tangential_displacement))
+        return moved / float(self.tangential_contact.displacement_ratio)
 
     @cached_property
     def cycle_unit(self) -> float:
         """b_0 G*/(4 K mu^2 E*^2 D_0) [1], about the number of cycles that wear the annulus."""
-        friction = float(np.asarray(self.sideways.friction_coefficient))
-        slipped = 4 * float(self.sideways.displacement_ratio) * self.depth_unit
+        friction = float(np.asarray(self.tangential_contact.friction_coefficient))
+        slipped = 4 * float(self.tangential_contact.displacement_ratio) * self.depth_unit
         pressed = float(np.asarray(self.contact.e_star)) * self.depth_unit / self.length_unit
         return self.depth_unit / (self.wear_coefficient * friction * pressed * slipped)
 
@@ -79,8 +79,8 @@ class InitialState:
         """Length by which the contact may grow in this method [length]."""
         if not self.held.stick_grows:
             return self.room
-        wide = 1 + float(self.sideways.slip_width) / self.stick
-        return min(self.room, _GROWTH * float(self.sideways.slip_width) * wide**2)
+        wide = 1 + float(self.tangential_contact.slip_width) / self.stick
+        return min(self.room, _GROWTH * float(self.tangential_contact.slip_width) * wide**2)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -98,7 +98,7 @@ class InitialState:
         """
         nodes = nodes * 3 // 2 if self.held.stick_shrinks else nodes
         unit = self.length_unit
-        stick, width = self.stick / unit, float(self.sideways.slip_width) / unit
+        stick, width = self.stick / unit, float(self.tangential_contact.slip_width) / unit
         tilt = SurfaceTilt(stick, width, self.reach / unit) if self.held.stick_grows else None
         parts = self.stick, unit, self.depth_unit, self.domain
         shape = UnwornShape(self.contact.profile, *parts)

@@ -46,7 +46,7 @@ class LimitingWear(Results):
     are infinite. In full slip at a constant depth it ends where nothing touches.
     """
 
-    first: TangentialContact
+    tangential_contact: TangentialContact
     """The contact before any wear, with the amplitude applied once."""
     amplitude: str
     """Name of the prescribed amplitude: "tangential_displacement" or "tangential_force"."""
@@ -62,7 +62,7 @@ class LimitingWear(Results):
 
     @property
     def _normal(self) -> NormalContact:
-        return self.first.normal
+        return self.tangential_contact.normal
 
     @property
     def _holds_depth(self) -> bool:
@@ -125,20 +125,26 @@ class LimitingWear(Results):
     def tangential_displacement(self) -> Array:
         """Amplitude u_x [length]: constant, or mu (E*/G*) (d - g(c))."""
         if self.amplitude == "tangential_displacement":
-            return np.broadcast_to(self.first.tangential_displacement, self.stuck.step.shape)
+            return np.broadcast_to(
+                self.tangential_contact.tangential_displacement, self.stuck.step.shape
+            )
         if self._normal.profile.has_no_partial_slip:
-            return np.where(self.stuck.endless, inf, self.first.tangential_displacement)
-        return np.where(self.stuck.endless, inf, self.first.displacement_ratio * self.stuck.step)
+            return np.where(
+                self.stuck.endless, inf, self.tangential_contact.tangential_displacement
+            )
+        return np.where(
+            self.stuck.endless, inf, self.tangential_contact.displacement_ratio * self.stuck.step
+        )
 
     @cached_property
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
-        first = self.first
+        contact = self.tangential_contact
         if self.amplitude == "tangential_force" or self._normal.profile.has_no_partial_slip:
-            return np.where(self.stuck.lost, 0.0, first.tangential_force)
-        modulus = first.friction_coefficient * self._normal.e_star
+            return np.where(self.stuck.lost, 0.0, contact.tangential_force)
+        modulus = contact.friction_coefficient * self._normal.e_star
         carried = 2 * modulus * self.stuck.radius * self.stuck.step
-        return np.where(self.stuck.endless, first.limiting_force, carried)
+        return np.where(self.stuck.endless, contact.limiting_force, carried)
 
     @cached_property
     def worn_volume(self) -> Array:
@@ -236,7 +242,7 @@ class LimitingWear(Results):
     @property
     def error_estimate(self) -> float:
         """Bound on the relative error of every quantity."""
-        return self.first.error_estimate
+        return self.tangential_contact.error_estimate
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
@@ -259,7 +265,7 @@ class LimitingWear(Results):
             "endless_wear": self.stuck.endless,
         }
         own = [Notice(code, _WARNINGS[code]) for code, flags in where.items() if some(flags)]
-        return (*self.first.warnings_without_bodies, *own)
+        return (*self.tangential_contact.warnings_without_bodies, *own)
 
 
 def solve(
@@ -313,8 +319,10 @@ def solve(
     if any(isinstance(part, np.ndarray) for part in contact.profile.parameters.values()):
         raise InputError(("profile",), "a single profile is needed: no arrays of parameters")
     name, size = one_amplitude(tangential_displacement, tangential_force)
-    first = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    result = LimitingWear(first, name, limiting_stick.find(first, name, size))
+    tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
+    result = LimitingWear(
+        tangential_contact, name, limiting_stick.find(tangential_contact, name, size)
+    )
     _require_room(result)
     beyond = ~result.stuck.endless & ~np.isfinite(result.wear_radius)
     if beyond.any():
@@ -327,7 +335,7 @@ def solve(
 
 def _require_room(wear: LimitingWear) -> None:
     """Raise InputError if a worn annulus would reach beyond the end of the profile."""
-    profile = wear.first.normal.profile
+    profile = wear.tangential_contact.normal.profile
     if profile.has_no_partial_slip or not float(profile.domain) < inf:
         return
     annulus, wearing = wear.annulus, (wear.stuck.step > 0) & ~wear.stuck.endless
@@ -338,7 +346,7 @@ def _require_room(wear: LimitingWear) -> None:
     beyond = (annulus.mean_rise(annulus.room) < step).reshape(wear.stuck.step.shape)
     if beyond.any():
         raise InputError(
-            ("load", wear.first.normal.control, *first_index(beyond)),
+            ("load", wear.tangential_contact.normal.control, *first_index(beyond)),
             f"the worn annulus would reach beyond radius {float(profile.domain):.12g}, where the "
             "profile ends: reduce the load, or extend the profile",
         )

@@ -44,41 +44,41 @@ class LimitingStick:
     """Full slip under a constant normal force: wear is unbounded."""
 
 
-def by_depth_and_displacement(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     """Return the stick zone before wear: G* u = mu E* (d - g(c)) holds at all times.
 
     Source: mdr-5, Eq. (5.80).
     """
-    depth = sideways.normal.indentation_depth
-    step = np.where(sideways.full_slip, depth, amplitude / sideways.displacement_ratio)
-    return _from(sideways, step, lost=sideways.full_slip)
+    depth = contact.normal.indentation_depth
+    step = np.where(contact.full_slip, depth, amplitude / contact.displacement_ratio)
+    return _from(contact, step, lost=contact.full_slip)
 
 
-def by_forces(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     """Return the stick zone before wear: F_N(c) = F_N - F_x/mu is constant, and the depth grows.
 
     In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
     """
-    step = _carried(sideways, amplitude, sideways.stick_radius)
-    before = sideways.tangential_displacement / sideways.displacement_ratio
+    step = _carried(contact, amplitude, contact.stick_radius)
+    before = contact.tangential_displacement / contact.displacement_ratio
     grown = np.maximum(step, before) / np.where(before > 0, before, 1.0)
-    moved = sideways.stick_coordinate, sideways.stick_radius, grown * sideways.slip_width
-    return _from(sideways, step, endless=sideways.full_slip, moved=moved)
+    moved = contact.stick_coordinate, contact.stick_radius, grown * contact.slip_width
+    return _from(contact, step, endless=contact.full_slip, moved=moved)
 
 
-def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     """Return the stick zone with F_N = F_N(c) + 2 E* c (d - g(c)), d - g(c) = G* u/(mu E*).
 
     The book's limit neglects that the stick edge moves outwards, over worn material, as the depth
     grows. Source: mdr-5, Eq. (5.90), for any profile.
     """
-    contact, profile = sideways.normal, sideways.normal.profile
-    step = np.broadcast_to(amplitude / sideways.displacement_ratio, sideways.width.shape)
-    endless = sideways.full_slip
+    normal, profile = contact.normal, contact.normal.profile
+    step = np.broadcast_to(amplitude / contact.displacement_ratio, contact.width.shape)
+    endless = contact.full_slip
     if profile.has_no_partial_slip:
-        return _from(sideways, step, endless=endless)
-    top = np.broadcast_to(contact.coordinate, step.shape)
-    target = np.where(endless | (sideways.width <= 0), 0.0, step)
+        return _from(contact, step, endless=endless)
+    top = np.broadcast_to(normal.coordinate, step.shape)
+    target = np.where(endless | (contact.width <= 0), 0.0, step)
 
     def step_by_force(width: Array) -> tuple[Array, Array]:
         """Return (F_N(a) - F_N(c))/(2 E* c), and its logarithmic slope."""
@@ -88,7 +88,7 @@ def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
         return value, width * (profile.depth_slope(edge) / value + profile.radius_slope(edge) / c)
 
     # The stick edge before wear lies further in: there the annulus outside carries load as well.
-    widest = np.where(target > 0, sideways.width, 1.0)
+    widest = np.where(target > 0, contact.width, 1.0)
     width = invert(
         step_by_force,
         target,
@@ -97,13 +97,13 @@ def by_force_and_displacement(sideways: TangentialContact, amplitude: Array) -> 
         widest,
         f"{profile.kind}'s stick edge under a constant force",
     )
-    moved = np.where(endless, sideways.stick_coordinate, top - width)
-    radius = np.where(width > 0, profile.contact_radius(moved), sideways.stick_radius)
+    moved = np.where(endless, contact.stick_coordinate, top - width)
+    radius = np.where(width > 0, profile.contact_radius(moved), contact.stick_radius)
     reach = profile.radius_width(top, width)
-    return _from(sideways, step, endless=endless, moved=(moved, radius, reach))
+    return _from(contact, step, endless=endless, moved=(moved, radius, reach))
 
 
-def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> LimitingStick:
+def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     """Return the stick zone of the largest c with 2 mu E* c (d - g(c)) = F_x.
 
     Wear at a constant depth reduces F_N, and with it F_N(c) = F_N - F_x/mu: the stick zone shrinks,
@@ -113,13 +113,13 @@ def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> Limitin
     ------
     InputError : a force that no stick zone carries: the wear ends in full slip, without a limit.
     """
-    contact, profile = sideways.normal, sideways.normal.profile
-    share = _carried(sideways, amplitude, np.ones(()))
-    share = np.broadcast_to(share, sideways.width.shape)
+    normal, profile = contact.normal, contact.normal.profile
+    share = _carried(contact, amplitude, np.ones(()))
+    share = np.broadcast_to(share, contact.width.shape)
     if profile.has_no_partial_slip:
-        _refuse_overload(sideways, amplitude, sideways.full_slip, sideways.limiting_force)
-        return _from(sideways, np.zeros_like(share))
-    top = np.broadcast_to(contact.coordinate, share.shape)
+        _refuse_overload(contact, amplitude, contact.full_slip, contact.limiting_force)
+        return _from(contact, np.zeros_like(share))
+    top = np.broadcast_to(normal.coordinate, share.shape)
 
     def carried(width: Array) -> Array:
         """Return c (d - g(c)) at the coordinate `width` below the contact edge before wear."""
@@ -141,8 +141,8 @@ def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> Limitin
     reach = top - profile.first_coordinate
     target = np.where(reach > 0, share, 0.0)
     low, high, most = _first_crossing(carried, slope, reach, target)
-    largest = 2 * sideways.friction_coefficient * contact.e_star * most
-    _refuse_overload(sideways, amplitude, most < target, largest)
+    largest = 2 * contact.friction_coefficient * normal.e_star * most
+    _refuse_overload(contact, amplitude, most < target, largest)
     width = invert(
         sloped,
         target,
@@ -152,9 +152,9 @@ def by_depth_and_force(sideways: TangentialContact, amplitude: Array) -> Limitin
         f"{profile.kind}'s stick edge at a constant depth",
     )
     edge = top - width
-    radius = np.where(width > 0, profile.contact_radius(edge), contact.contact_radius)
+    radius = np.where(width > 0, profile.contact_radius(edge), normal.contact_radius)
     moved = edge, radius, profile.radius_width(top, width)
-    return _from(sideways, _carried(sideways, amplitude, radius), moved=moved)
+    return _from(contact, _carried(contact, amplitude, radius), moved=moved)
 
 
 def _first_crossing(
@@ -190,7 +190,7 @@ def _first_crossing(
 
 
 def _refuse_overload(
-    sideways: TangentialContact, force: Array, beyond: Flags, largest: Array
+    contact: TangentialContact, force: Array, beyond: Flags, largest: Array
 ) -> None:
     if not np.any(beyond):
         return
@@ -211,19 +211,19 @@ _BY_CONTROL: Final = {
 }
 
 
-def find(sideways: TangentialContact, name: str, size: Array) -> LimitingStick:
+def find(contact: TangentialContact, name: str, size: Array) -> LimitingStick:
     """Return the stick zone in the limit under a constant amplitude of this name and size."""
-    return _BY_CONTROL[sideways.normal.control, name](sideways, size)
+    return _BY_CONTROL[contact.normal.control, name](contact, size)
 
 
-def _carried(sideways: TangentialContact, force: Array, radius: Array) -> Array:
+def _carried(contact: TangentialContact, force: Array, radius: Array) -> Array:
     """Return F_x/(2 mu E* c), zero for c = 0."""
-    resistance = 2 * sideways.friction_coefficient * sideways.normal.e_star * radius
+    resistance = 2 * contact.friction_coefficient * contact.normal.e_star * radius
     return np.where(resistance > 0, force / np.where(resistance > 0, resistance, 1.0), 0.0)
 
 
 def _from(
-    sideways: TangentialContact,
+    contact: TangentialContact,
     step: Array,
     *,
     lost: Flags | None = None,
@@ -231,20 +231,20 @@ def _from(
     moved: tuple[Array, Array, Array] | None = None,
 ) -> LimitingStick:
     """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`."""
-    first = sideways.stick_coordinate, sideways.stick_radius, sideways.slip_width
-    coordinate, radius, reach = first if moved is None else moved
-    contact = sideways.normal
+    unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
+    coordinate, radius, reach = unworn if moved is None else moved
+    normal = contact.normal
     # Without a normal load nothing wears.
-    loaded = np.asarray(contact.coordinate > contact.profile.first_coordinate)
+    loaded = np.asarray(normal.coordinate > normal.profile.first_coordinate)
     # A flat punch either sticks or slides as a whole.
     rests = (reach <= 0) | ~loaded
     nowhere = np.zeros((), dtype=bool)
     parts = (
-        np.where(rests, contact.coordinate, coordinate),
-        np.where(rests, contact.contact_radius, radius),
+        np.where(rests, normal.coordinate, coordinate),
+        np.where(rests, normal.contact_radius, radius),
         np.where(rests, 0.0, step),
         np.where(rests, 0.0, reach),
         nowhere if lost is None else lost & loaded,
         nowhere if endless is None else endless & loaded,
     )
-    return LimitingStick(*(np.broadcast_to(part, sideways.width.shape) for part in parts))
+    return LimitingStick(*(np.broadcast_to(part, contact.width.shape) for part in parts))

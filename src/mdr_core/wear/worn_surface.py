@@ -48,7 +48,9 @@ class WornSurface:
     def stick_radius(self) -> Array:
         """c [length]: it moves where one force and one displacement are constant."""
         unit = self.initial.length_unit
-        return self._each(lambda state: unit * state.stick, self.initial.sideways.stick_radius)
+        return self._each(
+            lambda state: unit * state.stick, self.initial.tangential_contact.stick_radius
+        )
 
     @cached_property
     def contact_radius(self) -> Array:
