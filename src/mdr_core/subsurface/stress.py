@@ -16,7 +16,7 @@ from mdr_core.validation import require_not_negative
 
 # Part of the contact radius by which a point is moved off the surface, where the kernels are
 # singular: stresses have at worst a root there.
-_SURFACE: Final = 1e-30
+_SURFACE: Final = 1e-34
 # Relative accuracy of the tractions at the origin.
 _AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.

@@ -222,8 +222,9 @@ def _onset(
     lowest, end = log(start) - _REACH, log(min(singular, one.last_coordinate or inf)) - _XTOL
     highest = min(log(start) + _REACH, end)
     before = place = min(log(start), highest)
-    # Under a ball the stress grows like the contact radius.
-    sign, step = 1 if excess(place) > 0 else -1, 1
+    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
+    growth = log(at(exp(place)).mean_pressure / at(exp(place - _XTOL)).mean_pressure) / _XTOL
+    sign, step = 1 if excess(place) > 0 else -1, 1 / max(growth, 1 / _REACH)
     while sign * excess(place) > 0:
         if place == (lowest if sign > 0 else highest):
             return 0.0 if sign > 0 else float(at(singular).normal_force) if singular < inf else inf
