@@ -1,4 +1,4 @@
-# Every target runs in .venv, made from the locks by the first supported Python that is found (or
+# Every target but the charts runs in .venv, made from the locks by the first supported Python that is found (or
 # PYTHON=). Hashes are checked, so that results are the same on every machine.
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -39,7 +39,7 @@ check: .venv/development
 	$(BIN)/hadolint Dockerfile
 	$(BIN)/python -m mdr_command openapi | diff openapi.json -
 
-# Ordinary engineering queries, each answer held to the laws: 100,000 take half an hour of one core.
+# Ordinary engineering queries, each result checked against physical laws: 100,000 take half an hour on one core.
 FUZZ ?= --queries 100000
 fuzz: .venv/development
 	$(BIN)/python -m tests.fuzz.campaign $(FUZZ)
@@ -119,7 +119,7 @@ clean:
 	@test -n "$(PYTHON)" || { echo "MDR needs one of $(PYTHONS), with the module venv; none is on the path." >&2; exit 1; }
 	$(PYTHON) -m venv .venv
 
-# The project goes in without build isolation: its build tool is in the lock like all else.
+# Without build isolation, because the build tools are locked too.
 .venv/runtime: requirements.lock pyproject.toml setup.py $(COMPILED) | .venv/bin/python
 	$(PIP) install --require-hashes --requirement requirements.lock
 	$(PIP) install --no-deps --no-build-isolation --editable .
@@ -129,7 +129,8 @@ clean:
 	$(PIP) install --require-hashes --requirement requirements-dev.lock
 	touch $@
 
-# The peers live apart, with the project beside them, so that one process can time both in turn.
+# Reference codes have an environment of their own that contains the project as well, so that one
+# process times both in turn.
 # PyAbel and openAbel are compiled here, against the NumPy and Cython of the lock.
 PEERS := .venv-bench/bin/python -m pip --disable-pip-version-check --quiet install
 .venv-bench/peers: requirements.lock requirements-bench.lock requirements-bench-openabel.lock setup.py $(COMPILED)

@@ -1,4 +1,4 @@
-"""Exit statuses of the commands; README lists them."""
+"""Exit statuses of the commands; docs/command_line.md lists them."""
 
 from enum import IntEnum
 

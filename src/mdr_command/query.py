@@ -62,8 +62,8 @@ def declare(parser: argparse.ArgumentParser) -> None:
             )
     parser.description = (
         f"{parser.description}\n\nA problem document goes to standard error, with the exit status "
-        f"{ExitStatus.INVALID_INPUT},\nor {ExitStatus.ACCURACY_NOT_REACHABLE} if rtol cannot "
-        "be reached."
+        f"{ExitStatus.INVALID_INPUT},\nor {ExitStatus.ACCURACY_NOT_REACHABLE} if the accuracy "
+        "cannot be reached."
     )
 
 

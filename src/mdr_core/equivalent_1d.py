@@ -24,17 +24,17 @@ from mdr_core.quadrature import gauss_legendre, in_order
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import first_index
 
-# Width of an annulus, relative to a, up to which a step is an integral: the difference of a wider
-# one loses at most a factor of 20 of the accuracy.
+# Width of an annulus, relative to a, up to which a step is an integral: for a wider one the
+# difference amplifies rounding errors at most 20-fold.
 _NARROW: Final = 0.05
 # Gauss-Legendre nodes of that integral: they integrate powers up to 100 to rounding error.
 _NODES: Final = 16
-# Part of full slip up to which the width is the unknown; beyond it the stick edge is.
+# Fraction of the load at full slip up to which the width, not the stick edge, is the unknown.
 _EARLY: Final = 0.05
 # Distance from a break, as a part of it, beyond which Newton's method converges as elsewhere.
 _NEAR_BREAK: Final = 0.01
-# Logarithms of the contact coordinate over the scale between which the curve of a kind is bent,
-# their spacing, for linear interpolation to 2e-5, and the ends of its straight tails.
+# Logarithms of the contact coordinate over the scale between which the curve of a kind bends,
+# their spacing, for linear interpolation to 2e-5, and the ends of linear extrapolation.
 _CURVED, _SPACING, _FARTHEST = 14.0, 0.02, 150.0
 
 # The slope at a coordinate, given as a break and the distance from it as well.
@@ -74,9 +74,9 @@ def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
-    """Return the contact coordinate of a contact radius; where g is constant, of the loaded part.
+    """Return the contact coordinate of a contact radius; on a plateau of g, that of its inner end.
 
-    The springs of a level carry no load, so that forces and stresses are those of its inner end.
+    The springs on a plateau carry no load.
 
     Raises
     ------

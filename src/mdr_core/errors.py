@@ -27,7 +27,7 @@ class InputError(MDRError, ValueError):
 
 
 class AccuracyError(MDRError):
-    """Accuracy not reached: the requested tolerance is too small for this input.
+    """The required accuracy cannot be reached for this input.
 
     Parameters
     ----------

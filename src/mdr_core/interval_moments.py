@@ -36,11 +36,11 @@ _POINTS: Final = 16
 # grows by more than this factor on it. Differences of closed forms over a wide interval do not
 # suffer cancellation.
 _WIDE: Final = 16.0
-# The factor of the contact coordinate before the first break,
+# The same factor of the contact coordinate before the first break.
 _WIDE_FROM_AXIS: Final = 400.0
-# and beyond it.
+# The same factor beyond a break.
 _WIDE_BEYOND_BREAK: Final = 2.5
-# Up to this many radii of its flat the radius of a contact hardly changes: differences cancel.
+# Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
 _SHALLOW: Final = 1.5
 # The width of an interval is taken from its ends if it is larger than this part of them, otherwise
 # from the slope at one of them.
@@ -157,7 +157,7 @@ class IntervalMoments:
         return Moments(span, np.where(crossed, joined, upper.weights))
 
     def conjugate_step(self, low: Array, span: Array) -> Array:
-        """Return what the conjugate grows by over each interval, a sum of positive terms."""
+        """Return the increase of the conjugate over each interval, a sum of positive terms."""
         part = self.over(low, span)
         lower, middle, upper = part.weights
         at = low + span if self.by_force else low
@@ -167,7 +167,7 @@ class IntervalMoments:
         return np.asarray(span * (2 * a + lower + middle / 2))
 
     def conjugate_mean(self, low: Array, span: Array) -> Array:
-        """Return the mean depth's conjugate, the reduced force, over each interval of depth."""
+        """Return the mean reduced force over each interval of depth."""
         at = self.contact_coordinate(low)
         force, a = self.profile.reduced_force(at), self.profile.contact_radius(at)
         return np.asarray(force + span * (a + self.over(low, span).weights[0] / 2))

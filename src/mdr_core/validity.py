@@ -134,8 +134,8 @@ def of_normal_contact(
         assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if beta is None else ""
         return (
             f"the half-space approximation has an estimated error of "
-            f"{_per_cent(extremes(error)[1])}: {_per_cent(radial * steepest)} by the neglected "
-            f"radial displacement{assumed}, and of order {_per_cent(square)} by the slope "
+            f"{_per_cent(extremes(error)[1])}: {_per_cent(radial * steepest)} from the neglected "
+            f"radial displacement{assumed}, and about {_per_cent(square)} from the slope "
             f"{steepest:.2g} at the contact edge"
         )
 

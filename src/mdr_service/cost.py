@@ -25,8 +25,8 @@ AT_ONCE_SECONDS: Final = 5e-4
 """Computation on the event loop at any load; a round trip to a compute process takes as long."""
 # The same with no other request in progress; beside others, the processes use more cores.
 _AT_ONCE_ALONE: Final = 2e-3
-# Times on one core of a server of 2023 [s]: of a query about a single load of a cone, of stresses
-# beneath the surface under each load, ...
+# All times are those of one core of a server of 2023 [s].
+# Time of a query about a single load of a cone; beneath the surface, under each load.
 _START: Final[dict[type[Query], float]] = {
     NormalQuery: 1e-4,
     TangentialQuery: 2e-4,
@@ -36,29 +36,31 @@ _START: Final[dict[type[Query], float]] = {
     EvolutionQuery: 1e-3,
     SubsurfaceQuery: 1e-3,
 }
-# ... of the step from one load to many, for which arrays take the place of single numbers, ...
+# Additional time of many loads, for which arrays take the place of single numbers.
 _ARRAYS: Final = 2e-4
-# ... of each load, load with friction or sample, load with wear, number of cycles, ...
+# Time per load without and with friction or per sample, per load with wear, per entry of `cycles`.
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
-# ... of the energies at each sample, ...
+# Time of the energies per sample.
 _SAMPLE: Final = 3e-6
-# ... normal load of a table with a flat, and of one and each load of other profiles, whose largest
-# pressure is searched for, ...
+# Time of the search for the largest pressure: per load of a table with a flat; of other profiles,
+# for the first load and per load.
 _SEARCH, _SEARCH_OF_ONE, _SEARCH_OF_EACH = 1e-5, 2e-4, 2e-5
-# ... field of a load, its value at a radius, and of drawing a picture.
-_FIELD, _VALUE, _PICTURE = 3e-5, 2.5e-7, 0.3
-# Multiples of these for profiles without closed inverses, per term of a series, for tables.
+# Time per field and load, and per value of it at a radius.
+_FIELD, _VALUE = 3e-5, 2.5e-7
+# Time to draw a picture.
+_PICTURE: Final = 0.3
+# Time per nonlinear load step, and per node of an evolution, with its minimum number of nodes.
+_NONLINEAR_STEP, _NODE, _LEAST_NODES = 2.5e-3, 7.5e-3, 16
+# Factors by which times grow for profiles without closed inverses, per term of a series, and for
+# tables. Times of integrals grow with the fourth root.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
 # Profiles whose largest pressure may lie off the axis.
 _SEARCHED_PROFILES: Final = frozenset({"rounded_punch", "series", "spherical_tip_cone"})
-# Of each nonlinear load step, and of each node of an evolution, besides its least number of nodes.
-# Of these, of a single load, cycles, stresses and slip only the fourth root of the multiples is
-# taken.
-_NONLINEAR_STEP, _NODE, _LEAST_NODES = 2.5e-3, 7.5e-3, 16
-# Of the stress at a point beneath the surface, points that a search for its peak takes, and
-# searches for the onset of yield by both criteria.
-_POINT, _POINT_OF_TABLE, _SEARCHED, _ONSETS = 3e-6, 5e-6, 2000, 10
+# Time per point beneath the surface.
+_POINT, _POINT_OF_TABLE = 3e-6, 5e-6
+# Number of points of a search for the peak, and of such searches for the onset of yield.
+_SEARCHED, _ONSETS = 2000, 10
 # Profiles whose peak is a multiple of the mean pressure: without friction, it is known.
 _SIMILAR: Final = frozenset({"cone", "paraboloid", "power"})
 # Well beyond the deadline, since few queries take less than a quarter of the expected time.
@@ -74,8 +76,8 @@ def seconds(query: Query | BatchQuery) -> float:
     if isinstance(query, SubsurfaceQuery):
         return _beneath(query)
     scale, path = _complexity(query.profile), query.path
-    # Times that are multiplied in full, and those multiplied by the fourth root.
-    # A table is resolved once for many queries.
+    # Times that grow with the factor of the profile, and with its fourth root. A table is resolved
+    # once for many queries.
     evaluated, integrated = 0.0, _START[HistoryQuery if path else type(query)]
     if query.numbers and isinstance(query, FieldQuery):
         fields = query.loads * len(query.quantities) * (_FIELD + _VALUE * query.radii)

@@ -47,7 +47,7 @@ def respond(
     """
     if isinstance(query, BatchQuery):
         return _respond_to_batch(query)
-    # Results are checked for overflow at their end.
+    # Complete results are checked for overflow.
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
         source = kind.solve(query)
@@ -89,7 +89,7 @@ def _respond_to_batch(batch: BatchQuery) -> bytes:
 
 
 def _require_few_numbers(batch: BatchQuery) -> None:
-    """Raise ServiceError if the responses would hold more numbers than one may."""
+    """Raise ServiceError if the responses would hold more numbers than a single one may."""
     numbers, most = 0, SETTINGS.max_numbers
     for index, item in enumerate(batch.queries):
         if isinstance(item.query, Query):

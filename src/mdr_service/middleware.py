@@ -58,10 +58,10 @@ def install(app: FastAPI) -> None:
 
 
 class ServiceMiddleware:
-    """Outermost layer of the application.
+    """Outermost layer of the application, but for CORS.
 
     An exception that reaches the server drops the connection, and with it the next request of a
-    client that reuses connections. The innermost handler of all exceptions is therefore here.
+    client that reuses connections. The handler of last resort is therefore here.
     """
 
     def __init__(self, app: ASGIApp, transfers: Transfers) -> None:

@@ -19,8 +19,8 @@ with examples. [Licence](license): MIT.
 converted; each field names its dimension in brackets, `[1]` for a plain number.
 
 **Arrays.** A load is a number or a list; responses are always lists over the loads. `null` stands
-for a true infinity only, and a warning with the code `singular` says where (`endless_wear` for
-unbounded wear).
+for a true infinity, and a warning with the code `singular` says where (`endless_wear` for unbounded
+wear); as a `yield_onset_force` it means that no load reaches the yield strength.
 
 **Formats.** `?format=` or the header `Accept` selects JSON (the default); `csv`, a table with a
 column per quantity, in which infinities are written `inf`; `npz`, an archive of arrays for
@@ -28,8 +28,8 @@ column per quantity, in which infinities are written `inf`; `npz`, an archive of
 picture, whose width and height `?size=` sets.
 
 **GET.** Five queries are available by parameters as well, for spreadsheets and browsers: numbers,
-and one range. `answers` chooses members of the response, and with `format=txt` one number is the
-whole text.
+and one range. `answers` chooses members of the response, and with `format=txt` a single number is
+returned as plain text.
 
 **Errors** are `application/problem+json` (RFC 9457); `errors` points into the request.
 """
@@ -44,9 +44,10 @@ _REFERENCE: Final = "#/components/schemas/{model}"
 
 
 def _describe_defaults(schema: dict[str, Any]) -> None:
-    """Move the defaults of optional members to their descriptions; null is none, and not allowed.
+    """Move the defaults of optional members to their descriptions.
 
-    Generators of clients require a member with a default, because they take it for one of answers.
+    Client generators would otherwise make these members required. A default of null means that the
+    member is absent; null itself is not valid input.
     """
     for part in schema.get("oneOf", ()):
         _describe_defaults(part)

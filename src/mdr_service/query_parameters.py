@@ -134,12 +134,12 @@ class Parameters(BaseModel):
         ends = [name for name in given if name.endswith(("_from", "_to"))]
         if not ends:
             for name in self.model_fields_set & {"n", "scale"}:
-                raise InputError((name,), "goes with a range")
+                raise InputError((name,), "is valid only with a range")
             return
         name = ends[0].rpartition("_")[0]
         start, stop = f"{name}_from", f"{name}_to"
         if name in given:
-            raise InputError((name,), f"does not go with {start} and {stop}")
+            raise InputError((name,), f"cannot be combined with {start} and {stop}")
         for end in ends:
             if end not in {start, stop}:
                 raise InputError((end,), "only one range can be given; POST takes any lists")
@@ -147,7 +147,7 @@ class Parameters(BaseModel):
                 raise InputError((end,), "must be greater than 0 on a logarithmic scale")
         for part in (start, stop, "n"):
             if part not in self.model_fields_set:
-                raise InputError((part,), "is needed for a range")
+                raise InputError((part,), "is required for a range")
         # Between ends out of bounds numbers can overflow; the ends are then rejected.
         with np.errstate(all="ignore"):
             spaced = _SPACINGS[self.scale or "linear"](given.pop(start), given.pop(stop), self.n)
@@ -192,7 +192,7 @@ def _described(model: type[contacts.Query]) -> Iterator[_Described]:
             yield name, field, str | None, text
         elif group == "material.bodies.#":
             for body in (1, 2):
-                text = f"`{name}` of body {body}, rigid if absent {dimension}"
+                text = f"`{name}` of body {body}, absent for a rigid body {dimension}"
                 yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
         elif type_ and group in {"", "profile", "material", *loads}:
             if group == "profile":

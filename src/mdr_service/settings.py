@@ -27,40 +27,49 @@ class Settings(BaseModel):
     model_config = ConfigDict(frozen=True)
 
     max_body_bytes: int = Field(
-        4 * 1024**2, ge=1024, description="Length of a request body [bytes]."
+        4 * 1024**2, ge=1024, description="Maximum length of a request body [bytes]."
     )
-    max_loads: int = Field(100_000, ge=1, description="Number of loads in a request.")
-    max_radii: int = Field(100_000, ge=2, description="Number of radii in a request.")
+    max_loads: int = Field(100_000, ge=1, description="Maximum number of loads in a request.")
+    max_radii: int = Field(100_000, ge=2, description="Maximum number of radii in a request.")
     max_numbers: int = Field(
-        1_000_000, ge=2, description="Number of values in a response: loads × radii × quantities."
+        1_000_000,
+        ge=2,
+        description="Maximum number of values in a response: loads × radii × quantities.",
     )
     max_samples: int = Field(
-        100_000, ge=1, description="Number of samples of a history: points × samples_per_step."
+        100_000,
+        ge=1,
+        description="Maximum number of samples of a history: points × samples_per_step.",
     )
     max_cycles: int = Field(
-        100_000, ge=1, description="Number of cycles, and of cycle counts of wear."
+        100_000, ge=1, description="Maximum number of cycles, and of entries of `cycles` of wear."
     )
-    max_batch: int = Field(1_000, ge=1, description="Number of queries in a batch.")
-    max_table_points: int = Field(2_000, ge=2, description="Number of points of a table.")
-    max_series_terms: int = Field(100, ge=1, description="Number of terms of a series.")
+    max_batch: int = Field(1_000, ge=1, description="Maximum number of queries in a batch.")
+    max_table_points: int = Field(2_000, ge=2, description="Maximum number of points of a table.")
+    max_series_terms: int = Field(100, ge=1, description="Maximum number of terms of a series.")
     max_transfer_bytes: int = Field(
         32 * 1024**2,
         ge=0,
-        description="Total length of long bodies in transfer, beside one [bytes].",
+        description="Maximum total length of large bodies in memory; one may exceed it [bytes].",
     )
     compute_processes: int = Field(2, ge=1, le=1_000, description="Number of compute processes.")
     budget_seconds: float = Field(
-        10.0, gt=0, le=86_400, description="Time of a query in a compute process [s]."
+        10.0, gt=0, le=86_400, description="Maximum time of a query in a compute process [s]."
     )
-    queue_length: int = Field(16, ge=0, description="Number of queries that wait for a process.")
+    queue_length: int = Field(
+        16, ge=0, description="Maximum number of queries that wait for a process."
+    )
     queue_seconds: float = Field(
-        4.0, gt=0, le=86_400, description="Time for which a query waits for a process [s]."
+        4.0, gt=0, le=86_400, description="Maximum time for which a query waits for a process [s]."
     )
     request_seconds: float = Field(
-        10.0, gt=0, le=86_400, description="Time in which a request arrives, headers and body [s]."
+        10.0,
+        gt=0,
+        le=86_400,
+        description="Maximum time in which a request arrives, headers and body [s].",
     )
     shutdown_seconds: int = Field(
-        15, ge=1, description="Time for requests in flight after SIGTERM [s]."
+        15, ge=1, description="Maximum time for requests in flight after SIGTERM [s]."
     )
     cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
         (), description="Origins allowed by CORS, separated by commas."

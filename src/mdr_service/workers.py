@@ -46,9 +46,10 @@ _START_SECONDS: Final = 30.0
 _START_PAUSE: Final = 1.0
 # Interval at which running computations are compared with waiting ones.
 _FAIR_INTERVAL: Final = 0.25
-# Part of `queue_seconds` for which a computation waits, or runs, before it gets or makes room.
+# Part of `queue_seconds` for which a computation waits before it may displace another, and runs
+# before it may be displaced.
 _FAIR_SHARE: Final = 0.25
-# Ratio to the usual time of a computation from which one may have to make room.
+# Ratio to the usual time of a computation from which one may be displaced.
 _FAIR_RATIO: Final = 3.0
 # Number of completed computations whose median is the usual time: a few outliers do not matter.
 _FAIR_COUNT: Final = 16
@@ -60,7 +61,7 @@ _logger: Final = logging.getLogger(__name__)
 class _Job:
     """A computation that waits or runs."""
 
-    urgent: bool = True
+    is_query: bool = True
     """True for a query, False for a self-test."""
     since: float = field(default_factory=monotonic)
     """Time at which it began to wait or to run."""
@@ -125,7 +126,7 @@ class WorkerPool:
 
     async def check(self) -> None:
         """Run the self-test in a process; raise ServiceError if it fails or does not run soon."""
-        await self._run(_Job(urgent=False), self._self_test)
+        await self._run(_Job(is_query=False), self._self_test)
 
     async def _run(self, job: _Job, function: Callable[..., _Result], *arguments: Any) -> _Result:
         process = await self._take_process(job)
@@ -134,7 +135,7 @@ class WorkerPool:
         try:
             with job.scope:
                 result = await self._compute(process, function, *arguments)
-                if job.urgent:
+                if job.is_query:
                     self._times.append(job.age)
                 return result
         finally:
@@ -164,8 +165,8 @@ class WorkerPool:
             self._waiting.remove(job)
             if record := observability.CURRENT.get():
                 record.queued += job.age
-        # The one last used has its tables at hand; self-tests go round.
-        return self._idle.pop() if job.urgent else self._idle.popleft()
+        # Queries take the process used last, which has kept its tables; self-tests take turns.
+        return self._idle.pop() if job.is_query else self._idle.popleft()
 
     def _busy(self, reason: str) -> ServiceError:
         """Return the problem of a rejected computation, to be repeated after the longest wait."""
@@ -227,7 +228,7 @@ class WorkerPool:
         share = _FAIR_SHARE * self._settings.queue_seconds
         while True:
             await sleep(_FAIR_INTERVAL)
-            waiting = any(job.urgent and job.age > share for job in self._waiting)
+            waiting = any(job.is_query and job.age > share for job in self._waiting)
             if waiting and len(self._running) == self._settings.compute_processes > 1:
                 youngest = min(self._running, key=lambda job: job.age)
                 if youngest.age > max(share, _FAIR_RATIO * median(self._times or [share])):

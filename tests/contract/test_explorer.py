@@ -159,9 +159,7 @@ def test_page_contents_can_be_downloaded(visit: Visit, tmp_path: Path) -> None:
 
 def test_hover_radius_is_shown_in_every_radial_chart(visit: Visit) -> None:
     visit.open("?tab=push")
-    plots = visit.page.locator(
-        "figure", has=visit.page.locator("h2", has_text="Tangential traction")
-    )
+    plots = visit.page.locator("figure", has=visit.page.locator("h2", has_text="Shear stress"))
     plots.locator(".plot").hover()
     shown = visit.page.locator(".hoverlayer:has(.hovertext), .hoverlayer:has(.legend)")
     shown.nth(1).wait_for(state="attached")

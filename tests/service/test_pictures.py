@@ -78,7 +78,7 @@ def test_stress_map_marks_the_contact_and_its_maximum(
     assert np.array_equal(marks["contact"].get_xdata(), [-plot.contact, plot.contact])
     assert ("stick" in marks) == ("tangential" in value)
     assert (marks["maximum"].get_xdata()[0], marks["maximum"].get_ydata()[0]) == plot.peak
-    assert np.array_equal(right.lines[0].get_ydata(), plot.depth)
+    assert np.array_equal(right.lines[0].get_ydata(), plot.z)
     # The depth increases downwards.
     low, high = left.get_ylim()
     assert low > high

@@ -2,8 +2,8 @@
 
 On such a step the tangential coordinate is linear in the conjugate y of the normal coordinate n,
 so the load point moves along an arc of the curve y(n), I over d or d over I. The arc is replaced
-by chords between points that are equidistant in the contact coordinate, where n and y need no
-inverse. Results at the samples are extrapolated from three sets of chords; their error falls
+by chords between points in the contact coordinate, where n and y need no inverse, clustered at
+both ends. Results at the samples are extrapolated from three sets of chords; their error falls
 with the third to fourth power of the number of chords. Source: notes, §10.
 """
 

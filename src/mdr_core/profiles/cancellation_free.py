@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev
 from mdr_core.elementwise import is_number, piecewise
 from mdr_core.typing import Array, Parameter
 
-# Below it a series replaces the difference, which would lose more than two bits above it.
+# Below it a series replaces the difference, which loses more than three bits there.
 _THRESHOLD: Final = 0.5
 # Terms of the series in Chebyshev's form that leave 1e-17 below the threshold.
 _TERMS: Final = 15

@@ -145,7 +145,7 @@ def _rough(begin: Array, depth: float) -> Notice:
     others = f" and {begin.size - 1} others" if begin.size > 1 else ""
     return Notice(
         "rough_table",
-        f"the equivalent profile g falls behind radius {begin[0]:.12g}{others}, by up to "
+        f"the equivalent profile g decreases beyond radius {begin[0]:.12g}{others}, by up to "
         f"{depth:.2g}: it is taken as constant there, and depths are uncertain by that much; "
         "smooth the heights",
     )

@@ -1,4 +1,4 @@
-"""Fretting wear: the limiting state in `limit`, the way there over the cycles in `evolution`."""
+"""Fretting wear: the limiting state in `limit`, its evolution over the cycles in `evolution`."""
 
 from mdr_core.wear import evolution, limit
 

@@ -208,7 +208,7 @@ def solve(
     cycles : numbers of cycles >= 0, ascending, (k,).
     tangential_displacement, tangential_force : exactly one, the amplitude of the oscillation
         [length], [force].
-    resolution : nodes over the worn annulus beyond the least number, 16; 8 to 96.
+    resolution : number of nodes over the worn annulus, in addition to 16; 8 to 96.
     rtol : relative tolerance of the integration over the cycles, 1e-10 to 1e-3.
 
     Returns
@@ -249,12 +249,12 @@ def solve(
         ("tangential", size),
     ):
         if np.ndim(number):
-            raise InputError((place,), "a single number is needed: wear has one initial state")
+            raise InputError((place,), "must be a single number")
     tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
     if tangential_contact.full_slip.any():
         raise InputError(
             ("tangential", name),
-            "the whole contact slides: no part of it keeps its profile, and wear is unbounded",
+            "full slip: there is no stick zone; reduce the amplitude",
         )
     held = Held(contact.control == "normal_force", name == "tangential_displacement")
     initial = InitialState(tangential_contact, float(wear_coefficient), held)

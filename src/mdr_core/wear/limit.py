@@ -28,7 +28,7 @@ _AT_END: Final = 0.99
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
     "the stick zone grows over worn material, and the limit depends on the load path: this is "
-    "the book's Eq. (5.90); use the evolution over the cycles instead",
+    "Eq. (5.90) of Popov and Heß; use the evolution over the cycles instead",
     "singular": "the pressure in the limit is infinite at the stick radius, as under the edge of "
     "a flat punch",
     "no_wear": "nothing slips, so nothing wears: the limit is the profile itself",

@@ -48,7 +48,7 @@ def _compressed(path: str, _changed: float) -> bytes:
 
 
 class Pages(StaticFiles):
-    """Files with the security policy of the pages; browsers ask each time whether one changed."""
+    """Files with the security policy of the pages; browsers revalidate them on every visit."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Return a file, compressed if the client takes that, or the status 304."""

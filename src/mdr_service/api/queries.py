@@ -226,8 +226,9 @@ async def post_subsurface(
     """Compute the stresses named in `quantities` by load, depth z and x, in the plane of one y.
 
     `error_estimate` is relative to the largest stress of the response. With a `yield_strength` of
-    the material the response holds the normal force at the onset of yield, at the same ratio of
-    tangential to normal force. The tangential force acts on body 1 along x, its reaction on body 2.
+    the material, and without `history`, the response holds the normal force at the onset of yield,
+    at the same ratio of tangential to normal force. The tangential force acts on body 1 along x,
+    its reaction on body 2.
     """
     return await respond("subsurface", query)
 

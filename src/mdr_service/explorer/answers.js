@@ -80,7 +80,7 @@ function pressureChart(request, field, edges, size) {
 function tractionChart(request, field, mu, edges) {
   const envelope = field.pressure[0].map((p) => (p === null ? null : mu * p));
   return {
-    id: "traction", request, title: "Tangential traction", linked: true, edges,
+    id: "traction", request, title: "Shear stress", linked: true, edges,
     x: ["Radius", "length"], y: ["Traction", "pressure"],
     traces: [
       { name: "traction", x: field.radius, y: field.shear_stress[0], fill: true },
@@ -283,7 +283,7 @@ export async function solveWear(scene, ask) {
       ["Worn volume", course.worn_volume[at], "volume"],
       ["Worn volume in the limit", now.worn_volume, "volume"],
       ["Contact radius", course.contact_radius[at], "length"],
-      ["Wear radius b in the limit", now.wear_radius, "length"],
+      ["Wear radius in the limit", now.wear_radius, "length"],
       ["Stick radius c", now.stick_radius, "length"],
       ["Indentation depth", course.indentation_depth[at], "displacement"],
       ["Normal force", course.normal_force[at], "force"],

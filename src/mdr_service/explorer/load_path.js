@@ -12,7 +12,7 @@ const PRESETS = {
   "Loop at constant force": [[1, 0], [1, 0.7], [1, -0.7], [1, 0.7]],
   "Growing loops": [[1, 0], [1, 0.3], [1, -0.3], [1, 0.6], [1, -0.6], [1, 0.9], [1, -0.9], [1, 0]],
   "Both loads together": [[0.2, 0], [1, 0.7], [0.4, 0], [1, 0.7]],
-  "Press, push, lift": [[1, 0], [1, 0.8], [0.3, 0.2]],
+  "Load, shear, unload": [[1, 0], [1, 0.8], [0.3, 0.2]],
 };
 
 function svgElement(name, attributes, parent) {

@@ -75,8 +75,8 @@ function materialSelect(i) {
   label.innerHTML = `<span>Body ${i}</span><select id="material-${i}"></select>`;
   const select = label.querySelector("select");
   const current = Object.entries(MATERIALS).find(([, [e, nu]]) => e === scene[`e${i}`] && nu === scene[`nu${i}`]);
-  const chosen = scene[`e${i}`] === "rigid" ? "Rigid" : current?.[0] ?? "Own values";
-  const offered = ["Own values", ...Object.keys(MATERIALS), ...(i === 2 ? ["Rigid"] : [])];
+  const chosen = scene[`e${i}`] === "rigid" ? "Rigid" : current?.[0] ?? "Custom";
+  const offered = ["Custom", ...Object.keys(MATERIALS), ...(i === 2 ? ["Rigid"] : [])];
   for (const name of offered) select.add(new Option(name, name, false, name === chosen));
   select.addEventListener("change", () => {
     if (select.value === "Rigid") scene = { ...scene, e2: "rigid" };

@@ -33,7 +33,7 @@ export function loadFields(scene) {
   const choices = scene.tab === "wear" ? names(CONTROLS).slice(0, 2) : names(CONTROLS);
   const [label, dimension] = CONTROLS[scene.control];
   return [
-    { key: "control", label: "Given", choices },
+    { key: "control", label: "Prescribed", choices },
     { key: "load", label, dimension },
   ];
 }
@@ -43,7 +43,7 @@ function pushFields(scene) {
   const range = scene.push === "ratio" ? [0, 1] : undefined;
   return [
     FRICTION,
-    { key: "push", label: "Pushed by", choices: names(PUSHES) },
+    { key: "push", label: "Tangential load", choices: names(PUSHES) },
     { key: "amount", label, dimension, range },
   ];
 }
@@ -57,13 +57,13 @@ export const QUESTIONS = {
   },
   push: {
     title: "Push",
-    lead: "The pressed body is pushed sideways: which part sticks, and how far does it move?",
+    lead: "A tangential load is added: which part sticks, and how far does the body move?",
     fields: pushFields,
     solve: solvePush,
   },
   cycle: {
     title: "Cycle",
-    lead: "The load follows a path: how much energy is lost, and which traction stays behind?",
+    lead: "The load follows a path: how much energy is dissipated, and which shear stress remains?",
     fields: (scene) => [
       FRICTION,
       { key: "normal", label: "Normal control", choices: names(CONTROLS).slice(0, 2) },

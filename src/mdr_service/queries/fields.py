@@ -31,7 +31,7 @@ from mdr_service.settings import SETTINGS
 _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
 
 End = tuple[NormalContact, TangentialContact | ContactState | None]
-"""Normal contact, and what friction adds to it."""
+"""Normal contact, and its tangential contact or state, if there is one."""
 
 
 def solve_stress(query: StressQuery) -> Contact:
@@ -47,10 +47,12 @@ def require_loads(query: LoadedQuery) -> None:
         place = "history" if by_path else "load"
         raise InputError((place,), "exactly one of load, history is needed")
     if by_path and query.has("tangential"):
-        raise InputError(("tangential",), "is part of history where there is one")
+        raise InputError(("tangential",), "must be absent: history contains the tangential load")
     if query.has("friction_coefficient") != (by_path or query.has("tangential")):
         missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
-        raise InputError((missing,), "friction_coefficient goes with tangential or history")
+        raise InputError(
+            (missing,), "friction_coefficient is needed with tangential or history, and only then"
+        )
     if by_path:
         require_few_samples("history", query.history)
 

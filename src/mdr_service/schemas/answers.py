@@ -41,8 +41,11 @@ class AnswerWarning(Answer):
 class Known(Answer):
     """Method, accuracy and warnings of every response."""
 
-    method: str = Field(description="Method used, the cheapest that meets the tolerance.")
-    error_estimate: float = _number("Upper bound of the relative error of all numbers")
+    method: str = Field(description="Most expensive method among the results.")
+    error_estimate: float = _number(
+        "Bound on the numerical error: of scalars relative to their values, of fields, histories "
+        "and stresses to the largest value; for wear over the cycles an estimate"
+    )
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 
@@ -102,7 +105,7 @@ class StressAnswer(Known):
     radius: list[float] = _length("Radii r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
-        "Tangential traction τ(r), by load and radius, positive in the direction of a positive "
+        "Shear stress τ(r), by load and radius, positive in the direction of a positive "
         f"tangential force; {_NULL}",
         default=None,
     )
@@ -128,7 +131,7 @@ class LargestStress(Answer):
 
     value: list[float | None] = _pressure(f"Largest value; {_NULL}")
     x: list[float] = _length("Coordinate along the tangential force")
-    y: list[float] = _length("Coordinate across it, ≥ 0: the field is symmetric")
+    y: list[float] = _length("Transverse coordinate, ≥ 0: the field is symmetric in y")
     z: list[float] = _length("Depth")
 
 
@@ -150,7 +153,7 @@ class YieldOnsetForce(Answer):
 
 
 class SubsurfaceAnswer(Known):
-    """Requested stresses by load, z and x, relative to the largest of them; tension is positive."""
+    """Requested stresses by load, z and x; tension is positive."""
 
     x: list[float] = _length("Coordinates along the tangential force, requested or chosen")
     z: list[float] = _length("Depths, requested or chosen")

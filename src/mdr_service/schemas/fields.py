@@ -31,8 +31,8 @@ class FieldQuery(Query):
     )
     points: int = quantity(
         "1",
-        "In place of `radius`: number of radii to choose, from 0 to beyond the contact or the worn "
-        "annulus, clustered at the singular radii",
+        "Number of radii that the service chooses in place of a list, from 0 to beyond the contact "
+        "or the worn annulus, clustered at the singular radii",
         default=None,
         ge=2,
         le=SETTINGS.max_radii,

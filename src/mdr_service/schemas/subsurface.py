@@ -35,15 +35,15 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
 
     body: Literal[1, 2] = Field(
         default=1,
-        description="Body 1, with the profile, on which the tangential force acts, or body 2.",
+        description="Body 1, which has the profile and takes the tangential force, or body 2.",
     )
     x: list[Signed] = places("Coordinates from the axis along a positive tangential force")
-    y: Signed = quantity("length", "Coordinate across it, of all points", default=0.0)
+    y: Signed = quantity("length", "Transverse coordinate, of all points", default=0.0)
     z: list[Size] = places("Depths in the body, 0 on its surface")
     points: int = quantity(
         "1",
-        "In place of `x` and `z`: number of each to choose, to 1.5 times the largest contact "
-        "radius",
+        "Number of each that the service chooses in place of lists, up to 1.5 times the largest "
+        "contact radius",
         default=None,
         ge=2,
         le=1000,

@@ -93,7 +93,7 @@ class EvolutionQuery(_FrettingQuery):
     )
     resolution: int = quantity(
         "1",
-        "Nodes over the worn annulus beyond the least number, 16",
+        "Number of nodes over the worn annulus, in addition to 16",
         default=24,
         ge=8,
         le=96,
