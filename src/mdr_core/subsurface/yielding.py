@@ -73,7 +73,7 @@ def yield_onset_force(
         raise InputError(("load",), "the onset of yield needs a load that is not zero")
     # Loads in one ratio of the forces share the onset.
     _, first, which = np.unique(columns[1:], axis=1, return_index=True, return_inverse=True)
-    onset = [_onset(pressed.profile, search, limit, *columns[:, i].tolist()) for i in first]
+    onset = [_onset(pressed.profile, columns[:, i].tolist(), search, limit) for i in first]
     return np.array(onset)[which].reshape(shape)
 
 
@@ -192,35 +192,28 @@ def _exponent(profile: Profile) -> Parameter | None:
     return {Cone: 1.0, Paraboloid: 2.0}.get(type(profile))
 
 
-def _onset(
-    profile: Profile,
-    search: "partial[Peak]",
-    limit: float,
-    start: float,
-    ratio: float,
-    *case: float,
-) -> float:
+def _onset(profile: Profile, case: list[float], search: "partial[Peak]", limit: float) -> float:
     """Normal force at which a measure reaches a limit, the ratio of the forces held constant."""
+    start, ratio, *rest = case
 
     def at(coordinate: float) -> NormalContact:
-        return _pressed(_under(profile, coordinate, 0.0, *case))
+        return _pressed(_under(profile, coordinate, 0.0, *rest))
 
     @cache
     def excess(place: float) -> float:
         """Logarithm of the measure over the limit, by that of the contact coordinate."""
         with np.errstate(all="ignore"):
-            value = search(_under(profile, exp(place), ratio, *case)).value
+            value = search(_under(profile, exp(place), ratio, *rest)).value
             # Next to the equator of a body no double tells the contact from it: nothing is loaded.
             return round(float(np.clip(np.log(value / limit), -_REACH, _REACH)), _DIGITS)
 
-    one = at(start).profile
-    slip = 0.0 if ratio >= 1 else inf
-    radii = infinite_radii(one, search.keywords["poissons_ratio"], slips_from=slip)
+    one, slips_at = at(start).profile, 0.0 if ratio >= 1 else inf
+    radii = infinite_radii(one, search.keywords["poissons_ratio"], slips_at)
     # The stress becomes infinite when the contact reaches this coordinate.
     beyond = [np.asarray(b) for b in radii if b > one.contact_radius(np.zeros(()))]
     singular = min((float(one.coordinate_from_radius(b)) for b in beyond), default=inf)
-    lowest, end = log(start) - _REACH, log(min(singular, one.last_coordinate or inf)) - _XTOL
-    highest = min(log(start) + _REACH, end)
+    highest = log(min(start * exp(_REACH), singular, one.last_coordinate or inf)) - _XTOL
+    lowest = log(start) - _REACH
     before = place = min(log(start), highest)
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
     growth = log(at(exp(place)).mean_pressure / at(exp(place - _XTOL)).mean_pressure) / _XTOL

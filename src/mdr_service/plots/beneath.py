@@ -11,7 +11,7 @@ from mdr_service.results import Contact, Result
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 
 # Points of the map along z, and its extent in contact radii.
-_DOWN, _EXTENT = 101, 1.5
+_DOWN, _EXTENT = 81, 1.5
 
 
 def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> Map:
