@@ -17,7 +17,7 @@ from openapi_spec_validator import validate
 from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.server import free_port, running, service
 
-pytestmark = [pytest.mark.long, pytest.mark.alone]
+pytestmark = pytest.mark.long
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "openapi.json"

@@ -118,15 +118,15 @@ def test_response_matches_its_schema(client: Client, path: str, model: type[Answ
     post = DOCUMENT["paths"][path]["post"]
     examples = post["requestBody"]["content"]["application/json"]["examples"]
     for example in examples.values():
-        for media_type in post["responses"]["200"]["content"]:
-            # Each picture takes half a second: test_pictures_are_drawn.
-            if media_type in PICTURES:
-                continue
-            returned_in(client, path, example["value"], media_type)
         response = client.post(path, example["value"])
         assert response.headers["content-type"] == "application/json"
         strict_json.loads(response.content)
         model.model_validate_json(response.content)
+    # The values of tables and archives are compared in test_forms and test_formats_arrays.
+    example = next(iter(examples.values()))
+    for media_type in post["responses"]["200"]["content"]:
+        if media_type not in PICTURES:
+            returned_in(client, path, example["value"], media_type)
 
 
 def returned_in(client: Client, path: str, query: object, media_type: str) -> None:

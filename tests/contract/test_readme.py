@@ -112,7 +112,13 @@ def test_curl_example_shows_the_response(client: Client, command: str, shown: st
     same(json.loads(output_of(client, command)), json.loads(shown), tolerance)
 
 
-@pytest.mark.parametrize(("command", "shown"), examples("sh", "csv"))
+@pytest.mark.parametrize(
+    ("command", "shown"),
+    [
+        pytest.param(*each, marks=[] if each[0].startswith("curl") else pytest.mark.long)
+        for each in examples("sh", "csv")
+    ],
+)
 def test_curl_example_shows_the_table(client: Client, command: str, shown: str) -> None:
     result, expected = (
         list(csv.reader(io.StringIO(text, newline="")))

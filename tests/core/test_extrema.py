@@ -98,7 +98,7 @@ def reference_maximum(shape: Shape, a: float, near: float, spacing: float) -> mp
         r, step = mpf(near), mpf(spacing) / 8
         if near == 0:
             return pressure(r)
-        for _ in range(6):
+        for _ in range(4):
             low, mid, high = pressure(r - step), pressure(r), pressure(r + step)
             r += step * (high - low) / (2 * (2 * mid - low - high))
             step /= 16

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
 #: Converts tangential coordinates to displacements, and an integral of line loads to an energy.
 COMPLIANCE = MU * E_STAR / G_STAR
-DIGITS = 30
+DIGITS = 20
 #: Largest error estimate of a load path with curved steps at the default tolerance.
 _LARGEST_ERROR = 1e-5
 
@@ -123,7 +123,7 @@ def test_normal_force_and_displacement_grow_together(name: str) -> None:
         front = shape.root(lambda y: eta(y) - eta(x), a1, turn)
         return overlap(shape, front, x) * (2 * x * rate - 1)
 
-    with mp.workdps(20):
+    with mp.workdps(12):
         loss = shape.over(lost, turn * (1 + mpf(10) ** -9), a2)
     for sign in (1, -1):
         result = history.solve(
@@ -162,7 +162,7 @@ def test_depth_and_tangential_force_grow_together(name: str) -> None:
         front = shape.root(lambda y: shape.force(y) - eta(x), shape.flat, a1)
         return overlap(shape, front, x) * (rate - 2 * x) / (2 * front)
 
-    with mp.workdps(20):
+    with mp.workdps(12):
         loss = shape.over(lost, a1, turn)
     for sign in (1, -1):
         result = history.solve(
@@ -254,6 +254,7 @@ def solve(name: str, **options: Any) -> history.LoadHistory:
     return history.solve(profile_from(PROFILES[name]), E_STAR, G_STAR, MU, **options)
 
 
+@pytest.mark.every(2)
 @controls
 @pytest.mark.parametrize("name", KINDS)
 def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> None:

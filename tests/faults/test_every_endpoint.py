@@ -14,7 +14,7 @@ from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.queries import SCHEMAS
 from tests.faults.server import PATIENCE, free_port, running, service
 
-pytestmark = [pytest.mark.long, pytest.mark.alone]
+pytestmark = pytest.mark.long
 
 BODIES: dict[str, Any] = {schema.path: EXAMPLES[name] for name, schema in SCHEMAS.items()}
 BODIES["/v1/batch"] = EXAMPLES["batch"]

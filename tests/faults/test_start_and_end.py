@@ -18,8 +18,9 @@ import pytest
 from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import JSON
 from tests.faults.server import PATIENCE, free_port, is_served, running, service
+from tests.faults.test_processes import busy, wait_for
 
-pytestmark = [pytest.mark.long, pytest.mark.alone]
+pytestmark = pytest.mark.long
 
 ROOT = Path(__file__).parents[2]
 # How a service starts and ends does not depend on the number of its compute processes.
@@ -80,9 +81,9 @@ def test_second_interrupt_completes_the_request_in_flight_at_once() -> None:
         ball = EXAMPLES["evolution"]["shakedown"]["value"]
         query = ball | {"resolution": 96, "cycles": [10.0 * n for n in range(2000)]}
         client.request("POST", "/v1/wear/evolution", json.dumps(query), JSON)
-        time.sleep(0.5)
+        busy(process.pid)
         process.send_signal(signal.SIGINT)
-        time.sleep(0.5)
+        wait_for(lambda: not is_served(port))
         process.send_signal(signal.SIGINT)
         signalled = time.monotonic()
         response = client.getresponse()

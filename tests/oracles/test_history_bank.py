@@ -88,6 +88,7 @@ def test_stored_cycles_equal_the_closed_form(record: bank.Record) -> None:
         assert same(record["expected"]["secant_stiffness"][index], stiffness)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "record", sample("history_paths", 3, 20), ids=lambda record: str(record["id"])
 )

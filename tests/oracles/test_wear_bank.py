@@ -50,6 +50,7 @@ def test_worn_depths_are_never_negative() -> None:
             assert all(float(v) >= 0 for v in fields["expected"]["pressure"]), record["id"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("record", SAMPLE, ids=lambda record: str(record["id"]))
 def test_stored_results_equal_the_reference(record: bank.Record) -> None:
     index = random.Random(record["id"]).randrange(len(record["given"]))

@@ -52,7 +52,7 @@ def words(document: dict[str, object]) -> dict[str, object]:
 
 
 @settings(
-    max_examples=200,
+    max_examples=120,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

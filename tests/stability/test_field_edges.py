@@ -111,7 +111,7 @@ def test_error_within_estimate_on_a_grid(shape: str, fraction: float) -> None:
         assert field_error(contact, at, c, name, radii) <= estimate(contact, name, radii), name
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(7)
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_error_within_estimate_next_to_the_edges(shape: str, control: str) -> None:

@@ -12,7 +12,6 @@ from mpmath import mp, mpf
 
 from mdr_core import fields, normal
 from mdr_core.profiles import Ellipsoid, Sphere
-from tests.oracles import slip_reference
 from tests.stability.curves import (
     CLOSED,
     RTOL,
@@ -166,10 +165,12 @@ def outside(fraction: float) -> Curve:
         return float(fields.normal_displacement(contact, [r], rtol=RTOL)[0])
 
     def exact(a: float) -> mpf:
-        fields_ = {"kind": "sphere", "radius": BIG}
-        material = slip_reference.Material(1.0, 1.0, 1.0)
-        at = slip_reference.setting(fields_, "contact_radius", a, material)
-        return slip_reference.displacement(at, mpf(r))
+        # Eq. (5.75) integrated by parts, (2/pi) int g' arcsin(x/r) dx; x = tanh v removes the pole.
+        def density(v: mpf) -> mpf:
+            return (v * mp.sech(v) ** 2 + mp.tanh(v)) * mp.asin(mp.tanh(v) / mpf(r))
+
+        with mp.workdps(25):
+            return 2 / mp.pi * mp.quad(density, [0, mp.atanh(mpf(a))])
 
     def naive(a: float) -> float:
         def density(x: float) -> float:

@@ -9,8 +9,8 @@ from mdr_core.wear import evolution
 from tests.stability.fine_wear import PAIRS, RADII, fine, stored, worn
 
 
-@pytest.mark.every(23)
-@pytest.mark.parametrize("resolution", [16, 24, 32, 48, 64])
+@pytest.mark.every(13)
+@pytest.mark.parametrize("resolution", [16, 24, 48])
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
 def test_error_within_estimate(kind: str, name: str, resolution: int) -> None:
     result, exact = worn(kind, name, resolution), stored(kind, name)
@@ -24,7 +24,7 @@ def test_error_within_estimate(kind: str, name: str, resolution: int) -> None:
         assert error <= result.field_error_estimate(radius, [field]), field
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(9)
 @pytest.mark.parametrize(("kind", "name"), PAIRS)
 def test_pressure_does_not_ripple(kind: str, name: str) -> None:
     """Excludes 2 % of a at the edges; relative to the largest pressure of each cycle."""

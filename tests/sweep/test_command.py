@@ -185,6 +185,7 @@ def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
     assert float(result[6]["material.e_star"]) == 1e9
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("folder")
 def test_result_is_independent_of_chunks_and_processes() -> None:
     write(
