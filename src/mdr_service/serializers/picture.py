@@ -23,8 +23,9 @@ _INCH: Final = 25.4
 _WIDTH, _SINGLE, _PANEL = 7.2, 4.0, 2.6
 # Marks closer than this share of the axis share one label.
 _CLOSE: Final = 0.025
-# Levels of a map, which end where the highest values of a few points would exceed the others much.
-_LEVELS: Final = 21
+# Largest number of levels of a map.
+_LEVELS: Final = 20
+# Levels end where the highest values of a few points would exceed the others much.
 _MOST, _PEAK = 0.99, 1.5
 # More points than this hide their curve.
 _MOST_POINTS: Final = 60
@@ -97,10 +98,9 @@ def _draw_map(figure: "Figure", plot: Map) -> None:
     finite = plot.values[np.isfinite(plot.values)]
     # Singular peaks would leave a single colour for the rest.
     top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _MOST)))
-    levels = np.linspace(0.0, top or 1.0, _LEVELS)
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
     shown = np.where(np.isfinite(plot.values), plot.values, top)
-    drawn = left.contourf(plot.x, plot.z, np.minimum(shown, levels[-1]), levels)
+    drawn = left.contourf(plot.x, plot.z, np.minimum(shown, top), _LEVELS)
     figure.colorbar(drawn, ax=left, location="bottom", label=plot.label)
     left.plot([-plot.contact, plot.contact], [0, 0], color="0.1", linewidth=4, label="contact")
     if plot.stick:
