@@ -72,7 +72,7 @@ def piecewise(
 
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:
     """Return a value in a shape; a number where the shape has no dimension."""
-    return value if np.shape(value) == shape else np.broadcast_to(value, shape)
+    return value if getattr(value, "shape", ()) == shape else np.broadcast_to(value, shape)
 
 
 def full(value: float, like: Any) -> Any:

@@ -18,8 +18,8 @@ class Annulus(NamedTuple):
     """Ends of the annulus c <= x <= a, each in the forms that are free of cancellation.
 
     The coordinate is the contact coordinate of a profile, the radius, or, beyond a break b,
-    sqrt(x^2 - b^2), as the function that takes the annulus states. All arrays have shape (1,) or
-    (m,), with m the number of points.
+    sqrt(x^2 - b^2), as the function that takes the annulus states. The ends are single numbers, or
+    arrays of shape (1,) or (m,), with m the number of points.
     """
 
     outer: Array

@@ -16,6 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
+from mdr_core.elementwise import where
 from mdr_core.quadrature import DEFAULT, Analytic, integrate, integrate_plain
 from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 
@@ -42,7 +43,7 @@ def root_difference(upper: Array, square: Array, lower: Array) -> Array:
     """
     upper2 = upper * upper
     follows = np.sqrt(np.maximum(upper2 - square, 0.0))
-    return square / (upper + np.where(square < upper2 / 2, follows, lower))
+    return square / (upper + where(square < upper2 / 2, follows, lower))
 
 
 def arcsinh_difference(
@@ -145,7 +146,7 @@ def _two_roots(problem: _Problem, b: float, r: Array) -> Array:
         width, c = inner.width, np.maximum(inner.radius, b)
         inner2 = (c - r) * (c + r)
         # Next to the break the radii are accurate, in a narrow annulus its width is.
-        lower = np.where(width > upper / 2, inverse_hypot(c, b), upper - width)
+        lower = where(width > upper / 2, inverse_hypot(c, b), upper - width)
         root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
         gap2 = np.minimum(edge2, width * (upper + lower))
@@ -174,8 +175,9 @@ def _coincident_roots(problem: _Problem, index: Indices, r: Array) -> Array:
     """
     upper, inner, _ = problem.annulus.at(index)
     upper = np.full(r.shape, upper)
-    width = upper if inner is None else np.full(r.shape, inner.width)
-    result = np.empty_like(r)
+    if inner is None:
+        return _from_break(problem, index, r, upper)
+    width, result = np.full(r.shape, inner.width), np.empty_like(r)
     here = (width < upper).nonzero()[0]
     if here.size:
         place, at = index[here], r[here]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel import Annulus
+from mdr_core.elementwise import number
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
@@ -61,8 +62,8 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
 
     def values(load: int, r: Array) -> Array:
-        edge = np.array([a[load]]) if contact.control == "contact_radius" else None
-        annulus = Annulus(np.array([coordinate[load]]), outer_radius=edge)
+        edge = number(a[load]) if contact.control == "contact_radius" else None
+        annulus = Annulus(number(coordinate[load]), outer_radius=edge)
         return contact.e_star * stress(contact.profile, annulus, a[load], r, rtol)
 
     return fill(shape, values, radius)
@@ -143,7 +144,7 @@ def stress(profile: Profile, annulus: Annulus, a: float, r: Array, rtol: float) 
     result, inside = np.zeros(r.shape), r < a
     if inside.any():
         result[inside] = profile.pressure_kernel(annulus, r[inside], rtol)
-    if profile.has_no_partial_slip and annulus.outer[0] > 0:
+    if profile.has_no_partial_slip and annulus.outer > 0:
         # The stress at the edge of a flat punch.
         result[r == a] = inf
     return result

@@ -53,10 +53,10 @@ class Traction(NamedTuple):
 
     def annulus(self, i: int) -> Annulus:
         """Return the i-th annulus."""
-        end = InnerEnd(self.width[i : i + 1], self.radius[i : i + 1])
+        end = InnerEnd(self.width[i], self.radius[i])
         whole = i == 0 and not self.profile.has_no_partial_slip
-        outer = self.radius[i + 1 : i + 2] if self.exact else None
-        return Annulus(self.coordinate[i + 1 : i + 2], None if whole else end, outer)
+        outer = self.radius[i + 1] if self.exact else None
+        return Annulus(self.coordinate[i + 1], None if whole else end, outer)
 
     def stress(self, r: Array, rtol: float) -> Array:
         """Return the stress at radii, over mu E* [1], shape (m,)."""

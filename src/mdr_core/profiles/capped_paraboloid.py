@@ -208,7 +208,7 @@ class CappedParaboloid(Profile):
         s, beyond = self._outer(outer), None
         if inner is not None:
             past = outer - inner.width > b
-            beyond = InnerEnd(np.where(past, inner.width / self._ratio, s), inner.radius)
+            beyond = InnerEnd(where(past, inner.width / self._ratio, s), inner.radius)
         total = root_step(self.radial(annulus), radius)
         total *= 2 / (pi * self.tip_radius)
         flank = np.full(radius.shape, s > 0)

@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
-from mdr_core.elementwise import piecewise, some
+from mdr_core.elementwise import piecewise, some, where
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.powers import Paraboloid
@@ -166,7 +166,7 @@ class TippedCone(Profile):
             top = np.minimum(a, b)
             if inner is not None:
                 width, c = inner
-                part = np.where(width < b / 2, width - (a - top), top - c)
+                part = where(width < b / 2, width - (a - top), top - c)
                 ends = InnerEnd(np.maximum(part, 0.0), np.minimum(c, b))
             total[tip] = self._tip_kernel(Annulus(top, ends).at(tip), radius[tip], rtol)
         if some(flank):
@@ -179,8 +179,8 @@ class TippedCone(Profile):
         s = inverse_hypot(a, b)
         if inner is not None:
             width, c = inner
-            square = np.where(c > b, width * (2 * a - width), 0.0)
-            span = np.where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
+            square = where(c > b, width * (2 * a - width), 0.0)
+            span = where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
             inner = InnerEnd(span, c)
         value = two_root_integral(
             lambda x, s, _: self._flank_weight(x, s),

@@ -6,7 +6,7 @@ import numpy as np
 
 from mdr_core import fields
 from mdr_core import normal as normal_contact
-from mdr_core.elementwise import broadcast
+from mdr_core.elementwise import broadcast, every
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
@@ -74,7 +74,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         rows = broadcast(field(name, end, radius, query.rtol), shape)
         values[name] = np.ascontiguousarray(rows)
     infinite: dict[str, Flags] = {}
-    if not all(np.isfinite(rows).all() for rows in values.values()):
+    if not all(every(np.isfinite(rows)) for rows in values.values()):
         edges = np.ravel(contact.contact_radius)
         at_singular = np.isin(radius, [0.0, *map(float, contact.profile.breaks), *edges])
         infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
