@@ -340,7 +340,7 @@ def test_traction_with_stick_edge_next_to_a_break(given: dict[str, Any], b: floa
     at = slip_reference.setting(
         given, "contact_radius", 1.0, slip_reference.Material(1.0, 1.0, 1.0)
     )
-    for gap in (1e-8, 1e-10, 1e-12):
+    for gap in (1e-8, 1e-12):
         c = b * (1 + gap)
         radii = [c * (1 + part * gap) for part in (-3.0, -1.5, -0.3, -0.001, 0.001, 1.0)]
         contact = normal.solve(profile, 1.0, contact_radius=1.0)

@@ -201,6 +201,8 @@ def test_incompressible_cone() -> None:
     assert bool(yielding(contact, (0.3,), 1e9).where)
 
 
+# Of the reference alone.
+@pytest.mark.long
 def test_largest_difference_next_to_the_tip_of_an_incompressible_cone() -> None:
     """By definition, in mpmath: the maximum is on the axis and differs from E* tan(theta)."""
     mp.dps = 30

@@ -63,7 +63,7 @@ def kinked() -> Tabulated:
     return Tabulated(tuple(r), tuple(r**2 / 2 + 0.5 * np.maximum(r - 1, 0)), "linear")
 
 
-@pytest.mark.parametrize("width", [0.2, 0.4, 0.6])
+@pytest.mark.parametrize("width", [0.2, pytest.param(0.4, marks=pytest.mark.long), 0.6])
 def test_edge_of_the_contact_passes_a_break_in_few_steps(
     width: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -86,7 +86,7 @@ def test_limit_equals_the_core(client: Client, kind: str, control: str) -> None:
     assert ("path_dependent" in codes(document)) == (control == "force and displacement")
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(9)
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_evolution_equals_the_core(client: Client, kind: str, control: str) -> None:
