@@ -77,13 +77,13 @@ function pressureChart(request, field, edges, size) {
   };
 }
 
-function tractionChart(request, field, mu, edges) {
+function shearStressChart(request, field, mu, edges) {
   const envelope = field.pressure[0].map((p) => (p === null ? null : mu * p));
   return {
-    id: "traction", request, title: "Shear stress", linked: true, edges,
-    x: ["Radius", "length"], y: ["Traction", "pressure"],
+    id: "shear-stress", request, title: "Shear stress", linked: true, edges,
+    x: ["Radius", "length"], y: ["Shear stress", "pressure"],
     traces: [
-      { name: "traction", x: field.radius, y: field.shear_stress[0], fill: true },
+      { name: "shear stress", x: field.radius, y: field.shear_stress[0], fill: true },
       { name: "limit µp", x: field.radius, y: envelope, role: "limit" },
     ],
   };
@@ -125,7 +125,7 @@ export async function solvePush(scene, ask) {
       ["Dissipated energy", now.dissipated_energy, "energy"],
     ],
     charts: [
-      tractionChart("Fields", field, scene.mu, edges),
+      shearStressChart("Fields", field, scene.mu, edges),
       {
         id: "force-displacement", request: "Curve", title: "Tangential force over displacement",
         x: ["Tangential displacement", "displacement"], y: ["Tangential force", "force"],
@@ -192,7 +192,7 @@ export async function solveCycle(scene, ask) {
           marker("end", last(history.tangential_displacement), last(history.tangential_force)),
         ],
       },
-      tractionChart("Fields at the end", field, scene.mu, edges),
+      shearStressChart("Fields at the end", field, scene.mu, edges),
       {
         id: "dissipation", request: "History", title: "Dissipated energy along the path",
         x: ["Point of the path", "1"], y: ["Dissipated energy", "energy"],
@@ -245,7 +245,7 @@ export async function solveStress(scene, ask) {
         ],
       },
       pressureChart("Surface", field, edges),
-      tractionChart("Surface", field, scene.mu, edges),
+      shearStressChart("Surface", field, scene.mu, edges),
       {
         id: "displacement", request: "Surface", title: "Normal displacement of the surface", linked: true, edges, size: "wide",
         x: ["Radius", "length"], y: ["Displacement", "displacement"],

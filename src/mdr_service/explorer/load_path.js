@@ -1,4 +1,4 @@
-// Editor of a loading path: points in the plane of tangential and normal load.
+// Editor of a load path: points in the plane of tangential and normal load.
 
 import { dimensionOf, labelOf } from "./questions.js";
 import { pathPoints } from "./scene.js";
@@ -36,7 +36,7 @@ export function showEditor(container, scene, size, change) {
 function heading(scene, { normal, tangential }, change) {
   const element = document.createElement("div");
   element.className = "row";
-  element.innerHTML = '<h2>Loading path</h2><label for="preset">Start from</label><select id="preset"><option value="">…</option></select>';
+  element.innerHTML = '<h2>Load path</h2><label for="preset">Start from</label><select id="preset"><option value="">…</option></select>';
   const select = element.querySelector("select");
   for (const name of Object.keys(PRESETS)) select.add(new Option(name));
   select.addEventListener("change", () => {

@@ -98,12 +98,12 @@ export const QUESTIONS = {
   },
 };
 
-/** Return the dimension of a control of the loading path. */
+/** Return the dimension of a control of the load path. */
 export function dimensionOf(control) {
   return (CONTROLS[control] ?? PUSHES[control])[1];
 }
 
-/** Return the label of a control of the loading path. */
+/** Return the label of a control of the load path. */
 export function labelOf(control) {
   return (CONTROLS[control] ?? PUSHES[control])[0];
 }

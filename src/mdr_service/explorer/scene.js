@@ -67,7 +67,7 @@ export function withKind(scene, kind) {
   return { ...scene, ...DEFAULT_FIELDS[kind], kind };
 }
 
-/** Return the points of the loading path, each `[normal, tangential]`. */
+/** Return the points of the load path, each `[normal, tangential]`. */
 export function pathPoints(scene) {
   return scene.path.split(";").map((point) => point.split(",").map(Number));
 }
