@@ -124,8 +124,8 @@ def _punch_slope(b: float) -> Slope:
     """R g'(x), of x and x - b."""
 
     def slope(x: Array, above: Array) -> Array:
-        leg = np.sqrt(above * (x + b))
-        return 2 * leg - b * np.arctan(leg / b)
+        root = np.sqrt(above * (x + b))
+        return 2 * root - b * np.arctan(root / b)
 
     return slope
 
@@ -144,8 +144,8 @@ def _punch_truth(
         def integrand(v: mpmath.mpf) -> mpmath.mpf:
             step = length * v * v
             x = low + step
-            leg = mpmath.sqrt((low - flat + step) * (x + flat))
-            numerator = 2 * leg - flat * mpmath.atan(leg / flat)
+            root = mpmath.sqrt((low - flat + step) * (x + flat))
+            numerator = 2 * root - flat * mpmath.atan(root / flat)
             return numerator * 2 * v * length / mpmath.sqrt((gap + step) * (x + point))
 
         # Distance of the other root, at r or at b, from the end.

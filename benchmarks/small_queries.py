@@ -33,7 +33,7 @@ from mdr_service.schemas.contacts import NormalQuery
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-RADII, LEGS, POINTS, END = 1000, 10, 200, 1.25
+RADII, LOAD_STEPS, POINTS, END = 1000, 10, 200, 1.25
 SECONDS, ROUNDS = 0.1, 5
 FRICTION, SHARE = 0.3, 0.6
 CLOSED = ("paraboloid", "cone", "flat_punch")
@@ -82,7 +82,7 @@ def requests(kind: str) -> dict[str, dict[str, Any]]:
     limit, held = FRICTION * force, {**part, "load": {"normal_force": force}}
     rubbed = {**held, "friction_coefficient": FRICTION}
     # Steps of the golden ratio: turning points of all sizes.
-    steps = [limit * (0.1 + 0.618 * i % 1 * 0.8) * (-1) ** i for i in range(LEGS)]
+    steps = [limit * (0.1 + 0.618 * i % 1 * 0.8) * (-1) ** i for i in range(LOAD_STEPS)]
 
     def path(forces: list[float]) -> dict[str, Any]:
         history = {

@@ -50,9 +50,9 @@ def test_one_sided_pole() -> None:
     result = two_root_integral(lambda x, _: np.ones_like(x), AROUND, END, odd=True)
     k = np.sqrt(np.abs(AROUND - B) * (AROUND + B))
     top = np.sqrt((END - B) * (END + B))
-    leg = np.sqrt((END - AROUND) * (END + AROUND))
+    root = np.sqrt((END - AROUND) * (END + AROUND))
     with np.errstate(divide="ignore"):
-        below, above = np.arcsinh(top / k), np.arcsinh(leg / k)
+        below, above = np.arcsinh(top / k), np.arcsinh(root / k)
     exact = np.where(AROUND < B, below, above)
     assert np.isinf(result[AROUND == B]).all()
     assert np.allclose(result, exact, rtol=1e-13, atol=0)

@@ -39,8 +39,8 @@ def test_maximum_shear_stress_of_hertz_at_the_stick_edge(part: float) -> None:
     tangential_contact = tangential.solve(contact, G_STAR, MU, tangential_force=-part * MU * 1.0)
     # Eq. (5.16) in Eq. (5.38): 1 - (c/a)^2 without cancellation.
     with mp.workdps(40):
-        leg = mp.sqrt(1 - (1 - mpf(part)) ** (mpf(2) / 3))
-    expected = MU * float(contact.maximum_pressure) * float(leg)
+        root = mp.sqrt(1 - (1 - mpf(part)) ** (mpf(2) / 3))
+    expected = MU * float(contact.maximum_pressure) * float(root)
     assert float(tangential_contact.maximum_shear_stress) == pytest.approx(
         expected, rel=1e-12, abs=0
     )

@@ -1,4 +1,4 @@
-"""Fields after curved load paths under mixed control: closed forms and balances."""
+"""Fields after nonlinear load paths under mixed control: closed forms and balances."""
 
 import itertools
 from functools import partial

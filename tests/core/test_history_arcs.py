@@ -28,7 +28,7 @@ MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
 #: Converts tangential coordinates to displacements, and an integral of line loads to an energy.
 COMPLIANCE = MU * E_STAR / G_STAR
 DIGITS = 20
-#: Largest error estimate of a load path with curved steps at the default tolerance.
+#: Largest error estimate of a load path with nonlinear load steps at the default tolerance.
 _LARGEST_ERROR = 1e-5
 
 #: g(x), g' as a function of x - b, and the radius b of the flat.

@@ -128,7 +128,7 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
 
     Additional points on a straight load step change nothing, so the rule's nodes are path points.
     """
-    panels = [np.linspace(leg, leg + 1, 65) for leg in range(len(d))]
+    panels = [np.linspace(step, step + 1, 65) for step in range(len(d))]
     edges = np.unique(np.concatenate(panels))
     knots = np.arange(len(d) + 1)
     all_d, all_u = np.append(0.0, d), np.append(0.0, u)
@@ -138,8 +138,8 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
         times = np.unique(np.concatenate([at, knots[1:]]))
         result = solve(scene, np.interp(times, knots, all_d), np.interp(times, knots, all_u))
         force = result.tangential_force[np.searchsorted(times, at)].reshape(-1, NODES.size)
-        leg = np.minimum(low.astype(int), len(d) - 1)
-        part = force @ WEIGHTS / 2 * width * (all_u[leg + 1] - all_u[leg])
+        step = np.minimum(low.astype(int), len(d) - 1)
+        part = force @ WEIGHTS / 2 * width * (all_u[step + 1] - all_u[step])
         if last:
             total = np.append(0.0, np.cumsum(part))
             return total[np.searchsorted(edges, knots[1:])], result

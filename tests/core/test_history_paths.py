@@ -60,11 +60,11 @@ def random_path(seed: int, steps: int = 50) -> tuple[Array, Array]:
     """Includes separations and some purely normal or purely tangential load steps."""
     random = np.random.default_rng(seed)
     d, u = random.uniform(-0.15, 1.0, steps) * DEPTH, random.uniform(-1.2, 1.2, steps) * MOST
-    for leg, kind in enumerate(random.integers(0, 6, steps)):
-        if leg and kind == 0:
-            d[leg] = d[leg - 1]
-        elif leg and kind == 1:
-            u[leg] = u[leg - 1]
+    for step, kind in enumerate(random.integers(0, 6, steps)):
+        if step and kind == 0:
+            d[step] = d[step - 1]
+        elif step and kind == 1:
+            u[step] = u[step - 1]
     return d, u
 
 
@@ -163,7 +163,7 @@ def force_path(name: str, steps: int, normal: str, tangential: str) -> dict[str,
     ],
 )
 def test_springs_reproduce_the_prescribed_forces(name: str, normal: str, tangential: str) -> None:
-    """The springs follow curved paths in (d, u) as ever shorter chords."""
+    """The springs follow nonlinear load paths in (d, u) as ever shorter chords."""
     controls = force_path(name, 4, normal, tangential)
     foundation = springs.foundation(PROFILES[name], DEPTH, 20_000)
     errors = []

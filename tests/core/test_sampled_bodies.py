@@ -79,13 +79,13 @@ def test_error_order_of_a_smooth_table(body: Body) -> None:
         mean = mp.quad(lambda t: mp.sin(t) ** 2 * body.df(a * mp.sin(t)), [0, mp.pi / 2])
         force = float(2 * a * a * mean)
     # int_R^A g'/sqrt(x^2 - R^2) dx in y = sqrt(x^2 - R^2), g' = int (r f')' dt, r = x sin t.
-    leg = mp.sqrt((a - R) * (a + R))
+    root = mp.sqrt((a - R) * (a + R))
 
     def slope_over_x(y: mpf) -> mpf:
         x = mp.hypot(R, y)
         return mp.quad(lambda t: body.source(x * mp.sin(t)), [0, mp.pi / 2], maxdegree=4) / x
 
-    pressure = float(mp.quad(slope_over_x, [0, leg], maxdegree=4) / mp.pi)
+    pressure = float(mp.quad(slope_over_x, [0, root], maxdegree=4) / mp.pi)
     for intervals in (10, 20, 50, 100, 400):
         r = np.linspace(0, END, intervals + 1)
         contact = solve(Tabulated(r, body.f(r)), 1.0, contact_radius=A)

@@ -123,8 +123,8 @@ def test_displacements_of_a_table() -> None:
     assert result == pytest.approx(sphere(inside), rel=1e-6, abs=0)
     contact = solve(Tabulated(r, r * r / 2), 1.0, contact_radius=EDGE)
     outside = EDGE * (1 + np.geomspace(1e-6, 10, 50))
-    leg = np.sqrt((outside - EDGE) * (outside + EDGE))
-    expected = (2 * EDGE**2 - outside**2) * np.arcsin(EDGE / outside) + EDGE * leg
+    root = np.sqrt((outside - EDGE) * (outside + EDGE))
+    expected = (2 * EDGE**2 - outside**2) * np.arcsin(EDGE / outside) + EDGE * root
     result = fields.normal_displacement(contact, outside, rtol=1e-6)
     assert result == pytest.approx(expected / np.pi, rel=1e-6, abs=0)
 

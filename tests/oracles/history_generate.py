@@ -249,12 +249,12 @@ def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
 # Random paths -----------------------------------------------------------------------------------
 
 
-def random_path(name: str, legs: int, depth: float, most: float) -> list[tuple[float, float]]:
+def random_path(name: str, load_steps: int, depth: float, most: float) -> list[tuple[float, float]]:
     """Depths up to `depth` and separations; monotonic load steps and reversals."""
     source = random.Random(name)
     path: list[tuple[float, float]] = []
     d, u = 0.0, 0.0
-    for _ in range(legs):
+    for _ in range(load_steps):
         kind = source.randrange(8)
         if kind == 0 and path:
             d, u = source.choice(path)
@@ -265,11 +265,11 @@ def random_path(name: str, legs: int, depth: float, most: float) -> list[tuple[f
     return path
 
 
-def path_record(scene: Scene, legs: int) -> Record:
+def path_record(scene: Scene, load_steps: int) -> Record:
     depth = scene.loads["indentation_depth"]
     most = scene.material.mu * scene.material.e_star / scene.material.g_star * depth
-    ident = f"path-{scene.family}-5.8-{legs}-{scene.scale}"
-    path = random_path(ident, legs, depth, most)
+    ident = f"path-{scene.family}-5.8-{load_steps}-{scene.scale}"
+    path = random_path(ident, load_steps, depth, most)
     result = history(scene.profile, path, scene.material)
     names = ("normal_force", "tangential_force", "tangential_energy", "dissipated_energy")
     return {

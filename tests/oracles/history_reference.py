@@ -64,7 +64,7 @@ def follow(w: mpf, path: Path, material: Material) -> SpringHistory:
     loads, losses, branches = [], [], []
     for point in path:
         new_d, new_u = mpf(point[0]), mpf(point[1])
-        q, one, branch = _leg(q, w, (d, u), (new_d, new_u), (limit, g_star))
+        q, one, branch = _load_step(q, w, (d, u), (new_d, new_u), (limit, g_star))
         lost += one
         d, u = new_d, new_u
         loads.append(q)
@@ -73,7 +73,7 @@ def follow(w: mpf, path: Path, material: Material) -> SpringHistory:
     return SpringHistory(tuple(loads), tuple(losses), tuple(branches))
 
 
-def _leg(
+def _load_step(
     q: mpf, w: mpf, begin: tuple[mpf, mpf], end: tuple[mpf, mpf], constants: tuple[mpf, mpf]
 ) -> tuple[mpf, mpf, int]:
     (d, u), (new_d, new_u) = begin, end
@@ -190,9 +190,9 @@ def _quadratic(points: Sequence[tuple[mpf, mpf]]) -> tuple[mpf, mpf, mpf]:
     return y0 - first * x0 + second * x0 * x1, first - second * (x0 + x1), second
 
 
-def _parts(histories: Sequence[SpringHistory], leg: int) -> tuple[list[mpf], list[mpf], list[mpf]]:
-    loads = [life.load[leg] for life in histories]
-    return loads, [q * q for q in loads], [life.lost[leg] for life in histories]
+def _parts(histories: Sequence[SpringHistory], step: int) -> tuple[list[mpf], list[mpf], list[mpf]]:
+    loads = [life.load[step] for life in histories]
+    return loads, [q * q for q in loads], [life.lost[step] for life in histories]
 
 
 def history(profile: Mapping[str, Any], path: Path, material: Material) -> list[Sample]:
@@ -222,15 +222,15 @@ def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
         )
         inside = [low + margin, (low + high) / 2, high - margin, low + (high - low) / 3]
         histories = [follow(w, path, material) for w in inside]
-        for leg, total in enumerate(totals):
-            for index, values in enumerate(_parts(histories, leg)):
+        for step, total in enumerate(totals):
+            for index, values in enumerate(_parts(histories, step)):
                 parts = _quadratic(list(zip(inside, values, strict=True)))
                 total[index] += 2 * mp.fdot(parts, steps)
     if body.blunt:
         # All springs under the flat are identical to the first one.
         life = follow(mpf(0), path, material)
-        for leg, total in enumerate(totals):
-            for index, (value,) in enumerate(_parts([life], leg)):
+        for step, total in enumerate(totals):
+            for index, (value,) in enumerate(_parts([life], step)):
                 total[index] += 2 * body.b * value
     bearing = [_bearing(body, mpf(d)) for d, _ in path]
     return [

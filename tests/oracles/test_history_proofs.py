@@ -64,11 +64,11 @@ def full_slip_displacement(depth: float) -> float:
     return MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * depth
 
 
-def random_path(seed: int, legs: int) -> Path:
+def random_path(seed: int, load_steps: int) -> Path:
     """Includes separations and some purely normal or purely tangential load steps."""
     random = np.random.default_rng(seed)
     path, d, u = [], 0.0, 0.0
-    for kind in random.integers(0, 5, legs):
+    for kind in random.integers(0, 5, load_steps):
         d = d if kind == 0 else float(DEPTH * random.uniform(-0.1, 1.0))
         u = u if kind == 1 else float(full_slip_displacement(DEPTH) * random.uniform(-1.2, 1.2))
         path.append((d, u))

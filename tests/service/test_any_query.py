@@ -138,7 +138,7 @@ STRAIGHT = [
     ("normal_force", "tangential_force"),
     ("indentation_depth", "tangential_displacement"),
 ]
-CURVED = [
+NONLINEAR = [
     ("normal_force", "tangential_displacement"),
     ("indentation_depth", "tangential_force"),
 ]
@@ -175,8 +175,8 @@ SHORT_HISTORIES = HISTORIES | {"profile": simple(), "rtol": st.just(1e-3)}
 LINEAR_HISTORIES = st.fixed_dictionaries(HISTORIES | {"history": histories(STRAIGHT)}) | (
     st.fixed_dictionaries(HISTORIES | {"cycles": cycles(STRAIGHT)})
 )
-NONLINEAR_HISTORIES = st.fixed_dictionaries(SHORT_HISTORIES | {"history": histories(CURVED)}) | (
-    st.fixed_dictionaries(SHORT_HISTORIES | {"cycles": cycles(CURVED)})
+NONLINEAR_HISTORIES = st.fixed_dictionaries(SHORT_HISTORIES | {"history": histories(NONLINEAR)}) | (
+    st.fixed_dictionaries(SHORT_HISTORIES | {"cycles": cycles(NONLINEAR)})
 )
 ENDS = st.builds(
     lambda query, places: query | places,

@@ -30,7 +30,7 @@ EDGES = B + steps(0.5, 2.3e-16, 40)
 LABEL = "a/b − 1"
 
 
-def leg(a: mpf) -> mpf:
+def root(a: mpf) -> mpf:
     return mp.sqrt((a - B) * (a + B))
 
 
@@ -46,7 +46,7 @@ def depth() -> Curve:
         (
             contact.indentation_depth,
             attempt(lambda a: a / BIG * (np.sqrt(a**2 - B**2) - B * np.arccos(B / a)), EDGES),
-            references(lambda a: a / mpf(BIG) * (leg(a) - mp.acos(B / a)), EDGES),
+            references(lambda a: a / mpf(BIG) * (root(a) - mp.acos(B / a)), EDGES),
         ),
     )
 
@@ -60,7 +60,7 @@ def force() -> Curve:
         return float((s**3 + 3 * a**2 * (s - B * np.arccos(B / a))) / (3 * BIG))
 
     def exact(a: mpf) -> mpf:
-        return (leg(a) ** 3 + 3 * a**2 * (leg(a) - mp.acos(B / a))) / (3 * mpf(BIG))
+        return (root(a) ** 3 + 3 * a**2 * (root(a) - mp.acos(B / a))) / (3 * mpf(BIG))
 
     return curve(
         "flat-edge-force",

@@ -128,8 +128,8 @@ def pressure(fraction: float) -> Curve:
             x = mp.tanh(w)
             sech = mp.sech(w)
             # x^2 - r^2 = sinh(w - low) sinh(w + low) / (cosh^2 w cosh^2 low).
-            leg = mp.sqrt(mp.sinh(v * v) * mp.sinh(w + low)) * sech / mp.cosh(low)
-            return (w + x * mp.cosh(w) ** 2) / 2 * sech**2 / leg * 2 * v
+            root = mp.sqrt(mp.sinh(v * v) * mp.sinh(w + low)) * sech / mp.cosh(low)
+            return (w + x * mp.cosh(w) ** 2) / 2 * sech**2 / root * 2 * v
 
         low, top = mp.atanh(r), mp.atanh(a)
         end = mp.sqrt(top - low)

@@ -1,4 +1,4 @@
-"""Stress, slip and foundation load of an arc that a curved load step leaves in the traction.
+"""Stress, slip and foundation load of an arc that a nonlinear load step leaves in the traction.
 
 On an arc the slope k of the anchors is proportional to the radius or to its inverse. It acts like
 a straight segment under a profile with k g' in place of g': its integrals are those of the
@@ -99,16 +99,16 @@ class Arc:
             seen = np.flatnonzero(r < stop)
             if not seen.size:
                 continue
-            legs = inverse_hypot(np.array([start, stop]), base)
+            roots = inverse_hypot(np.array([start, stop]), base)
             whole = start == self.low and stop == self.high
             gap = self.width if whole else stop - start
-            width = np.array([gap * (start + stop) / legs.sum()])
+            width = np.array([gap * (start + stop) / roots.sum()])
             inner = InnerEnd(width, np.array([start])) if start > base else None
             total[seen] += two_root_integral(
                 branch.weight,
                 base,
                 r[seen],
-                Annulus(legs[1:], inner, np.array([stop])),
+                Annulus(roots[1:], inner, np.array([stop])),
                 odd=False,
                 rtol=rtol,
                 analytic=analytic,

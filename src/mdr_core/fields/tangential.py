@@ -2,7 +2,7 @@
 
 Between two neighbouring slip fronts q_x falls by mu k per unit of q, k the slope of the anchors: 0
 where the springs stick under a monotonic load, 1 where they slip. The stress is therefore a sum of
-kernels, each over the annulus between two fronts. On the arcs that curved load steps leave, k
+kernels, each over the annulus between two fronts. On the arcs that nonlinear load steps leave, k
 varies with the radius, and the kernels are superposed.
 """
 
@@ -45,7 +45,7 @@ class Traction(NamedTuple):
     slope: Array
     """k [1]; zero on an arc."""
     arcs: tuple[Arc | None, ...] = ()
-    """Arc of each annulus; none at all if no load step is curved."""
+    """Arc of each annulus; none at all if all load steps are linear."""
     exact: bool = False
     """True if the contact radius is prescribed."""
     excess: float = 0.0
@@ -191,7 +191,7 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
 
 
 def arcs(state: ContactState) -> tuple[Arc | None, ...]:
-    """Return the arc of each annulus at the end of a load history; none if none is curved."""
+    """Return the arc of each annulus at the end of a load history; none if all steps are linear."""
     profile, segments = state.profile, state.segments
     if not segments.rate.any():
         return ()

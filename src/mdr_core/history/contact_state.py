@@ -45,9 +45,9 @@ class ContactState(Results):
     g_star: float
     friction_coefficient: float
     polyline: Polyline
-    """Polyline over depths; chords stand for the arcs of curved load steps."""
+    """Polyline over depths; chords stand for the arcs of nonlinear load steps."""
     arcs: TractionSegments | None = None
-    """Segments with the arcs of curved load steps, if there are any."""
+    """Segments with the arcs of nonlinear load steps, if there are any."""
     last_step: FrontPath | None = None
     """Path of the slip front on the step of `advance` that led here, None at the start."""
     quantities: ClassVar[tuple[str, ...]] = (
@@ -115,7 +115,7 @@ class ContactState(Results):
 
     @cached_property
     def segments(self) -> TractionSegments:
-        """Segments of the traction, with the arcs of curved load steps; empty in separation."""
+        """Segments of the traction, with the arcs of nonlinear load steps; empty in separation."""
         if self.arcs is not None:
             return self.arcs
         tree = self._branches.tree
@@ -246,8 +246,8 @@ def advance(
 
     Parameters
     ----------
-    state : state from `unloaded`, from an earlier step, or at the end of a history. After curved
-        load steps chords stand for the arcs, with a relative error of up to 1e-6.
+    state : state from `unloaded`, from an earlier step, or at the end of a history. After
+        nonlinear load steps chords stand for the arcs, with a relative error of up to 1e-6.
     indentation_depth : d after the step [length].
     tangential_displacement : u_x after the step [length].
 

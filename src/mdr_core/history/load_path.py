@@ -1,7 +1,7 @@
 """Load path: from the given points to the load points of the slip memory.
 
 A load step is straight where displacements, or forces, are prescribed in both directions. If one
-of each pair is prescribed and both change, the step is curved in either plane: see `curved_legs`.
+of each pair is prescribed and both change, it is nonlinear in either plane: see `nonlinear_steps`.
 """
 
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ class SampledPath:
         return self.normal_name == "indentation_depth"
 
     @property
-    def curved(self) -> Flags:
+    def nonlinear(self) -> Flags:
         """Samples whose step is straight neither over depths nor over forces."""
         if self.by_force != self.by_depth:
             return np.zeros(self.normal.shape, dtype=bool)

@@ -42,13 +42,13 @@ class LoadPoints(NamedTuple):
     """Tangential coordinate, shape (n,)."""
     continues: Flags
     """Steps that continue the straight line of the step before."""
-    leg: Indices
+    load_step: Indices
     """Load step that each belongs to."""
 
     def part(self, chosen: slice) -> "LoadPoints":
         """Return some of the steps."""
-        normal, tangential, continues, leg = self
-        return LoadPoints(normal[chosen], tangential[chosen], continues[chosen], leg[chosen])
+        normal, tangential, continues, load_step = self
+        return LoadPoints(normal[chosen], tangential[chosen], continues[chosen], load_step[chosen])
 
 
 class Polyline(NamedTuple):
@@ -58,7 +58,7 @@ class Polyline(NamedTuple):
     """normal + anchor of each vertex as (high, low), shape (n, 2)."""
     backward: Array
     """normal - anchor of each vertex as (high, low), shape (n, 2)."""
-    leg: Indices
+    load_step: Indices
     """Load step that laid the segment below each vertex."""
 
     @property
@@ -163,7 +163,7 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
     places, made = _AXIS + held + _VERTICES * count, held + _VERTICES * count
     high, low = np.zeros((places, 2)), np.zeros((places, 2))
     growth, constant = np.zeros((places, 2)), np.zeros(places, dtype=np.intp)
-    number, leg = np.full(places, -1, dtype=np.intp), np.zeros(places, dtype=np.intp)
+    number, load_step = np.full(places, -1, dtype=np.intp), np.zeros(places, dtype=np.intp)
     parent, normal = np.empty(made, dtype=np.intp), np.empty(made)
     steps, moved = np.empty((made, 2)), np.zeros((count, 2))
     visits = held + _VISITS * count
@@ -172,20 +172,20 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
         own = slice(_AXIS, _AXIS + held)
         for part, column in ((high, 0), (low, 1)):
             part[own, 0], part[own, 1] = start.forward[:, column], start.backward[:, column]
-        growth[own], leg[own], number[own] = start.growth, start.leg, np.arange(held)
+        growth[own], load_step[own], number[own] = start.growth, start.load_step, np.arange(held)
         constant[own] = np.where(growth[own, 1] == 0, 1, np.where(growth[own, 0] == 0, 0, 2))
         tree = as_tree(start)
         parent[:held], normal[:held], steps[:held] = tree.parent, tree.normal, tree.growth
     # Full slip starts a face of the cone on the axis.
     constant[_AXIS] = 0
-    stack = kernel.PolylineStack(high, low, growth, constant, number, leg, _AXIS - 1 + held)
+    stack = kernel.PolylineStack(high, low, growth, constant, number, load_step, _AXIS - 1 + held)
     stack.record(held, parent, normal, steps, moved, front_step, front)
     tops = np.empty(count, dtype=np.intp)
     stack.run(
         np.ascontiguousarray(points.normal),
         np.ascontiguousarray(points.tangential),
         points.continues.view(np.uint8),
-        np.ascontiguousarray(points.leg),
+        np.ascontiguousarray(points.load_step),
         tops,
         *start.load_point,
     )
@@ -202,7 +202,7 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
         return tree, path, separated(float(points.normal[-1]), float(points.tangential[-1]))
     own = slice(_AXIS, stack.top + 1)
     forward, backward = np.array([high[own], low[own]]).T
-    return tree, path, Polyline(forward, backward, leg[own].copy())
+    return tree, path, Polyline(forward, backward, load_step[own].copy())
 
 
 def slip_segments(path: FrontPath) -> SlipSegments:
@@ -271,7 +271,7 @@ def separated(normal: float, tangential: float) -> Polyline:
     return Polyline(sums[0], sums[1], np.zeros(1, dtype=np.intp))
 
 
-def stacked(growth: Array, leg: Indices) -> Polyline:
+def stacked(growth: Array, load_step: Indices) -> Polyline:
     """Return the polyline from the axis whose segments have the given growth, shape (n, 2)."""
     rows = np.zeros((2, len(growth) + 1, 2))
     for column, steps in enumerate(growth.T):
@@ -283,4 +283,4 @@ def stacked(growth: Array, leg: Indices) -> Polyline:
             low += (high - (total - part)) + (step - part)
             high = total
             rows[column, i] = high, low
-    return Polyline(rows[0], rows[1], np.append(0, leg))
+    return Polyline(rows[0], rows[1], np.append(0, load_step))

@@ -12,7 +12,7 @@ cdef class PolylineStack:
     cdef double[:, ::1] growth
     cdef Py_ssize_t[::1] constant
     cdef Py_ssize_t[::1] number
-    cdef Py_ssize_t[::1] leg
+    cdef Py_ssize_t[::1] load_step
     cdef public Py_ssize_t top
     cdef public Py_ssize_t made
     cdef public Py_ssize_t visited
@@ -30,13 +30,14 @@ cdef class PolylineStack:
     @cython.locals(at=Py_ssize_t, i=Py_ssize_t, straight=bint, contact=bint)
     cpdef run(
         self, double[::1] normal, double[::1] tangential, unsigned char[::1] continues,
-        Py_ssize_t[::1] legs, Py_ssize_t[::1] tops, double start_normal, double start_tangential
+        Py_ssize_t[::1] load_steps, Py_ssize_t[::1] tops,
+        double start_normal, double start_tangential
     )
-    cdef Py_ssize_t _touch(self, double tangential) noexcept
+    cdef Py_ssize_t _begin_contact(self, double tangential) noexcept
     cdef void _aim(self, double x, double y) noexcept
     cdef Py_ssize_t _stick(
         self, Py_ssize_t at, double deeper, double further, double rise, double fall,
-        bint continues, double x, Py_ssize_t leg
+        bint continues, double x, Py_ssize_t load_step
     ) noexcept
     @cython.locals(
         lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
@@ -55,7 +56,7 @@ cdef class PolylineStack:
     @cython.locals(at=Py_ssize_t)
     cdef Py_ssize_t _extend(
         self, Py_ssize_t below, double forward_step, double backward_step, double x,
-        Py_ssize_t leg
+        Py_ssize_t load_step
     ) noexcept
     cdef void _settle(self, Py_ssize_t at, Py_ssize_t own) noexcept
     @cython.locals(new=Py_ssize_t)

@@ -5,8 +5,8 @@ compiles this file as it stands, with the C types of `slip_memory_kernel.pxd`; u
 the same bits, about a hundred times slower.
 
 The polyline is a stack of vertices. On a random path branch prediction fails, so what can be
-selected by an index is not selected by an `if`. The functions stand in one file of over 350 lines,
-because they are compiled, and inlined, together.
+selected by an index is not selected by an `if`. One file holds all
+functions, since Cython inlines within a module only.
 """
 
 from mdr_core.typing import Array, Indices
@@ -32,7 +32,7 @@ class PolylineStack:
 
     Coordinate sums are unevaluated sums high + low of two doubles. `growth` is the growth of both
     sums over the segment below a vertex, `constant` the sum that is constant on it, `number` the
-    index of the vertex among all that were made, `leg` the load step that laid the segment.
+    index of the vertex among all that were made, `load_step` the load step that laid the segment.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class PolylineStack:
         growth: Array,
         constant: Indices,
         number: Indices,
-        leg: Indices,
+        load_step: Indices,
         top: int,
     ) -> None:
         self.high = high
@@ -50,7 +50,7 @@ class PolylineStack:
         self.growth = growth
         self.constant = constant
         self.number = number
-        self.leg = leg
+        self.load_step = load_step
         self.top = top
 
     def record(
@@ -86,7 +86,7 @@ class PolylineStack:
         normal: Array,
         tangential: Array,
         continues: Array,
-        legs: Indices,
+        load_steps: Indices,
         tops: Indices,
         start_normal: float,
         start_tangential: float,
@@ -97,7 +97,7 @@ class PolylineStack:
         ----------
         normal, tangential : coordinates of the load points, shape (n,).
         continues : nonzero for steps on the straight line of the step before.
-        legs : load step that each belongs to.
+        load_steps : load step that each belongs to.
         tops : receives the vertex of each load point, -1 in separation.
         start_normal, start_tangential : load point before the first step.
         """
@@ -113,7 +113,7 @@ class PolylineStack:
                 # Contact begins where the straight step crosses normal coordinate zero.
                 y0 = y0 + (y - y0) * (-x0 / (x - x0))
                 x0 = 0.0
-                at = self._touch(y0)
+                at = self._begin_contact(y0)
             elif not contact and at >= AXIS:
                 # The last springs slip until the straight step crosses normal coordinate zero.
                 y = y0 + (y - y0) * (x0 / (x0 - x))
@@ -130,7 +130,7 @@ class PolylineStack:
                 else:
                     straight = straight and continues[i]
                     if rise < 0 or fall < 0:
-                        at = self._stick(at, x - x0, y - y0, rise, fall, straight, x, legs[i])
+                        at = self._stick(at, x - x0, y - y0, rise, fall, straight, x, load_steps[i])
                         straight = True
             if not contact:
                 at = MIRROR
@@ -140,7 +140,7 @@ class PolylineStack:
             y0 = tangential[i]
         self.top = at
 
-    def _touch(self, tangential: float) -> int:
+    def _begin_contact(self, tangential: float) -> int:
         """Put the first vertex on the axis."""
         self._put(AXIS, FORWARD, tangential, 0.0, 1.0)
         self._put(AXIS, BACKWARD, -tangential, 0.0, 1.0)
@@ -167,7 +167,7 @@ class PolylineStack:
         fall: float,
         continues: bool,  # noqa: FBT001 -- positional, as C takes it
         x: float,
-        leg: int,
+        load_step: int,
     ) -> int:
         """Extend the polyline straight to the load point; return the place of its vertex.
 
@@ -180,7 +180,7 @@ class PolylineStack:
             forward_step += self.growth[at, FORWARD]
             backward_step += self.growth[at, BACKWARD]
             at -= 1
-        return self._extend(at, forward_step, backward_step, x, leg)
+        return self._extend(at, forward_step, backward_step, x, load_step)
 
     def _slip(self, start: int, x: float, step: int) -> int:
         """Cut the polyline where it exceeds the load point; return the place of its vertex."""
@@ -205,7 +205,7 @@ class PolylineStack:
                 self._visit(start, lower, step)
             forward_step = self._excess(POINT, lower, FORWARD)
             backward_step = self._excess(POINT, lower, BACKWARD)
-            return self._extend(lower, forward_step, backward_step, x, self.leg[upper])
+            return self._extend(lower, forward_step, backward_step, x, self.load_step[upper])
         # In full slip the corner is that of the mirror image, and both sums grow from the axis.
         source = upper - full
         rest = keep * full
@@ -257,7 +257,8 @@ class PolylineStack:
     def _cut_level(self, lower: int, own: int, other: int, keep: float) -> None:
         """Find the corner on a segment of constant anchor, where both sums grow alike.
 
-        Exactly: the stress of a slope that is mere rounding error is infinite at a tip or a kink.
+        Exactly: the stress of a slope that is mere rounding error is infinite at a tip or a slope
+        discontinuity.
         """
         base = self.high[lower, own]
         move = self.high[POINT, own] - base
@@ -279,7 +280,7 @@ class PolylineStack:
         return BACKWARD if first else FORWARD
 
     def _extend(
-        self, below: int, forward_step: float, backward_step: float, x: float, leg: int
+        self, below: int, forward_step: float, backward_step: float, x: float, load_step: int
     ) -> int:
         """Push the load point; two segments on the same face become one."""
         if below > AXIS and (
@@ -299,7 +300,7 @@ class PolylineStack:
                 self.constant[at] = BACKWARD
             elif forward_step <= 0:
                 self.constant[at] = FORWARD
-            self.leg[at] = leg
+            self.load_step[at] = load_step
             self._make(at, x)
         self._settle(at, FORWARD)
         self._settle(at, BACKWARD)

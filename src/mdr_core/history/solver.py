@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
 from mdr_core.errors import InputError, Notice
-from mdr_core.history import curved_legs, load_path, slip_memory
+from mdr_core.history import load_path, nonlinear_steps, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
-from mdr_core.history.curved_legs import ExtrapolatedResults
 from mdr_core.history.load_path import SampledPath
+from mdr_core.history.nonlinear_steps import ExtrapolatedResults
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.normal import NormalContact
@@ -120,7 +120,7 @@ class LoadHistory(Results):
         """State of the contact at the end of the history."""
         steps, arcs = self.results, None
         if isinstance(steps, ExtrapolatedResults):
-            arcs = steps.legs.arcs(steps.finest.last)
+            arcs = steps.nonlinear.arcs(steps.finest.last)
             steps = steps.finest
         part, at = steps.last_branches
         line = steps.last
@@ -138,7 +138,7 @@ class LoadHistory(Results):
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
         slope = slip_memory.as_tree(line).slope[1:]
         growth = np.stack([span * (1 + slope), span * (1 - slope)], axis=1)
-        return slip_memory.stacked(growth, line.leg[1:])
+        return slip_memory.stacked(growth, line.load_step[1:])
 
     @property
     def slip_fronts(self) -> Array:
@@ -158,8 +158,8 @@ class LoadHistory(Results):
     def error_estimate(self) -> float:
         """Bound on the error of each result, relative to its largest value in the history."""
         rounding = (_SUMS + self._condition_number) * self.contact.error_estimate
-        curved = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
-        return rounding + curved
+        chords = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
+        return rounding + chords
 
     @cached_property
     def _condition_number(self) -> float:
@@ -261,8 +261,8 @@ def solve(
     contact = _normal_contact(start, path, rtol)
     scale = friction_coefficient * e_star / (1.0 if path.by_force else g_star)
     # Under a flat punch depth and force are proportional, so that every step is straight.
-    if path.curved.any() and not profile.has_no_partial_slip:
-        results = curved_legs.results(path, start, scale, rtol)
+    if path.nonlinear.any() and not profile.has_no_partial_slip:
+        results = nonlinear_steps.results(path, start, scale, rtol)
         return LoadHistory(path, start, contact, results, rtol)
     points = path.load_points(profile, e_star, friction_coefficient, scale)
     steps = StepResults(profile, path.by_force, points, start.polyline)

@@ -1,6 +1,6 @@
 """Interface of a profile, with a general method for every quantity that a kind may override.
 
-The interface is one class, and therefore one file of over 350 lines.
+The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod

@@ -140,14 +140,14 @@ class WornAnnulus:
         return annulus_integrals(branches, self.stick, width, self.below, kernels, RTOL)
 
 
-def _rate(x: Array, leg: Array) -> Array:
+def _rate(x: Array, root: Array) -> Array:
     """Return d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2))."""
-    return np.asarray(x / (leg * np.hypot(x, leg)))
+    return np.asarray(x / (root * np.hypot(x, root)))
 
 
-def _segment(x: Array, leg: Array) -> Array:
+def _segment(x: Array, root: Array) -> Array:
     """Return int_x^r sqrt(r^2 - t^2) dt = (r^2/4) (t - sin(t)), t = 2 arccos(x/r)."""
-    t = 2 * np.arctan2(leg, x)
+    t = 2 * np.arctan2(root, x)
     small = np.minimum(t, _SMALL)
     series = small**3 * polyval(small * small, _SINE)
-    return np.asarray((x * x + leg * leg) / 4 * np.where(t < _SMALL, series, t - np.sin(t)))
+    return np.asarray((x * x + root * root) / 4 * np.where(t < _SMALL, series, t - np.sin(t)))

@@ -202,13 +202,13 @@ def _worn_depth(state: AnnulusState, trail: StickTrail, radius: Array) -> Array:
     result = np.zeros(radius.shape)
     a = float(state.x[-1])
     inside = (radius > state.stick) & (radius < a)
-    s = _leg(radius[inside], state.stick)
+    s = _root(radius[inside], state.stick)
     result[inside] = s * state.model.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
     at, step = trail.steps
     if step.any():
         worn = radius < a
-        legs = _leg(radius[worn][:, None], at)
-        result[worn] += 2 / np.pi * (np.arctan2(legs, at) @ step)
+        root = _root(radius[worn][:, None], at)
+        result[worn] += 2 / np.pi * (np.arctan2(root, at) @ step)
     # Below rounding at the edges, and between nodes that are too few, the polynomials may be < 0.
     return np.maximum(result, 0.0)
 
@@ -218,8 +218,8 @@ def _worn_volume(state: AnnulusState, trail: StickTrail) -> float:
     b, a = state.end, float(state.x[-1])
     total = b**3 * float(state.model.maps.volume @ state.worn)
     at, step = trail.steps
-    legs = _leg(np.full(at.shape, a), at)
-    total += float(step @ (a * a * np.arctan2(legs, at) - at * legs)) / np.pi
+    root = _root(np.full(at.shape, a), at)
+    total += float(step @ (a * a * np.arctan2(root, at) - at * root)) / np.pi
     return 2 * np.pi * total
 
 
@@ -229,7 +229,7 @@ def _annulus_pressure(state: AnnulusState, radius: Array) -> Array:
     even = np.append(state.pressure[:-1] / maps.cosine[:-1], 0.0)
     # At the edge, from the even polynomial of degree 4 through its three neighbours.
     even[-1] = (15 * even[-2] - 6 * even[-3] + even[-4]) / 10
-    squares = np.minimum((_leg(radius, state.stick) / state.end) ** 2, 1.0)
+    squares = np.minimum((_root(radius, state.stick) / state.end) ** 2, 1.0)
     return np.asarray(maps.at(maps.cosine, squares) * maps.at(even, squares))
 
 
@@ -242,7 +242,7 @@ def _stick_pressure(state: AnnulusState, trail: StickTrail, radius: Array) -> Ar
     Source: mdr-5, Eqs. (5.34), (5.79).
     """
     maps, c = state.model.maps, state.stick
-    inner = _leg(np.full(radius.shape, c), radius)
+    inner = _root(np.full(radius.shape, c), radius)
     total = (1 / np.sqrt(np.add.outer(inner**2, state.end**2 * maps.points))) @ (
         maps.steps @ state.gamma
     )
@@ -261,8 +261,8 @@ def _trail_stress(trail: StickTrail, radius: Array) -> Array:
     wide = width > 0
     total = np.diff(logs, axis=1) @ np.where(wide, step / np.where(wide, width, 1.0), 0.0)
     # Where the edge rested, w_c rose at one radius.
-    return np.asarray(total + step[~wide].sum() / _leg(trail.radius[-1:], radius))
+    return np.asarray(total + step[~wide].sum() / _root(trail.radius[-1:], radius))
 
 
-def _leg(r: Array, c: float | Array) -> Array:
+def _root(r: Array, c: float | Array) -> Array:
     return np.asarray(np.sqrt(np.maximum(r - c, 0.0) * (r + c)))

@@ -1,4 +1,4 @@
-"""Curved load steps, on which one quantity of each pair is prescribed and both change.
+"""Nonlinear load steps, on which one quantity of each pair is prescribed and both change.
 
 On such a step the tangential coordinate is linear in the conjugate y of the normal coordinate n,
 so the load point moves along an arc of the curve y(n), I over d or d over I. The arc is replaced
@@ -28,7 +28,7 @@ from mdr_core.typing import Array, Indices
 _FEWEST: Final = 64
 # It costs 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
 _MOST: Final = 1024
-# Chords on every curved step, before they are halved.
+# Chords on every nonlinear load step, before they are halved.
 _FEWEST_ON_STEP: Final = 8
 # Chords of all steps together, which bounds time and memory.
 _MOST_IN_ALL: Final = 400_000
@@ -43,7 +43,7 @@ _NEWTON_STEPS: Final = 6
 
 
 @dataclass(frozen=True)
-class CurvedLegs:
+class NonlinearSteps:
     """Arcs of a load path, one for each sample; those of straight steps have no rate."""
 
     path: SampledPath
@@ -61,8 +61,8 @@ class CurvedLegs:
     def rate(self) -> Array:
         """Derivative of the tangential coordinate by the conjugate on each arc, shape (n,)."""
         rise, moved = np.diff(self.conjugate), np.diff(self.tangential)
-        curved = self.path.curved
-        return np.where(curved, moved / np.where(rise == 0, 1.0, rise), 0.0)
+        nonlinear = self.path.nonlinear
+        return np.where(nonlinear, moved / np.where(rise == 0, 1.0, rise), 0.0)
 
     @property
     def moments(self) -> IntervalMoments:
@@ -131,7 +131,7 @@ class CurvedLegs:
             return None
         tree = slip_memory.as_tree(line)
         # Of each segment, below the vertex of its index.
-        end = (line.leg + 1) * self.path.per_step
+        end = (line.load_step + 1) * self.path.per_step
         on_face = (tree.growth == 0).any(axis=1)
         rate = np.where(on_face, 0.0, self.rate[end - 1])
         rate[0] = 0.0
@@ -150,7 +150,7 @@ class CurvedLegs:
         width = widths(self.profile, tree, coordinate, by_force=self.path.by_force)
         beside = np.concatenate([corners - 1, corners])
         width[beside] = np.diff(coordinate)[beside]
-        joined = chord[:-1] & chord[1:] & (line.leg[1:-1] == line.leg[2:])
+        joined = chord[:-1] & chord[1:] & (line.load_step[1:-1] == line.load_step[2:])
         first = np.append(0, np.flatnonzero(~joined) + 1)
         last = np.append(first[1:], chord.size)
         return TractionSegments(
@@ -180,9 +180,9 @@ class CurvedLegs:
 
 @dataclass(frozen=True)
 class ExtrapolatedResults:
-    """Results at the samples of a curved load path, in reduced units; see `StepResults`."""
+    """Results at the samples of a nonlinear load path, in reduced units; see `StepResults`."""
 
-    legs: CurvedLegs
+    nonlinear: NonlinearSteps
     sets: tuple[tuple[StepResults, Indices], ...]
     """Results on the chords, coarsest first, and which of them are the samples."""
 
@@ -248,7 +248,7 @@ class ExtrapolatedResults:
 def results(
     path: SampledPath, start: ContactState, scale: float, rtol: float
 ) -> ExtrapolatedResults:
-    """Return the results of a load path with curved steps.
+    """Return the results of a load path with nonlinear load steps.
 
     Parameters
     ----------
@@ -269,19 +269,21 @@ def results(
     if path.by_force:
         # A force that changes while the bodies are separated exceeds friction there.
         separated = np.minimum(conjugate, np.append(0.0, conjugate[:-1])) < 0
-        path.within_friction(0 * conjugate, np.where(separated & path.curved, 1.0, 0.0), path.step)
+        path.within_friction(
+            0 * conjugate, np.where(separated & path.nonlinear, 1.0, 0.0), path.step
+        )
     coordinate = path.contact_coordinate(profile, e_star)
     rows = samples.normal, conjugate, samples.tangential
-    legs = CurvedLegs(
+    nonlinear = NonlinearSteps(
         path,
         profile,
         np.append(profile.first_coordinate, coordinate),
         *(np.append(0.0, row) for row in rows),
     )
-    travel = np.sum(np.abs(np.diff(legs.coordinate))) / np.max(legs.coordinate)
+    travel = np.sum(np.abs(np.diff(nonlinear.coordinate))) / np.max(nonlinear.coordinate)
     finest = int(min(max(rtol ** (-1 / 3), _FEWEST), _MOST, _MOST_IN_ALL / travel))
     sets = []
     for halvings in range(_HALVINGS + 1):
-        points, last = legs.chords(finest, halvings)
+        points, last = nonlinear.chords(finest, halvings)
         sets.append((StepResults(profile, path.by_force, points, start.polyline), last))
-    return ExtrapolatedResults(legs, tuple(sets))
+    return ExtrapolatedResults(nonlinear, tuple(sets))
