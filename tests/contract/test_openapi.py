@@ -149,10 +149,11 @@ def test_pictures_are_drawn(client: Client, path: str) -> None:
 
 def test_every_member_states_its_dimension() -> None:
     loads = ("Load", "Tangential", "NormalPoints", "TangentialPoints")
-    swings = ("NormalSwing", "TangentialSwing", "HeldLoad", "HeldPoint", "Oscillation")
+    oscillations = ("OscillatingNormalLoad", "TangentialAmplitude", "Oscillation")
+    constant = ("ConstantNormalLoads", "ConstantNormalLoad")
     told = ("NormalAnswer", "TangentialAnswer", "HistoryAnswer", "StressAnswer")
     told += ("WearAnswer", "EvolutionAnswer")
-    for query in (*loads, *swings, *told):
+    for query in (*loads, *oscillations, *constant, *told):
         schema = DOCUMENT["components"]["schemas"][query]
         parts = schema.get("oneOf", [schema])
         for name, field in chain(*(part["properties"].items() for part in parts)):

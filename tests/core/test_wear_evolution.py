@@ -129,8 +129,8 @@ def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
 
 def limiting(result: evolution.WearEvolution) -> limit.LimitingWear:
     tangential_contact = result.initial.tangential_contact
-    held = result.initial.held.displacement
-    name = "tangential_displacement" if held else "tangential_force"
+    constant = result.initial.constant.displacement
+    name = "tangential_displacement" if constant else "tangential_force"
     return limit.solve(
         result.initial.contact, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
     )

@@ -21,7 +21,7 @@ from mdr_core.profiles import (
     Sphere,
 )
 from mdr_core.wear import evolution
-from mdr_core.wear.annulus_state import Held
+from mdr_core.wear.annulus_state import ConstantQuantities
 from mdr_core.wear.initial_state import InitialState
 
 E_STAR, G_STAR, MU, WEAR = 1.0, 0.8, 0.4, 1e-3
@@ -35,14 +35,14 @@ PROFILES: dict[str, Profile] = {
     "hyperboloid": Hyperboloid(0.5, 0.5),
 }
 CONTROLS = {
-    "depth, displacement": Held(force=False, displacement=True),
-    "forces": Held(force=True, displacement=False),
-    "force, displacement": Held(force=True, displacement=True),
-    "depth, force": Held(force=False, displacement=False),
+    "depth, displacement": ConstantQuantities(force=False, displacement=True),
+    "forces": ConstantQuantities(force=True, displacement=False),
+    "force, displacement": ConstantQuantities(force=True, displacement=True),
+    "depth, force": ConstantQuantities(force=False, displacement=False),
 }
 #: Characteristic numbers of cycles for the decay of the pressure on the annulus.
 CYCLES = (0.1, 1.0, 10.0, 100.0, 1000.0)
-PAIRS = [(kind, held) for kind in PROFILES for held in CONTROLS]
+PAIRS = [(kind, constant) for kind in PROFILES for constant in CONTROLS]
 #: Radii relative to the largest contact radius.
 RADII = np.linspace(0.0, 1.05, 241)[1:]
 STORED = Path(__file__).with_name("fine_wear.npz")
@@ -51,16 +51,16 @@ STORED = Path(__file__).with_name("fine_wear.npz")
 @cache
 def worn(kind: str, name: str, resolution: int, rtol: float = 1e-6) -> evolution.WearEvolution:
     """Wear at half the displacement or force of full slip."""
-    profile, held = PROFILES[kind], CONTROLS[name]
+    profile, constant = PROFILES[kind], CONTROLS[name]
     contact = normal.solve(profile, E_STAR, indentation_depth=DEPTH)
-    if held.force:
+    if constant.force:
         contact = normal.solve(profile, E_STAR, normal_force=float(contact.normal_force))
     force = PART * MU * float(contact.normal_force)
     tangential_contact = tangential.solve(contact, G_STAR, MU, tangential_force=force)
     amplitude = {"tangential_force": force}
-    if held.displacement:
+    if constant.displacement:
         amplitude = {"tangential_displacement": float(tangential_contact.tangential_displacement)}
-    unit = InitialState(tangential_contact, WEAR, held).cycle_unit
+    unit = InitialState(tangential_contact, WEAR, constant).cycle_unit
     return evolution.solve(
         contact,
         G_STAR,

@@ -27,7 +27,7 @@ _NARROW: Final = 0.05
 _POINTS: Final = 8
 
 
-class Held(NamedTuple):
+class ConstantQuantities(NamedTuple):
     """Quantities that are held constant over the cycles."""
 
     force: bool
@@ -132,7 +132,7 @@ class AnnulusState:
 
         At a stick edge at rest w_c is the height of g's step that is inside the stick zone.
         """
-        return self.risen - self._stick_rise if self.model.held.stick_grows else 0.0
+        return self.risen - self._stick_rise if self.model.constant.stick_grows else 0.0
 
     @cached_property
     def _stick_rise(self) -> float:
@@ -142,9 +142,9 @@ class AnnulusState:
     @cached_property
     def drive(self) -> float:
         """D."""
-        if self.model.held.displacement:
+        if self.model.constant.displacement:
             return 1.0
-        return 1.0 + self.risen - (self._stick_rise if self.model.held.stick_shrinks else 0.0)
+        return 1.0 + self.risen - (self._stick_rise if self.model.constant.stick_shrinks else 0.0)
 
     @cached_property
     def x(self) -> Array:
@@ -223,7 +223,7 @@ class AnnulusModel:
 
     maps: AnnulusMaps
     shape: UnwornShape
-    held: Held
+    constant: ConstantQuantities
     first_stick: float
     """c_0."""
     first_width: float

@@ -15,7 +15,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
-from mdr_core.wear.annulus_state import Held
+from mdr_core.wear.annulus_state import ConstantQuantities
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.worn_surface import WornSurface, worn_surface
@@ -112,7 +112,7 @@ class WearEvolution(Results, WornSurface):
             for block in np.split(r, range(_BLOCK, r.size, _BLOCK)):
                 values, others = (getattr(run, name)(block) for run in (self, self.coarse))
                 difference = max(difference, _largest(values, others))
-                if name == "pressure" and self.initial.held.stick_moves:
+                if name == "pressure" and self.initial.constant.stick_moves:
                     # It is singular at an edge whose position is inexact.
                     shifted = block * (1 + self.error_estimate)
                     moved = self.pressure(np.minimum(shifted, self.initial.contact.profile.domain))
@@ -121,7 +121,7 @@ class WearEvolution(Results, WornSurface):
             largest = max(largest, float(np.max(least.get(name, 0.0))))
             if largest > 0:
                 worst = max(worst, difference / largest)
-        safety = _SAFETY_OF_PEAK if self.initial.held.stick_shrinks else _SAFETY
+        safety = _SAFETY_OF_PEAK if self.initial.constant.stick_shrinks else _SAFETY
         return safety * worst + self.initial.tangential_contact.error_estimate
 
     def grid(self, points: int) -> Array:
@@ -131,7 +131,7 @@ class WearEvolution(Results, WornSurface):
         radius at rest; one that moves has an error. Errors as of `limit.LimitingWear.grid`.
         """
         edges = self.contact_radius[[0, -1]]
-        if not self.initial.held.stick_moves:
+        if not self.initial.constant.stick_moves:
             edges = np.append(edges, self.stick_radius[0])
         return grid(self.initial.contact.profile, edges, points)
 
@@ -256,8 +256,10 @@ def solve(
             ("tangential", name),
             "full slip: there is no stick zone; reduce the amplitude",
         )
-    held = Held(contact.control == "normal_force", name == "tangential_displacement")
-    initial = InitialState(tangential_contact, float(wear_coefficient), held)
+    constant = ConstantQuantities(
+        contact.control == "normal_force", name == "tangential_displacement"
+    )
+    initial = InitialState(tangential_contact, float(wear_coefficient), constant)
     numbers = _checked_cycles(cycles)
     nodes = int(resolution) + _FEWEST
     run = partial(worn_surface, initial, numbers)

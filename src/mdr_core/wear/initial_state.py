@@ -1,4 +1,4 @@
-"""Partial slip before the first cycle: what is held, and the units of the rates."""
+"""Partial slip before the first cycle: constant quantities, and the units of the rates."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +9,7 @@ import numpy as np
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.wear.annulus_maps import annulus_maps
-from mdr_core.wear.annulus_state import AnnulusModel, Held, UnwornShape
+from mdr_core.wear.annulus_state import AnnulusModel, ConstantQuantities, UnwornShape
 from mdr_core.wear.surface_tilt import SurfaceTilt
 
 # Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
@@ -27,7 +27,7 @@ class InitialState:
 
     tangential_contact: TangentialContact
     wear_coefficient: float
-    held: Held
+    constant: ConstantQuantities
 
     @property
     def contact(self) -> NormalContact:
@@ -77,7 +77,7 @@ class InitialState:
     @cached_property
     def reach(self) -> float:
         """Length by which the contact may grow in this method [length]."""
-        if not self.held.stick_grows:
+        if not self.constant.stick_grows:
             return self.room
         wide = 1 + float(self.tangential_contact.slip_width) / self.stick
         return min(self.room, _GROWTH * float(self.tangential_contact.slip_width) * wide**2)
@@ -96,10 +96,10 @@ class InitialState:
         A shrinking stick zone takes half as many again: the front behind it is eight times thinner
         than its distance from the edge, elsewhere both are alike. Source: notes, §11.
         """
-        nodes = nodes * 3 // 2 if self.held.stick_shrinks else nodes
+        nodes = nodes * 3 // 2 if self.constant.stick_shrinks else nodes
         unit = self.length_unit
         stick, width = self.stick / unit, float(self.tangential_contact.slip_width) / unit
-        tilt = SurfaceTilt(stick, width, self.reach / unit) if self.held.stick_grows else None
+        tilt = SurfaceTilt(stick, width, self.reach / unit) if self.constant.stick_grows else None
         parts = self.stick, unit, self.depth_unit, self.domain
         shape = UnwornShape(self.contact.profile, *parts)
-        return AnnulusModel(annulus_maps(nodes), shape, self.held, stick, width, tilt)
+        return AnnulusModel(annulus_maps(nodes), shape, self.constant, stick, width, tilt)

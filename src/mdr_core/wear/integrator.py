@@ -178,7 +178,7 @@ def _events(model: AnnulusModel, rtol: float, ends: tuple[float, float]) -> list
 
 def _trail(model: AnnulusModel, steps: list[Array]) -> StickTrail:
     """Return the trail of a growing stick zone."""
-    if not model.held.stick_grows:
+    if not model.constant.stick_grows:
         return NO_TRAIL
     states = [AnnulusState(model, vector) for vector in steps]
     return StickTrail(

@@ -99,9 +99,9 @@ class LimitingWear(Results):
     def indentation_depth(self) -> Array:
         """Depth d [length]: constant, or g(c) and the step at the stick edge."""
         contact = self._normal
-        held = np.broadcast_to(contact.indentation_depth, self.stuck.step.shape)
+        depth = np.broadcast_to(contact.indentation_depth, self.stuck.step.shape)
         if self._holds_depth:
-            return held
+            return depth
         profile, sticks = contact.profile, self.stuck.radius > 0
         # g(c), and zero in full slip.
         edge = np.where(sticks, self.stuck.coordinate, profile.first_coordinate)

@@ -60,8 +60,8 @@ class _EdgeBalance:
 
     def __init__(self, state: AnnulusState) -> None:
         self.state = state
-        self.model, self.held, self.maps = state.model, state.model.held, state.model.maps
-        self.moves = self.held.stick_moves
+        self.model, self.constant, self.maps = state.model, state.model.constant, state.model.maps
+        self.moves = self.constant.stick_moves
         stick = np.array([state.stick])
         self.stick_slope = float(self.model.shape.slope(stick)[0]) if self.moves else 0.0
         # dx/dN of the nodes per unit of the rates of b and c.
@@ -89,7 +89,7 @@ class _EdgeBalance:
     @property
     def past_stick(self) -> tuple[Array, Array]:
         """Rate of `worn` per unit of the rate of c, and its gradient in `worn`."""
-        along, gradient = self.inward if self.held.stick_grows else self.outward
+        along, gradient = self.inward if self.constant.stick_grows else self.outward
         state = self.state
         scale = state.stick / (state.end**2 * self.maps.squares)
         return scale * (state.worn + along), scale[:, None] * (np.eye(along.size) + gradient)
@@ -103,7 +103,7 @@ class _EdgeBalance:
         columns[:, 1] = self.inward[0] / b
         if self.moves:
             columns[:, 2] = self.past_stick[0]
-        if self.held.stick_grows:
+        if self.constant.stick_grows:
             # The growth of w_c lowers all slip outside.
             zeta = b * np.sqrt(self.maps.squares)
             lever = 2 / np.pi * np.arctan2(zeta, state.stick) / zeta
@@ -134,7 +134,7 @@ class _EdgeBalance:
     @property
     def unknown(self) -> list[int]:
         """Indices of the edges that move, of b, c and d."""
-        return [0] + [1] * self.moves + [2] * self.held.force
+        return [0] + [1] * self.moves + [2] * self.constant.force
 
     def _solve(self, right: Array) -> Array:
         square = self.rows[:, 1:][:, self.unknown]
@@ -150,7 +150,7 @@ class _EdgeBalance:
 
         One row for each unknown edge, (k, 4).
         """
-        state, held, maps = self.state, self.held, self.maps
+        state, constant, maps = self.state, self.constant, self.maps
         a, b, c = state.x[-1], state.end, state.stick
         # Rates of (gamma - gamma_0)/x at the moving nodes, and of omega at the edge.
         worn = maps.from_slip @ self.worn
@@ -159,22 +159,22 @@ class _EdgeBalance:
         omega[1:3] += (slope - state.unworn[-1]) / a * self.motion[:, -1]
         omega[2] -= self.stick_slope / a
         # Rates of D and of the level d - D.
-        drive = np.array([0.0, 0.0, 0.0, float(held.force and not held.displacement)])
-        level = np.array([0.0, 0.0, 0.0, float(held.stick_grows)])
-        if held.stick_shrinks:
+        drive = np.array([0.0, 0.0, 0.0, float(constant.force and not constant.displacement)])
+        level = np.array([0.0, 0.0, 0.0, float(constant.stick_grows)])
+        if constant.stick_shrinks:
             drive[2], level[2] = -self.stick_slope, self.stick_slope
         edge = np.array([0.0, *self.motion[:, -1], 0.0])
         rows = [a * omega + edge * state.omega[-1] - drive]
         rows[0][0] += _RETURN * (state.gamma[-1] - state.drive)
-        if held.force or held.stick_shrinks:
+        if constant.force or constant.stick_shrinks:
             # Rate of int_c^a (gamma - D) dx, with gamma(a) = D. The integral of gamma_0 changes at
             # its ends only: by values at nodes it would jump where one passes a break of the slope.
             risen = b * b * (maps.mean @ worn) - edge * a * state.worn_omega[-1]
             risen[1] += 2 * state.lifted / b
             risen[2] -= (a - c) * self.stick_slope
             risen += (a - c) * level
-            rows.append(np.array([0, 0, 0, a]) - risen if held.force else c * drive - risen)
-        if held.stick_grows:
+            rows.append(np.array([0, 0, 0, a]) - risen if constant.force else c * drive - risen)
+        if constant.stick_grows:
             rows.append(np.array([0.0, 0.0, state.gamma[0] / state.offset[0], -1.0]))
         return np.array(rows)
 
@@ -191,9 +191,9 @@ class _EdgeBalance:
         last, mean = maps.from_slip[-1], maps.mean @ maps.from_slip
         edge = end * self.motion[0, -1] + stick * self.motion[1, -1]
         rows = [state.x[-1] * (last @ direct) + (edge + _RETURN * state.x[-1]) * last]
-        if self.held.force or self.held.stick_shrinks:
+        if self.constant.force or self.constant.stick_shrinks:
             rows.append(-b * b * (mean @ direct) - 2 * b * end * mean)
-        if self.held.stick_grows:
+        if self.constant.stick_grows:
             rows.append(stick * state.x[0] / state.offset[0] * maps.from_slip[0])
         edges = np.zeros((3, state.x.size))
         edges[self.unknown] = self._solve(np.array(rows))

@@ -63,7 +63,7 @@ class WornSurface:
         """F_N [force]: at a constant depth F_N0(a) + 2 E* (a w(a) - int_c^a w dx), w = g - g_0."""
         initial = self.initial
         contact, profile = initial.contact, initial.contact.profile
-        if initial.held.force or not self.states:
+        if initial.constant.force or not self.states:
             return np.full(self.cycles.shape, float(contact.normal_force))
         edge = profile.coordinate_from_radius(self.contact_radius)
         e_star, unit = float(contact.e_star), initial.depth_unit * initial.length_unit

@@ -44,7 +44,7 @@ class TangentialPoints(Choice):
     )
 
 
-class NormalSwing(Choice):
+class OscillatingNormalLoad(Choice):
     """Oscillating normal load: exactly one control, the mean, and an amplitude."""
 
     optional = frozenset({"amplitude"})
@@ -58,7 +58,7 @@ class NormalSwing(Choice):
     )
 
 
-class TangentialSwing(Choice):
+class TangentialAmplitude(Choice):
     """Oscillating tangential load: exactly one control, the amplitude about zero."""
 
     tangential_displacement: float = positive(
@@ -128,10 +128,10 @@ class Cycles(LoadPath):
     They start from the mean normal load without a tangential load.
     """
 
-    normal: NormalSwing = Field(
+    normal: OscillatingNormalLoad = Field(
         description="Exactly one control: mean depth or mean normal force; and an amplitude."
     )
-    tangential: TangentialSwing = Field(
+    tangential: TangentialAmplitude = Field(
         description="Exactly one control: the amplitude of displacement or tangential force."
     )
     count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_cycles)

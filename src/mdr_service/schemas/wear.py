@@ -6,7 +6,7 @@ from pydantic import Field
 
 from mdr_service.schemas.contacts import Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
-from mdr_service.schemas.load_paths import TangentialSwing
+from mdr_service.schemas.load_paths import TangentialAmplitude
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
     Size,
@@ -20,14 +20,14 @@ EvolutionField = Literal["profile", "worn_depth", "pressure"]
 _WITH_RADII = "with `radius` or `points`"
 
 
-class HeldLoad(Choice):
+class ConstantNormalLoads(Choice):
     """Normal load held constant during wear: exactly one control, a number or a list."""
 
     indentation_depth: ScalarOrArray = quantity("length", "Indentation depth d", default=None)
     normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
 
 
-class HeldPoint(Choice):
+class ConstantNormalLoad(Choice):
     """Normal load held constant during wear: exactly one control, a number."""
 
     indentation_depth: Size = quantity("length", "Indentation depth d", default=None)
@@ -52,7 +52,9 @@ class _FrettingQuery(FieldQuery):
 class WearQuery(_FrettingQuery):
     """Limiting state of a contact that wears under a tangential oscillation."""
 
-    load: HeldLoad = Field(description="Exactly one control, held constant: depth or force.")
+    load: ConstantNormalLoads = Field(
+        description="Exactly one control, held constant: depth or force."
+    )
     oscillation: Oscillation = Field(
         description="Exactly one amplitude, held constant: displacement or tangential force."
     )
@@ -76,8 +78,10 @@ class WearQuery(_FrettingQuery):
 class EvolutionQuery(_FrettingQuery):
     """Contact that wears under a tangential oscillation, over the cycles."""
 
-    load: HeldPoint = Field(description="Exactly one control, held constant: depth or force.")
-    oscillation: TangentialSwing = Field(
+    load: ConstantNormalLoad = Field(
+        description="Exactly one control, held constant: depth or force."
+    )
+    oscillation: TangentialAmplitude = Field(
         description="Exactly one amplitude, held constant: displacement or tangential force, "
         "below full slip."
     )
