@@ -173,7 +173,7 @@ def test_the_volume_is_the_integral_of_the_worn_depth(profile: Profile) -> None:
 def test_narrow_worn_annulus_is_half_wider_than_the_slip_annulus(profile: Profile) -> None:
     """For linear g: w = (3/2)(d - g(c))/g'(c), V = (16/15) sqrt(2c) w^(3/2) (d - g)."""
     wear = constant_depth_limit(profile, [1e-6, 1e-12, 1e-100])
-    w, c, step = wear.wear_width, wear.stick_radius, wear.stuck.step
+    w, c, step = wear.wear_width, wear.stick_radius, wear.stick_zone.step
     assert w / wear.tangential_contact.slip_width == pytest.approx(1.5, rel=1e-4, abs=0)
     volume = 16 / 15 * np.sqrt(2 * c) * w**1.5 * step
     assert wear.worn_volume == pytest.approx(volume, rel=1e-4, abs=0)

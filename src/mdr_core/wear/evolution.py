@@ -168,11 +168,11 @@ class WearEvolution(Results, WornSurface):
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
         found = list(self.initial.tangential_contact.warnings_without_bodies)
-        if isfinite(self.settled):
+        if isfinite(self.settled_at):
             found.append(
                 Notice(
                     "limit_reached",
-                    f"wear stops after about {self.settled:.2g} cycles: the profile is the "
+                    f"wear stops after about {self.settled_at:.2g} cycles: the profile is the "
                     "limiting one from there on",
                 )
             )
@@ -264,7 +264,7 @@ def solve(
     nodes = int(resolution) + _FEWEST
     run = partial(worn_surface, initial, numbers)
     fine, coarse = run(nodes, rtol), run(int(nodes * _COARSER), _LOOSER * rtol)
-    parts = fine.states, fine.trail, fine.settled
+    parts = fine.states, fine.trail, fine.settled_at
     found = WearEvolution(initial, numbers, *parts, coarse=coarse)
     if not found.error_estimate < _UNRESOLVED:
         detail = "the worn annulus is not resolved: more nodes may resolve it"

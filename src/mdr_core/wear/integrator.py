@@ -55,11 +55,11 @@ class Integration(NamedTuple):
 
     states: tuple[AnnulusState, ...]
     trail: StickTrail
-    settled: float
+    settled_at: float
     """Scaled cycles from which on nothing wears, infinite if these were not reached."""
-    left: float
+    profile_end_at: float
     """Scaled cycles at which the contact reaches the end of the profile, or infinity."""
-    lost: float
+    full_slip_at: float
     """Scaled cycles at which the stick zone vanishes, or infinity."""
 
 
@@ -126,9 +126,10 @@ def integrate(
     states = [model.start] * int((cycles == 0).sum()) + states
     # Nothing wears from where it ended on.
     states += [vector] * (cycles.size - len(states))
-    left, settled, lost = stopped
+    profile_end_at, settled_at, full_slip_at = stopped
     trail = _trail(model, steps)
-    return Integration(tuple(AnnulusState(model, v) for v in states), trail, settled, left, lost)
+    ended = tuple(AnnulusState(model, v) for v in states)
+    return Integration(ended, trail, settled_at, profile_end_at, full_slip_at)
 
 
 def _halts(cycles: Array) -> Iterator[float]:

@@ -50,7 +50,7 @@ class LimitingWear(Results):
     """The contact before any wear, with the amplitude applied once."""
     amplitude: str
     """Name of the prescribed amplitude: "tangential_displacement" or "tangential_force"."""
-    stuck: limiting_stick.LimitingStick
+    stick_zone: limiting_stick.LimitingStick
     quantities: ClassVar[tuple[str, ...]] = (
         "stick_radius",
         "wear_radius",
@@ -71,21 +71,21 @@ class LimitingWear(Results):
     @property
     def stick_radius(self) -> Array:
         """Stick radius c [length]: inside it nothing wears. Source: mdr-5, Eq. (5.80)."""
-        return np.where(self.stuck.endless, 0.0, self.stuck.radius)
+        return np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.radius)
 
     @cached_property
     def wear_width(self) -> Array:
         """Width of the worn annulus [length], free of cancellation however narrow it is."""
-        rests = self.stuck.step <= 0
+        rests = self.stick_zone.step <= 0
         if self._normal.profile.has_no_partial_slip:
             worn = np.where(rests, 0.0, self._normal.contact_radius)
         else:
-            target = np.where(self.stuck.endless, 0.0, self.stuck.step)
-            start = np.where(target > 0, _NARROW * self.stuck.slip_width, 1.0)
+            target = np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
+            start = np.where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
             room = self.annulus.room.reshape(target.shape)
             flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * room)))
             worn = self.annulus.width_where_worn(*flat).reshape(target.shape)
-        return np.where(self.stuck.endless, inf, worn)
+        return np.where(self.stick_zone.unbounded, inf, worn)
 
     @cached_property
     def wear_radius(self) -> Array:
@@ -93,20 +93,20 @@ class LimitingWear(Results):
 
         Source: mdr-5, Eq. (5.88), for any profile; notes, §9.
         """
-        return self.stuck.radius + self.wear_width
+        return self.stick_zone.radius + self.wear_width
 
     @cached_property
     def indentation_depth(self) -> Array:
         """Depth d [length]: constant, or g(c) and the step at the stick edge."""
         contact = self._normal
-        depth = np.broadcast_to(contact.indentation_depth, self.stuck.step.shape)
+        depth = np.broadcast_to(contact.indentation_depth, self.stick_zone.step.shape)
         if self._holds_depth:
             return depth
-        profile, sticks = contact.profile, self.stuck.radius > 0
+        profile, sticks = contact.profile, self.stick_zone.radius > 0
         # g(c), and zero in full slip.
-        edge = np.where(sticks, self.stuck.coordinate, profile.first_coordinate)
-        grown = np.where(sticks, profile.depth(edge), 0.0) + self.stuck.step
-        return np.where(self.stuck.endless, inf, grown)
+        edge = np.where(sticks, self.stick_zone.coordinate, profile.first_coordinate)
+        grown = np.where(sticks, profile.depth(edge), 0.0) + self.stick_zone.step
+        return np.where(self.stick_zone.unbounded, inf, grown)
 
     @cached_property
     def normal_force(self) -> Array:
@@ -116,35 +116,33 @@ class LimitingWear(Results):
         """
         contact, profile = self._normal, self._normal.profile
         if not self._holds_depth:
-            return np.broadcast_to(contact.normal_force, self.stuck.step.shape)
-        edge = np.where(self.stuck.lost, profile.first_coordinate, self.stuck.coordinate)
-        inside = np.where(self.stuck.lost, 0.0, profile.reduced_force(edge))
-        return contact.e_star * (inside + 2 * self.stuck.radius * self.stuck.step)
+            return np.broadcast_to(contact.normal_force, self.stick_zone.step.shape)
+        edge = np.where(
+            self.stick_zone.separated, profile.first_coordinate, self.stick_zone.coordinate
+        )
+        inside = np.where(self.stick_zone.separated, 0.0, profile.reduced_force(edge))
+        return contact.e_star * (inside + 2 * self.stick_zone.radius * self.stick_zone.step)
 
     @cached_property
     def tangential_displacement(self) -> Array:
         """Amplitude u_x [length]: constant, or mu (E*/G*) (d - g(c))."""
+        contact, stick_zone = self.tangential_contact, self.stick_zone
+        displacement = contact.tangential_displacement
         if self.amplitude == "tangential_displacement":
-            return np.broadcast_to(
-                self.tangential_contact.tangential_displacement, self.stuck.step.shape
-            )
-        if self._normal.profile.has_no_partial_slip:
-            return np.where(
-                self.stuck.endless, inf, self.tangential_contact.tangential_displacement
-            )
-        return np.where(
-            self.stuck.endless, inf, self.tangential_contact.displacement_ratio * self.stuck.step
-        )
+            return np.broadcast_to(displacement, stick_zone.step.shape)
+        if not self._normal.profile.has_no_partial_slip:
+            displacement = contact.displacement_ratio * stick_zone.step
+        return np.where(stick_zone.unbounded, inf, displacement)
 
     @cached_property
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
         contact = self.tangential_contact
         if self.amplitude == "tangential_force" or self._normal.profile.has_no_partial_slip:
-            return np.where(self.stuck.lost, 0.0, contact.tangential_force)
+            return np.where(self.stick_zone.separated, 0.0, contact.tangential_force)
         modulus = contact.friction_coefficient * self._normal.e_star
-        carried = 2 * modulus * self.stuck.radius * self.stuck.step
-        return np.where(self.stuck.endless, contact.limiting_force, carried)
+        carried = 2 * modulus * self.stick_zone.radius * self.stick_zone.step
+        return np.where(self.stick_zone.unbounded, contact.limiting_force, carried)
 
     @cached_property
     def worn_volume(self) -> Array:
@@ -152,24 +150,24 @@ class LimitingWear(Results):
 
         Source: notes, §9.
         """
-        endless, width = self.stuck.endless, self.wear_width
+        unbounded, width = self.stick_zone.unbounded, self.wear_width
         volume, flat = np.zeros(width.size), np.ravel(width)
         # Without slip there is no annulus.
-        some = np.flatnonzero((flat > 0) & ~np.ravel(endless))
-        step = np.ravel(self.stuck.step)[some]
+        some = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
+        step = np.ravel(self.stick_zone.step)[some]
         volume[some] = self.annulus.chosen(some).worn_volume(flat[some], step)
-        return np.where(endless, inf, volume.reshape(width.shape))
+        return np.where(unbounded, inf, volume.reshape(width.shape))
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Slip regime: "stick" (nothing wears), "partial_slip" or "full_slip"."""
-        wearing = np.where(self.stuck.step > 0, "partial_slip", "stick").astype("U12")
-        return np.where(self.stuck.endless | self.stuck.lost, "full_slip", wearing)
+        wearing = np.where(self.stick_zone.step > 0, "partial_slip", "stick").astype("U12")
+        return np.where(self.stick_zone.unbounded | self.stick_zone.separated, "full_slip", wearing)
 
     @cached_property
     def annulus(self) -> WornAnnulus:
         """Worn annuli of all loads, in one row."""
-        c, coordinate = np.ravel(self.stuck.radius), np.ravel(self.stuck.coordinate)
+        c, coordinate = np.ravel(self.stick_zone.radius), np.ravel(self.stick_zone.coordinate)
         return WornAnnulus(self._normal.profile, c, coordinate)
 
     def initial_profile(self, radius: ArrayLike) -> Array:
@@ -198,7 +196,7 @@ class LimitingWear(Results):
         (5.82); notes, §9. Shape and errors as of `limiting_profile`.
         """
         r = self._radii(radius)
-        return limit_fields.worn_depth(self.stuck, self.annulus, self.wear_radius, r)
+        return limit_fields.worn_depth(self.stick_zone, self.annulus, self.wear_radius, r)
 
     def pressure(self, radius: ArrayLike) -> Array:
         """Return the pressure in the limit, (loads, m), or (m,) for a single load [pressure].
@@ -214,7 +212,7 @@ class LimitingWear(Results):
         """
         contact, r = self._normal, checked_radii(radius)
         e_star = np.asarray(contact.e_star)
-        return limit_fields.pressure(contact.profile, self.stuck, e_star, r)
+        return limit_fields.pressure(contact.profile, self.stick_zone, e_star, r)
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest worn annulus [length], (points,).
@@ -255,14 +253,14 @@ class LimitingWear(Results):
 
         Of the limit: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
         """
-        wears = self.stuck.step > 0
+        wears = self.stick_zone.step > 0
         path_dependent = not self._holds_depth and self.amplitude == "tangential_displacement"
         where = {
             "path_dependent": path_dependent & wears,
             "singular": wears & (self.stick_radius > 0),
             "no_wear": self.regime == "stick",
-            "contact_lost": self.stuck.lost,
-            "endless_wear": self.stuck.endless,
+            "contact_lost": self.stick_zone.separated,
+            "endless_wear": self.stick_zone.unbounded,
         }
         own = [Notice(code, _WARNINGS[code]) for code, flags in where.items() if some(flags)]
         return (*self.tangential_contact.warnings_without_bodies, *own)
@@ -319,12 +317,10 @@ def solve(
     if any(isinstance(part, np.ndarray) for part in contact.profile.parameters.values()):
         raise InputError(("profile",), "a single profile is needed: no arrays of parameters")
     name, size = one_amplitude(tangential_displacement, tangential_force)
-    tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    result = LimitingWear(
-        tangential_contact, name, limiting_stick.find(tangential_contact, name, size)
-    )
+    unworn = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
+    result = LimitingWear(unworn, name, limiting_stick.find(unworn, name, size))
     _require_room(result)
-    beyond = ~result.stuck.endless & ~np.isfinite(result.wear_radius)
+    beyond = ~result.stick_zone.unbounded & ~np.isfinite(result.wear_radius)
     if beyond.any():
         raise InputError(
             ("load", contact.control, *first_index(beyond)),
@@ -338,12 +334,12 @@ def _require_room(wear: LimitingWear) -> None:
     profile = wear.tangential_contact.normal.profile
     if profile.has_no_partial_slip or not float(profile.domain) < inf:
         return
-    annulus, wearing = wear.annulus, (wear.stuck.step > 0) & ~wear.stuck.endless
+    annulus, wearing = wear.annulus, (wear.stick_zone.step > 0) & ~wear.stick_zone.unbounded
     # Without a root the search for the width ends there.
     if not (np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * annulus.room).any():
         return
-    step = np.ravel(np.where(wearing, wear.stuck.step, 0.0))
-    beyond = (annulus.mean_rise(annulus.room) < step).reshape(wear.stuck.step.shape)
+    step = np.ravel(np.where(wearing, wear.stick_zone.step, 0.0))
+    beyond = (annulus.mean_rise(annulus.room) < step).reshape(wear.stick_zone.step.shape)
     if beyond.any():
         raise InputError(
             ("load", wear.tangential_contact.normal.control, *first_index(beyond)),

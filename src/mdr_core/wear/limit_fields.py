@@ -16,19 +16,19 @@ from mdr_core.wear.worn_annulus import RTOL, WornAnnulus
 _BLOCK: Final = 8192
 
 
-def worn_depth(stuck: LimitingStick, annulus: WornAnnulus, outer: Array, r: Array) -> Array:
+def worn_depth(stick_zone: LimitingStick, annulus: WornAnnulus, outer: Array, r: Array) -> Array:
     """Return (2/pi) int_c^r (d - g(x))/sqrt(r^2 - x^2) dx in the annulus up to `outer` [length].
 
     Source: mdr-5, Eqs. (5.75), (5.82).
 
     Parameters
     ----------
-    stuck : stick zones of the limit, (loads,).
+    stick_zone : stick zones of the limit, (loads,).
     annulus : worn annuli, (loads,).
     outer : outer radii of the annuli [length], (loads,).
     r : radii [length], (m,).
     """
-    profile, step = annulus.profile, np.ravel(stuck.step)
+    profile, step = annulus.profile, np.ravel(stick_zone.step)
     inner, end = annulus.stick[:, None], np.ravel(outer)[:, None]
     # In full slip the axis wears as well, and a flat punch wears up to its edge.
     worn = (r <= end if profile.has_no_partial_slip else r < end) & ((r > inner) | (inner == 0))
@@ -49,11 +49,11 @@ def worn_depth(stuck: LimitingStick, annulus: WornAnnulus, outer: Array, r: Arra
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
 
     result = _filled(worn, r, values)
-    result[np.ravel(stuck.endless)] = inf
+    result[np.ravel(stick_zone.unbounded)] = inf
     return result.reshape(outer.shape + r.shape)
 
 
-def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array) -> Array:
+def pressure(profile: Profile, stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
     """Return (E*/pi) [int_r^c g'/sqrt(x^2 - r^2) dx + (d - g(c))/sqrt(c^2 - r^2)] [pressure].
 
     Source: mdr-5, Eqs. (5.34), (5.79), (5.82).
@@ -61,14 +61,14 @@ def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array) ->
     Parameters
     ----------
     profile : profile before wear.
-    stuck : stick zones of the limit, (loads,).
+    stick_zone : stick zones of the limit, (loads,).
     e_star : effective modulus E* [pressure].
     r : radii [length], (m,).
     """
     # In full slip the limiting pressure is zero.
-    held = np.where(stuck.lost | stuck.endless, 0.0, stuck.radius)
-    c, step, edge = (np.ravel(part) for part in (held, stuck.step, stuck.coordinate))
-    moduli = np.ravel(np.broadcast_to(e_star, held.shape))
+    radius = np.where(stick_zone.separated | stick_zone.unbounded, 0.0, stick_zone.radius)
+    c, step, edge = (np.ravel(part) for part in (radius, stick_zone.step, stick_zone.coordinate))
+    moduli = np.ravel(np.broadcast_to(e_star, radius.shape))
 
     def values(load: Indices, at: Array) -> Array:
         inner = profile.pressure_kernel(Annulus(edge[load]), at, RTOL)
@@ -78,7 +78,7 @@ def pressure(profile: Profile, stuck: LimitingStick, e_star: Array, r: Array) ->
     result = _filled(r < c[:, None], r, values)
     singular = (c > 0) & ((step > 0) | (profile.has_no_partial_slip & (edge > 0)))
     result[(r == c[:, None]) & singular[:, None]] = inf
-    return result.reshape(held.shape + r.shape)
+    return result.reshape(radius.shape + r.shape)
 
 
 def _filled(where: Flags, r: Array, values: Callable[[Indices, Array], Array]) -> Array:

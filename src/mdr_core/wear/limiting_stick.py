@@ -38,9 +38,9 @@ class LimitingStick:
     """d - g(c) in the limit [length], free of cancellation."""
     slip_width: Array
     """About the width outside c in which g grows by the step [length]; zero without slip."""
-    lost: Flags
+    separated: Flags
     """Full slip at a constant depth: the contact wears until nothing touches."""
-    endless: Flags
+    unbounded: Flags
     """Full slip under a constant normal force: wear is unbounded."""
 
 
@@ -51,7 +51,7 @@ def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     """
     depth = contact.normal.indentation_depth
     step = np.where(contact.full_slip, depth, amplitude / contact.displacement_ratio)
-    return _from(contact, step, lost=contact.full_slip)
+    return _from(contact, step, separated=contact.full_slip)
 
 
 def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -63,7 +63,7 @@ def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     before = contact.tangential_displacement / contact.displacement_ratio
     grown = np.maximum(step, before) / np.where(before > 0, before, 1.0)
     moved = contact.stick_coordinate, contact.stick_radius, grown * contact.slip_width
-    return _from(contact, step, endless=contact.full_slip, moved=moved)
+    return _from(contact, step, unbounded=contact.full_slip, moved=moved)
 
 
 def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -74,11 +74,11 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     """
     normal, profile = contact.normal, contact.normal.profile
     step = np.broadcast_to(amplitude / contact.displacement_ratio, contact.width.shape)
-    endless = contact.full_slip
+    unbounded = contact.full_slip
     if profile.has_no_partial_slip:
-        return _from(contact, step, endless=endless)
+        return _from(contact, step, unbounded=unbounded)
     top = np.broadcast_to(normal.coordinate, step.shape)
-    target = np.where(endless | (contact.width <= 0), 0.0, step)
+    target = np.where(unbounded | (contact.width <= 0), 0.0, step)
 
     def step_by_force(width: Array) -> tuple[Array, Array]:
         """Return (F_N(a) - F_N(c))/(2 E* c), and its logarithmic slope."""
@@ -97,10 +97,10 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
         widest,
         f"{profile.kind}'s stick edge under a constant force",
     )
-    moved = np.where(endless, contact.stick_coordinate, top - width)
+    moved = np.where(unbounded, contact.stick_coordinate, top - width)
     radius = np.where(width > 0, profile.contact_radius(moved), contact.stick_radius)
     reach = profile.radius_width(top, width)
-    return _from(contact, step, endless=endless, moved=(moved, radius, reach))
+    return _from(contact, step, unbounded=unbounded, moved=(moved, radius, reach))
 
 
 def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -226,8 +226,8 @@ def _from(
     contact: TangentialContact,
     step: Array,
     *,
-    lost: Flags | None = None,
-    endless: Flags | None = None,
+    separated: Flags | None = None,
+    unbounded: Flags | None = None,
     moved: tuple[Array, Array, Array] | None = None,
 ) -> LimitingStick:
     """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`."""
@@ -244,7 +244,7 @@ def _from(
         np.where(rests, normal.contact_radius, radius),
         np.where(rests, 0.0, step),
         np.where(rests, 0.0, reach),
-        nowhere if lost is None else lost & loaded,
-        nowhere if endless is None else endless & loaded,
+        nowhere if separated is None else separated & loaded,
+        nowhere if unbounded is None else unbounded & loaded,
     )
     return LimitingStick(*(np.broadcast_to(part, contact.width.shape) for part in parts))

@@ -29,14 +29,14 @@ class WornSurface:
     states: tuple[AnnulusState, ...] = ()
     """One for each number of cycles; none if there is no slip."""
     trail: StickTrail = NO_TRAIL
-    settled: float = inf
+    settled_at: float = inf
     """Number of cycles after which wear has stopped."""
 
     def at(self, index: int) -> "WornSurface":
         """Return the surface at one of the numbers of cycles."""
         which = slice(index, index + 1)
         parts = self.cycles[which], self.states[which]
-        return WornSurface(self.initial, *parts, self.trail, self.settled)
+        return WornSurface(self.initial, *parts, self.trail, self.settled_at)
 
     @cached_property
     def indentation_depth(self) -> Array:
@@ -173,8 +173,8 @@ def worn_surface(initial: InitialState, cycles: Array, nodes: int, rtol: float) 
         return WornSurface(initial, cycles)
     unit, scaled = initial.cycle_unit, cycles / initial.cycle_unit
     found = integrate(initial.model(nodes), scaled, rtol, initial.ends)
-    if isfinite(found.left):
-        cycle = found.left * unit
+    if isfinite(found.profile_end_at):
+        cycle = found.profile_end_at * unit
         if initial.reach < initial.room:
             detail = "the contact grows beyond the range of this method"
             raise AccuracyError(detail, ("cycles",))
@@ -183,14 +183,14 @@ def worn_surface(initial: InitialState, cycles: Array, nodes: int, rtol: float) 
             f"after {cycle:.3g} cycles the worn contact reaches radius {initial.domain:.6g}, where "
             "the profile ends or is no longer admissible",
         )
-    if isfinite(found.lost):
-        cycle = found.lost * unit
+    if isfinite(found.full_slip_at):
+        cycle = found.full_slip_at * unit
         raise InputError(
             ("cycles", int(np.searchsorted(cycles, cycle))),
             f"after {cycle:.3g} cycles the whole contact slides: wear at this depth reduces the "
             "normal force until it no longer carries the tangential force",
         )
-    return WornSurface(initial, cycles, found.states, found.trail, found.settled * unit)
+    return WornSurface(initial, cycles, found.states, found.trail, found.settled_at * unit)
 
 
 def _worn_depth(state: AnnulusState, trail: StickTrail, radius: Array) -> Array:

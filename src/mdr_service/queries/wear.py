@@ -55,7 +55,7 @@ def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
     """Return the limiting state of fretting wear."""
     radius = limit.grid(query.points) if query.points else np.array(query.radius or ())
     values = by_load(limit, _WEAR, query.loads)
-    return _result(query, limit, values, radius, np.ravel(limit.stuck.endless))
+    return _result(query, limit, values, radius, np.ravel(limit.stick_zone.unbounded))
 
 
 def solve_evolution(query: EvolutionQuery) -> WearEvolution:
