@@ -72,9 +72,9 @@ class UnwornShape:
         inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
         return np.append(profile.contact_radius(inner), profile.domain)
 
-    def rise(self, shift: float, offset: Array) -> Array:
-        """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + shift."""
-        stick, by = self.stick + self.length_unit * shift, self.length_unit * offset
+    def rise(self, stick_shift: float, offset: Array) -> Array:
+        """Return g_0(c + offset) - g_0(c) for the stick radius c = c_0 + stick_shift."""
+        stick, by = self.stick + self.length_unit * stick_shift, self.length_unit * offset
         # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
         near = np.abs(self.singular - stick) < 2 * by[-1]
         if by[-1] > _NARROW * stick or near.any():
@@ -107,17 +107,17 @@ class AnnulusState:
         return float(self.vector[self.model.first_edge])
 
     @property
-    def shift(self) -> float:
+    def stick_shift(self) -> float:
         """c - c_0, without the rounding error of c in a narrow annulus."""
         return float(self.vector[self.model.first_edge + 1])
 
     @property
     def stick(self) -> float:
         """c."""
-        return self.model.first_stick + self.shift
+        return self.model.first_stick + self.stick_shift
 
     @property
-    def risen(self) -> float:
+    def depth_increase(self) -> float:
         """d - d_0."""
         return float(self.vector[self.model.first_edge + 2])
 
@@ -127,24 +127,28 @@ class AnnulusState:
         return float(self.vector[self.model.first_edge + 3])
 
     @cached_property
-    def passed(self) -> float:
+    def retained_wear(self) -> float:
         """w_c = g(c) - g_0(c): wear that the springs keep when the growing stick zone gets there.
 
         At a stick edge at rest w_c is the height of g's step that is inside the stick zone.
         """
-        return self.risen - self._stick_rise if self.model.constant.stick_grows else 0.0
+        return self.depth_increase - self._stick_rise if self.model.constant.stick_grows else 0.0
 
     @cached_property
     def _stick_rise(self) -> float:
         """g_0(c) - g_0(c_0)."""
-        return -float(self.model.shape.rise(self.shift, np.array([-self.shift]))[0])
+        return -float(self.model.shape.rise(self.stick_shift, np.array([-self.stick_shift]))[0])
 
     @cached_property
-    def drive(self) -> float:
+    def reduced_amplitude(self) -> float:
         """D."""
         if self.model.constant.displacement:
             return 1.0
-        return 1.0 + self.risen - (self._stick_rise if self.model.constant.stick_shrinks else 0.0)
+        return (
+            1.0
+            + self.depth_increase
+            - (self._stick_rise if self.model.constant.stick_shrinks else 0.0)
+        )
 
     @cached_property
     def x(self) -> Array:
@@ -159,12 +163,12 @@ class AnnulusState:
     @cached_property
     def growth(self) -> float:
         """a - a_0."""
-        return self.shift + float(self.offset[-1]) - self.model.first_width
+        return self.stick_shift + float(self.offset[-1]) - self.model.first_width
 
     @cached_property
     def unworn(self) -> Array:
         """(g_0(x) - g_0(c))/x."""
-        return self.model.shape.rise(self.shift, self.offset) / self.x
+        return self.model.shape.rise(self.stick_shift, self.offset) / self.x
 
     @cached_property
     def tilt(self) -> tuple[float, float]:
@@ -206,7 +210,7 @@ class AnnulusState:
         return np.asarray(self.model.maps.to_slip @ self.unworn + self.worn)
 
     @cached_property
-    def lifted(self) -> float:
+    def worn_integral(self) -> float:
         """int_c^a (gamma - gamma_0) dx."""
         return float(self.end**2 * (self.model.maps.mean @ self.worn_omega))
 
@@ -214,7 +218,9 @@ class AnnulusState:
     def power(self) -> float:
         """int_c^a (D - gamma) gamma dx, the friction work of a cycle. Source: notes, §6."""
         maps, omega = self.model.maps, self.omega
-        return float(self.end**2 * (self.drive * maps.mean - self.gamma @ maps.product) @ omega)
+        return float(
+            self.end**2 * (self.reduced_amplitude * maps.mean - self.gamma @ maps.product) @ omega
+        )
 
 
 @dataclass(frozen=True)

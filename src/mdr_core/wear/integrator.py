@@ -35,10 +35,11 @@ class StickTrail(NamedTuple):
     def until(self, state: AnnulusState) -> "StickTrail":
         """Return the part behind one state."""
         # While the stick edge rests, the wear at its radius grows.
-        rests = (self.radius == state.stick) & (self.worn <= state.passed)
+        rests = (self.radius == state.stick) & (self.worn <= state.retained_wear)
         before = (self.radius < state.stick) | rests
         return StickTrail(
-            np.append(self.radius[before], state.stick), np.append(self.worn[before], state.passed)
+            np.append(self.radius[before], state.stick),
+            np.append(self.worn[before], state.retained_wear),
         )
 
     @property
@@ -172,7 +173,7 @@ def _events(model: AnnulusModel, rtol: float, ends: tuple[float, float]) -> list
     return [
         event(lambda state: state.growth - ends[0]),
         # The work of a cycle is of the order of the square of the pressure.
-        event(lambda state: state.end * state.pressure.max() - rtol * state.drive),
+        event(lambda state: state.end * state.pressure.max() - rtol * state.reduced_amplitude),
         event(lambda state: state.stick - ends[1]),
     ]
 
@@ -183,5 +184,6 @@ def _trail(model: AnnulusModel, steps: list[Array]) -> StickTrail:
         return NO_TRAIL
     states = [AnnulusState(model, vector) for vector in steps]
     return StickTrail(
-        np.array([state.stick for state in states]), np.array([state.passed for state in states])
+        np.array([state.stick for state in states]),
+        np.array([state.retained_wear for state in states]),
     )

@@ -34,12 +34,12 @@ def jacobian(model: AnnulusModel, vector: Array) -> Array:
     balance = _EdgeBalance(AnnulusState(model, vector))
     state, n, maps = balance.state, model.first_edge, model.maps
     in_worn, in_edges = balance.gradients()
-    in_omega = state.end**2 * maps.mean * (state.drive - 2 * state.gamma)
+    in_omega = state.end**2 * maps.mean * (state.reduced_amplitude - 2 * state.gamma)
     gradient = np.concatenate([in_worn[:-1], in_edges, (in_omega @ maps.from_slip)[None]])
     found = np.zeros((vector.size, vector.size))
     if model.tilt:
         passing = in_edges[2] - balance.stick_slope * in_edges[1]
-        rows = np.multiply.outer(model.tilt.rates(state.shift), passing)
+        rows = np.multiply.outer(model.tilt.rates(state.stick_shift), passing)
         gradient = np.concatenate([gradient, rows])
         values, _ = model.tilt.basis(state.growth)
         found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], values / state.end)
@@ -128,7 +128,7 @@ class _EdgeBalance:
         found = [worn[:-1], self.edges, np.array([self.state.power])]
         if self.model.tilt:
             passing = self.edges[2] - self.stick_slope * self.edges[1]
-            found.append(self.model.tilt.rates(self.state.shift) * passing)
+            found.append(self.model.tilt.rates(self.state.stick_shift) * passing)
         return np.concatenate(found)
 
     @property
@@ -158,22 +158,28 @@ class _EdgeBalance:
         slope = float(self.model.shape.slope(state.x[-1:])[0])
         omega[1:3] += (slope - state.unworn[-1]) / a * self.motion[:, -1]
         omega[2] -= self.stick_slope / a
-        # Rates of D and of the level d - D.
-        drive = np.array([0.0, 0.0, 0.0, float(constant.force and not constant.displacement)])
-        level = np.array([0.0, 0.0, 0.0, float(constant.stick_grows)])
+        # Rates of D and of d - D, the depth g(c) of the stick edge.
+        amplitude_rate = np.array(
+            [0.0, 0.0, 0.0, float(constant.force and not constant.displacement)]
+        )
+        stick_depth_rate = np.array([0.0, 0.0, 0.0, float(constant.stick_grows)])
         if constant.stick_shrinks:
-            drive[2], level[2] = -self.stick_slope, self.stick_slope
+            amplitude_rate[2], stick_depth_rate[2] = -self.stick_slope, self.stick_slope
         edge = np.array([0.0, *self.motion[:, -1], 0.0])
-        rows = [a * omega + edge * state.omega[-1] - drive]
-        rows[0][0] += _RETURN * (state.gamma[-1] - state.drive)
+        rows = [a * omega + edge * state.omega[-1] - amplitude_rate]
+        rows[0][0] += _RETURN * (state.gamma[-1] - state.reduced_amplitude)
         if constant.force or constant.stick_shrinks:
             # Rate of int_c^a (gamma - D) dx, with gamma(a) = D. The integral of gamma_0 changes at
             # its ends only: by values at nodes it would jump where one passes a break of the slope.
-            risen = b * b * (maps.mean @ worn) - edge * a * state.worn_omega[-1]
-            risen[1] += 2 * state.lifted / b
-            risen[2] -= (a - c) * self.stick_slope
-            risen += (a - c) * level
-            rows.append(np.array([0, 0, 0, a]) - risen if constant.force else c * drive - risen)
+            integral_rate = b * b * (maps.mean @ worn) - edge * a * state.worn_omega[-1]
+            integral_rate[1] += 2 * state.worn_integral / b
+            integral_rate[2] -= (a - c) * self.stick_slope
+            integral_rate += (a - c) * stick_depth_rate
+            rows.append(
+                np.array([0, 0, 0, a]) - integral_rate
+                if constant.force
+                else c * amplitude_rate - integral_rate
+            )
         if constant.stick_grows:
             rows.append(np.array([0.0, 0.0, state.gamma[0] / state.offset[0], -1.0]))
         return np.array(rows)

@@ -36,10 +36,13 @@ class SurfaceTilt:
     def _stop(self) -> float:
         return self._first + self.reach
 
-    def rates(self, shift: float) -> Array:
-        """Return dC/dw_c, for a stick edge at c_0 + shift, as the terms of the series, (COUNT,)."""
+    def rates(self, stick_shift: float) -> Array:
+        """Return the terms of dC/dw_c, for a stick edge at c_0 + stick_shift, (COUNT,)."""
         share = (1 + _POINTS) / 2 * self.reach / self._stop
-        c, offset = self.stick + shift, self.width + share * self._first / (1 - share) - shift
+        c, offset = (
+            self.stick + stick_shift,
+            self.width + share * self._first / (1 - share) - stick_shift,
+        )
         values = -2 / np.pi * np.arctan2(np.sqrt(offset * (offset + 2 * c)), c)
         return np.asarray(_TO_SERIES @ values)
 

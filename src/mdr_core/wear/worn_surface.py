@@ -42,7 +42,7 @@ class WornSurface:
     def indentation_depth(self) -> Array:
         """d [length]: it grows where the normal force is constant."""
         start, unit = float(self.initial.contact.indentation_depth), self.initial.depth_unit
-        return start + self._each(lambda state: unit * state.risen, 0.0)
+        return start + self._each(lambda state: unit * state.depth_increase, 0.0)
 
     @cached_property
     def stick_radius(self) -> Array:
@@ -69,7 +69,7 @@ class WornSurface:
         e_star, unit = float(contact.e_star), initial.depth_unit * initial.length_unit
 
         def worn(state: AnnulusState) -> float:
-            return float(state.x[-1] ** 2 * state.worn_omega[-1]) - state.lifted
+            return float(state.x[-1] ** 2 * state.worn_omega[-1]) - state.worn_integral
 
         return np.asarray(e_star * (profile.reduced_force(edge) + 2 * unit * self._each(worn, 0.0)))
 
