@@ -85,11 +85,11 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     if not every(profile.domain == inf):
         _reject(contact_radius > profile.domain, profile, "contact_radius")
     coordinate = profile.coordinate_from_radius(contact_radius)
-    levels = profile.coordinate_levels
-    if not levels.size:
+    plateaus = profile.coordinate_plateaus
+    if not plateaus.size:
         return coordinate
-    below = np.maximum(np.searchsorted(levels[:, 0], coordinate) - 1, 0)
-    low, high = levels[below, 0], levels[below, 1]
+    below = np.maximum(np.searchsorted(plateaus[:, 0], coordinate) - 1, 0)
+    low, high = plateaus[below, 0], plateaus[below, 1]
     return where((low < coordinate) & (coordinate <= high), low, coordinate)
 
 

@@ -120,14 +120,17 @@ class IntervalMoments:
             return Moments(span, np.concatenate(weights, axis=1))
         if not has_many_breaks(self.profile):
             return self._by_break(low, span, ends)
-        breaks, levels = self._breaks
-        first = np.searchsorted(levels, low, side="right")
-        last = np.searchsorted(levels, low + span, side="left")
+        breaks, normal_at_breaks = self._breaks
+        first = np.searchsorted(normal_at_breaks, low, side="right")
+        last = np.searchsorted(normal_at_breaks, low + span, side="left")
         base = np.append(0.0, breaks)[first]
         crossed = np.flatnonzero(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         next_break = first[crossed]
-        stop[crossed], length[crossed] = breaks[next_break], levels[next_break] - low[crossed]
+        stop[crossed], length[crossed] = (
+            breaks[next_break],
+            normal_at_breaks[next_break] - low[crossed],
+        )
         found = self._smooth(low, length, np.array([start, stop]), base)
         if not crossed.size:
             return found
@@ -135,7 +138,7 @@ class IntervalMoments:
         top = np.maximum(span[crossed] - between.span, 0.0)
         base = breaks[last[crossed] - 1]
         ends = np.array([base, np.maximum(ends[1][crossed], base)])
-        upper = self._smooth(levels[last[crossed] - 1], top, ends, base)
+        upper = self._smooth(normal_at_breaks[last[crossed] - 1], top, ends, base)
         found.weights[:, crossed] = between.joined(upper).weights
         return Moments(span, found.weights)
 
@@ -179,11 +182,11 @@ class IntervalMoments:
         breaks = breaks[breaks > self.profile.first_coordinate]
         # A break that no load reaches may have no normal coordinate in doubles.
         with np.errstate(over="ignore", invalid="ignore"):
-            levels = _from_below(self.normal, breaks)
+            normal_at_breaks = _from_below(self.normal, breaks)
         # Where the slope is zero the normal coordinate is constant, and does not round.
-        level = np.append(False, self._slope((breaks[:-1] + breaks[1:]) / 2) == 0)
-        start = np.maximum.accumulate(np.where(level, 0, np.arange(breaks.size)))
-        return breaks, levels[start]
+        plateau = np.append(False, self._slope((breaks[:-1] + breaks[1:]) / 2) == 0)
+        start = np.maximum.accumulate(np.where(plateau, 0, np.arange(breaks.size)))
+        return breaks, normal_at_breaks[start]
 
     def _slope(self, s: Array) -> Array:
         """Derivative of the normal coordinate with respect to the contact coordinate."""
@@ -193,13 +196,18 @@ class IntervalMoments:
     @cached_property
     def _chains(self) -> list[Moments]:
         """Moments from each break to the 2^k-th next, for k = 0, 1, ..."""
-        breaks, levels = self._breaks
+        breaks, normal_at_breaks = self._breaks
         ends = np.array([breaks[:-1], breaks[1:]])
-        chains, size = [self._smooth(levels[:-1], np.diff(levels), ends, ends[0])], 1
-        # On a level the measure is concentrated at one normal coordinate.
-        level = levels[:-1] == levels[1:]
-        twice = 2 * self.profile.contact_radius(ends[:, level])
-        chains[0].weights[2, level] = np.abs(np.diff(1 / twice if self.by_force else twice, axis=0))
+        chains, size = (
+            [self._smooth(normal_at_breaks[:-1], np.diff(normal_at_breaks), ends, ends[0])],
+            1,
+        )
+        # On a plateau the measure is concentrated at one normal coordinate.
+        plateau = normal_at_breaks[:-1] == normal_at_breaks[1:]
+        twice = 2 * self.profile.contact_radius(ends[:, plateau])
+        chains[0].weights[2, plateau] = np.abs(
+            np.diff(1 / twice if self.by_force else twice, axis=0)
+        )
         while chains[-1].span.size > size:
             last = chains[-1]
             chains.append(last.at(slice(None, -size)).joined(last.at(slice(size, None))))

@@ -96,7 +96,7 @@ def invert(
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-            # On a level of a rough table the residual would creep.
+            # On a plateau of a rough table the residual would creep.
             usable = ((proposed > low) & (proposed < high) & (slope != 0)) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), inf)

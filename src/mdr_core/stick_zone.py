@@ -147,8 +147,8 @@ def _by_stick_radius(
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":
-        if profile.coordinate_levels.size:
-            # Beyond it the springs of a level of g carry no load.
+        if profile.coordinate_plateaus.size:
+            # Beyond it the springs of a plateau of g carry no load.
             a = np.minimum(a, profile.contact_radius(contact.coordinate))
             c = np.minimum(c, a)
         width = profile.coordinate_width(a, c, contact.coordinate, edge)

@@ -78,9 +78,9 @@ class TangentialContact(Results):
 
     @property
     def _beyond_load(self) -> Flags | None:
-        """True where the contact radius is prescribed on a level of g, which carries no load."""
+        """True where the contact radius is prescribed on a plateau of g, which carries no load."""
         profile = self.normal.profile
-        if self.normal.control != "contact_radius" or not profile.coordinate_levels.size:
+        if self.normal.control != "contact_radius" or not profile.coordinate_plateaus.size:
             return None
         loaded = profile.contact_radius(self._coordinate)
         return np.asarray(self.normal.contact_radius > loaded * (1 + 2.0**-50))

@@ -211,41 +211,41 @@ def test_equivalent_profile_of_a_rough_table_never_falls(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
-def test_contact_radius_on_a_level_has_the_load_of_its_inner_end(control: str, seed: int) -> None:
+def test_contact_radius_on_a_plateau_has_the_load_of_its_inner_end(control: str, seed: int) -> None:
     body = rough(seed)
-    levels = body.resolved.levels
-    levels = levels[levels[:, 1] < body.domain]
+    plateaus = body.resolved.plateaus
+    plateaus = plateaus[plateaus[:, 1] < body.domain]
     for share in (0.0, 1e-16, 1e-12, 1e-3, 0.5, 1 - 1e-9, 1 - 1e-14):
-        for begin, end in levels[:4]:
+        for begin, end in plateaus[:4]:
             contacts = [
                 solve(body, 1.0, contact_radius=begin + part * (end - begin)) for part in (0, 0.4)
             ]
             limit = "normal_force" if control == "tangential_force" else "indentation_depth"
             size = 0.3 * share * float(getattr(contacts[0], limit))
-            inner, level = (
+            inner, plateau = (
                 tangential.solve(each, 1.0, 0.3, **{control: size}) for each in contacts
             )
-            assert float(level.dissipated_energy) == float(inner.dissipated_energy) >= 0
-            assert float(level.tangential_force) == float(inner.tangential_force) >= 0
-            assert float(level.tangential_displacement) >= 0
-            a, c = float(contacts[1].contact_radius), float(level.stick_radius)
-            assert float(level.slip_width) == pytest.approx(a - c, rel=0, abs=1e-14)
-            assert (share > 0) == (float(level.slip_width) > 0)
+            assert float(plateau.dissipated_energy) == float(inner.dissipated_energy) >= 0
+            assert float(plateau.tangential_force) == float(inner.tangential_force) >= 0
+            assert float(plateau.tangential_displacement) >= 0
+            a, c = float(contacts[1].contact_radius), float(plateau.stick_radius)
+            assert float(plateau.slip_width) == pytest.approx(a - c, rel=0, abs=1e-14)
+            assert (share > 0) == (float(plateau.slip_width) > 0)
 
 
-def test_slip_front_jumps_across_a_level() -> None:
-    """On a level the width of the slip annulus grows without a force."""
+def test_slip_front_jumps_across_a_plateau() -> None:
+    """On a plateau the width of the slip annulus grows without a force."""
     rng = np.random.default_rng(1)
     r = np.linspace(0.0, 1.0, 200)
     f = np.sort(np.append(0.0, np.maximum(r[1:] ** 2 + 1e-3 * rng.normal(size=199), 0.0)))
     body = Tabulated(tuple(r), tuple(f))
-    inner, outer = body.resolved.levels[:-1].T
+    inner, outer = body.resolved.plateaus[:-1].T
     within = outer < body.domain
-    # So far beyond each level that a push just crosses it, and one that does not.
+    # So far beyond each plateau that a push just crosses it, and one that does not.
     contact = solve(body, 1.0, contact_radius=outer[within] * (1 + 6e-4))
     for share in (0.97, 0.99, 1.01, 1.03):
-        level = solve(body, 1.0, contact_radius=inner[within])
-        force = 0.3 * share * (contact.normal_force - level.normal_force)
+        plateau = solve(body, 1.0, contact_radius=inner[within])
+        force = 0.3 * share * (contact.normal_force - plateau.normal_force)
         pushed = tangential.solve(contact, 0.8, 0.3, tangential_force=force)
         assert pushed.tangential_force == pytest.approx(force, rel=1e-9, abs=0)
         beyond = pushed.stick_radius > outer[within] * (1 - 1e-9)

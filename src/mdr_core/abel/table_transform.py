@@ -43,14 +43,14 @@ def subpanel_edges(knots: Array, cuts: Sequence[float] = ()) -> Array:
     return np.array(edges)
 
 
-def resolve(knots: Array, slope: Array, levels: Array, *, spline: bool = False) -> Subpanels:
+def resolve(knots: Array, slope: Array, plateaus: Array, *, spline: bool = False) -> Subpanels:
     """Return the subpanels of a table whose slope f' is quadratic between the knots.
 
     Parameters
     ----------
     knots : radii of the table, from the axis or the flat's edge on [length], shape (k + 1,).
     slope : coefficients of the powers 0 to 2 of the distance from the left knot, shape (3, k).
-    levels : intervals of the radius in which g is taken as constant [length], shape (m, 2).
+    plateaus : intervals of the radius in which g is taken as constant [length], shape (m, 2).
     spline : True if f'' is continuous except at a few knots.
 
     Returns
@@ -58,7 +58,7 @@ def resolve(knots: Array, slope: Array, levels: Array, *, spline: bool = False) 
     Depth, half force and energy / E*, relatively accurate at every load.
     """
     source, jumps = slope_source(knots, slope)
-    edges = subpanel_edges(knots, levels.ravel().tolist())
+    edges = subpanel_edges(knots, plateaus.ravel().tolist())
     left, right = edges[:-1], edges[1:]
     length = inverse_hypot(right, left)
     pole = np.zeros_like(left)
@@ -72,7 +72,7 @@ def resolve(knots: Array, slope: Array, levels: Array, *, spline: bool = False) 
         # Next to the axis s = x and g' is a polynomial.
         by_depth[0, :3] = slope[:, 0] * [np.pi / 2, 2.0, 3 * np.pi / 4] * length[0] ** np.arange(3)
         by_force[0, 1:4] = by_depth[0, :3] * length[0]
-    for low, high in levels.tolist():
+    for low, high in plateaus.tolist():
         by_depth[(left >= low) & (right <= high)] = 0.0
         by_force[(left >= low) & (right <= high)] = 0.0
     used = np.flatnonzero((by_depth != 0).any(axis=0) | (by_force != 0).any(axis=0))

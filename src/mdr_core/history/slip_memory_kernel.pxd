@@ -48,7 +48,7 @@ cdef class PolylineStack:
     cdef void _cut(
         self, Py_ssize_t lower, Py_ssize_t upper, Py_ssize_t own, Py_ssize_t other, double keep
     ) noexcept
-    cdef void _cut_level(
+    cdef void _cut_at_constant_anchor(
         self, Py_ssize_t lower, Py_ssize_t own, Py_ssize_t other, double keep
     ) noexcept
     @cython.locals(first=bint)

@@ -238,7 +238,7 @@ class PolylineStack:
         """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
         growth = self.growth[upper, other]
         if growth == self.growth[upper, own]:
-            self._cut_level(lower, own, other, keep)
+            self._cut_at_constant_anchor(lower, own, other, keep)
             return
         ratio = growth / self.growth[upper, own]
         over = self._excess(upper, POINT, own)
@@ -254,7 +254,7 @@ class PolylineStack:
         if rest <= 0:
             self.constant[upper] = other
 
-    def _cut_level(self, lower: int, own: int, other: int, keep: float) -> None:
+    def _cut_at_constant_anchor(self, lower: int, own: int, other: int, keep: float) -> None:
         """Find the corner on a segment of constant anchor, where both sums grow alike.
 
         Exactly: the stress of a slope that is mere rounding error is infinite at a tip or a slope

@@ -29,7 +29,7 @@ NORMAL_QUANTITIES: Final = (
     "elastic_energy",
 )
 _NO_BREAKS: Final = np.empty(0)
-_NO_LEVELS: Final = np.empty((0, 2))
+_NO_PLATEAUS: Final = np.empty((0, 2))
 
 
 class Profile(ABC):
@@ -173,9 +173,9 @@ class Profile(ABC):
         return _NO_BREAKS
 
     @property
-    def coordinate_levels(self) -> Array:
+    def coordinate_plateaus(self) -> Array:
         """Intervals of the contact coordinate in which g is constant, ascending, (m, 2)."""
-        return _NO_LEVELS
+        return _NO_PLATEAUS
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         """Contact coordinate of a contact radius."""

@@ -40,14 +40,14 @@ class ResolvedTable:
     domain: float
     """Radius up to which g rises [length]."""
     notices: tuple[Notice, ...]
-    levels: Array
+    plateaus: Array
     """Ends of the intervals of the radius in which g is constant [length], shape (m, 2)."""
 
     @cached_property
     def breaks(self) -> Array:
         """Radii behind the first edge between which g is smooth [length], ascending."""
-        radii = np.unique(np.append(self.r[1:-1], self.levels))
-        # A level may begin at a point of the table up to rounding.
+        radii = np.unique(np.append(self.r[1:-1], self.plateaus))
+        # A plateau may begin at a point of the table up to rounding.
         apart = np.append(True, np.diff(radii) > _SAME * radii[1:])
         first = self.panels.edges[0]
         return np.asarray(radii[apart & (radii > first) & (radii < self.r[-1])])
@@ -104,28 +104,30 @@ def resolve_table(
         if other.dips().depth.max(initial=0.0) < dips.depth.max() / 2:
             notices.append(_not_by_spline("g", dips.begin[0]))
             rows, spline, panels, dips = monotone, False, other, other.dips()
-    domain, levels = float(r[-1]), np.empty((0, 2))
+    domain, plateaus = float(r[-1]), np.empty((0, 2))
     if dips.top.size:
         noticed = _noticed(panels, dips)
         large = dips.depth > _ROUGHNESS * panels.at_edges[0].max()
-        levels = np.stack([dips.begin, dips.end], axis=1)
-        panels = _subpanels(r, f, rows, levels, spline=spline)
+        plateaus = np.stack([dips.begin, dips.end], axis=1)
+        panels = _subpanels(r, f, rows, plateaus, spline=spline)
         if large.any():
             end = panels.inverse(0, dips.bottom[large].min(keepdims=True))
             domain = float(panels.radius(*end)[0])
         noticed &= dips.begin < domain
         if noticed.any():
             notices.append(_rough(dips.begin[noticed], float(dips.depth[noticed].max())))
-    return ResolvedTable(r, rows, panels, domain, tuple(notices), levels)
+    return ResolvedTable(r, rows, panels, domain, tuple(notices), plateaus)
 
 
 def _subpanels(
-    r: Array, f: Array, rows: Array, levels: Array | None = None, *, spline: bool = False
+    r: Array, f: Array, rows: Array, plateaus: Array | None = None, *, spline: bool = False
 ) -> Subpanels:
     """Transforms of the interpolant, from the axis or the flat's edge on."""
     first = int(np.flatnonzero(f == 0)[-1])
     slope = rows[1:, first:] * np.array([[1.0], [2.0], [3.0]])
-    return resolve(r[first:], slope, np.empty((0, 2)) if levels is None else levels, spline=spline)
+    return resolve(
+        r[first:], slope, np.empty((0, 2)) if plateaus is None else plateaus, spline=spline
+    )
 
 
 def _noticed(panels: Subpanels, dips: Dips) -> Flags:

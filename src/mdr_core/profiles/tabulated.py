@@ -95,8 +95,8 @@ class Tabulated(FlatEnded):
         return inverse_hypot(self.resolved.breaks, self.flat_radius)
 
     @property
-    def coordinate_levels(self) -> Array:
-        return inverse_hypot(self.resolved.levels, self.flat_radius)
+    def coordinate_plateaus(self) -> Array:
+        return inverse_hypot(self.resolved.plateaus, self.flat_radius)
 
     @cached_property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
