@@ -127,10 +127,8 @@ class IntervalMoments:
         crossed = np.flatnonzero(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         next_break = first[crossed]
-        stop[crossed], length[crossed] = (
-            breaks[next_break],
-            normal_at_breaks[next_break] - low[crossed],
-        )
+        stop[crossed] = breaks[next_break]
+        length[crossed] = normal_at_breaks[next_break] - low[crossed]
         found = self._smooth(low, length, np.array([start, stop]), base)
         if not crossed.size:
             return found
@@ -196,18 +194,14 @@ class IntervalMoments:
     @cached_property
     def _chains(self) -> list[Moments]:
         """Moments from each break to the 2^k-th next, for k = 0, 1, ..."""
-        breaks, normal_at_breaks = self._breaks
+        breaks, normal = self._breaks
         ends = np.array([breaks[:-1], breaks[1:]])
-        chains, size = (
-            [self._smooth(normal_at_breaks[:-1], np.diff(normal_at_breaks), ends, ends[0])],
-            1,
-        )
+        chains, size = [self._smooth(normal[:-1], np.diff(normal), ends, ends[0])], 1
         # On a plateau the measure is concentrated at one normal coordinate.
-        plateau = normal_at_breaks[:-1] == normal_at_breaks[1:]
+        plateau = normal[:-1] == normal[1:]
         twice = 2 * self.profile.contact_radius(ends[:, plateau])
-        chains[0].weights[2, plateau] = np.abs(
-            np.diff(1 / twice if self.by_force else twice, axis=0)
-        )
+        step = np.diff(1 / twice if self.by_force else twice, axis=0)
+        chains[0].weights[2, plateau] = np.abs(step)
         while chains[-1].span.size > size:
             last = chains[-1]
             chains.append(last.at(slice(None, -size)).joined(last.at(slice(size, None))))

@@ -144,11 +144,8 @@ class AnnulusState:
         """D."""
         if self.model.constant.displacement:
             return 1.0
-        return (
-            1.0
-            + self.depth_increase
-            - (self._stick_rise if self.model.constant.stick_shrinks else 0.0)
-        )
+        rise = self._stick_rise if self.model.constant.stick_shrinks else 0.0
+        return 1.0 + self.depth_increase - rise
 
     @cached_property
     def x(self) -> Array:
@@ -218,9 +215,8 @@ class AnnulusState:
     def power(self) -> float:
         """int_c^a (D - gamma) gamma dx, the friction work of a cycle. Source: notes, §6."""
         maps, omega = self.model.maps, self.omega
-        return float(
-            self.end**2 * (self.reduced_amplitude * maps.mean - self.gamma @ maps.product) @ omega
-        )
+        weights = self.reduced_amplitude * maps.mean - self.gamma @ maps.product
+        return float(self.end**2 * weights @ omega)
 
 
 @dataclass(frozen=True)

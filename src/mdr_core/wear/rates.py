@@ -159,9 +159,8 @@ class _EdgeBalance:
         omega[1:3] += (slope - state.unworn[-1]) / a * self.motion[:, -1]
         omega[2] -= self.stick_slope / a
         # Rates of D and of d - D, the depth g(c) of the stick edge.
-        amplitude_rate = np.array(
-            [0.0, 0.0, 0.0, float(constant.force and not constant.displacement)]
-        )
+        grows = constant.force and not constant.displacement
+        amplitude_rate = np.array([0.0, 0.0, 0.0, float(grows)])
         stick_depth_rate = np.array([0.0, 0.0, 0.0, float(constant.stick_grows)])
         if constant.stick_shrinks:
             amplitude_rate[2], stick_depth_rate[2] = -self.stick_slope, self.stick_slope
@@ -175,11 +174,8 @@ class _EdgeBalance:
             integral_rate[1] += 2 * state.worn_integral / b
             integral_rate[2] -= (a - c) * self.stick_slope
             integral_rate += (a - c) * stick_depth_rate
-            rows.append(
-                np.array([0, 0, 0, a]) - integral_rate
-                if constant.force
-                else c * amplitude_rate - integral_rate
-            )
+            total = np.array([0, 0, 0, a]) if constant.force else c * amplitude_rate
+            rows.append(total - integral_rate)
         if constant.stick_grows:
             rows.append(np.array([0.0, 0.0, state.gamma[0] / state.offset[0], -1.0]))
         return np.array(rows)

@@ -39,10 +39,8 @@ class SurfaceTilt:
     def rates(self, stick_shift: float) -> Array:
         """Return the terms of dC/dw_c, for a stick edge at c_0 + stick_shift, (COUNT,)."""
         share = (1 + _POINTS) / 2 * self.reach / self._stop
-        c, offset = (
-            self.stick + stick_shift,
-            self.width + share * self._first / (1 - share) - stick_shift,
-        )
+        c = self.stick + stick_shift
+        offset = self.width + share * self._first / (1 - share) - stick_shift
         values = -2 / np.pi * np.arctan2(np.sqrt(offset * (offset + 2 * c)), c)
         return np.asarray(_TO_SERIES @ values)
 
