@@ -121,7 +121,7 @@ class NormalContact(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the profile, `half_space`, `plastic`, `singular` and `accuracy`."""
-        return validity.with_bodies(self, self.warnings_without_bodies)
+        return validity.with_assumed_bodies(self, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -16,7 +16,7 @@ from mdr_core.typing import Array
 
 # Area over F d from which on it is a difference of energies: cancellation costs less than three of
 # the digits that the estimate leaves.
-_BOWED: Final = 2e-3
+_MIN_AREA_RATIO: Final = 2e-3
 
 
 def slip_moment(
@@ -46,7 +46,7 @@ def slip_moment(
         d, force = profile.depth(coordinate), profile.reduced_force(coordinate)
         chord = (d - profile.depth(low)) * (force + profile.reduced_force(low)) / 2
         area = chord - (energy - profile.reduced_energy(low))
-        narrow = ~(area > _BOWED * d * force)
+        narrow = ~(area > _MIN_AREA_RATIO * d * force)
     if not some(narrow):
         return area
     ends = coordinate, width, stick

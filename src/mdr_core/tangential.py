@@ -116,11 +116,11 @@ class TangentialContact(Results):
         profile = self.normal.profile
         if profile.has_no_partial_slip:
             # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
-            partial = self._largest_stick * self.width
+            partial = self._full_slip_displacement * self.width
         else:
             partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
         if some(self.full_slip):
-            partial = where(self.full_slip, self._largest_stick, partial) + self.excess
+            partial = where(self.full_slip, self._full_slip_displacement, partial) + self.excess
         return self._signed(partial)
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
@@ -140,7 +140,7 @@ class TangentialContact(Results):
         return size if is_number(self.sign) and self.sign > 0 else self.sign * size
 
     @cached_property
-    def _largest_stick(self) -> Array:
+    def _full_slip_displacement(self) -> Array:
         """mu (E*/G*) d [length], at the onset of full slip. Source: mdr-5, Eq. (5.17)."""
         return self.displacement_ratio * self.normal.indentation_depth
 
@@ -247,7 +247,7 @@ class TangentialContact(Results):
         """Largest relative condition number of each load's results with respect to it [1]."""
         by_force = self.control == "tangential_force"
         size = np.abs(self.tangential_force if by_force else self.tangential_displacement)
-        limit = self.limiting_force if by_force else self._largest_stick
+        limit = self.limiting_force if by_force else self._full_slip_displacement
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         if profile.has_no_partial_slip:
             return 1.0 if by_force else conditioning.of_excess_displacement(size, self.excess)
@@ -258,7 +258,7 @@ class TangentialContact(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the normal contact, and `accuracy` if rtol is not reached."""
-        return validity.with_bodies(self.normal, self.warnings_without_bodies)
+        return validity.with_assumed_bodies(self.normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -64,7 +64,7 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
     return [Notice(code, message()) for code, where, message in findings if some(where)]
 
 
-def with_bodies(contact: LoadedContact, others: Iterable[Notice]) -> tuple[Notice, ...]:
+def with_assumed_bodies(contact: LoadedContact, others: Iterable[Notice]) -> tuple[Notice, ...]:
     """Return `half_space` and `plastic`, for unknown bodies, and the other warnings."""
     return (*notices(of_normal_contact(contact)), *others)
 

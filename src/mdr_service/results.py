@@ -14,7 +14,7 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
-from mdr_service.schemas.answers import Known
+from mdr_service.schemas.answers import SolvedAnswer
 from mdr_service.schemas.contacts import Query
 
 Result = dict[str, Any]
@@ -26,9 +26,9 @@ Contact = NormalContact | TangentialContact | LoadHistory
 _LISTED: Final = 5
 
 
-def members(model: type[Known], without: Iterable[str] = ()) -> tuple[str, ...]:
+def members(model: type[SolvedAnswer], without: Iterable[str] = ()) -> tuple[str, ...]:
     """Return the names of the numbers that a response holds."""
-    excluded = {*Known.model_fields, *without}
+    excluded = {*SolvedAnswer.model_fields, *without}
     return tuple(name for name in model.model_fields if name not in excluded)
 
 
@@ -79,7 +79,7 @@ def _finite(values: list[Any] | Array) -> bool:
     return values.dtype.kind != "f" or bool(np.isfinite(values).all())
 
 
-def about(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Result:
+def response_metadata(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Result:
     """Return the method, the error estimate and the warnings of a response."""
     listed = [vars(notice) for notice in warnings]
     return {"method": method, "error_estimate": error_estimate, "warnings": listed}

@@ -97,10 +97,10 @@ def from_environment(environment: Mapping[str, str]) -> Settings:
     try:
         return Settings.model_validate(given)
     except ValidationError as error:
-        raise SystemExit(_complaint(error)) from None
+        raise SystemExit(_error_lines(error)) from None
 
 
-def _complaint(error: ValidationError) -> str:
+def _error_lines(error: ValidationError) -> str:
     # An error of the model as a whole is about `shutdown_seconds`, which depends on two others.
     faults = [((*fault["loc"], "shutdown_seconds")[0], fault["msg"]) for fault in error.errors()]
     return "\n".join(f"{PREFIX}{str(name).upper()}: {message}" for name, message in faults)

@@ -11,8 +11,8 @@ from mdr_service.problems import MEDIA_TYPE
 from mdr_service.schemas.answers import (
     EvolutionAnswer,
     HistoryAnswer,
-    Known,
     NormalAnswer,
+    SolvedAnswer,
     StressAnswer,
     TangentialAnswer,
     WearAnswer,
@@ -256,7 +256,7 @@ def partial_slip_wear(draw: st.DrawFn) -> dict[str, object]:
     }
 
 
-def check(client: Client, path: str, query: object, model: type[Known]) -> None:
+def check(client: Client, path: str, query: object, model: type[SolvedAnswer]) -> None:
     answer = client.post(path, query)
     document = strict_json.loads(answer.content)
     assert isinstance(document, dict)

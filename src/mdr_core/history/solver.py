@@ -173,7 +173,7 @@ class LoadHistory(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the normal contacts, and `accuracy` if rtol is not reached."""
-        return validity.with_bodies(self.contact, self.warnings_without_bodies)
+        return validity.with_assumed_bodies(self.contact, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -57,7 +57,7 @@ class Truncated(FlatEnded):
     """Flat-ended profile with a closed dg/ds = g'(x) s/x beyond it, s = sqrt(x^2 - b^2)."""
 
     # Zeros of dg/ds at the break.
-    zeros: ClassVar[Analytic] = DEFAULT
+    analytic: ClassVar[Analytic] = DEFAULT
     similar: ClassVar[bool] = True
 
     @property
@@ -96,7 +96,7 @@ class Truncated(FlatEnded):
             annulus,
             odd=True,
             rtol=rtol,
-            analytic=self.zeros,
+            analytic=self.analytic,
         )
         value /= pi
         return value
@@ -120,7 +120,7 @@ class RoundedPunch(Truncated):
 
     kind: ClassVar[str] = "rounded_punch"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
-    zeros: ClassVar[Analytic] = Analytic(zeros=2)
+    analytic: ClassVar[Analytic] = Analytic(zeros=2)
 
     def f(self, radius: Array) -> Array:
         return np.square(np.maximum(radius - self.flat_radius, 0.0)) / (2 * self.rounding_radius)

@@ -160,7 +160,7 @@ class WearEvolution(Results, WornSurface):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the contact before wear, and `limit_reached`."""
-        return validity.with_bodies(
+        return validity.with_assumed_bodies(
             self.initial.tangential_contact.normal, self.warnings_without_bodies
         )
 

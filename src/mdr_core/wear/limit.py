@@ -234,8 +234,8 @@ class LimitingWear(Results):
     @property
     def method(self) -> str:
         """Most expensive method: the outer edge of the annulus is a root of a quadrature."""
-        route = self._normal.profile.tangential_method
-        return "quadrature" if route == "closed_form" else route
+        method = self._normal.profile.tangential_method
+        return "quadrature" if method == "closed_form" else method
 
     @property
     def error_estimate(self) -> float:
@@ -245,7 +245,7 @@ class LimitingWear(Results):
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """Warnings of the contact before wear, and those of the limit."""
-        return validity.with_bodies(self._normal, self.warnings_without_bodies)
+        return validity.with_assumed_bodies(self._normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

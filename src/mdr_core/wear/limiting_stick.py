@@ -117,7 +117,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     share = _carried(contact, amplitude, np.ones(()))
     share = np.broadcast_to(share, contact.width.shape)
     if profile.has_no_partial_slip:
-        _refuse_overload(contact, amplitude, contact.full_slip, contact.limiting_force)
+        _reject_overload(contact, amplitude, contact.full_slip, contact.limiting_force)
         return _from(contact, np.zeros_like(share))
     top = np.broadcast_to(normal.coordinate, share.shape)
 
@@ -142,7 +142,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     target = np.where(reach > 0, share, 0.0)
     low, high, most = _first_crossing(carried, slope, reach, target)
     largest = 2 * contact.friction_coefficient * normal.e_star * most
-    _refuse_overload(contact, amplitude, most < target, largest)
+    _reject_overload(contact, amplitude, most < target, largest)
     width = invert(
         sloped,
         target,
@@ -189,7 +189,7 @@ def _first_crossing(
     return np.where(found, before, start), np.where(found, at, left), most
 
 
-def _refuse_overload(
+def _reject_overload(
     contact: TangentialContact, force: Array, beyond: Flags, largest: Array
 ) -> None:
     if not np.any(beyond):

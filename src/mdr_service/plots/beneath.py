@@ -4,7 +4,7 @@ import numpy as np
 
 from mdr_core import subsurface
 from mdr_core.tangential import TangentialContact
-from mdr_service.plots.plot import Map, some
+from mdr_service.plots.plot import Map, subset_note
 from mdr_service.queries.fields import at_end
 from mdr_service.queries.subsurface import body_of
 from mdr_service.results import Contact, Result
@@ -30,5 +30,5 @@ def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> M
     if "largest" in result and query.y == 0:
         found = result["largest"]["von_mises"]
         peak = (float(found["x"][0]), float(found["z"][0]))
-    loads = some(1, query.loads, "loads")
+    loads = subset_note(1, query.loads, "loads")
     return Map(x, z, first, "von Mises stress", a, stick, peak, loads)

@@ -20,7 +20,7 @@ from mdr_service.plots.plot import (
     Mark,
     Panel,
     Plot,
-    some,
+    subset_note,
 )
 from mdr_service.queries.load_paths import SolvedPath, solve_path
 from mdr_service.results import Result
@@ -72,7 +72,7 @@ def tangential(_query: TangentialQuery, contact: TangentialContact, result: Resu
         LABELS["tangential_displacement"],
         [Panel(LABELS["tangential_force"], curves, marks=marks)],
         points_label="requested loads",
-        note=some(len(curves), forces.size, "normal forces"),
+        note=subset_note(len(curves), forces.size, "normal forces"),
     )
 
 

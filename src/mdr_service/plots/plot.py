@@ -99,6 +99,6 @@ class Map(NamedTuple):
     note: str = ""
 
 
-def some(shown: int, total: int, what: str) -> str:
+def subset_note(shown: int, total: int, what: str) -> str:
     """Return the note that not all of something is drawn."""
     return f"{shown} of {total} {what}" if shown < total else ""

@@ -22,7 +22,7 @@ from mdr_service.plots.plot import (
     Mark,
     Panel,
     Plot,
-    some,
+    subset_note,
 )
 from mdr_service.queries.fields import at_end, field, solve_stress
 from mdr_service.queries.wear import solve_wear
@@ -63,7 +63,7 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
         marks += [Mark(front, "c") for front in fronts.tolist() if fronts.size <= MOST_CURVES]
     else:
         marks += _edge_marks(fronts, "c")
-    note = some(loads, query.loads, "loads")
+    note = subset_note(loads, query.loads, "loads")
     marks = [mark for mark in marks if mark.place > 0]
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
@@ -86,7 +86,7 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
     marks = [
         mark for index in np.flatnonzero(bounded).tolist() for mark in _wear_marks(shown, index)
     ]
-    note = some(loads, query.loads, "loads")
+    note = subset_note(loads, query.loads, "loads")
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
 
@@ -102,7 +102,7 @@ def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Pl
     panels = _panels(radius, dense, names, result, shown)
     panels[0].curves.append(_initial(worn, radius))
     marks = [Mark(float(worn.stick_radius[-1]), "c"), Mark(float(worn.contact_radius[-1]), "a")]
-    note = some(shown.size, size, "numbers of cycles")
+    note = subset_note(shown.size, size, "numbers of cycles")
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
 

@@ -12,7 +12,7 @@ from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service import observability
-from mdr_service.results import Result, about, by_load, checked, members, notices
+from mdr_service.results import Result, by_load, checked, members, notices, response_metadata
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
@@ -96,4 +96,4 @@ def _result(
     singular = any(notice.code == "singular" for notice in warnings)
     infinite = dict.fromkeys(("mean_pressure", "maximum_pressure"), singular)
     found = checked(query, values, infinite)
-    return found | about(source.method, source.error_estimate, warnings)
+    return found | response_metadata(source.method, source.error_estimate, warnings)

@@ -17,9 +17,9 @@ from mdr_service.queries.load_paths import require_few_samples, solve_points
 from mdr_service.results import (
     Contact,
     Result,
-    about,
     checked,
     notices,
+    response_metadata,
     singular,
     without_singular,
 )
@@ -93,7 +93,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     if source.error_estimate <= query.rtol < at_edges:
         warnings.append(normal_contact.not_reached(query.rtol))
     error = max(source.error_estimate, integrated) + at_edges
-    return {"radius": radius} | values | about(method, error, warnings)
+    return {"radius": radius} | values | response_metadata(method, error, warnings)
 
 
 def field(name: str, end: End, radius: Array, rtol: float) -> Array:

@@ -8,7 +8,14 @@ from mdr_core import history as load_history
 from mdr_core.errors import InputError
 from mdr_core.history import LoadCycles, LoadHistory
 from mdr_service.queries.contacts import body, control, friction
-from mdr_service.results import Result, about, checked, members, notices, without_singular
+from mdr_service.results import (
+    Result,
+    checked,
+    members,
+    notices,
+    response_metadata,
+    without_singular,
+)
 from mdr_service.schemas.answers import HistoryAnswer
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.load_paths import HistoryQuery, LoadPath
@@ -79,7 +86,9 @@ def history_result(query: HistoryQuery, path: SolvedPath) -> Result:
     if path.cycles:
         values |= {name: np.asarray(getattr(path.cycles, name)) for name in _CYCLES}
     warnings = without_singular(notices(query, history))
-    return checked(query, values) | about(history.method, history.error_estimate, warnings)
+    return checked(query, values) | response_metadata(
+        history.method, history.error_estimate, warnings
+    )
 
 
 def require_few_samples(name: str, path: LoadPath) -> None:

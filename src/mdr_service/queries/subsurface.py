@@ -11,7 +11,14 @@ from mdr_core.normal import not_reached
 from mdr_core.subsurface import StressTensor
 from mdr_core.typing import Array
 from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
-from mdr_service.results import Contact, Result, about, checked, notices, without_singular
+from mdr_service.results import (
+    Contact,
+    Result,
+    checked,
+    notices,
+    response_metadata,
+    without_singular,
+)
 from mdr_service.schemas.contacts import Bodies
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 
@@ -78,7 +85,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         more["search_error_estimate"] = _OF_SEARCH
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
     found = {"x": x, "z": z} | checked(query, values, dict.fromkeys(values, infinite)) | more
-    return found | about(method, error, warnings)
+    return found | response_metadata(method, error, warnings)
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:

@@ -16,11 +16,11 @@ from mdr_service.queries.fields import require_few_numbers
 from mdr_service.results import (
     Result,
     Wear,
-    about,
     by_load,
     checked,
     members,
     notices,
+    response_metadata,
     singular,
     unworn,
     without_singular,
@@ -106,7 +106,9 @@ def _result(
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
         infinite[name] = flags | infinite.get(name, False)
-    return checked(query, values, infinite) | about(worn.method, worn.error_estimate, warnings)
+    return checked(query, values, infinite) | response_metadata(
+        worn.method, worn.error_estimate, warnings
+    )
 
 
 def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:

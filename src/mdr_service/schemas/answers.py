@@ -38,7 +38,7 @@ class AnswerWarning(Answer):
     message: str = Field(description="Explanation in this case.")
 
 
-class Known(Answer):
+class SolvedAnswer(Answer):
     """Method, accuracy and warnings of every response."""
 
     method: str = Field(description="Most expensive method among the results.")
@@ -49,7 +49,7 @@ class Known(Answer):
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 
-class NormalAnswer(Known):
+class NormalAnswer(SolvedAnswer):
     """One entry per load in every list."""
 
     indentation_depth: list[float] = _length("Indentation depth d")
@@ -61,7 +61,7 @@ class NormalAnswer(Known):
     elastic_energy: list[float] = _energy("Elastic energy of the contact")
 
 
-class HistoryAnswer(Known):
+class HistoryAnswer(SolvedAnswer):
     """One entry per sample in every list, but for `slip_fronts` and the lists over the cycles."""
 
     step: list[int] = _number("Index of the load step, from 0")
@@ -99,7 +99,7 @@ class TangentialAnswer(NormalAnswer):
     regime: _Regime
 
 
-class StressAnswer(Known):
+class StressAnswer(SolvedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
     radius: list[float] = _length("Radii r, requested or chosen")
@@ -152,7 +152,7 @@ class YieldOnsetForce(Answer):
     von_mises: list[float | None] = _force("By von Mises' criterion")
 
 
-class SubsurfaceAnswer(Known):
+class SubsurfaceAnswer(SolvedAnswer):
     """Requested stresses by load, z and x; tension is positive."""
 
     x: list[float] = _length("Coordinates along the tangential force, requested or chosen")
@@ -179,7 +179,7 @@ class SubsurfaceAnswer(Known):
     )
 
 
-class WearAnswer(Known):
+class WearAnswer(SolvedAnswer):
     """One entry per pair of load and amplitude in every list; fields only if requested.
 
     In full slip under a constant force wear is unbounded: quantities that grow with it are null,
@@ -211,7 +211,7 @@ class WearAnswer(Known):
     )
 
 
-class EvolutionAnswer(Known):
+class EvolutionAnswer(SolvedAnswer):
     """One entry per number of cycles in every list; fields only if requested.
 
     `error_estimate` bounds the error of the quantities without a radius.
