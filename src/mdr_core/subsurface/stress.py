@@ -14,9 +14,9 @@ from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array
 from mdr_core.validation import require_not_negative
 
-# Part of the contact radius by which a point is moved off the surface, where the kernels are
-# singular: stresses have at worst a root there.
-_SURFACE: Final = 1e-34
+# Part of its distance from the nearest edge or break, or of the rounding error of the contact
+# radius, by which a point is moved off the surface, where the kernels are singular.
+_SURFACE: Final = 1e-18
 # Relative accuracy of the tractions at the origin.
 _AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
@@ -139,7 +139,9 @@ def on_rings(under: Foundation, r: Array, z: Array, e: Direction, nu: float) -> 
     load = under.load
     if not under.loaded:
         return StressTensor(*np.zeros((6, *e.shape)))
-    depth = np.maximum(z, _SURFACE * load.radius[-1])
+    edges = [0.0, *load.radius, *(float(np.asarray(b)) for b in load.profile.breaks)]
+    near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
+    depth = np.maximum(z, _SURFACE * np.maximum(near, np.spacing(load.radius[-1])))
     pressed, sheared = moments = under.moments(r, depth)
     origin = (r == 0) & (z == 0)
     singular = load.profile.infinite_pressure_radii
