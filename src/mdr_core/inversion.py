@@ -16,15 +16,15 @@ Sloped = Callable[[Array], tuple[Array, Array]]
 
 # Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
 _MOST_STEPS: Final = 200
-# Newton's step at which the next error is rounding error, because convergence is quadratic;
+# Newton's step at which the next error is rounding error, because convergence is quadratic.
 _LAST_STEP: Final = 1e-8
-# where the slope may be that of the other side of a kink, one more step follows.
+# The same beside a slope discontinuity, where the slope may be that of its other side.
 _LAST_BUT_ONE: Final = 1e-10
 # Step that is rounding error itself, as it has to be where no slope is known: residual steps
 # converge linearly.
 _SMALLEST_STEP: Final = 1e-14
 # Distance from the target, in log, below which the step has converged on a steep rise as well:
-# just above a kink it is short long before.
+# just above a slope discontinuity it is short long before.
 _CLOSE: Final = 1e-8
 # Relative width of a bracket without a double inside.
 _ADJACENT: Final = 2.0**-51
@@ -59,8 +59,8 @@ def invert(
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
     name : name of the function, for the error message.
-    smooth : True where the function has no kink nearby, so that a short step is the last one; a
-        function of the place if it has kinks elsewhere.
+    smooth : True where the function has no slope discontinuity nearby, so that a short step is the
+        last one; a function of the place if it has slope discontinuities elsewhere.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def invert(
             value, slope = function(s)
             regular = smooth(s) if callable(smooth) else smooth
             residual = np.log(goal / value)
-            # Without a finite slope, as at a kink, the residual gives the direction alone.
+            # Without a finite slope, as at its discontinuity, the residual gives the direction alone.
             known = (slope > 0) & (slope < inf)
             step = where(known, residual / slope, residual)
             size = abs(step)

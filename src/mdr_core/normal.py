@@ -34,8 +34,8 @@ _COORDINATE_FROM: Final = {
     "normal_force": coordinate_from_force,
     "contact_radius": coordinate_from_radius,
 }
-# Decades that a power of the coordinate may span beside factors of the accepted magnitudes: no
-# energy, in which the coordinate enters with the power 2 n + 1, leaves double precision.
+# Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
+# representable beside factors of the accepted magnitudes.
 _DECADES: Final = 150.0
 
 

@@ -45,7 +45,7 @@ class ResolvedTable:
 
     @cached_property
     def breaks(self) -> Array:
-        """Radii behind the first edge between which g is smooth [length], ascending."""
+        """Radii beyond the first edge between which g is smooth [length], ascending."""
         radii = np.unique(np.append(self.r[1:-1], self.plateaus))
         # A plateau may begin at a point of the table up to rounding.
         apart = np.append(True, np.diff(radii) > _SAME * radii[1:])
@@ -100,7 +100,7 @@ def resolve_table(
     if interpolation == "auto" and spline and dips.depth.max(initial=0.0) > lowest:
         monotone, _ = interpolate(r, f, "pchip", breaks)
         other = _subpanels(r, f, monotone)
-        # A spline rings about a kink; where the body itself makes g fall, both do.
+        # A spline rings about a slope discontinuity; where the body itself makes g fall, both do.
         if other.dips().depth.max(initial=0.0) < dips.depth.max() / 2:
             notices.append(_not_by_spline("g", dips.begin[0]))
             rows, spline, panels, dips = monotone, False, other, other.dips()

@@ -191,12 +191,12 @@ class Tabulated(FlatEnded):
         """Parameters: see `Profile`."""
         place, start, past = map(np.ravel, np.broadcast_arrays(coordinate, start, past))
         panel, s = _located(self._edges, place)
-        # Next to a kink s follows from the distance, which the coordinate does not resolve.
+        # Beside a slope discontinuity s follows from the distance: the coordinate is too coarse.
         s = np.where(self._edges[panel] == start, np.sqrt(past * (2 * start + past)), s)
         return self._slope_at_coordinate(place, panel, s).reshape(np.shape(coordinate))
 
     def _slope_at_coordinate(self, coordinate: Array, panel: Indices, s: Array) -> Array:
-        """Slope of the depth; at a kink, where it is infinite, its limit from below."""
+        """Slope of the depth; where it is infinite, at a discontinuity, its limit from below."""
         jump, rest = self.resolved.panels.slope_at(panel, s)
         # In the first subpanel s is the coordinate itself.
         ratio = np.where(panel == 0, 1.0, coordinate / np.where(s > 0, s, np.inf))
