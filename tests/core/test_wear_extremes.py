@@ -67,7 +67,7 @@ def kinked() -> Tabulated:
 def test_edge_of_the_contact_passes_a_break_in_few_steps(
     width: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """g' is infinite behind the break, which the nodes pass one after the other."""
+    """g' is infinite beyond the break, which the nodes pass one after the other."""
     body = kinked()
     contact = normal.solve(body, 1.3, contact_radius=1.0003)
     within = normal.solve(body, 1.3, contact_radius=1.0003 - width)

@@ -46,7 +46,7 @@ class Branch:
 
     s = sqrt(x^2 - base^2), and the interval may begin only at `start`. At the axis g has an
     exponent of at least `tip`, and elsewhere one of up to about `steepness`. g' is infinite at
-    the radius `pole` beyond `stop`, and not analytic at s = -`behind`.
+    the radius `pole` beyond `stop`, and not analytic at s = -`opposite_singularity`.
     """
 
     base: float
@@ -56,7 +56,7 @@ class Branch:
     tip: float = 1.0
     steepness: float = 3.5
     pole: float = inf
-    behind: float = inf
+    opposite_singularity: float = inf
 
     def cuts(self, low: float, high: float, near: float, growth: float = 1.0) -> list[float]:
         """Return radii from `low` on, between which the weight is resolved up to `high`.
@@ -263,8 +263,8 @@ def _lower(
         # The distance of the pole from the upper end is log(pole/x).
         distance = log(branch.pole / float(np.hypot(base, high.max())))
         nodes, weights = graded_rule(points, halvings_towards(distance * part) + 1, count)
-    elif branch.behind < inf:
-        distance = asinh(branch.behind / base)
+    elif branch.opposite_singularity < inf:
+        distance = asinh(branch.opposite_singularity / base)
         nodes, weights = graded_rule(points, halvings_towards(distance * part), count)
         nodes = 1 - nodes
     else:

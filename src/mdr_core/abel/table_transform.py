@@ -17,7 +17,7 @@ _MANY: Final = 22
 _TOLERANCE: Final = 1e-13
 # Behind a flat of radius b g' has one root, at s^2 = -b^2, and is a series in s^2: of a panel of
 # this length, over b^2, so many terms leave 82^-n.
-_BEHIND_FLAT, _TERMS = 0.05, 9
+_BEYOND_FLAT, _TERMS = 0.05, 9
 
 
 def subpanel_edges(knots: Array, cuts: Sequence[float] = ()) -> Array:
@@ -29,7 +29,7 @@ def subpanel_edges(knots: Array, cuts: Sequence[float] = ()) -> Array:
     left = knot = float(knots[0])
     edges = [left]
     # Largest length of the next subpanel in x^2, by the distance from the last knot below it.
-    room = _BEHIND_FLAT * left * left if left > 0 else np.inf
+    room = _BEYOND_FLAT * left * left if left > 0 else np.inf
     for right in sorted({*knots[1:].tolist(), *cuts}):
         while (right - left) * (right + left) > room:
             middle = sqrt(left * left + room)
@@ -67,7 +67,7 @@ def resolve(knots: Array, slope: Array, plateaus: Array, *, spline: bool = False
         source, left, length, pole, (FEW, _MANY) if spline else (_MANY,)
     )
     if left[0] > 0:
-        by_depth[0], by_force[0] = _behind_flat(source, left[0], length[0], slope[0, 0] * left[0])
+        by_depth[0], by_force[0] = _beyond_flat(source, left[0], length[0], slope[0, 0] * left[0])
     else:
         # Next to the axis s = x and g' is a polynomial.
         by_depth[0, :3] = slope[:, 0] * [np.pi / 2, 2.0, 3 * np.pi / 4] * length[0] ** np.arange(3)
@@ -122,7 +122,7 @@ def _fitted(
     return by_depth, by_force, error
 
 
-def _behind_flat(
+def _beyond_flat(
     source: PiecewiseQuadratic, left: float, length: float, pole: float
 ) -> tuple[Array, Array]:
     """Coefficients as of `_fitted` next to a flat, where G/s is a series in s^2."""

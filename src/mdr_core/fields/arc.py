@@ -95,7 +95,7 @@ class Arc:
         growth = max(branch.steepness + 1, _DEGREE)
         analytic = Analytic(growth=growth, zeros=2, fewest=_NODES)
         total = np.zeros(r.shape)
-        for start, stop in pairwise([*branch.cuts(low, high, branch.behind), high]):
+        for start, stop in pairwise([*branch.cuts(low, high, branch.opposite_singularity), high]):
             seen = np.flatnonzero(r < stop)
             if not seen.size:
                 continue

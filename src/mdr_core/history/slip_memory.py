@@ -117,7 +117,7 @@ class FrontPath(NamedTuple):
 
     step: Indices
     """Step of each visit, shape (k,)."""
-    behind: Array
+    distance: Array
     """Distance from the load point at the start of the step, in both sums, shape (k, 2)."""
     normal: Array
     """Normal coordinate of the vertex; -1 on the axis."""
@@ -211,9 +211,9 @@ def slip_segments(path: FrontPath) -> SlipSegments:
     # After the last visit, on the axis, all springs slip until the end of the step.
     visit = np.flatnonzero(follows | (path.normal < 0))
     full, below = ~follows[visit], np.minimum(visit + 1, follows.size - 1)
-    step, upper = path.step[visit], path.behind[visit]
+    step, upper = path.step[visit], path.distance[visit]
     moved = path.moved[step]
-    lower = np.where(full[:, None], moved, path.behind[below])
+    lower = np.where(full[:, None], moved, path.distance[below])
     normal = np.maximum(np.where(full, 0.0, path.normal[below]), 0.0)
     side, lower_side = _side(upper, moved), _side(lower, moved)
     crossed = np.flatnonzero(side * lower_side < 0)
@@ -235,10 +235,10 @@ def slip_segments(path: FrontPath) -> SlipSegments:
     return SlipSegments._make(row[slip > 0] for row in found)
 
 
-def _side(behind: Array, moved: Array) -> Array:
+def _side(distance: Array, moved: Array) -> Array:
     """Sign of the sum in which the load point reaches a spring first: + backward, - forward."""
     forward, backward = moved.T
-    crosswise = behind[:, 0] * backward - behind[:, 1] * forward
+    crosswise = distance[:, 0] * backward - distance[:, 1] * forward
     return np.where(forward <= 0, 1.0, np.where(backward <= 0, -1.0, crosswise))
 
 

@@ -58,7 +58,7 @@ class SphericalTipCone(TippedCone):
     @cached_property
     def _flank_rate(self) -> Parameter:
         """h^2/R, the derivative of R tanh(v) at b [length]."""
-        return self._behind / np.hypot(1.0, self.slope)
+        return self._opposite_singularity / np.hypot(1.0, self.slope)
 
     def contact_radius(self, coordinate: Array) -> Array:
         b, start = self.tangent_radius, self.scale
@@ -102,13 +102,13 @@ class SphericalTipCone(TippedCone):
         return float(np.asarray(self.tip_radius))
 
     @cached_property
-    def _behind(self) -> Parameter:
+    def _opposite_singularity(self) -> Parameter:
         """Distance h of the tangent point below the centre: the sphere continues to s = -h."""
         return self.tip_radius / np.hypot(1.0, self.slope)
 
     def _log_term(self, x: Array, s: Array) -> Array:
         """L, by 1 + b^2 [1/(R + h) + 1/(x + s)]/(h + s) = (R + x)/(h + s)."""
-        b, big, h = self.tangent_radius, self.tip_radius, self._behind
+        b, big, h = self.tangent_radius, self.tip_radius, self._opposite_singularity
         return np.log1p(b / (h + s) * (b / (big + h) + b / (x + s)))
 
     def _flank_depth(self, x: Array, s: Array) -> Array:
@@ -117,12 +117,12 @@ class SphericalTipCone(TippedCone):
 
     def _flank_slope(self, x: Array, s: Array) -> Array:
         """L + t phi + t b R/(x h + s R)."""
-        b, big, h, t = self.tangent_radius, self.tip_radius, self._behind, self.slope
+        b, big, h, t = self.tangent_radius, self.tip_radius, self._opposite_singularity, self.slope
         log_term = self._log_term(x, s) + t * np.arctan(s / b)
         return log_term + t * b * big / (x * h + s * big)
 
     def _flank_force(self, x: Array, s: Array) -> Array:
-        b, big, h = self.tangent_radius, self.tip_radius, self._behind
+        b, big, h = self.tangent_radius, self.tip_radius, self._opposite_singularity
         sphere = np.square(b * b) / (big * x + h * s)
         sphere = sphere + (big * big + x * x) * tanh_gap(self._log_term(x, s))
         return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)

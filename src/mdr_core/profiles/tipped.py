@@ -75,8 +75,8 @@ class TippedCone(Profile):
         return inf
 
     @property
-    def _behind(self) -> Parameter:
-        """Distance of the flank's singularity at s = -`_behind` [length]."""
+    def _opposite_singularity(self) -> Parameter:
+        """Distance of the flank's singularity at s = -`_opposite_singularity` [length]."""
         return inf
 
     @property
@@ -93,10 +93,13 @@ class TippedCone(Profile):
 
     @property
     def branches(self) -> tuple[Branch, ...]:
-        b, behind = float(np.asarray(self.tangent_radius)), float(np.asarray(self._behind))
+        b = float(np.asarray(self.tangent_radius))
+        singularity = float(np.asarray(self._opposite_singularity))
         return (
             Branch(0.0, lambda x, _s, _index: self._tip.dg(x), b, pole=self._pole),
-            Branch(b, lambda x, s, _index: self._flank_weight(x, s), behind=behind),
+            Branch(
+                b, lambda x, s, _index: self._flank_weight(x, s), opposite_singularity=singularity
+            ),
         )
 
     def _flank_weight(self, x: Array, s: Array) -> Array:
@@ -151,7 +154,7 @@ class TippedCone(Profile):
 
         tip = self._tip.reduced_energy(np.minimum(coordinate, self.scale))
         _, s = self._outer(np.maximum(coordinate - self.scale, 0.0) * self._flank_rate)
-        return tip + energy_integral(density, s, np.minimum(b, self._behind))
+        return tip + energy_integral(density, s, np.minimum(b, self._opposite_singularity))
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""
@@ -196,7 +199,7 @@ class TippedCone(Profile):
     @cached_property
     def _flank_analytic(self) -> Analytic:
         """Strip in which the flank's weight is analytic."""
-        distance = float(np.arcsinh(self._behind / self.tangent_radius))
+        distance = float(np.arcsinh(self._opposite_singularity / self.tangent_radius))
         return Analytic(strip=min(DEFAULT.strip, _INSIDE * distance))
 
 

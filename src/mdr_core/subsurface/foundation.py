@@ -134,7 +134,9 @@ class Foundation:
         base, curved, profile = branch.base, bool(self._rate.any()), self.load.profile
         start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
         smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
-        near = min(base, branch.behind) or (inf if smooth and not curved else _NEAREST * stop)
+        near = min(base, branch.opposite_singularity) or (
+            inf if smooth and not curved else _NEAREST * stop
+        )
         return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Array:

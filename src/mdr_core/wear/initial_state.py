@@ -93,7 +93,7 @@ class InitialState:
     def model(self, nodes: int) -> AnnulusModel:
         """Return the rates of wear on so many nodes, in their units.
 
-        A shrinking stick zone takes half as many again: the front behind it is eight times thinner
+        A shrinking stick zone takes half as many again: the front outside it is eight times thinner
         than its distance from the edge, elsewhere both are alike. Source: notes, §11.
         """
         nodes = nodes * 3 // 2 if self.constant.stick_shrinks else nodes

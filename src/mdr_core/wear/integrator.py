@@ -33,7 +33,7 @@ class StickTrail(NamedTuple):
     worn: Array
 
     def until(self, state: AnnulusState) -> "StickTrail":
-        """Return the part behind one state."""
+        """Return the part that the stick edge has passed in one state."""
         # While the stick edge rests, the wear at its radius grows.
         rests = (self.radius == state.stick) & (self.worn <= state.retained_wear)
         before = (self.radius < state.stick) | rests
