@@ -18,7 +18,7 @@ Sloped = Callable[[Array], tuple[Array, Array]]
 _MOST_STEPS: Final = 200
 # Newton's step at which the next error is rounding error, because convergence is quadratic.
 _LAST_STEP: Final = 1e-8
-# The same beside a slope discontinuity, where the slope may be that of its other side.
+# Limit where the slope may be that of the other side of a discontinuity: one more step follows.
 _LAST_BUT_ONE: Final = 1e-10
 # Step that is rounding error itself, as it has to be where no slope is known: residual steps
 # converge linearly.
@@ -81,7 +81,7 @@ def invert(
             value, slope = function(s)
             regular = smooth(s) if callable(smooth) else smooth
             residual = np.log(goal / value)
-            # Without a finite slope, as at its discontinuity, the residual gives the direction alone.
+            # Where the slope is not finite, the residual gives the direction alone.
             known = (slope > 0) & (slope < inf)
             step = where(known, residual / slope, residual)
             size = abs(step)
