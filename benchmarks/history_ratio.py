@@ -31,14 +31,14 @@ STEPS, PART, SPRINGS, ROUNDS = 1_000_000, 20_000, 1000, 3
 CHECKED, MANY = 300, 400_000
 R, E_STAR, G_STAR, MU = 0.01, 1.1e11, 0.9e11, 0.3
 DEPTH = 1e-6
-MOST = MU * E_STAR / G_STAR * DEPTH
+FULL_SLIP = MU * E_STAR / G_STAR * DEPTH
 
 
 def random_path() -> tuple[Array, Array]:
     random = np.random.default_rng(11)
     return (
         DEPTH * random.uniform(0.2, 1.0, STEPS),
-        MOST * random.uniform(-0.8, 0.8, STEPS),
+        FULL_SLIP * random.uniform(-0.8, 0.8, STEPS),
     )
 
 

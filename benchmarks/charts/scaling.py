@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 Runs = dict[int, "Callable[[], object]"]
-SECONDS, FROM, MOST = 6.0, 1000, 1.05
+SECONDS, FROM, MAX_POWER = 6.0, 1000, 1.05
 HEADER = ("time against", "of", "size", "seconds", "seconds / size", "exponent from 1e3 on")
 #: Curves with a limit on the exponent.
 BOUND = ("radii", "loads")
@@ -78,14 +78,19 @@ def over_breakpoints(high: int) -> Runs:
     """Decreasing amplitudes: every turning point is part of the slip memory."""
 
     def run(turns: int) -> object:
-        swing = 0.8 * paths.MOST * (1 - np.arange(turns) / (turns + 1)) * (-1.0) ** np.arange(turns)
+        amplitude = (
+            0.8
+            * paths.FULL_SLIP
+            * (1 - np.arange(turns) / (turns + 1))
+            * (-1.0) ** np.arange(turns)
+        )
         return history.solve(
             Paraboloid(paths.R),
             paths.E_STAR,
             paths.G_STAR,
             paths.MU,
             indentation_depth=np.full(turns, paths.DEPTH),
-            tangential_displacement=swing,
+            tangential_displacement=amplitude,
         ).tangential_force
 
     return {n: lambda n=n: run(n) for n in sizes(10, high)}
@@ -99,7 +104,7 @@ def over_cycles(high: int) -> Runs:
             paths.G_STAR,
             paths.MU,
             indentation_depth=paths.DEPTH,
-            tangential_displacement=0.5 * paths.MOST,
+            tangential_displacement=0.5 * paths.FULL_SLIP,
             count=count,
         ).energy_per_cycle
 
@@ -181,7 +186,7 @@ def main() -> int:
     header = ("pressure at 1e6 radii, MiB beyond the result", "tracemalloc", "resident")
     table(header, [(name, *peak.values()) for name, peak in peaks.items()], "memory")
     draw(measured)
-    high = [f"{key}: {power:.3f}" for key, (_, power) in measured.items() if power > MOST]
+    high = [f"{key}: {power:.3f}" for key, (_, power) in measured.items() if power > MAX_POWER]
     bad = [one for one in high if one.startswith(tuple(f"('{name}'" for name in BOUND))]
     bad += [name for name, peak in peaks.items() if max(peak.values()) > MEBIBYTES]
     print("limits exceeded:", bad or "nothing")

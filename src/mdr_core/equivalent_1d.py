@@ -35,7 +35,7 @@ _EARLY: Final = 0.05
 _NEAR_BREAK: Final = 0.01
 # Logarithms of the contact coordinate over the scale between which the curve of a kind bends,
 # their spacing, for linear interpolation to 2e-5, and the ends of linear extrapolation.
-_CURVED, _SPACING, _FARTHEST = 14.0, 0.02, 150.0
+_CURVED, _SPACING, _MAX_LOG = 14.0, 0.02, 150.0
 
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
@@ -236,7 +236,7 @@ def _curve(kind: type[Profile], name: str) -> tuple[Array, Array]:
     """Logarithms of depth or force and of the contact coordinate, over those at the scale."""
     unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
     function = unit.depth if name == "indentation_depth" else unit.reduced_force
-    places = np.concatenate([[-_FARTHEST], np.arange(-_CURVED, _CURVED, _SPACING), [_FARTHEST]])
+    places = np.concatenate([[-_MAX_LOG], np.arange(-_CURVED, _CURVED, _SPACING), [_MAX_LOG]])
     return np.log(function(np.exp(places)) / function(number(1.0))), places
 
 

@@ -15,7 +15,7 @@ Function = Callable[[Array], Array]
 Sloped = Callable[[Array], tuple[Array, Array]]
 
 # Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
-_MOST_STEPS: Final = 200
+_MAX_STEPS: Final = 200
 # Newton's step at which the next error is rounding error, because convergence is quadratic.
 _LAST_STEP: Final = 1e-8
 # Limit where the slope may be that of the other side of a discontinuity: one more step follows.
@@ -31,7 +31,7 @@ _ADJACENT: Final = 2.0**-51
 # Factor by which an open bracket grows.
 _STRIDE: Final = 16.0
 # Largest step in log.
-_LONGEST_STEP: Final = 30.0
+_MAX_LOG_STEP: Final = 30.0
 # Bound of the roots: beyond it the root or its function value is not representable.
 _LARGEST: Final = 1e307
 
@@ -77,7 +77,7 @@ def invert(
     done = ~positive
     settling = done & positive
     with np.errstate(all="ignore"):
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MAX_STEPS):
             value, slope = function(s)
             regular = smooth(s) if callable(smooth) else smooth
             residual = np.log(goal / value)
@@ -89,7 +89,7 @@ def invert(
             longest = where(known, where(regular, _LAST_STEP, _LAST_BUT_ONE), _SMALLEST_STEP)
             short = (abs(residual) <= _CLOSE) & (size <= longest)
             converged = short & known & (regular | (size <= _SMALLEST_STEP))
-            proposed = s * np.exp(where(size < _LONGEST_STEP, step, np.sign(step) * _LONGEST_STEP))
+            proposed = s * np.exp(where(size < _MAX_LOG_STEP, step, np.sign(step) * _MAX_LOG_STEP))
             if every(done | converged):
                 s, done = where(done, s, proposed), done | converged
                 break

@@ -50,7 +50,7 @@ _FIELD, _VALUE = 3e-5, 2.5e-7
 # Time to draw a picture.
 _PICTURE: Final = 0.3
 # Time per nonlinear load step, and per node of an evolution, with its minimum number of nodes.
-_NONLINEAR_STEP, _NODE, _LEAST_NODES = 2.5e-3, 7.5e-3, 16
+_NONLINEAR_STEP, _NODE, _MIN_NODES = 2.5e-3, 7.5e-3, 16
 # Factors by which times grow for profiles without closed inverses, per term of a series, and for
 # tables. Times of integrals grow with the fourth root.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
@@ -100,7 +100,7 @@ def seconds(query: Query | BatchQuery) -> float:
         if flat and isinstance(query, NormalQuery):
             evaluated += _SEARCH * query.load.count
     elif isinstance(query, EvolutionQuery):
-        integrated += _NODE * (_LEAST_NODES + query.resolution) + _CYCLE * query.loads
+        integrated += _NODE * (_MIN_NODES + query.resolution) + _CYCLE * query.loads
     else:
         evaluated += _WEAR * query.loads
     root: float = scale**0.25

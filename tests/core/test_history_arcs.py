@@ -17,7 +17,7 @@ from numpy.polynomial.legendre import leggauss
 from mdr_core import history, normal
 from mdr_core.errors import InputError
 from tests.core.comparison import profile_from
-from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES
+from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -184,7 +184,7 @@ def random_path(name: str, control: str, steps: int, seed: int) -> dict[str, Any
     d = random.uniform(0.4, 1.0, steps) * DEPTH
     if control == "normal_force":
         force = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=d)
-        u = random.uniform(-1.1, 1.1, steps) * MOST
+        u = random.uniform(-1.1, 1.1, steps) * FULL_SLIP
         return {"normal_force": force.normal_force, "tangential_displacement": u}
     least = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=0.35 * DEPTH)
     f = random.uniform(-1, 1, steps) * MU * float(least.normal_force)

@@ -12,7 +12,7 @@ from mdr_core import history, normal
 from mdr_core.errors import InputError
 from mdr_core.profiles import Tabulated
 from tests.core.comparison import INPUT, profile_from
-from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES, solve
+from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES, solve
 from tests.oracles import slip_reference as slip
 from tests.oracles.history_reference import overlap
 
@@ -179,10 +179,10 @@ def test_friction_limit_after_a_preload(name: str, sign: int, part: float) -> No
         result = solve(
             name,
             indentation_depth=[part * DEPTH, DEPTH],
-            tangential_displacement=[0.0, sign * (1 - part) * MOST * (1 + ulps * 2.0**-52)],
+            tangential_displacement=[0.0, sign * (1 - part) * FULL_SLIP * (1 + ulps * 2.0**-52)],
             samples_per_step=4,
         )
-        bound = 64 * 2.0**-52 * MU * float(result.normal_force[-1]) * MOST
+        bound = 64 * 2.0**-52 * MU * float(result.normal_force[-1]) * FULL_SLIP
         assert np.all(result.dissipated_energy <= bound), ulps
         gained = result.normal_force[-1] - result.normal_force[3]
         assert result.tangential_force[-1] == near(sign * MU * gained)
@@ -192,7 +192,7 @@ def test_friction_limit_after_a_preload(name: str, sign: int, part: float) -> No
 @both_directions
 def test_oblique_displacement_slides_from_first_contact(name: str, sign: int) -> None:
     """Steeper than the friction limit: displacement ratio above mu E*/G*."""
-    u = sign * 1.7 * MOST
+    u = sign * 1.7 * FULL_SLIP
     result = solve(name, indentation_depth=[DEPTH], tangential_displacement=[u], samples_per_step=4)
     assert result.tangential_force == near(sign * MU * result.normal_force)
     assert list(result.regime) == ["full_slip"] * 4
@@ -329,7 +329,7 @@ def test_closed_inner_loop_erases_its_memory(name: str) -> None:
 @both_directions
 def test_separation_and_renewed_contact(name: str, sign: int) -> None:
     """Contact is re-established at the current displacement, here after a fifth of the step."""
-    u = sign * 0.4 * MOST
+    u = sign * 0.4 * FULL_SLIP
     result = solve(
         name,
         indentation_depth=[DEPTH, -DEPTH / 4, DEPTH],
@@ -389,7 +389,7 @@ def test_flat_punch_passes_from_full_stick_to_full_slip(sign: int) -> None:
 @both_directions
 def test_long_sliding_distance_keeps_the_force(name: str, sign: int) -> None:
     """Sliding over a distance much larger than the depth must not cause cancellation."""
-    far = sign * 2.0**40 * MOST
+    far = sign * 2.0**40 * FULL_SLIP
     result = solve(
         name, indentation_depth=[DEPTH, DEPTH, DEPTH / 2], tangential_displacement=[0.0, far, far]
     )

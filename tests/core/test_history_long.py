@@ -10,7 +10,7 @@ from mpmath import mp
 
 from mdr_core import history
 from tests.core.comparison import profile_from
-from tests.core.test_history_paths import DEPTH, MATERIAL, MOST, PROFILES, solve
+from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES, solve
 from tests.oracles import slip_reference as slip
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def random_path(seed: int, steps: int = STEPS) -> tuple[Array, Array]:
     u = random.uniform(-1.0, 1.0, steps) * (d - spare)
     d[0], u[0] = 1.0, 0.0
     d[BATCH - 1 :: BATCH], u[BATCH - 1 :: BATCH] = 1.0, TOP
-    return d * DEPTH, u * MOST
+    return d * DEPTH, u * FULL_SLIP
 
 
 @chosen
@@ -71,7 +71,7 @@ def test_results_after_an_erasing_step_are_independent_of_the_past(name: str) ->
         most = MATERIAL.mu * np.max(fresh.normal_force)
         expected = pytest.approx(fresh.tangential_force[2:], rel=0, abs=1e-12 * most)
         assert result.tangential_force[part] == expected
-        lost = pytest.approx(fresh.dissipation[2:], rel=1e-9, abs=1e-12 * most * MOST)
+        lost = pytest.approx(fresh.dissipation[2:], rel=1e-9, abs=1e-12 * most * FULL_SLIP)
         assert result.dissipation[part] == lost
 
 
@@ -96,7 +96,7 @@ def test_final_state_equals_that_of_drift_free_springs(name: str) -> None:
     """Without erasing steps; the contact separates occasionally."""
     random = np.random.default_rng(5)
     d = random.uniform(-0.002, 1.0, STEPS // 4) * DEPTH
-    u = random.uniform(-0.3, 0.3, STEPS // 4) * MOST
+    u = random.uniform(-0.3, 0.3, STEPS // 4) * FULL_SLIP
     d[-1] = DEPTH / 2
     state = solve(name, indentation_depth=d, tangential_displacement=u).state
     touch = np.linspace(0.0, 0.999 * d[-1], 97) if name != "flat-punch" else np.zeros(1)

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 MATERIAL = Material(3.7, 2.9, 0.37)
 DEPTH = 0.25
-MOST = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * DEPTH
+#: Tangential displacement at the onset of full slip.
+FULL_SLIP = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * DEPTH
 SPRINGS = 100_000
 #: Error limit with `SPRINGS` springs; ten times fewer have at most a hundred times the error.
 SPRING_ERROR = 1e-9
@@ -59,7 +60,7 @@ def solve(name: str, **controls: Any) -> history.LoadHistory:
 def random_path(seed: int, steps: int = 50) -> tuple[Array, Array]:
     """Includes separations and some purely normal or purely tangential load steps."""
     random = np.random.default_rng(seed)
-    d, u = random.uniform(-0.15, 1.0, steps) * DEPTH, random.uniform(-1.2, 1.2, steps) * MOST
+    d, u = random.uniform(-0.15, 1.0, steps) * DEPTH, random.uniform(-1.2, 1.2, steps) * FULL_SLIP
     for step, kind in enumerate(random.integers(0, 6, steps)):
         if step and kind == 0:
             d[step] = d[step - 1]
@@ -141,7 +142,7 @@ def force_path(name: str, steps: int, normal: str, tangential: str) -> dict[str,
     least = force if normal == "normal_force" else np.minimum(force, np.append(0, force[:-1]))
     loads = {
         "tangential_force": random.uniform(-part, part, steps) * MATERIAL.mu * least,
-        "tangential_displacement": random.uniform(-1.0, 1.0, steps) * MOST,
+        "tangential_displacement": random.uniform(-1.0, 1.0, steps) * FULL_SLIP,
     }
     for load in loads.values():
         # Pure normal loading first: depth grows like a root of the force, which chords resolve

@@ -72,7 +72,7 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(
     contact = normal.solve(body, 1.3, contact_radius=1.0003)
     within = normal.solve(body, 1.3, contact_radius=1.0003 - width)
     contact = normal.solve(body, 1.3, normal_force=float(contact.normal_force))
-    monkeypatch.setattr(integrator, "_MOST_CALLS", 2000)
+    monkeypatch.setattr(integrator, "_MAX_CALLS", 2000)
     worn = evolution.solve(
         contact,
         0.9,

@@ -43,7 +43,7 @@ LINEAR = mpf(10) ** -40
 #: A spring that separates without slip reaches zero up to rounding error, which is not slip.
 ROUNDING = mpf(10) ** -80
 #: Upper bound on the number of intervals of any load path here.
-MOST = 1000
+MAX_FRONTS = 1000
 
 Branches = tuple[int, ...]
 
@@ -116,7 +116,7 @@ def fronts(path: Path, material: Material) -> list[mpf]:
             continue
         middle = (low + high) / 2
         waiting += [(middle, high), (low, middle)]
-        if len(result) > MOST:
+        if len(result) > MAX_FRONTS:
             raise ArithmeticError("a branch depends on rounding error")
     return [*result, top]
 

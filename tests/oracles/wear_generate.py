@@ -53,9 +53,9 @@ OF_PARABOLOID = {
     PAIRS[3]: ("(5.90)",),
 }
 #: Tables with fewer points are short; those with more are left out.
-SHORT_TABLE, MOST_POINTS, THIN = 10, 70, 1 - 1e-3
+SHORT_TABLE, MAX_POINTS, THIN = 10, 70, 1 - 1e-3
 #: Beyond it, adjacent doubles as amplitudes give unrelated results.
-MOST_CONDITION = 1e11
+MAX_CONDITION = 1e11
 WIDE, NARROW = mpf("0.5"), mpf("1e-6")
 
 Record = dict[str, Any]
@@ -106,7 +106,7 @@ def _table_tasks(turn: int) -> Iterator[Task]:
     """Small tables for every pair; long ones, with many panels, for a narrow worn annulus."""
     for scene in table_scenes():
         points = len(scene.profile["r"])
-        if points > MOST_POINTS:
+        if points > MAX_POINTS:
             continue
         short = points < SHORT_TABLE
         for pair in PAIRS if short else PAIRS[turn % 4 :][:1]:
@@ -199,7 +199,7 @@ def record_of(task: Task) -> Record | None:
         if not representable(*(float(value) for value in result[0].values())):
             continue
         edges = _condition([answer["stick_radius"] for answer in result], mpf(0))
-        if edges is None or edges > MOST_CONDITION:
+        if edges is None or edges > MAX_CONDITION:
             continue
         for name in OUTPUTS:
             values = [answer[name] for answer in result]

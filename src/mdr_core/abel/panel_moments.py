@@ -12,8 +12,8 @@ import numpy as np
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array
 
-# Most powers of u.
-_MOST: Final = 28
+# Largest number of powers of u.
+_MAX_POWERS: Final = 28
 # Value of t below which arcosh(1/root) is computed as artanh(t).
 _SMALL: Final = 0.5
 # Nodes of a panel at a distance of half its length in x^2, where n nodes leave 3.4^-2n.
@@ -22,14 +22,14 @@ _FAR_NODES: Final = 12
 
 def _scales() -> Array:
     """Return f_n = f_(n-2) (n - 1)/n: M_n = f_n m_n makes m_n = t/(n f_n) - k m_(n-2)."""
-    scales = np.ones(_MOST)
-    for n in range(2, _MOST):
+    scales = np.ones(_MAX_POWERS)
+    for n in range(2, _MAX_POWERS):
         scales[n] = scales[n - 2] * (n - 1) / n
     return scales
 
 
 _SCALES: Final = _scales()
-_OF_ROOT: Final = np.append([0.0, 0.0], 1 / (np.arange(2, _MOST) * _SCALES[2:]))
+_OF_ROOT: Final = np.append([0.0, 0.0], 1 / (np.arange(2, _MAX_POWERS) * _SCALES[2:]))
 
 
 def scaled(coefficients: Array) -> Array:

@@ -25,13 +25,13 @@ from mdr_core.typing import Array, Indices
 
 # Chords from the axis to the largest contact: enough for the tolerance, as a cube root, within
 # these limits.
-_FEWEST: Final = 64
+_MIN_CHORDS: Final = 64
 # It costs 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
-_MOST: Final = 1024
+_MAX_CHORDS: Final = 1024
 # Chords on every nonlinear load step, before they are halved.
-_FEWEST_ON_STEP: Final = 8
+_MIN_CHORDS_ON_STEP: Final = 8
 # Chords of all steps together, which bounds time and memory.
-_MOST_IN_ALL: Final = 400_000
+_MAX_TOTAL_CHORDS: Final = 400_000
 # Halvings from the coarsest set of chords to the finest.
 _HALVINGS: Final = 2
 # The error of the extrapolated results, in units of the change by the last halving.
@@ -97,7 +97,7 @@ class NonlinearSteps:
         `finest` chords reach from the axis to the largest contact, before they are halved.
         """
         owner, start, stop = self._parts
-        fewest = min(_FEWEST_ON_STEP, _MOST_IN_ALL / (start.size << _HALVINGS))
+        fewest = min(_MIN_CHORDS_ON_STEP, _MAX_TOTAL_CHORDS / (start.size << _HALVINGS))
         needed = np.abs(stop - start) / np.max(self.coordinate) * finest / 2**_HALVINGS
         count = np.ceil(np.maximum(needed, fewest)).astype(int) << halvings
         count[self.rate[owner] == 0] = 1
@@ -281,7 +281,7 @@ def results(
         *(np.append(0.0, row) for row in rows),
     )
     travel = np.sum(np.abs(np.diff(nonlinear.coordinate))) / np.max(nonlinear.coordinate)
-    finest = int(min(max(rtol ** (-1 / 3), _FEWEST), _MOST, _MOST_IN_ALL / travel))
+    finest = int(min(max(rtol ** (-1 / 3), _MIN_CHORDS), _MAX_CHORDS, _MAX_TOTAL_CHORDS / travel))
     sets = []
     for halvings in range(_HALVINGS + 1):
         points, last = nonlinear.chords(finest, halvings)

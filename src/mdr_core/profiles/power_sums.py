@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from mdr_core.typing import Array
 
 # Bound on the logarithm of a radius: beyond lengths of 1e-100 to 1e100 there is no root.
-_FARTHEST: Final = 300.0
+_MAX_LOG: Final = 300.0
 _EPS: Final = float(np.finfo(float).eps)
 # Two terms cancel most near their crossing. This is the distance, times the difference of their
 # exponents, by which sixteen more terms can move the place.
@@ -49,10 +49,10 @@ def first_negative_radius(terms: LogTerms) -> float:
 
     The terms ascend in the exponent.
     """
-    ends = [-_FARTHEST, *_log_roots(terms), _FARTHEST]
+    ends = [-_MAX_LOG, *_log_roots(terms), _MAX_LOG]
     for start, end in pairwise(ends):
         if _scaled_sum(terms, (start + end) / 2) < 0:
-            return exp(start) if start > -_FARTHEST else 0.0
+            return exp(start) if start > -_MAX_LOG else 0.0
     return inf
 
 
@@ -61,7 +61,7 @@ def cancellation(terms: LogTerms, last: float) -> float:
 
     Terms cancel most where two of opposite sign are of equal size, or at either end.
     """
-    last = min(last, _FARTHEST)
+    last = min(last, _MAX_LOG)
     u = np.linspace(-_REACH, _REACH, _SAMPLES)
     samples = [
         _crossing(one, other) + u / abs(one.exponent - other.exponent)
@@ -69,8 +69,8 @@ def cancellation(terms: LogTerms, last: float) -> float:
         for other in terms
         if one.sign > 0 > other.sign
     ]
-    places = np.unique(np.concatenate([[-_FARTHEST, last], *samples]))
-    places = places[(places >= -_FARTHEST) & (places <= last)]
+    places = np.unique(np.concatenate([[-_MAX_LOG, last], *samples]))
+    places = places[(places >= -_MAX_LOG) & (places <= last)]
     for _ in range(_ROUNDS):
         worst = int(np.argmax(_sizes_over_sum(terms, places)))
         around = places[max(worst - 1, 0)], places[min(worst + 1, places.size - 1)]
@@ -107,7 +107,7 @@ def _log_roots(terms: LogTerms) -> list[float]:
     derivative = tuple(
         LogTerm(sign, size + log(exponent - lowest), exponent) for sign, size, exponent in terms[1:]
     )
-    turns = [-_FARTHEST, *_log_roots(derivative), _FARTHEST]
+    turns = [-_MAX_LOG, *_log_roots(derivative), _MAX_LOG]
     return [
         float(brentq(lambda u: _scaled_sum(terms, u), start, end, xtol=1e-15))
         for start, end in pairwise(turns)

@@ -23,11 +23,11 @@ from mdr_core.profiles.power_sums import cancellation, first_negative_radius, lo
 from mdr_core.typing import Array, Flags, Parameter
 
 # Largest ratio of the terms to their sum for which ten digits of the sum are accurate.
-_MOST_CANCELLATION: Final = 1e5
+_MAX_CANCELLATION: Final = 1e5
 # Tolerance below which rounding error dominates.
 _FINEST: Final = 1e-15
 # Bound on the logarithm of a starting radius, which nearly equal exponents leave undetermined.
-_FARTHEST: Final = 70.0
+_MAX_LOG: Final = 70.0
 _EPS: Final = float(np.finfo(float).eps)
 
 
@@ -87,10 +87,10 @@ class Series(Profile):
             raise InputError(
                 path, "f falls from radius 0: the term of lowest exponent must be positive"
             )
-        if self._cancellation > _MOST_CANCELLATION:
+        if self._cancellation > _MAX_CANCELLATION:
             raise InputError(
                 path,
-                f"the terms cancel to less than {1 / _MOST_CANCELLATION:g} of their size: "
+                f"the terms cancel to less than {1 / _MAX_CANCELLATION:g} of their size: "
                 "merge the terms whose exponents are nearly equal",
             )
 
@@ -140,7 +140,7 @@ class Series(Profile):
         """Radius at which the terms of lowest and highest exponent are about equal."""
         (c, n), (k, m) = self._powers[0], self._powers[-1]
         crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
-        return exp(min(max(crossing, -_FARTHEST), _FARTHEST))
+        return exp(min(max(crossing, -_MAX_LOG), _MAX_LOG))
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:

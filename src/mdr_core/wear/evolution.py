@@ -37,7 +37,7 @@ SCALARS: Final = (
 )
 
 # Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
-_FEWEST: Final = 16
+_MIN_NODES: Final = 16
 # The second run of the error estimates: fewer nodes and a looser integrator. The errors fall at
 # least like 1/resolution^2, next to the contact's edge, so that those of the first run are at most
 # 0.8 times the difference; elsewhere they are far smaller.
@@ -261,7 +261,7 @@ def solve(
     )
     initial = InitialState(tangential_contact, float(wear_coefficient), constant)
     numbers = _checked_cycles(cycles)
-    nodes = int(resolution) + _FEWEST
+    nodes = int(resolution) + _MIN_NODES
     run = partial(worn_surface, initial, numbers)
     fine, coarse = run(nodes, rtol), run(int(nodes * _COARSER), _LOOSER * rtol)
     parts = fine.states, fine.trail, fine.settled_at

@@ -17,13 +17,13 @@ from mdr_core.wear.rates import jacobian, rates
 _ABSOLUTE: Final = 0.01
 # Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
 # less, a growing stick zone takes it back before it counts.
-_LEAST: Final = 0.01
+_MIN_SLIP: Final = 0.01
 # The wear of the first cycles has a separate tolerance in each such factor of cycles.
 _DECADE: Final = 10.0
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
 # About 5 times as many as 96 nodes take at a tolerance of 1e-10.
-_MOST_CALLS: Final = 40_000
+_MAX_CALLS: Final = 40_000
 
 
 class StickTrail(NamedTuple):
@@ -92,7 +92,7 @@ def integrate(
     def counted(_time: float, vector: Array) -> Array:
         nonlocal calls
         calls += 1
-        if calls > _MOST_CALLS:
+        if calls > _MAX_CALLS:
             detail = "the wear over the cycles takes too many steps: fewer nodes may take less"
             raise AccuracyError(detail, ("resolution",))
         return rates(model, vector)
@@ -150,7 +150,7 @@ def _scale(model: AnnulusModel) -> Array:
     edge = model.first_edge
     # In a narrow annulus all but b and the work change by a part b_0/a_0 only.
     scale = np.full(model.start.size, 1 / (model.first_stick + model.first_width))
-    scale[:edge] = np.maximum(AnnulusState(model, model.start).slip[:-1], _LEAST)
+    scale[:edge] = np.maximum(AnnulusState(model, model.start).slip[:-1], _MIN_SLIP)
     scale[[edge, edge + 3]] = 1.0
     return scale
 

@@ -12,7 +12,7 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_service.plots.plot import (
     LABELS,
-    MOST_CURVES,
+    MAX_CURVES,
     POINTS,
     SYMBOLS,
     VISIBLE,
@@ -28,7 +28,7 @@ from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 
 # Samples of all steps of a history, at an accuracy that paper does not show.
-_MOST_SAMPLES: Final = 2_000
+_MAX_SAMPLES: Final = 2_000
 # Relative difference of forces that are drawn as one.
 _COINCIDE: Final = 0.01
 # The limiting force is drawn where the force exceeds this share of it.
@@ -61,7 +61,7 @@ def tangential(_query: TangentialQuery, contact: TangentialContact, result: Resu
     coordinates = np.broadcast_to(np.ravel(contact.normal.coordinate), x.shape)
     forces, first = np.unique(normal_force, return_index=True)
     curves, marks = [], []
-    for index, (force, at) in enumerate(zip(forces[:MOST_CURVES], first, strict=False)):
+    for index, (force, at) in enumerate(zip(forces[:MAX_CURVES], first, strict=False)):
         own = normal_force == force
         dense = _into_full_slip(contact, float(coordinates[at]), x[own])
         label = f"{SYMBOLS['normal_force']} = {force:.4g}"
@@ -120,7 +120,7 @@ def _into_full_slip(
 
 def _dense_path(query: HistoryQuery, path: SolvedPath) -> LoadHistory:
     """Return the load history with enough samples for smooth curves."""
-    samples = min(-(-_MOST_SAMPLES // query.path.steps), POINTS)
+    samples = min(-(-_MAX_SAMPLES // query.path.steps), POINTS)
     if samples <= query.path.samples_per_step:
         return path.history
     dense = query.path.model_copy(update={"samples_per_step": samples})

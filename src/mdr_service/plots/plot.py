@@ -12,7 +12,7 @@ POINTS: Final = 300
 # Accuracy that paper does not exceed.
 VISIBLE: Final = 1e-4
 # Curves of a panel: their colours remain distinct.
-MOST_CURVES: Final = 6
+MAX_CURVES: Final = 6
 
 LABELS: Final = {
     "indentation_depth": "indentation depth d",

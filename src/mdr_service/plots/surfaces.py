@@ -13,7 +13,7 @@ from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.plots.plot import (
     LABELS,
-    MOST_CURVES,
+    MAX_CURVES,
     NOTHING,
     POINTS,
     SYMBOLS,
@@ -40,7 +40,7 @@ _REQUESTED: Final = "requested radii"
 
 def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
     """Return each requested field over the radius, with the breaks b, the edges a and c marked."""
-    shown = source if query.loads <= MOST_CURVES else solve_stress(_first_loads(query))
+    shown = source if query.loads <= MAX_CURVES else solve_stress(_first_loads(query))
     contact, partial = end = at_end(shown)
     edges, fronts = np.ravel(contact.contact_radius), _slip_fronts(shown)
     breaks = [float(b) for b in contact.profile.breaks]
@@ -52,15 +52,15 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
         else (requested.min(), requested.max())
     )
     radius = np.unique([*grid[(grid >= window[0]) & (grid <= window[1])], *_evenly(*window)])
-    loads = min(query.loads, MOST_CURVES)
+    loads = min(query.loads, MAX_CURVES)
     dense = {
         name: np.broadcast_to(field(name, end, radius, VISIBLE), (loads, radius.size))
         for name in query.quantities
     }
     panels = _panels(radius, dense, _load_names(query), result, range(loads))
-    marks = [Mark(b, "b") for b in breaks[:MOST_CURVES]] + _edge_marks(edges, "a")
+    marks = [Mark(b, "b") for b in breaks[:MAX_CURVES]] + _edge_marks(edges, "a")
     if query.has("history"):
-        marks += [Mark(front, "c") for front in fronts.tolist() if fronts.size <= MOST_CURVES]
+        marks += [Mark(front, "c") for front in fronts.tolist() if fronts.size <= MAX_CURVES]
     else:
         marks += _edge_marks(fronts, "c")
     note = subset_note(loads, query.loads, "loads")
@@ -70,8 +70,8 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
 
 def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
     """Return the initial and the limiting profile over the radius, and other requested fields."""
-    shown = limit if query.loads <= MOST_CURVES else solve_wear(_first_loads(query))
-    loads = min(query.loads, MOST_CURVES)
+    shown = limit if query.loads <= MAX_CURVES else solve_wear(_first_loads(query))
+    loads = min(query.loads, MAX_CURVES)
     breaks = len(unworn(shown).normal.profile.breaks)
     radius = _to_last(shown.grid(POINTS + 3 * loads + breaks), result)
     bounded = np.isfinite(np.ravel(shown.wear_radius))
@@ -93,7 +93,7 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
 def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Plot:
     """Return profile and pressure over the radius at some of the numbers of cycles."""
     size = worn.cycles.size
-    shown = np.unique(np.linspace(0, size - 1, min(size, MOST_CURVES)).round().astype(int))
+    shown = np.unique(np.linspace(0, size - 1, min(size, MAX_CURVES)).round().astype(int))
     names = [f"N = {worn.cycles[index]:.4g}" for index in shown]
     breaks = len(unworn(worn).normal.profile.breaks)
     radius = _to_last(worn.grid(POINTS + breaks), result)
@@ -164,7 +164,7 @@ def _first_loads(query: _Query) -> _Query:
     names = [name for name in ("load", "tangential", "oscillation") if getattr(query, name, None)]
     choices = {name: getattr(query, name) for name in names}
     shorter = {
-        name: choice.model_copy(update={choice.control: choice.value[:MOST_CURVES]})
+        name: choice.model_copy(update={choice.control: choice.value[:MAX_CURVES]})
         for name, choice in choices.items()
         if isinstance(choice.value, list)
     }
@@ -180,7 +180,7 @@ def _load_names(query: StressQuery | WearQuery) -> list[str]:
             for name, values in listed.items()
             if len(values) > 1
         )
-        for index in range(min(query.loads, MOST_CURVES))
+        for index in range(min(query.loads, MAX_CURVES))
     ]
 
 

@@ -26,9 +26,9 @@ _CLOSE: Final = 0.025
 # Largest number of levels of a map.
 _LEVELS: Final = 20
 # Levels end where the highest values of a few points would exceed the others much.
-_MOST, _PEAK = 0.99, 1.5
+_QUANTILE, _PEAK = 0.99, 1.5
 # More points than this hide their curve.
-_MOST_POINTS: Final = 60
+_MAX_POINTS: Final = 60
 _STYLE: Final[dict[Any, Any]] = {
     "axes.formatter.limits": (-3, 4),
     "axes.grid": True,
@@ -97,7 +97,7 @@ def _draw_map(figure: "Figure", plot: Map) -> None:
     """Draw contours, and beside them the values on the axis."""
     finite = plot.values[np.isfinite(plot.values)]
     # Singular peaks would leave a single colour for the rest.
-    top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _MOST)))
+    top = min(float(finite.max()), _PEAK * float(np.quantile(finite, _QUANTILE)))
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 1])
     shown = np.where(np.isfinite(plot.values), plot.values, top)
     drawn = left.contourf(plot.x, plot.z, np.minimum(shown, top), _LEVELS)
@@ -121,7 +121,7 @@ def _draw(axes: "Axes", panel: Panel, plot: Plot) -> None:
         finite = np.where(np.isfinite(curve.y), curve.y, np.nan)
         label = curve.label or "_nolegend_"
         axes.plot(curve.x, finite, curve.style, color=color, label=label)
-        if curve.point_x.size <= _MOST_POINTS:
+        if curve.point_x.size <= _MAX_POINTS:
             axes.plot(curve.point_x, curve.point_y, "o", color=color, markersize=3.5)
         _mark_infinities(axes, curve)
     for mark in plot.marks:
@@ -185,7 +185,7 @@ def _label(axes: "Axes", marks: Iterable[Mark]) -> None:
 def _legend(axes: "Axes", plot: Plot) -> None:
     """Name the curves of the first panel and the points."""
     curves = [curve for panel in plot.panels for curve in panel.curves]
-    if any(0 < curve.point_x.size <= _MOST_POINTS for curve in curves):
+    if any(0 < curve.point_x.size <= _MAX_POINTS for curve in curves):
         axes.plot([], [], "o", color="0.4", markersize=3.5, label=plot.points_label)
     if axes.get_legend_handles_labels()[1]:
         axes.legend(title=plot.note or None, loc="best")
