@@ -77,8 +77,8 @@ def exact_stress(profile: Profile, c: float | None, place: list[float]) -> Array
         where = tuple(np.array([part]) for part in (float(r), float(z), complex(x, y) / float(r)))
         pressed = closed_moments(profile, 0.0, r, z)
         sheared = mpf(0) if c is None else mpf(FRICTION) * closed_moments(profile, c, r, z)
-        moments = ((part / mp.pi).astype(float) for part in (pressed, sheared + 0 * pressed))
-        return np.asarray(of_moments(*moments, *where, NU)[:, 0])
+        first, second = ((part / mp.pi).astype(float) for part in (pressed, sheared + 0 * pressed))
+        return np.asarray(of_moments(first, second, *where, NU)[:, 0])
 
 
 def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) -> Array:

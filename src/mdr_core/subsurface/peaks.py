@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from math import ceil, cos, inf, log, sin
-from operator import itemgetter
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -110,12 +109,16 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     steps = [np.maximum(np.diff(x, append=x[-1]), np.diff(x, prepend=x[0])) for x in (r, z)]
     (values,) = on(np.zeros(1), r, z)
     tops = np.argwhere(values == maximum_filter(values, 3))
-    found, turn = (0.0, np.zeros(3)), _TURN if under.sheared else 0.0
+    value, place, box = 0.0, np.zeros(3), np.zeros(3)
     for i, j in tops[np.argsort(-values[tuple(tops.T)])[:_PEAKS]]:
-        if values[i, j] >= _ALMOST * found[0]:
-            box = np.array([turn, steps[0][i], steps[1][j]])
-            found = max(found, _climbed(on, np.array([0.0, r[i], z[j]]), box), key=itemgetter(0))
-    value, (angle, radius, depth) = found
+        if values[i, j] >= _ALMOST * value:
+            around = np.array([0.0, steps[0][i], steps[1][j]])
+            top, at = _climbed(on, np.array([0.0, r[i], z[j]]), around)
+            if top > value:
+                value, place, box = top, at, around
+    if under.sheared:
+        value, place = _climbed(on, place, np.array([_TURN, *box[1:]]))
+    angle, radius, depth = place.tolist()
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
 
