@@ -6,7 +6,7 @@ The codes are `table_end`, `half_space`, `plastic`, `elastic_similarity` and `im
 Source: notes, §8.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Final, NamedTuple, Protocol
 
 import numpy as np
@@ -27,6 +27,8 @@ _RADIAL: Final = 0.63
 # Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta with it.
 ASSUMED_RATIO: Final = 0.3
 _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
+# Radii that a warning lists, so that it stays one sentence.
+_LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
 _INCOMPRESSIBLE: Final = 0.5
 # Part of a table's length from which its end is near; a judgement.
@@ -225,14 +227,22 @@ def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool
     found = contact.contact_radius < 0
     for b in contact.profile.infinite_pressure_radii:
         found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
+        if every(found):
+            break
     return found
 
 
 def infinite_radii(contact: LoadedContact) -> str:
     """Return the radii of infinite pressure inside the largest contact, as text."""
-    radii = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)
     largest = extremes(contact.contact_radius)[1]
-    return ", ".join(f"{b:.12g}" for b in radii if b <= largest)
+    least = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)
+    return listed([f"{b:.12g}" for b in least if b <= largest])
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return the first of many names, and the number of the others."""
+    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+    return ", ".join(names[:_LISTED]) + more
 
 
 def _edge_slope(contact: LoadedContact) -> Array:

@@ -46,7 +46,7 @@ _SAMPLE: Final = 3e-6
 # for the first load and per load.
 _SEARCH, _SEARCH_OF_ONE, _SEARCH_OF_EACH = 1e-5, 2e-4, 2e-5
 # Time per field and load, and per value of it at a radius.
-_FIELD, _VALUE = 3e-5, 2.5e-7
+_FIELD, _VALUE = 3e-5, 1.5e-7
 # Time to draw a picture.
 _PICTURE: Final = 0.3
 # Time per nonlinear load step, and per node of an evolution, with its minimum number of nodes.

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from math import isfinite
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +21,6 @@ Result = dict[str, Any]
 """The members of a JSON response in their order, with arrays for long lists."""
 Wear = LimitingWear | WearEvolution
 Contact = NormalContact | TangentialContact | LoadHistory
-
-# Radii that a warning lists, so that it stays one sentence; nulls mark the others.
-_LISTED: Final = 5
 
 
 def members(model: type[SolvedAnswer], without: Iterable[str] = ()) -> tuple[str, ...]:
@@ -127,7 +124,6 @@ def singular(
             continue
         at = radius[flags & np.isinf(np.atleast_2d(values[name])).any(axis=0)]
         if at.size:
-            listed = ", ".join(repr(r).removesuffix(".0") for r in at[:_LISTED].tolist())
-            more = f" and {at.size - _LISTED} more" if at.size > _LISTED else ""
-            found.append(Notice("singular", f"{name} is infinite at radius {listed}{more}"))
+            places = validity.listed([repr(r).removesuffix(".0") for r in at.tolist()])
+            found.append(Notice("singular", f"{name} is infinite at radius {places}"))
     return found
