@@ -162,7 +162,7 @@ def test_final_profile_is_the_limiting_profile(kind: str, control: str, part: fl
     assert "limit_reached" in {notice.code for notice in result.warnings}
 
 
-@pytest.mark.every(2)
+@pytest.mark.long
 @pytest.mark.parametrize("control", CONTROLS[:2])
 def test_distance_from_the_limit_decreases_with_resolution(control: str) -> None:
     result = [distance(worn("cone", control, 0.9, resolution=n, rtol=1e-8)) for n in (8, 16, 32)]
@@ -238,7 +238,7 @@ def test_pressure_integrates_to_the_force(control: str) -> None:
 
 
 @pytest.mark.parametrize("part", [1e-6, 1e-2])
-@pytest.mark.parametrize("control", CONTROLS)
+@TWO_OF_THREE
 def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:
     """a - c grows by a half; depth and stick edge change to second order only."""
     result = worn("paraboloid", control, part)
