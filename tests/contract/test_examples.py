@@ -92,7 +92,7 @@ def cattaneo_mindlin() -> dict[str, object]:
     ratio, friction, force = STEEL / STEEL_SHEAR, 0.3, 10.0
     forces = [0.0, 1.0, 2.0, 2.9, 3.0]
     sticking = [(1 - fx / (friction * force)) ** (1 / 3) for fx in forces[:-1]] + [0.0]
-    # Mindlin and Deresiewicz 1953: a quarter of the loss per cycle.
+    # Mindlin and Deresiewicz 1953: a quarter of the energy per cycle.
     full = 3 * friction * ratio * force * friction * d / 2 / 5
     return {
         **{name: values * 5 for name, values in hertz().items()},

@@ -118,13 +118,13 @@ def test_normal_force_and_displacement_grow_together(name: str) -> None:
 
     square = shape.over(stored, a1, c) + shape.over(stored, c, a2)
 
-    def lost(x: mpf) -> mpf:
+    def dissipated(x: mpf) -> mpf:
         # Both behave like roots at the reversal: the front is as far below it as the load is above.
         front = shape.root(lambda y: eta(y) - eta(x), a1, turn)
         return overlap(shape, front, x) * (2 * x * rate - 1)
 
     with mp.workdps(12):
-        loss = shape.over(lost, turn * (1 + mpf(10) ** -9), a2)
+        energy = shape.over(dissipated, turn * (1 + mpf(10) ** -9), a2)
     for sign in (1, -1):
         result = history.solve(
             profile_from(PROFILES[name]),
@@ -136,7 +136,7 @@ def test_normal_force_and_displacement_grow_together(name: str) -> None:
         )
         assert sign * result.tangential_force[1] == near(MU * E_STAR * carried, result)
         assert result.tangential_energy[1] == near(MU * E_STAR * COMPLIANCE * square, result)
-        assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
+        assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * energy, result)
         assert result.dissipation[0] == 0
         assert result.regime.tolist() == ["stick", "partial_slip"]
         assert result.slip_fronts[-1] == pytest.approx(float(c), rel=1e-9, abs=0)
@@ -158,12 +158,12 @@ def test_depth_and_tangential_force_grow_together(name: str) -> None:
     c = shape.root(lambda x: shape.force(x) - eta(turn), shape.flat, a1)
     anchor = shape.g(turn) - shape.g(c) + rate * shape.over(lambda x: 1 / (2 * x), turn, a2)
 
-    def lost(x: mpf) -> mpf:
+    def dissipated(x: mpf) -> mpf:
         front = shape.root(lambda y: shape.force(y) - eta(x), shape.flat, a1)
         return overlap(shape, front, x) * (rate - 2 * x) / (2 * front)
 
     with mp.workdps(12):
-        loss = shape.over(lost, a1, turn)
+        energy = shape.over(dissipated, a1, turn)
     for sign in (1, -1):
         result = history.solve(
             profile_from(PROFILES[name]),
@@ -174,7 +174,7 @@ def test_depth_and_tangential_force_grow_together(name: str) -> None:
             tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
         )
         assert sign * result.tangential_displacement[1] == near(COMPLIANCE * anchor, result)
-        assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * loss, result)
+        assert result.dissipation[1] == near(MU * E_STAR * COMPLIANCE * energy, result)
         assert result.regime.tolist() == ["stick", "stick"]
 
 

@@ -57,23 +57,23 @@ def input_error(case: dict[str, Any], name: str, index: int) -> float:
 
 
 def full_slip_error(case: dict[str, Any], index: int, result: history.LoadHistory) -> float:
-    """Error of the loss for an amplitude that rounding may move past the onset of full slip.
+    """Error of the dissipated energy where rounding may move the amplitude past full slip.
 
-    Beyond the onset the loss grows by 4 mu F_N du. That is steep next to a flat, where the slip
-    annulus before the onset is narrow and its loss is small. The stored condition number is that of
-    partial slip.
+    Beyond the onset of full slip the energy grows by 4 mu F_N du. That is steep next to a flat,
+    where the slip annulus before the onset is narrow and dissipates little. The stored condition
+    number is that of partial slip.
     """
     limit = case["friction_coefficient"] * float(np.max(result.normal_force))
     if case["tangential_control"] == "tangential_force" or not (
         float(np.max(np.abs(result.tangential_force))) >= limit * (1 - TOUCH)
     ):
         return 0.0
-    loss = float(case["expected"]["energy_per_cycle"][index])
-    return INPUT * 4 * limit * case["given"][index] / loss
+    energy = float(case["expected"]["energy_per_cycle"][index])
+    return INPUT * 4 * limit * case["given"][index] / energy
 
 
 def cycle_failures(case: dict[str, Any], index: int, result: Iterable[float]) -> list[str]:
-    """Failures of one amplitude's loss and stiffness, for each method that computes them."""
+    """Failures of one amplitude's energy and stiffness, for each method that computes them."""
     failures = []
     names = ("energy_per_cycle", "secant_stiffness")
     for name, bound, value in zip(names, (ENERGY, bound_of(case)), result, strict=True):
@@ -102,12 +102,12 @@ def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
 
 
 @batched(bank.load("history_cycles"))
-def test_loss_and_stiffness_of_a_cycle(cases: list[dict[str, Any]]) -> None:
+def test_dissipated_energy_and_stiffness_of_a_cycle(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of_a_cycle)
 
 
 def failures_of_sampled_cycle(case: dict[str, Any]) -> list[str]:
-    """Return the failures of a cycle whose loss is summed over samples within the load steps."""
+    """Return the failures of a cycle whose energy is summed over samples within the load steps."""
     failures = []
     for index, amplitude in enumerate(case["given"]):
         path = {
@@ -116,15 +116,15 @@ def failures_of_sampled_cycle(case: dict[str, Any]) -> list[str]:
         }
         result = history.solve(*material(case), **path, samples_per_step=3)
         assert result.step.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3]
-        lost = float(np.sum(result.dissipation[6:]))
+        dissipated = float(np.sum(result.dissipation[6:]))
         u, force = result.tangential_displacement, result.tangential_force
         secant = float((force[11] - force[8]) / (u[11] - u[8]))
-        failures += cycle_failures(case, index, (lost, secant))
+        failures += cycle_failures(case, index, (dissipated, secant))
     return failures
 
 
 @batched(bank.load("history_cycles")[::3])
-def test_loss_of_a_sampled_path_equals_that_of_the_cycle(cases: list[dict[str, Any]]) -> None:
+def test_energy_of_a_sampled_path_equals_that_of_the_cycle(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of_sampled_cycle)
 
 
@@ -146,11 +146,11 @@ def failures_in_phase(case: dict[str, Any]) -> list[str]:
         error = relative_error(float(result.secant_stiffness[cycle]), stiffness)
         if not error <= bound_of(case):
             failures.append(f"stiffness of cycle {cycle}: {error:.2e}")
-        lost, exact = float(result.energy_per_cycle[cycle]), expected["energy_per_cycle"][cycle]
+        energy, exact = float(result.energy_per_cycle[cycle]), expected["energy_per_cycle"][cycle]
         bound = (ENERGY + INPUT * case["condition"][cycle]) * float(exact) + TOUCH * whole
-        miss = abs(Decimal(lost) - Decimal(exact))
+        miss = abs(Decimal(energy) - Decimal(exact))
         if not miss <= bound:
-            failures.append(f"loss of cycle {cycle}: {miss:.2e} > {bound:.2e}")
+            failures.append(f"dissipated energy of cycle {cycle}: {miss:.2e} > {bound:.2e}")
     return failures
 
 

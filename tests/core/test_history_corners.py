@@ -318,8 +318,8 @@ def test_closed_inner_loop_erases_its_memory(name: str) -> None:
     for column in ("tangential_displacement", "tangential_energy"):
         values = [getattr(result, column)[-kept:] for result in (short, long)]
         assert values[1] == near(values[0], 1e-13 * np.max(np.abs(values[0]))), column
-    losses = [result.dissipation[-len(rest) :] for result in (short, long)]
-    assert losses[1] == near(losses[0], rel=1e-11)
+    dissipated = [result.dissipation[-len(rest) :] for result in (short, long)]
+    assert dissipated[1] == near(dissipated[0], rel=1e-11)
     assert long.state.depth.shape == short.state.depth.shape
     assert long.state.depth == near(short.state.depth)
     assert long.state.load == near(short.state.load, 1e-13 * np.max(np.abs(short.state.load)))
@@ -344,8 +344,10 @@ def test_separation_and_renewed_contact(name: str, sign: int) -> None:
     # From 2 u at first contact by -3 u in total, a fifth of it before contact.
     fresh = solve(name, indentation_depth=[DEPTH], tangential_displacement=[0.8 * -3 * u])
     assert result.tangential_force[-1] == near(fresh.tangential_force[-1])
-    lost = result.dissipated_energy
-    assert lost[-1] - lost[gone][-1] == near(fresh.dissipated_energy[-1], 1e-13 * lost[-1])
+    dissipated = result.dissipated_energy
+    assert dissipated[-1] - dissipated[gone][-1] == near(
+        fresh.dissipated_energy[-1], 1e-13 * dissipated[-1]
+    )
     assert not result.dissipation[gone][1:].any()
 
 
@@ -378,8 +380,8 @@ def test_flat_punch_passes_from_full_stick_to_full_slip(sign: int) -> None:
     # Full slip from 1 to 1.5, full stick down to -0.5, then full slip again.
     expected = np.array([0.0, 0.9, 1.0, 0.5, -0.9, -1.0, -1.0])
     assert result.tangential_force == near(sign * bound * expected)
-    lost = np.array([0.0, 0.0, 0.5, 0.5, 0.5, 0.9, 2.0]) * most * bound
-    assert result.dissipated_energy == near(lost)
+    dissipated = np.array([0.0, 0.0, 0.5, 0.5, 0.5, 0.9, 2.0]) * most * bound
+    assert result.dissipated_energy == near(dissipated)
     regimes = ["stick", "stick", "full_slip", "stick", "stick", "full_slip", "full_slip"]
     assert list(result.regime) == regimes
     assert result.slip_fronts.shape == (0,)
@@ -477,10 +479,12 @@ def test_invalid_path_is_rejected(controls: dict[str, Any]) -> None:
     ],
     ids=["three", "five"],
 )
-def test_loss_of_a_cycle_on_a_rough_table(radii: list[float], heights: list[float]) -> None:
+def test_dissipated_energy_of_a_cycle_on_a_rough_table(
+    radii: list[float], heights: list[float]
+) -> None:
     """g is constant on parts of both tables; at their ends, rounding can reverse intervals.
 
-    The loss is continuous in the load, so it equals the mean of neighbouring losses.
+    The dissipated energy is continuous in the load: it equals the mean of its neighbours.
     """
     last = 0.00251443580181325, 3.85203450924955e-05
     profile = Tabulated([0.0, *radii, last[0]], [0.0, *heights, last[1]])
@@ -498,7 +502,7 @@ def test_loss_of_a_cycle_on_a_rough_table(radii: list[float], heights: list[floa
         )
 
     below, result, above = (cycles(factor) for factor in (1 - 1e-4, 1.0, 1 + 1e-4))
-    loss = float(result.energy_per_cycle[0])
+    energy = float(result.energy_per_cycle[0])
     beside = float(below.energy_per_cycle[0] + above.energy_per_cycle[0]) / 2
-    assert loss == pytest.approx(beside, rel=1e-3, abs=0)
-    assert 0 <= result.energy_per_cycle[1] < 1e-12 * loss
+    assert energy == pytest.approx(beside, rel=1e-3, abs=0)
+    assert 0 <= result.energy_per_cycle[1] < 1e-12 * energy

@@ -117,10 +117,10 @@ def test_repeated_loop_closes_and_dissipates(scene: Scene, loop: list[tuple[floa
     assert force[count : 2 * count] == near(force[2 * count :], 1e-12 * size)
     energy = size * SHIFT * depth
     assert stored[count : 2 * count] == near(stored[2 * count :], 1e-12 * energy)
-    lost = result.dissipation
-    assert lost[count : 2 * count] == near(lost[2 * count :], 1e-12 * energy)
+    dissipated = result.dissipation
+    assert dissipated[count : 2 * count] == near(dissipated[2 * count :], 1e-12 * energy)
     # All work is dissipated, since the stored energy returns to its value.
-    assert np.sum(lost[count : 2 * count]) >= 0
+    assert np.sum(dissipated[count : 2 * count]) >= 0
 
 
 def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:

@@ -71,24 +71,24 @@ def test_results_after_an_erasing_step_are_independent_of_the_past(name: str) ->
         most = MATERIAL.mu * np.max(fresh.normal_force)
         expected = pytest.approx(fresh.tangential_force[2:], rel=0, abs=1e-12 * most)
         assert result.tangential_force[part] == expected
-        lost = pytest.approx(fresh.dissipation[2:], rel=1e-9, abs=1e-12 * most * FULL_SLIP)
-        assert result.dissipation[part] == lost
+        dissipated = pytest.approx(fresh.dissipation[2:], rel=1e-9, abs=1e-12 * most * FULL_SLIP)
+        assert result.dissipation[part] == dissipated
 
 
-def anchors(d: Array, u: Array, touch: Array) -> Array:
+def anchors(d: Array, u: Array, first_contact_depth: Array) -> Array:
     """q_x of springs stored by zero-force displacement, without accumulation and without drift."""
     compliance = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star
-    hung = np.zeros_like(touch)
+    hung = np.zeros_like(first_contact_depth)
     last_d = last_u = 0.0
     for new_d, new_u in zip(d.tolist(), u.tolist(), strict=True):
         if new_d > last_d:
-            entering = (touch >= last_d) & (touch < new_d)
-            share = (touch - last_d) / (new_d - last_d)
+            entering = (first_contact_depth >= last_d) & (first_contact_depth < new_d)
+            share = (first_contact_depth - last_d) / (new_d - last_d)
             hung = np.where(entering, last_u + share * (new_u - last_u), hung)
-        reach = compliance * np.maximum(new_d - touch, 0.0)
+        reach = compliance * np.maximum(new_d - first_contact_depth, 0.0)
         hung = np.clip(hung, new_u - reach, new_u + reach)
         last_d, last_u = new_d, new_u
-    return np.where(touch < last_d, MATERIAL.g_star * (last_u - hung), 0.0)
+    return np.where(first_contact_depth < last_d, MATERIAL.g_star * (last_u - hung), 0.0)
 
 
 @pytest.mark.parametrize("name", ["paraboloid", "flat-punch"])
@@ -99,9 +99,11 @@ def test_final_state_equals_that_of_drift_free_springs(name: str) -> None:
     u = random.uniform(-0.3, 0.3, STEPS // 4) * FULL_SLIP
     d[-1] = DEPTH / 2
     state = solve(name, indentation_depth=d, tangential_displacement=u).state
-    touch = np.linspace(0.0, 0.999 * d[-1], 97) if name != "flat-punch" else np.zeros(1)
-    result = np.interp(touch, state.depth, state.load)
-    assert result == pytest.approx(anchors(d, u, touch), rel=0, abs=1e-12 * SIZE)
+    first_contact_depth = (
+        np.linspace(0.0, 0.999 * d[-1], 97) if name != "flat-punch" else np.zeros(1)
+    )
+    result = np.interp(first_contact_depth, state.depth, state.load)
+    assert result == pytest.approx(anchors(d, u, first_contact_depth), rel=0, abs=1e-12 * SIZE)
     assert state.depth.size <= 64
 
 

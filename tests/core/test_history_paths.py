@@ -121,8 +121,8 @@ def test_state_matches_each_spring(name: str) -> None:
         state = solve(name, indentation_depth=d, tangential_displacement=u).state
         foundation = springs.foundation(PROFILES[name], float(np.max(d)), 2000)
         load = springs.simulate(foundation, MATERIAL, d, u).load
-        inside = foundation.touch < d[-1]
-        result = np.interp(foundation.touch[inside], state.depth, state.load)
+        inside = foundation.first_contact_depth < d[-1]
+        result = np.interp(foundation.first_contact_depth[inside], state.depth, state.load)
         size = MATERIAL.mu * MATERIAL.e_star * DEPTH
         assert result == pytest.approx(load[inside], rel=1e-12, abs=1e-13 * size)
         assert state.depth[0] == 0

@@ -212,12 +212,12 @@ def test_far_field_is_that_of_a_point_force(ratio: float) -> None:
     )
 
 
-def test_loss_with_a_steep_flank() -> None:
+def test_dissipated_energy_with_a_steep_flank() -> None:
     """int_c^a (g(a) - g)(g - g(c)) dx of a cap 1e10 times flatter than its flank, by mpmath."""
     b, flat, steep = 0.01, 1e8, 0.01
     contact = normal.solve(profiles.CappedParaboloid(b, flat, steep), 1.0, contact_radius=0.02)
     c = b * (1 - 1e-3)
-    lost = tangential.solve(contact, 1.0, 0.3, stick_radius=c).dissipated_energy
+    dissipated = tangential.solve(contact, 1.0, 0.3, stick_radius=c).dissipated_energy
     with mpmath.workdps(40):
         edge = mpmath.mpf(b)
 
@@ -228,7 +228,7 @@ def test_loss_with_a_steep_flank() -> None:
         low, high = mpmath.mpf(c), mpmath.mpf(0.02)
         moment = mpmath.quad(lambda x: (g(high) - g(x)) * (g(x) - g(low)), [low, edge, high])
         expected = float(2 * mpmath.mpf(0.3) ** 2 * moment)
-    assert float(lost) == pytest.approx(expected, rel=1e-12, abs=0)
+    assert float(dissipated) == pytest.approx(expected, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(

@@ -156,7 +156,7 @@ TANGENTIAL = (
 )
 
 # For other kinds the dissipated energy takes a fraction of a millisecond per case.
-CLOSED_LOSSES = {"cone", "paraboloid", "flat_punch"}
+CLOSED_ENERGIES = {"cone", "paraboloid", "flat_punch"}
 
 
 def repeated(values: Array) -> Array:
@@ -208,12 +208,12 @@ def test_sweep_is_bit_identical_to_single_cases(kind: str, control: str) -> None
             )
             for i in range(FEW)
         ]
-        for name in (*TANGENTIAL, *(["dissipated_energy"] if kind in CLOSED_LOSSES else [])):
+        for name in (*TANGENTIAL, *(["dissipated_energy"] if kind in CLOSED_ENERGIES else [])):
             alone = np.array([getattr(one, name) for one in alone_sideways])
             assert np.array_equal(getattr(tangential_load, name), repeated(alone)), name
 
 
-@pytest.mark.parametrize("kind", sorted(KINDS.keys() - CLOSED_LOSSES))
+@pytest.mark.parametrize("kind", sorted(KINDS.keys() - CLOSED_ENERGIES))
 def test_dissipated_energy_of_a_sweep_is_bit_identical_to_single_cases(kind: str) -> None:
     profile, named = KINDS[kind]
     force = LOADS["normal_force"]
@@ -312,16 +312,18 @@ def test_dissipated_energy_of_a_sweep_equals_that_of_single_cases(
     kind, parameters = sweep
     e_star, force = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.05])
 
-    def lost(body: profiles.Profile, *numbers: Any) -> Any:
+    def dissipated(body: profiles.Profile, *numbers: Any) -> Any:
         contact = normal.solve(body, numbers[0], normal_force=numbers[1])
         tangential_load = tangential.solve(contact, 0.9, 0.3, tangential_force=0.1 * numbers[1])
         return tangential_load.dissipated_energy
 
-    result = lost(kind(*parameters), e_star, force)
+    result = dissipated(kind(*parameters), e_star, force)
     columns = np.broadcast_arrays(*parameters, e_star, force)
     for i, numbers in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
         own = kind(*numbers[: len(parameters)])
-        assert result[i] == pytest.approx(lost(own, *numbers[len(parameters) :]), rel=1e-14, abs=0)
+        assert result[i] == pytest.approx(
+            dissipated(own, *numbers[len(parameters) :]), rel=1e-14, abs=0
+        )
 
 
 def test_prescribed_stick_radius_below_a_computed_edge_in_blocks() -> None:

@@ -218,8 +218,8 @@ def test_dissipated_energy_is_work_minus_stored_energy(scene: Scene, rho: float)
     if float(result.stick_radius) < b < radius:
         middle = [float(solve_tangential(result.normal, stick_radius=b).tangential_displacement)]
     work = integral(force, knots(0.0, u, *middle))
-    lost = float(result.dissipated_energy)
-    assert lost == near(work - stored(result, b), 0.0, 1e-8 * work)
+    dissipated = float(result.dissipated_energy)
+    assert dissipated == near(work - stored(result, b), 0.0, 1e-8 * work)
 
 
 @repeatable

@@ -118,9 +118,9 @@ def test_initial_wear_follows_the_friction_work(kind: str, control: str, resolut
 @pytest.mark.parametrize(("kind", "control"), PAIRS)
 def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
     result = worn(kind, control)
-    lost = WEAR * result.dissipated_energy
-    assert result.worn_volume == pytest.approx(lost, rel=1e-4, abs=0)
-    assert result.worn_volume == pytest.approx(lost, rel=2 * result.error_estimate, abs=0)
+    volume = WEAR * result.dissipated_energy
+    assert result.worn_volume == pytest.approx(volume, rel=1e-4, abs=0)
+    assert result.worn_volume == pytest.approx(volume, rel=2 * result.error_estimate, abs=0)
     for cycle in (2, 4, 7):
         assert ring_integral(result, cycle) == pytest.approx(
             result.worn_volume[cycle], rel=1e-3, abs=0

@@ -170,7 +170,7 @@ def cycle_record(scene: Scene, normal: str, control: str) -> Record:
     }
     ratios = RATIOS if control == "tangential_force" else (*RATIOS, *BEYOND_FULL_SLIP)
     if at.flat_punch:
-        # Immediate full slip; just below it, the loss is rounding error.
+        # Immediate full slip; just below it, the dissipated energy is rounding error.
         ratios = tuple(ratio for ratio in ratios if ratio != 1)
     with mp.workdps(WORK_DIGITS):
         most = (
@@ -202,15 +202,15 @@ def _wave(mean: mpf, normal_amplitude: mpf, amplitude: mpf) -> list[tuple[mpf, m
     return [(mean, mpf(0)), top, *[bottom, top] * COUNT]
 
 
-def _losses(
+def _dissipated_energies(
     scene: Scene, mean: mpf, normal_amplitude: mpf, amplitude: mpf
 ) -> tuple[list[mpf], list[mpf]]:
     path = _wave(mean, normal_amplitude, amplitude)
     result = history(scene.profile, path, scene.material)
     steps = range(1, len(path) - 1, 2)
-    lost = [result[i + 2].dissipated_energy - result[i].dissipated_energy for i in steps]
+    dissipated = [result[i + 2].dissipated_energy - result[i].dissipated_energy for i in steps]
     forces = [[result[i + k].tangential_force for k in (0, 1, 2)] for i in steps]
-    return lost, [(max(f) - min(f)) / (2 * amplitude) for f in forces]
+    return dissipated, [(max(f) - min(f)) / (2 * amplitude) for f in forces]
 
 
 def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
@@ -223,13 +223,13 @@ def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
         exact = [mpf(value) for value in given]
         assert mpf(mean + normal_amplitude) - mean == normal_amplitude
         assert mean - mpf(mean - normal_amplitude) == normal_amplitude
-        lost, stiffness = _losses(scene, *exact)
+        dissipated, stiffness = _dissipated_energies(scene, *exact)
         conditions = [mpf(0)] * COUNT
         for index in range(3):
             near = list(exact)
             near[index] *= 1 + NUDGE
-            nudged, _ = _losses(scene, *near)
-            for cycle, (new, old) in enumerate(zip(nudged, lost, strict=True)):
+            nudged, _ = _dissipated_energies(scene, *near)
+            for cycle, (new, old) in enumerate(zip(nudged, dissipated, strict=True)):
                 conditions[cycle] += abs(new / old - 1) / NUDGE if old else mpf(0)
     return {
         "id": f"inphase-{scene.family}-5.8-{part:g}-{ratio:g}-{scene.scale}",
@@ -239,7 +239,7 @@ def inphase_record(scene: Scene, part: float, ratio: float) -> Record:
         "swing": normal_amplitude,
         "amplitude": given[2],
         "expected": {
-            "energy_per_cycle": [digits(value) for value in lost],
+            "energy_per_cycle": [digits(value) for value in dissipated],
             "secant_stiffness": [digits(value) for value in stiffness],
         },
         "condition": [condition(value) for value in conditions],

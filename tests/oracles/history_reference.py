@@ -50,27 +50,27 @@ Branches = tuple[int, ...]
 
 @dataclass(frozen=True)
 class SpringHistory:
-    """Load and cumulative loss of the spring of depth w after each load step."""
+    """Load and cumulative dissipated energy of the spring of depth w after each load step."""
 
     load: tuple[mpf, ...]
-    lost: tuple[mpf, ...]
+    dissipated: tuple[mpf, ...]
     branches: Branches
 
 
 def follow(w: mpf, path: Path, material: Material) -> SpringHistory:
     """Follow one spring from (0, 0) along straight load steps to the points of `path`."""
     limit, g_star = mpf(material.mu) * mpf(material.e_star), mpf(material.g_star)
-    q = lost = d = u = mpf(0)
-    loads, losses, branches = [], [], []
+    q = dissipated = d = u = mpf(0)
+    loads, dissipated_energies, branches = [], [], []
     for point in path:
         new_d, new_u = mpf(point[0]), mpf(point[1])
         q, one, branch = _load_step(q, w, (d, u), (new_d, new_u), (limit, g_star))
-        lost += one
+        dissipated += one
         d, u = new_d, new_u
         loads.append(q)
-        losses.append(lost)
+        dissipated_energies.append(dissipated)
         branches.append(branch)
-    return SpringHistory(tuple(loads), tuple(losses), tuple(branches))
+    return SpringHistory(tuple(loads), tuple(dissipated_energies), tuple(branches))
 
 
 def _load_step(
@@ -123,7 +123,7 @@ def fronts(path: Path, material: Material) -> list[mpf]:
 
 @dataclass(frozen=True)
 class Sample:
-    """Sums over the foundation at the end of a load step; the loss accumulates from the start."""
+    """Sums over the foundation after a load step; the dissipated energy is that since the start."""
 
     normal_force: mpf
     tangential_force: mpf
@@ -192,7 +192,7 @@ def _quadratic(points: Sequence[tuple[mpf, mpf]]) -> tuple[mpf, mpf, mpf]:
 
 def _parts(histories: Sequence[SpringHistory], step: int) -> tuple[list[mpf], list[mpf], list[mpf]]:
     loads = [life.load[step] for life in histories]
-    return loads, [q * q for q in loads], [life.lost[step] for life in histories]
+    return loads, [q * q for q in loads], [life.dissipated[step] for life in histories]
 
 
 def history(profile: Mapping[str, Any], path: Path, material: Material) -> list[Sample]:
@@ -234,8 +234,8 @@ def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
                 total[index] += 2 * body.b * value
     bearing = [_bearing(body, mpf(d)) for d, _ in path]
     return [
-        Sample(e_star * n, force, squares / (2 * g_star), lost)
-        for n, (force, squares, lost) in zip(bearing, totals, strict=True)
+        Sample(e_star * n, force, squares / (2 * g_star), dissipated)
+        for n, (force, squares, dissipated) in zip(bearing, totals, strict=True)
     ]
 
 
@@ -252,7 +252,7 @@ def _punch(body: Body, path: Path, material: Material) -> list[Sample]:
             width * mpf(material.e_star) * max(mpf(d), mpf(0)),
             width * q,
             width * q**2 / (2 * mpf(material.g_star)),
-            width * lost,
+            width * dissipated,
         )
-        for (d, _), q, lost in zip(path, life.load, life.lost, strict=True)
+        for (d, _), q, dissipated in zip(path, life.load, life.dissipated, strict=True)
     ]

@@ -405,9 +405,9 @@ def flat_answer(at: Setting, control: str, given: float) -> dict[str, mpf]:
         shift = mpf(given) if control == "tangential_displacement" else force / stiffness
         if sliding:
             force = mp.sign(force) * bound
-        lost = bound * (abs(shift) - bound / stiffness) if sliding else mpf(0)
+        dissipated = bound * (abs(shift) - bound / stiffness) if sliding else mpf(0)
         answers = (force, shift, mpf(0) if sliding else at.a, at.a if sliding else mpf(0))
-        rest = (mpf(0) if sliding else stiffness, lost)
+        rest = (mpf(0) if sliding else stiffness, dissipated)
         return dict(zip(OUTPUTS, (*answers, *rest), strict=True))
 
 
@@ -418,8 +418,8 @@ def full_slip(at: Setting, displacement: float) -> dict[str, mpf]:
         result = values(at, edge)
         force, reach = at.mu * at.e_star * at.n, at.shift * at.depth
         sign = 1 if displacement > 0 else -1
-        lost = result["dissipated_energy"] + force * (abs(mpf(displacement)) - reach)
-        answers = (sign * force, mpf(displacement), mpf(0), at.a, mpf(0), lost)
+        dissipated = result["dissipated_energy"] + force * (abs(mpf(displacement)) - reach)
+        answers = (sign * force, mpf(displacement), mpf(0), at.a, mpf(0), dissipated)
         return dict(zip(OUTPUTS, answers, strict=True))
 
 

@@ -3,7 +3,7 @@
 A spring at x carries q = E* (d - g(x)) per length while d > g(x). Its tangential load follows the
 displacement, q_x' = q_x + G* (u' - u), and is clipped at mu q (Eq. 5.9); the excess is slip. During
 a straight load step all of these change linearly in time, so that the final state, the work and the
-loss of each spring follow in closed form.
+dissipated energy of each spring follow in closed form.
 
 The only error is that of the sum over springs. Their positions are midpoints of a coordinate in
 which g is smooth between its breaks, so the error decreases with the square of their number. The
@@ -45,7 +45,7 @@ class Foundation:
     The length covers both sides of the axis. All springs under a flat are identical and form one.
     """
 
-    touch: Array
+    first_contact_depth: Array
     length: Array
 
 
@@ -58,7 +58,7 @@ def foundation(profile: Mapping[str, Any], depth: float, count: int) -> Foundati
         edge = float(body.radius("indentation_depth", mpf(depth)))
         flat = float(body.b) if body.blunt else 0.0
         knots = [0.0, *(k for k in _breaks(body) if 0 < k < edge), edge]
-    touch, length = [], []
+    first_contact_depth, length = [], []
     for low, high in itertools.pairwise(knots):
         if high <= flat:
             continue
@@ -70,12 +70,12 @@ def foundation(profile: Mapping[str, Any], depth: float, count: int) -> Foundati
         middle = end * t**grading
         rate = grading * end * t ** (grading - 1) / number
         x = np.hypot(low, middle)
-        touch.append(equivalent_profile(profile, x, middle, low))
+        first_contact_depth.append(equivalent_profile(profile, x, middle, low))
         length.append(2 * rate * middle / x)
     if flat:
-        touch.append(np.zeros(1))
+        first_contact_depth.append(np.zeros(1))
         length.append(np.array([2 * flat]))
-    return Foundation(np.concatenate(touch), np.concatenate(length))
+    return Foundation(np.concatenate(first_contact_depth), np.concatenate(length))
 
 
 def _breaks(body: ShapeBody | TableBody) -> list[float]:
@@ -88,10 +88,10 @@ def equivalent_profile(profile: Mapping[str, Any], x: Array, s: Array, low: floa
     """g at the radii x = sqrt(low^2 + s^2); `low` is the break at or below them."""
     kind = profile["kind"]
     if kind == "tabulated":
-        return _table_image(profile, x)
+        return _table_equivalent_profile(profile, x)
     if kind in _POWERS:
         return sum((c * float(kappa(mpf(n))) * x**n for c, n in _POWERS[kind](profile)), 0 * x)
-    return _IMAGES[kind](profile, x, s, np.arctan2(s, low), low > 0)
+    return _EQUIVALENT_PROFILES[kind](profile, x, s, np.arctan2(s, low), low > 0)
 
 
 _POWERS = {
@@ -112,7 +112,7 @@ def _spherical_tip(p: Profile, x: Array, s: Array, phi: Array) -> Array:
 
 
 #: (profile, x, s, angle, whether beyond the break) -> g, for kinds that are not sums of powers.
-_IMAGES: dict[str, Any] = {
+_EQUIVALENT_PROFILES: dict[str, Any] = {
     "sphere": lambda p, x, s, phi, far: _ellipsoid(p["radius"], p["radius"], x),
     "ellipsoid": lambda p, x, s, phi, far: _ellipsoid(p["radius"], p["height"], x),
     "hyperboloid": lambda p, x, s, phi, far: (
@@ -137,7 +137,7 @@ _IMAGES: dict[str, Any] = {
 }
 
 
-def _table_image(profile: Mapping[str, Any], x: Array) -> Array:
+def _table_equivalent_profile(profile: Mapping[str, Any], x: Array) -> Array:
     """Sum over knots of the jumps in f', f'' and f''', expanded about each knot."""
     with mp.workdps(WORK_DIGITS):
         table = Table(profile)
@@ -184,24 +184,24 @@ def simulate(
     A negative depth is a separation. Substeps only change rounding errors.
     """
     e, g_star, mu = material.e_star, material.g_star, material.mu
-    w, length = springs.touch, springs.length
+    w, length = springs.first_contact_depth, springs.length
     q = np.zeros_like(w)
     d, u = start
     rows = []
-    lost = work = 0.0
+    dissipated = work = 0.0
     for end_d, end_u in zip(depth, displacement, strict=True):
         begin_d, begin_u = d, u
         for number in range(1, substeps + 1):
             part = number / substeps
             new_d = end_d if number == substeps else begin_d + part * (end_d - begin_d)
             new_u = end_u if number == substeps else begin_u + part * (end_u - begin_u)
-            q, one_lost, one_work = _step(q, w, (d, u), (new_d, new_u), (e, g_star, mu))
-            lost += float(length @ one_lost)
+            q, one_dissipated, one_work = _step(q, w, (d, u), (new_d, new_u), (e, g_star, mu))
+            dissipated += float(length @ one_dissipated)
             work += float(length @ one_work)
             d, u = new_d, new_u
         bearing = e * np.maximum(d - w, 0.0)
         stored = float(length @ (q * q)) / (2 * g_star)
-        rows.append((float(length @ bearing), float(length @ q), lost, stored, work))
+        rows.append((float(length @ bearing), float(length @ q), dissipated, stored, work))
     columns = np.array(rows).reshape(-1, 5).T
     return Samples(*columns, load=q)
 
@@ -213,7 +213,7 @@ def _step(
     end: tuple[float, float],
     constants: tuple[float, float, float],
 ) -> tuple[Array, Array, Array]:
-    """Loads after one straight step, and the loss and work of each spring, per length."""
+    """Loads after one straight step, and each spring's dissipated energy and work, per length."""
     (d, u), (new_d, new_u) = begin, end
     e, g_star, mu = constants
     rise, push = new_d - d, new_u - u
@@ -236,7 +236,7 @@ def _step(
     room = limit_first - np.sign(trial) * q
     share = np.where(slipping, room / np.where(slipping, room + excess, 1.0), 1.0)
     limit_share = limit_first + (limit_last - limit_first) * share
-    lost = np.where(slipping, excess / g_star * (limit_share + limit_last) / 2, 0.0)
+    dissipated = np.where(slipping, excess / g_star * (limit_share + limit_last) / 2, 0.0)
     turn = np.where(slipping, np.sign(trial) * limit_share, new)
     mean = (q + turn) / 2 * share + (turn + new) / 2 * (1 - share)
-    return new, lost, push * span * mean
+    return new, dissipated, push * span * mean

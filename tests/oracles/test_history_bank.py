@@ -63,8 +63,8 @@ def _separates_and_touches_again(record: bank.Record) -> bool:
 
 def test_dissipated_energy_never_decreases() -> None:
     for record in bank.load("history_paths"):
-        lost = [mpf(value) for value in record["expected"]["dissipated_energy"]]
-        assert lost == sorted(lost), record["id"]
+        dissipated = [mpf(value) for value in record["expected"]["dissipated_energy"]]
+        assert dissipated == sorted(dissipated), record["id"]
         expected = record["expected"]
         with mp.workdps(40):
             mu = mpf(record["friction_coefficient"])
@@ -83,8 +83,8 @@ def test_stored_cycles_equal_the_closed_form(record: bank.Record) -> None:
         at = slip.setting(record["profile"], record["control"], record["load"], material(record))
         index = random.Random(record["id"]).randrange(len(record["given"]))
         amplitude = mpf(record["given"][index])
-        lost, stiffness = generate.loop(at, record["tangential_control"], amplitude)
-        assert same(record["expected"]["energy_per_cycle"][index], lost)
+        dissipated, stiffness = generate.loop(at, record["tangential_control"], amplitude)
+        assert same(record["expected"]["energy_per_cycle"][index], dissipated)
         assert same(record["expected"]["secant_stiffness"][index], stiffness)
 
 

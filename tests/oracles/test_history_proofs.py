@@ -54,7 +54,7 @@ PROFILES: dict[str, dict[str, Any]] = {
     "flat-punch": {"kind": "flat_punch", "radius": 0.5},
 }
 DEPTH = 0.25
-LOSS = "dissipated_energy"
+DISSIPATED = "dissipated_energy"
 everywhere = pytest.mark.parametrize("name", PROFILES)
 few = pytest.mark.parametrize("name", ["paraboloid", "truncated-cone", "sphere", "flat-punch"])
 
@@ -158,7 +158,7 @@ def test_springs_need_no_substeps(name: str) -> None:
 
 @everywhere
 def test_each_spring_balances_its_energy(name: str) -> None:
-    """Work and loss are computed independently."""
+    """Work and dissipated energy are computed independently."""
     computed = run(name, random_path(7, 40))
     balance = computed.tangential_energy + computed.dissipated_energy
     assert balance == pytest.approx(computed.work, rel=1e-13, abs=0)
@@ -168,7 +168,7 @@ def test_each_spring_balances_its_energy(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in PROFILES if name != "flat-punch"])
 @pytest.mark.parametrize("rho", [0.07, 0.8])
 def test_first_loading_is_partial_slip(name: str, rho: float) -> None:
-    """Eqs. (5.19), (5.20), and the loss as the integral over the annulus."""
+    """Eqs. (5.19), (5.20), and the dissipated energy as the integral over the annulus."""
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
     known = slip.solve(at, "tangential_displacement", rho * full_slip_displacement(DEPTH)).values
@@ -180,11 +180,11 @@ def test_first_loading_is_partial_slip(name: str, rho: float) -> None:
         factor = 2 * (at.mu * at.e_star) ** 2 / at.g_star
         assert same(computed.dissipated_energy, factor * overlap(at, known["stick_radius"]))
         if "table" not in name:
-            assert same(computed.dissipated_energy, known[LOSS])
+            assert same(computed.dissipated_energy, known[DISSIPATED])
 
 
 def cycle(name: str, amplitude: float) -> tuple[mpf, mpf]:
-    """Loss per cycle of u between -amplitude and amplitude, and the largest force."""
+    """Energy dissipated per cycle of u between -amplitude and amplitude, and the largest force."""
     path = [(DEPTH, u) for u in (0.0, amplitude, -amplitude, amplitude)]
     computed = history(PROFILES[name], path, MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
@@ -204,12 +204,12 @@ def test_cycle_of_a_power_law(rho: float) -> None:
         big, t = mpf(PROFILES["paraboloid"]["radius"]), mpf(PROFILES["cone"]["slope"])
         a, c = mp.sqrt(big * mpf(DEPTH)), mp.sqrt(big * rest)
         factored = 16 * front / (15 * big**2) * (a - c) ** 3 * (a**2 + 3 * a * c + c**2)
-        lost, force = cycle("paraboloid", amplitude)
-        assert same(lost, factored)
+        dissipated, force = cycle("paraboloid", amplitude)
+        assert same(dissipated, factored)
         normal = 4 * e_star * a**3 / (3 * big)
         part = force / (mu * normal)
         bracket = 1 - (1 - part) ** (mpf(5) / 3) - 5 * part / 6 * (1 + (1 - part) ** (mpf(2) / 3))
-        assert same(lost, 18 * mu**2 * normal**2 / (5 * a * g_star) * bracket)
+        assert same(dissipated, 18 * mu**2 * normal**2 / (5 * a * g_star) * bracket)
         a, c = (2 * depth / (mp.pi * t) for depth in (mpf(DEPTH), rest))
         assert same(cycle("cone", amplitude)[0], mp.pi**2 * front * t**2 / 3 * (a - c) ** 3)
 
@@ -222,8 +222,8 @@ def test_cycle_is_four_first_loadings(name: str) -> None:
         amplitude = rho * full_slip_displacement(DEPTH)
         with mp.workdps(slip.WORK_DIGITS):
             at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
-            known = 4 * slip.solve(at, "tangential_displacement", amplitude).values[LOSS]
-            # A small loss is a third difference of quadratures with 42 digits.
+            known = 4 * slip.solve(at, "tangential_displacement", amplitude).values[DISSIPATED]
+            # A small dissipated energy is a third difference of quadratures with 42 digits.
             assert abs(cycle(name, amplitude)[0] - known) < PROOF / mpf(rho) ** 3 * known
 
 
@@ -231,7 +231,7 @@ def test_cycle_is_four_first_loadings(name: str) -> None:
 def test_full_slip_dissipates_friction_times_sliding_distance(name: str) -> None:
     """W = 4 mu F_N u0 - (8 mu^2 E*^2/G*) int (d - g)^2 dx, the integral from the normal energy."""
     amplitude = 1.7 * full_slip_displacement(DEPTH)
-    lost, force = cycle(name, amplitude)
+    dissipated, force = cycle(name, amplitude)
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
         assert same(force, at.mu * at.e_star * at.n)
@@ -240,7 +240,7 @@ def test_full_slip_dissipates_friction_times_sliding_distance(name: str) -> None
         # int (d - g)^2 = d int (d - g) - int (d - g) g.
         square = at.depth * at.n / 2 - missing
         loop = 4 * force * mpf(amplitude) - 8 * (at.mu * at.e_star) ** 2 / at.g_star * square
-        assert same(lost, loop)
+        assert same(dissipated, loop)
 
 
 def test_cycle_is_the_area_of_its_curve() -> None:
@@ -249,7 +249,7 @@ def test_cycle_is_the_area_of_its_curve() -> None:
     with mp.workdps(slip.WORK_DIGITS):
         at = slip.setting(PROFILES["sphere"], "indentation_depth", DEPTH, MATERIAL)
         c = slip.stick_radius(at, "tangential_displacement", mpf(amplitude))
-        lost, force = cycle("sphere", amplitude)
+        dissipated, force = cycle("sphere", amplitude)
         with mp.workdps(50):
 
             def density(x: mpf) -> mpf:
@@ -257,7 +257,7 @@ def test_cycle_is_the_area_of_its_curve() -> None:
                 return virgin * at.shift * at.body.dg(x)
 
             area = mp.quad(density, [c, at.a])
-        assert mp.almosteq(lost, 8 * area - 4 * force * mpf(amplitude), mpf(10) ** -30)
+        assert mp.almosteq(dissipated, 8 * area - 4 * force * mpf(amplitude), mpf(10) ** -30)
 
 
 def virgin(at: slip.Setting, u: mpf) -> mpf:

@@ -92,7 +92,7 @@ def test_controls_agree(name: str, rho: str) -> None:
 
 
 def test_energy_of_the_paraboloid_and_the_cone() -> None:
-    """A quarter of the cycle's loss, by the factored forms of the notes."""
+    """A quarter of the energy dissipated per cycle, by the factored forms of the notes."""
     for c in ("1e-3", "0.4", "0.6999999"):
         at, other = setting_of(HERTZ, 0.7), setting_of(CONE, 0.7)
         with mp.workdps(60):

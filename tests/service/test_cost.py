@@ -168,7 +168,7 @@ def test_every_number_of_a_response_counts() -> None:
 
 
 @pytest.mark.parametrize("control", ["normal_force", "contact_radius"])
-def test_most_loads_on_a_smooth_table_are_accepted(control: str) -> None:
+def test_maximum_number_of_loads_on_a_smooth_table_is_accepted(control: str) -> None:
     """They take less than a second: the largest pressure is at the axis."""
     r = [i / 199 for i in range(200)]
     table = {"kind": "tabulated", "r": r, "f": [x * x / 2 for x in r]}

@@ -84,7 +84,7 @@ def displacement() -> Curve:
 
 
 def energy() -> Curve:
-    """Mindlin and Deresiewicz: a quarter of the loss per cycle, with two cancellations."""
+    """Mindlin and Deresiewicz: a quarter of a cycle's dissipated energy, with two cancellations."""
 
     def naive(force: float) -> float:
         rest, a = 1 - force / (MU * FORCE), naive_edges(force)[0]
@@ -93,10 +93,10 @@ def energy() -> Curve:
 
     formula = "1 − q^(5/3) − (5/6)(1 − q)(1 + q^(2/3)), q = 1 − F_x/µF_N"
     title = "dissipated energy (Mindlin–Deresiewicz)"
-    return of_hertz("energy", title, "dissipated_energy", exact_loss, (formula, naive))
+    return of_hertz("energy", title, "dissipated_energy", exact_dissipated_energy, (formula, naive))
 
 
-def exact_loss(force: mpf) -> mpf:
+def exact_dissipated_energy(force: mpf) -> mpf:
     """(4 mu^2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2): a quarter of the cycle's, E* = G* = 1."""
     a, c = exact_edges(force)
     return 4 * mpf(MU) ** 2 / (15 * mpf(BIG) ** 2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)

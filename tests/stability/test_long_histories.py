@@ -74,7 +74,7 @@ def after_random_steps() -> Curve:
 
 
 def energy_of_cycles() -> Curve:
-    """N cycles under constant normal force dissipate N times the Mindlin-Deresiewicz loss."""
+    """N cycles under constant normal force dissipate N times Mindlin and Deresiewicz's energy."""
     force, part = 1.25, 0.6
     given = part * MU * force
     result = history.cycles(
@@ -86,7 +86,7 @@ def energy_of_cycles() -> Curve:
         tangential_force=given,
         count=int(COUNTS[-1]),
     )
-    lost = np.cumsum(result.energy_per_cycle)[COUNTS - 1]
+    dissipated = np.cumsum(result.energy_per_cycle)[COUNTS - 1]
 
     def loop(rest: float, a: float) -> float:
         braces = 1 - rest ** (5 / 3) - 5 / 6 * (1 - rest) * (1 + rest ** (2 / 3))
@@ -111,7 +111,7 @@ def energy_of_cycles() -> Curve:
         "1/N",
         "Mindlin–Deresiewicz, summed in single precision",
         1 / COUNTS,
-        (lost, naive, exact),
+        (dissipated, naive, exact),
         1e-12,
     )
 

@@ -96,12 +96,12 @@ def of_limit(end: str, answer: str) -> Curve:
         c, outer = naive_annulus(u)
         return outer - c if answer == "wear_width" else float(volume(c, outer, _Doubles))
 
-    said = {"wear_width": "width of the worn annulus", "worn_volume": "worn volume"}[answer]
+    title = {"wear_width": "width of the worn annulus", "worn_volume": "worn volume"}[answer]
     formula = {"wear_width": "A − c, A by bisection", "worn_volume": "4d I₀ − 4 I₂/R"}[answer]
     rest = np.ones_like(given) if end == "thin" else NEAR_FULL_SLIP
     return curve(
         f"long-wear-{answer.replace('_', '-')}-{end}",
-        f"{said}, {'c → a' if end == 'thin' else 'c → 0'}",
+        f"{title}, {'c → a' if end == 'thin' else 'c → 0'}",
         "u_x/u_x,max" if end == "thin" else "1 − u_x/u_x,max",
         formula,
         INCIPIENT_SLIP if end == "thin" else NEAR_FULL_SLIP,
