@@ -49,7 +49,7 @@ bench: .venv/development
 
 # Random contacts against mpmath: ten minutes.
 random: .venv/development
-	$(BIN)/python -m tests.core.random_scenes
+	$(BIN)/python -m tests.core.random_cases
 
 # Figures of sweeps at full size, on a machine without other load: some minutes.
 sweeps: .venv/development

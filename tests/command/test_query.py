@@ -20,7 +20,7 @@ from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import Client
 from tests.faults.server import PATIENCE
 from tests.service.test_batch import NAMES
-from tests.service.test_forms import BALL, CASES
+from tests.service.test_formats import BALL, CASES
 
 MDR = [sys.executable, "-m", "mdr_command"]
 BODY = json.dumps(BALL).encode()

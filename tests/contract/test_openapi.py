@@ -122,7 +122,7 @@ def test_response_matches_its_schema(client: Client, path: str, model: type[Answ
         assert response.headers["content-type"] == "application/json"
         strict_json.loads(response.content)
         model.model_validate_json(response.content)
-    # The values of tables and archives are compared in test_forms and test_formats_arrays.
+    # The values of tables and archives are compared in test_formats and test_formats_arrays.
     example = next(iter(examples.values()))
     for media_type in post["responses"]["200"]["content"]:
         if media_type not in PICTURES:

@@ -24,7 +24,7 @@ from typing import Any, Final
 import numpy as np
 
 from tests.contract import strict_json
-from tests.fuzz import forms, laws, ordinary_scenes
+from tests.fuzz import formats, laws, ordinary_cases
 from tests.fuzz.service import PATHS, Reply, Service
 from tests.fuzz.units import Units, exactly_scalable, is_representable, scaled, scaled_result
 
@@ -92,9 +92,9 @@ class Campaign:
         self._recent: list[tuple[str, Any, Reply]] = []
 
     def run_query(self, index: int) -> None:
-        """Send query number `index` of the seed in all its forms."""
+        """Send query number `index` of the seed in all its formats."""
         random = Random(f"{self.seed} {index}")
-        name, body = ordinary_scenes.query(random)
+        name, body = ordinary_cases.query(random)
         start = thread_time()
         reply = self.service.post(name, body)
         self.slowest = max(self.slowest, (thread_time() - start, f"query {index}: {name}"))
@@ -135,7 +135,7 @@ class Campaign:
         self, random: Random, name: str, body: Any, reply: Reply, result: dict[str, Any] | None
     ) -> Iterator[str]:
         if reply.status in {200, 422}:
-            if random.random() < 0.3 and (address := forms.get_parameters(name, body)):
+            if random.random() < 0.3 and (address := formats.get_parameters(name, body)):
                 got = self.service.send("GET", PATHS[name], query_string=address)
                 if got.status != reply.status or (result and got.content != reply.content):
                     yield f"GET answers {got.status}, or differs from POST"
@@ -169,7 +169,7 @@ class Campaign:
                 why = _where(reply.defect) if reply.defect else reply.content[:200].decode()
                 yield f"{form} answers {reply.status} instead of {status} {why}"
             elif result:
-                yield from forms.READERS[form](result, reply.content)
+                yield from formats.READERS[form](result, reply.content)
 
     def _scaled(self, name: str, body: Any, result: Any, units: Units) -> Iterator[str]:
         changed = scaled(body, units)

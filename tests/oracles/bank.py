@@ -1,4 +1,4 @@
-"""Banks of stored reference cases; `scenes` selects them and the `generate` modules compute them.
+"""Banks of stored reference cases; `cases` selects them and the `generate` modules compute them.
 
 Inputs are JSON numbers and denote exact doubles. Expected values are strings of 30 digits, or
 "inf". Condition numbers are relative, |d log(output)/d log(input)|, and None where undefined. Lists

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from mpmath import mp, mpf
 
+from tests.oracles.cases import EXTREMES, FAMILIES, SCALES, Family, Profile, cases
 from tests.oracles.reference import (
     CLOSED_DIGITS,
     CONTROLS,
@@ -24,9 +25,8 @@ from tests.oracles.reference import (
     pressure,
     state,
 )
-from tests.oracles.scenes import EXTREMES, FAMILIES, SCALES, Family, Profile, scenes
 from tests.oracles.shapes import FlatPunch, Shape, shape_of
-from tests.oracles.table_scenes import TableScene, table_scenes
+from tests.oracles.table_cases import TableCase, table_contacts
 from tests.oracles.tables import TABLE_DIGITS, Table
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def loads(family: Family, profile: Profile, ratio: float, scale: str) -> dict[st
 
 
 def normal_cases() -> Iterable[Record]:
-    for family, regime, ratio, scale in scenes():
+    for family, regime, ratio, scale in cases():
         profile = profile_at(family, scale)
         if profile is None:
             continue
@@ -328,7 +328,7 @@ def _profile_record(family: Family, profile: Profile, scale: str) -> Record:
 
 
 def table_cases() -> Iterable[Record]:
-    for scene in table_scenes():
+    for scene in table_contacts():
         with mp.workdps(TABLE_DIGITS):
             table = Table(scene.profile)
             for number, radius in enumerate(scene.radii):
@@ -336,7 +336,7 @@ def table_cases() -> Iterable[Record]:
 
 
 def _table_records(
-    scene: TableScene, table: Table, radius: float, *, fields: bool
+    scene: TableCase, table: Table, radius: float, *, fields: bool
 ) -> Iterable[Record]:
     """Return one record per control; fields are stored for a prescribed contact radius only."""
     loads_ = {
@@ -374,7 +374,7 @@ def _table_records(
         yield record
 
 
-def table_radii(scene: TableScene, a: float) -> list[float]:
+def table_radii(scene: TableCase, a: float) -> list[float]:
     """Return radii between knots, next to a knot and to breaks, near the axis and near the edge.
 
     The axis is excluded: the slope of a smooth body's interpolant there is a rounding or spline
@@ -389,7 +389,7 @@ def table_radii(scene: TableScene, a: float) -> list[float]:
     return sorted({r for r in points if 0 < r < a and r not in knots})
 
 
-def _table_fields(scene: TableScene, table: Table, radius: float) -> Record:
+def _table_fields(scene: TableCase, table: Table, radius: float) -> Record:
     points = table_radii(scene, radius)
     fields: Record = {"radius": points}
     for name in ("f", "df", "g", "dg"):

@@ -14,12 +14,12 @@ import numpy as np
 from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as slip
+from tests.oracles.cases import FAMILIES, SCALES, Family, Profile
 from tests.oracles.generate import condition, digits, loads, profile_at
 from tests.oracles.history_reference import history, overlap
-from tests.oracles.scenes import FAMILIES, SCALES, Family, Profile
 from tests.oracles.slip_generate import CLOSE, EQUATIONS, GENERAL, checked, material_at, write
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting
-from tests.oracles.table_scenes import table_scenes
+from tests.oracles.table_cases import table_contacts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -95,7 +95,7 @@ def scenes() -> Iterator[Scene]:
             assert profile is not None, family.name
             given = loads(family, profile, ratio, scale)
             yield Scene(family.name, regime, scale, profile, given, material_at(scale, turn), turn)
-    for table in table_scenes():
+    for table in table_contacts():
         if table.name in TABLES:
             turn += 1
             with mp.workdps(WORK_DIGITS):

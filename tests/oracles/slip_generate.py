@@ -17,10 +17,10 @@ from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as reference
 from tests.oracles.bank import DATA
+from tests.oracles.cases import FAMILIES, SCALES, Family, Profile
 from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
-from tests.oracles.scenes import FAMILIES, SCALES, Family, Profile
 from tests.oracles.slip_reference import CONTROLS, OUTPUTS, WORK_DIGITS, Material, Setting
-from tests.oracles.table_scenes import table_scenes
+from tests.oracles.table_cases import table_contacts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -200,7 +200,7 @@ def _break_tasks() -> Iterator[Task]:
 
 
 def _table_tasks() -> Iterator[Task]:
-    for turn, scene in enumerate(table_scenes()):
+    for turn, scene in enumerate(table_contacts()):
         for number, radius in enumerate(scene.radii[:2]):
             for tangential in CONTROLS if number == 0 else CONTROLS[turn % 3 :][:1]:
                 equation = _equation("tabulated", tangential, turn)
@@ -412,7 +412,7 @@ TABLE_FIELDS = {"sphere200": (0.5, 0.49), "rounded-punch": (0.65, 0.62)}
 
 
 def _table_fields() -> Iterator[FieldTask]:
-    for scene in table_scenes():
+    for scene in table_contacts():
         if scene.name not in TABLE_FIELDS:
             continue
         a, c = TABLE_FIELDS[scene.name]

@@ -10,8 +10,8 @@ from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as slip
 from tests.oracles import springs
+from tests.oracles.cases import FAMILIES
 from tests.oracles.history_reference import Sample, history, overlap
-from tests.oracles.scenes import FAMILIES
 from tests.oracles.shapes import KINDS, shape_of
 from tests.oracles.slip_reference import Material
 from tests.oracles.tables import Table

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from mpmath import mp, mpf
 
+from tests.oracles.cases import FAMILIES, Profile
 from tests.oracles.reference import (
     QUAD_DIGITS,
     elasticities,
@@ -17,7 +18,6 @@ from tests.oracles.reference import (
     quad_force,
     quad_g,
 )
-from tests.oracles.scenes import FAMILIES, Profile
 from tests.oracles.shapes import KINDS, Monomials, Shape, shape_of
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from tests.oracles.test_proofs import CHOSEN, PROFILES
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.oracles.scenes import Profile
+    from tests.oracles.cases import Profile
 
 pytestmark = pytest.mark.long
 

@@ -17,11 +17,11 @@ from mpmath import mp, mpf
 
 from tests.oracles import wear_reference as reference
 from tests.oracles.bank import DATA
+from tests.oracles.cases import FAMILIES, SCALES, Profile
 from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
-from tests.oracles.scenes import FAMILIES, SCALES, Profile
 from tests.oracles.slip_generate import BLUNT, material_at
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting, setting
-from tests.oracles.table_scenes import table_scenes
+from tests.oracles.table_cases import table_contacts
 from tests.oracles.wear_reference import FIELDS, OUTPUTS, Limit
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def tasks() -> Iterator[Task]:
 
 def _table_tasks(turn: int) -> Iterator[Task]:
     """Small tables for every pair; long ones, with many panels, for a narrow worn annulus."""
-    for scene in table_scenes():
+    for scene in table_contacts():
         points = len(scene.profile["r"])
         if points > MAX_POINTS:
             continue

@@ -12,7 +12,7 @@ from mdr_service.schemas.batch import BatchAnswer
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
-from tests.service.test_forms import BALL, CASES
+from tests.service.test_formats import BALL, CASES
 from tests.service.test_wrong_input import NORMAL_QUERIES, OTHER_QUERIES
 
 NAMES = {

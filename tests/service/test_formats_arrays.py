@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import Client
-from tests.service.test_forms import BALL, EVERY_EXAMPLE, ask
+from tests.service.test_formats import BALL, EVERY_EXAMPLE, ask
 
 NPZ = "application/x-npz"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.core.random_scenes import Draw, misses, scene
+from tests.core.random_cases import Draw, misses, scene
 
 pytestmark = pytest.mark.long
 

@@ -13,7 +13,7 @@ Profile = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class TableScene:
+class TableCase:
     """A table; `truth` is the smooth body it samples, if the table is fine enough."""
 
     name: str
@@ -54,23 +54,21 @@ def _truncated(r: float) -> float:
     return 0.3 * (r - 0.5) if r > 0.5 else 0.0
 
 
-def table_scenes() -> Iterator[TableScene]:
+def table_contacts() -> Iterator[TableCase]:
     """All tables, of unit size: scales are covered elsewhere."""
     sphere = {"kind": "sphere", "radius": 1.0}
-    yield TableScene("sphere200", _table(_sphere, uniform(0.6, 200)), (0.5, 0.02, 0.001), sphere)
-    yield TableScene("power1.5", _table(lambda r: r**1.5, uniform(1.0, 60)), (0.8, 0.1))
+    yield TableCase("sphere200", _table(_sphere, uniform(0.6, 200)), (0.5, 0.02, 0.001), sphere)
+    yield TableCase("power1.5", _table(lambda r: r**1.5, uniform(1.0, 60)), (0.8, 0.1))
     rounded = [0.0, 0.3, *uniform(1.2, 60, 0.6)]
     punch = {"kind": "rounded_punch", "flat_radius": 0.6, "rounding_radius": 2.0}
-    yield TableScene(
-        "rounded-punch", _table(_rounded, rounded, "cubic", (0.6,)), (0.9, 0.65), punch
-    )
+    yield TableCase("rounded-punch", _table(_rounded, rounded, "cubic", (0.6,)), (0.9, 0.65), punch)
     truncated = [0.0, 0.5, 0.7, 1.0, 1.4]
     cone = {"kind": "truncated_cone", "flat_radius": 0.5, "slope": 0.3}
-    yield TableScene(
+    yield TableCase(
         "truncated-cone", _table(_truncated, truncated, "cubic", (0.5,)), (0.55, 1.2), cone
     )
     graded = [0.9 * (i / 49) ** 2 for i in range(50)]
-    yield TableScene("graded", _table(_sphere, graded), (0.7, 0.1))
-    yield TableScene("pchip", _table(_sphere, uniform(0.6, 40), "pchip"), (0.5, 0.1))
-    yield TableScene("linear", _table(_sphere, uniform(0.6, 40), "linear"), (0.5, 0.1))
-    yield TableScene("two-points", _table(lambda r: 0.2 * r, [0.0, 1.0]), (0.5, 0.9))
+    yield TableCase("graded", _table(_sphere, graded), (0.7, 0.1))
+    yield TableCase("pchip", _table(_sphere, uniform(0.6, 40), "pchip"), (0.5, 0.1))
+    yield TableCase("linear", _table(_sphere, uniform(0.6, 40), "linear"), (0.5, 0.1))
+    yield TableCase("two-points", _table(lambda r: 0.2 * r, [0.0, 1.0]), (0.5, 0.9))

@@ -252,7 +252,7 @@ FAMILIES: tuple[Family, ...] = (
 )
 
 
-def scenes() -> Iterator[tuple[Family, str, float, str]]:
+def cases() -> Iterator[tuple[Family, str, float, str]]:
     """Return every family's first regime at every scale, the others at one scale each in turn."""
     names = list(SCALES)
     turn = 0

@@ -1,6 +1,6 @@
 """Random contacts biased towards cancellation, compared with mpmath.
 
-python -m tests.core.random_scenes [seconds] [seed]      # make random
+python -m tests.core.random_cases [seconds] [seed]      # make random
 
 Prints the largest errors. Contact and stick radii are prescribed and therefore exact. Stick edges,
 radii and contact edges cluster at breaks and at each other.
@@ -198,7 +198,7 @@ def main(seconds: float = 300.0, seed: int = 1) -> int:
         count += 1
     for miss in sorted(result, key=lambda miss: -miss.times)[:20]:
         sys.stdout.write(f"{miss}\n")
-    sys.stdout.write(f"{count} scenes, {len(result)} results beyond their error limit\n")
+    sys.stdout.write(f"{count} cases, {len(result)} results beyond their error limit\n")
     return 1 if result else 0
 
 
