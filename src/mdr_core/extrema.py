@@ -9,7 +9,7 @@ from numpy.polynomial import chebyshev
 
 from mdr_core.abel import Annulus, InnerEnd
 from mdr_core.broadcasting import with_parameters
-from mdr_core.elementwise import full, where
+from mdr_core.elementwise import full, some, where
 from mdr_core.profiles import Paraboloid, Profile
 from mdr_core.typing import Array, Flags, Indices
 
@@ -80,7 +80,7 @@ def largest_stress(
     infinite = loaded & False
     for b in profile.infinite_pressure_radii:
         infinite = infinite | (loaded & (c <= b) & (b <= a))
-    if not np.any(loaded & ~infinite):
+    if not some(loaded & ~infinite):
         return where(infinite, inf, full(0.0, edge))
     finite = np.atleast_1d(loaded & ~infinite)
     parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
