@@ -16,7 +16,6 @@ from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.broadcasting import with_parameters
@@ -24,7 +23,7 @@ from mdr_core.elementwise import every, some
 from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import gauss_legendre, in_order
+from mdr_core.quadrature import cumulative_rule, in_order
 from mdr_core.typing import Array, Flags, Indices
 
 BLOCK: Final = 1024
@@ -92,13 +91,10 @@ class IntervalMoments:
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
         find = coordinate_from_force if self.by_force else coordinate_from_depth
-        return find(self.profile, np.minimum(normal, self._largest))
-
-    @cached_property
-    def _largest(self) -> float:
-        """Normal coordinate at the end of the profile's domain."""
         end = self.profile.last_coordinate
-        return inf if end is None else float(self.normal(np.asarray(end)))
+        if end is not None:
+            normal = np.minimum(normal, self.normal(np.asarray(end)))
+        return find(self.profile, normal)
 
     def over(self, low: Array, span: Array, ends: Array | None = None) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).
@@ -159,8 +155,7 @@ class IntervalMoments:
 
     def conjugate_step(self, low: Array, span: Array) -> Array:
         """Return the increase of the conjugate over each interval, a sum of positive terms."""
-        part = self.over(low, span)
-        lower, middle, upper = part.weights
+        lower, middle, upper = self.over(low, span).weights
         at = low + span if self.by_force else low
         a = self.profile.contact_radius(self.contact_coordinate(at))
         if self.by_force:
@@ -302,7 +297,7 @@ class IntervalMoments:
             estimate = span / slope
         thin = (stop - start < _THIN * stop) & (estimate > 0)
         width = np.where(thin, np.minimum(estimate, stop), stop - start)
-        share, weights, cumulative = _rule()
+        share, weights, cumulative = cumulative_rule(_POINTS)
         place, moved = _in_logarithm(stop, width, share)
         origin, past = place, np.zeros_like(place)
         if some(beyond):
@@ -332,8 +327,7 @@ def interval_moments(profile: Profile, *, by_force: bool) -> IntervalMoments:
     return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, by_force)
 
 
-# The sums between the breaks of a table take as long as a short history. Those of a table of 2000
-# points have 1 MB.
+# The sums between breaks take as long as a short history; those of 2000 points have 1 MB.
 _of_table: Final = lru_cache(maxsize=16)(IntervalMoments)
 
 
@@ -350,24 +344,7 @@ def _in_logarithm(stop: Array, width: Array, share: Array) -> tuple[Array, Array
 
 
 def _in_root(top: Array, bottom: Array, width: Array, share: Array) -> tuple[Array, Array]:
-    """Return the roots of the distances from a break at parts `share`, and their derivatives.
-
-    `top` and `bottom` are the distances of the ends of the intervals, `width` their difference.
-    """
+    """The same for the roots of the distances from a break, which are `top` and `bottom`."""
     high, low = (np.sqrt(np.maximum(distance, 0.0)) for distance in (top, bottom))
     climb = width / np.where(high > 0, high + low, inf)
     return low + climb * share, climb
-
-
-@lru_cache(maxsize=1)
-def _rule() -> tuple[Array, Array, Array]:
-    """Nodes and weights of Gauss' rule on [0, 1], and the weights of the integrals from 0 to each.
-
-    Shapes (n, 1), (n, 1) and (n, n, 1): the weights of the node j come first.
-    """
-    nodes, weights = gauss_legendre(_POINTS)
-    vander = legendre.legvander(nodes, _POINTS - 1)
-    integrals = [legendre.legint(row, lbnd=-1) for row in np.eye(_POINTS)]
-    values = np.stack([legendre.legval(nodes, row) for row in integrals], axis=1)
-    cumulative = (values @ np.linalg.inv(vander)).T / 2
-    return ((1 + nodes) / 2)[:, None], (weights / 2)[:, None], cumulative[:, :, None]

@@ -14,6 +14,7 @@ from math import ceil, floor, log2, log10, pi
 from typing import Final
 
 import numpy as np
+from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
 from mdr_core.typing import Array, Chosen, Flags, Indices
@@ -288,6 +289,21 @@ def composite_rule(points: int, count: int) -> tuple[Array, Array]:
     nodes, weights = gauss_legendre(points)
     starts = np.arange(count)[:, None]
     return ((starts + (nodes + 1) / 2) / count).ravel(), np.tile(weights / (2 * count), count)
+
+
+@lru_cache(maxsize=4)
+def cumulative_rule(points: int) -> tuple[Array, Array, Array]:
+    """Return nodes and weights on [0, 1], and the weights of the integrals from 0 to each node.
+
+    Columns, shape (points, 1); the weights of the value at node j are [j, :, 0].
+    """
+    nodes, _ = gauss_legendre(points)
+    vander = legendre.legvander(nodes, points - 1)
+    integrals = [legendre.legint(row, lbnd=-1) for row in np.eye(points)]
+    values = np.stack([legendre.legval(nodes, row) for row in integrals], axis=1)
+    cumulative = (values @ np.linalg.inv(vander)).T / 2
+    shares, weights = composite_rule(points, 1)
+    return shares[:, None], weights[:, None], cumulative[:, :, None]
 
 
 def nodes_of_pieces(rtol: float) -> int:
