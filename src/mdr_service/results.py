@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from mdr_core import subsurface, validity
+from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
@@ -73,7 +74,7 @@ def _finite(values: list[Any] | Array) -> bool:
     # A single number is by far the most frequent case, and an array function takes longer.
     if isinstance(values, list):
         return isinstance(values[0], str) or isfinite(values[0])
-    return values.dtype.kind != "f" or bool(np.isfinite(values).all())
+    return values.dtype.kind != "f" or every(np.isfinite(values))
 
 
 def response_metadata(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Result:
