@@ -195,7 +195,7 @@ def main() -> None:
 
 
 def _dense(edges: tuple[float, ...]) -> Array:
-    """Return radii up to the edge, denser near the kinks of the stresses."""
+    """Return radii up to the edge, denser near the slope discontinuities of the stresses."""
     places = np.unique([0.0, *edges, *(() if max(edges) > EDGE else (EDGE,))])
     shares = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS // 4))) / 2
     parts = [low + (high - low) * shares for low, high in pairwise(places)]

@@ -15,7 +15,7 @@ from mdr_core.typing import Array
 _MANY: Final = 22
 # Bound of the last Chebyshev coefficients over the largest value, ten times rounding error.
 _TOLERANCE: Final = 1e-13
-# Behind a flat of radius b g' has one root, at s^2 = -b^2, and is a series in s^2: of a panel of
+# Beyond a flat of radius b g' has one root, at s^2 = -b^2, and is a series in s^2: of a panel of
 # this length, over b^2, so many terms leave 82^-n.
 _BEYOND_FLAT, _TERMS = 0.05, 9
 
