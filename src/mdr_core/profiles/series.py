@@ -83,7 +83,7 @@ class Series(Profile):
                 raise InputError((*path, i, "exponent"), "must be positive and finite")
         if not self._powers:
             raise InputError(path, "the terms cancel to zero")
-        if self.domain == 0:
+        if self._powers[0][0] < 0 or self.domain == 0:
             raise InputError(
                 path, "f falls from radius 0: the term of lowest exponent must be positive"
             )
