@@ -128,7 +128,7 @@ class LoadHistory(Results):
             line = self._over_depths(part.depth_step[at[1:]], line)
         state = replace(self.start, polyline=line, arcs=arcs)
         if line.in_contact:
-            # The state would invert its depths for them.
+            # Known here; the state would recompute them from its depths.
             vars(state)["coordinate"] = part.coordinate[at]
         return state
 

@@ -271,7 +271,7 @@ export async function solveWear(scene, ask) {
   const limit = await ask("Limit", "v1/wear", { ...body, radius: course.radius });
   const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
   const now = single(limit);
-  const edges = [["c", now.stick_radius], ["b", now.wear_radius]];
+  const edges = [["c", now.stick_radius], ["ã", now.wear_radius]];
   return {
     answers: [limit, course],
     known: {
@@ -283,7 +283,7 @@ export async function solveWear(scene, ask) {
       ["Worn volume", course.worn_volume[at], "volume"],
       ["Worn volume in the limit", now.worn_volume, "volume"],
       ["Contact radius", course.contact_radius[at], "length"],
-      ["Wear radius in the limit", now.wear_radius, "length"],
+      ["Wear radius ã in the limit", now.wear_radius, "length"],
       ["Stick radius c", now.stick_radius, "length"],
       ["Indentation depth", course.indentation_depth[at], "displacement"],
       ["Normal force", course.normal_force[at], "force"],
