@@ -19,14 +19,14 @@ import numpy as np
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.broadcasting import with_parameters
-from mdr_core.elementwise import every, some
+from mdr_core.elementwise import every, number, some
 from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
 from mdr_core.typing import Array, Flags, Indices
 
-BLOCK: Final = 1024
+MAX_INTERVALS: Final = 1024
 """Intervals evaluated at once, so that their nodes stay in the processor's cache."""
 # Gauss nodes on an interval without a break. Beyond a break the remainder is of the order of
 # 2.4^-32 of the interval's moments, see notes, §10.
@@ -93,7 +93,7 @@ class IntervalMoments:
         find = coordinate_from_force if self.by_force else coordinate_from_depth
         end = self.profile.last_coordinate
         if end is not None:
-            normal = np.minimum(normal, self.normal(np.asarray(end)))
+            normal = np.minimum(normal, self.normal(number(end)))
         return find(self.profile, normal)
 
     def over(self, low: Array, span: Array, ends: Array | None = None) -> Moments:
@@ -110,8 +110,8 @@ class IntervalMoments:
             return Moments(span, np.zeros((3, span.size)))
         if ends is None:
             ends = self.contact_coordinate(np.array([low, low + span]))
-        if low.size > BLOCK and not self.profile.swept:
-            blocks = [slice(begin, begin + BLOCK) for begin in range(0, low.size, BLOCK)]
+        if low.size > MAX_INTERVALS and not self.profile.swept:
+            blocks = [slice(i, i + MAX_INTERVALS) for i in range(0, low.size, MAX_INTERVALS)]
             weights = [self.over(low[part], span[part], ends[:, part]).weights for part in blocks]
             return Moments(span, np.concatenate(weights, axis=1))
         if not has_many_breaks(self.profile):
@@ -220,8 +220,8 @@ class IntervalMoments:
     def _smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
         """Return the moments over intervals without a break inside; `base` is the one below."""
         profile, weights = self.profile, np.zeros((3, low.size))
-        flat = profile.contact_radius(np.asarray(profile.first_coordinate))
-        shallow = (base == 0) & (profile.contact_radius(ends[1]) < _SHALLOW * flat)
+        least = _SHALLOW * profile.first_radius
+        shallow = (base == 0) & (profile.contact_radius(ends[1]) < least)
         limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
         wide = (ends[1] > limit * ends[0]) | ((base == 0) & (low + span > _WIDE * low))
         closed, by_rule = wide & ~shallow & (span > 0), (~wide | shallow) & (span > 0)
@@ -344,7 +344,7 @@ def _in_logarithm(stop: Array, width: Array, share: Array) -> tuple[Array, Array
 
 
 def _in_root(top: Array, bottom: Array, width: Array, share: Array) -> tuple[Array, Array]:
-    """The same for the roots of the distances from a break, which are `top` and `bottom`."""
+    """Return roots of distances from a break, `top` and `bottom` at the ends, and derivatives."""
     high, low = (np.sqrt(np.maximum(distance, 0.0)) for distance in (top, bottom))
     climb = width / np.where(high > 0, high + low, inf)
     return low + climb * share, climb

@@ -133,7 +133,7 @@ class NormalContact(Results):
             message = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
             found.append(Notice("singular", message))
         if some(validity.infinite_pressure(self)):
-            radii = validity.infinite_radii(self)
+            radii = validity.listed_infinite_radii(self)
             found.append(Notice("singular", f"maximum_pressure is infinite, at radius {radii}"))
         if self.error_estimate > self.rtol:
             found.append(not_reached(self.rtol))

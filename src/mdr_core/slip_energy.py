@@ -10,7 +10,7 @@ import numpy as np
 from mdr_core.broadcasting import in_blocks, with_parameters
 from mdr_core.elementwise import is_number, some, where
 from mdr_core.equivalent_1d import depth_step
-from mdr_core.interval_moments import BLOCK, interval_moments
+from mdr_core.interval_moments import MAX_INTERVALS, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
@@ -68,7 +68,7 @@ def _by_springs(profile: Profile, *ends: Array) -> Array:
         found = moments.over(profile.depth(low), span, np.array([low, high]))
         return (np.square(span) * found.weights[1] / 4,)
 
-    if ends[0].size <= BLOCK:
+    if ends[0].size <= MAX_INTERVALS:
         return _moment(profile, *ends)[0]
-    (result,) = in_blocks(_moment, profile, ends, BLOCK)
+    (result,) = in_blocks(_moment, profile, ends, MAX_INTERVALS)
     return result

@@ -132,7 +132,7 @@ def _by_stick_radius(
     contact: NormalContact, _g_star: Parameter, _friction: Parameter, radius: Array
 ) -> _Slipped:
     profile, a = contact.profile, contact.contact_radius
-    innermost = profile.contact_radius(number(profile.first_coordinate))
+    innermost = profile.first_radius
     all_slips = (radius == 0) & (a > 0)
     bad = (radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost))
     detail = "must lie between the flat's radius, or 0, and the contact radius"

@@ -143,7 +143,7 @@ def of_normal_contact(
 
     def places() -> str:
         return (
-            f"the elastic pressure is infinite at radius {infinite_radii(contact)}: "
+            f"the elastic pressure is infinite at radius {listed_infinite_radii(contact)}: "
             "a real material yields there under any load"
         )
 
@@ -232,7 +232,7 @@ def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool
     return found
 
 
-def infinite_radii(contact: LoadedContact) -> str:
+def listed_infinite_radii(contact: LoadedContact) -> str:
     """Return the radii of infinite pressure inside the largest contact, as text."""
     largest = extremes(contact.contact_radius)[1]
     least = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)

@@ -179,7 +179,7 @@ def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Arra
     if profile.has_no_partial_slip:
         result[r <= a] = coordinate
     elif inside.any():
-        least = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+        least = float(profile.first_radius)
         x, edge, top = np.maximum(r[inside], least), np.array([a]), np.array([coordinate])
         at = profile.coordinate_from_radius(x)
         width = profile.coordinate_width(edge, x, top, at)

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.elementwise import broadcast, number, some
+from mdr_core.elementwise import broadcast, some
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
@@ -51,7 +51,7 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
     normal = contact.normal if isinstance(contact, TangentialContact) else contact
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
-    beyond = a - profile.contact_radius(number(profile.first_coordinate))
+    beyond = a - profile.first_radius
     exact = normal.control == "contact_radius" or profile.has_no_partial_slip
     error, scale = beyond * (0.0 if exact else EDGE_ROUNDING), beyond / profile.steepness
     if not isinstance(contact, TangentialContact):

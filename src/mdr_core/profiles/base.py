@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integral
 from mdr_core.abel.stress import StressPanels
-from mdr_core.elementwise import full
+from mdr_core.elementwise import full, number
 from mdr_core.errors import Notice
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.typing import Array, Flags, Parameter
@@ -156,6 +156,11 @@ class Profile(ABC):
     def first_coordinate(self) -> float:
         """Contact coordinate at zero load."""
         return 0.0
+
+    @property
+    def first_radius(self) -> Parameter:
+        """Contact radius at zero load: that of a flat, else 0 [length]."""
+        return self.contact_radius(number(self.first_coordinate))
 
     @property
     def last_coordinate(self) -> float | None:

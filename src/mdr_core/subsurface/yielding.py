@@ -210,7 +210,7 @@ def _onset(profile: Profile, case: list[float], search: "partial[Peak]", limit: 
     one, slips_at = at(start).profile, 0.0 if ratio >= 1 else inf
     radii = infinite_radii(one, search.keywords["poissons_ratio"], slips_at)
     # The stress becomes infinite when the contact reaches this coordinate.
-    beyond = [np.asarray(b) for b in radii if b > one.contact_radius(np.zeros(()))]
+    beyond = [np.asarray(b) for b in radii if b > one.first_radius]
     singular = min((float(one.coordinate_from_radius(b)) for b in beyond), default=inf)
     highest = log(min(start * exp(_REACH), singular, one.last_coordinate or inf)) - _XTOL
     lowest = log(start) - _REACH

@@ -86,7 +86,7 @@ class InitialState:
     def ends(self) -> tuple[float, float]:
         """`reach` and the smallest stick radius, where the integration ends, in its unit."""
         profile = self.contact.profile
-        flat = float(profile.contact_radius(np.asarray(profile.first_coordinate)))
+        flat = float(profile.first_radius)
         least = flat + _VANISHED * (self.stick - flat)
         return self.reach / self.length_unit, least / self.length_unit
 

@@ -41,7 +41,7 @@ class WornAnnulus:
     @cached_property
     def flat(self) -> float:
         """Radius of the profile's flat, zero for none."""
-        return float(self.profile.contact_radius(np.asarray(self.profile.first_coordinate)))
+        return float(self.profile.first_radius)
 
     @property
     def room(self) -> Array:
