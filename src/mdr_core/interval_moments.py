@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
+from mdr_core.breaks import break_below, divided_breaks, has_many_breaks, next_breaks
 from mdr_core.broadcasting import with_parameters
 from mdr_core.elementwise import every, number, some
 from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
@@ -119,20 +119,20 @@ class IntervalMoments:
         breaks, normal_at_breaks = self._breaks
         first = np.searchsorted(normal_at_breaks, low, side="right")
         last = np.searchsorted(normal_at_breaks, low + span, side="left")
+        first, last = next_breaks(self.profile, breaks, ends, np.array([first, last]))
         base = np.append(0.0, breaks)[first]
         crossed = np.flatnonzero(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         next_break = first[crossed]
         stop[crossed] = breaks[next_break]
-        length[crossed] = normal_at_breaks[next_break] - low[crossed]
+        length[crossed] = np.maximum(normal_at_breaks[next_break] - low[crossed], 0.0)
         found = self._smooth(low, length, np.array([start, stop]), base)
         if not crossed.size:
             return found
         between = self._chained(found.at(crossed), next_break, last[crossed] - 1)
         top = np.maximum(span[crossed] - between.span, 0.0)
-        base = breaks[last[crossed] - 1]
-        ends = np.array([base, np.maximum(ends[1][crossed], base)])
-        upper = self._smooth(normal_at_breaks[last[crossed] - 1], top, ends, base)
+        base, at_base = breaks[last[crossed] - 1], normal_at_breaks[last[crossed] - 1]
+        upper = self._smooth(at_base, top, np.maximum([base, ends[1][crossed]], base), base)
         found.weights[:, crossed] = between.joined(upper).weights
         return Moments(span, found.weights)
 

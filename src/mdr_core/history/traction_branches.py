@@ -83,9 +83,11 @@ class TractionBranches:
         """
         tree, radius = self.tree, self.radius
         below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
-        some = np.flatnonzero((tree.parent >= 0) & (self.depth_step > 0))
+        ends = self.coordinate[np.array([below, own])]
+        # No depth lies between the ends of a plateau.
+        some = np.flatnonzero((tree.parent >= 0) & ((self.depth_step > 0) | (ends[1] > ends[0])))
         moments = interval_moments(self.profile, by_force=False)
-        given = self.depth[below], self.depth_step, self.coordinate[np.array([below, own])]
+        given = self.depth[below], np.maximum(self.depth_step, 0.0), ends
         # The measure of the moments is 2 dx.
         weights = np.zeros((3, tree.normal.size))
         weights[:, some] = moments.over(*(each[..., some] for each in given)).weights / 2
