@@ -124,11 +124,6 @@ def _half_lengths(rules: tuple[int, ...], decade: int, analytic: Analytic) -> Ar
     return np.where(points >= analytic.fewest, low, 0.0)
 
 
-def _decade(rtol: float) -> int:
-    """Decade of a tolerance, so that the half lengths are computed once for each."""
-    return max(floor(log10(rtol) + 1e-9), -15)
-
-
 def integrate(
     h: Integrand,
     length: Array,
@@ -140,6 +135,9 @@ def integrate(
 ) -> Array:
     """Return the integrals of h over [lower, lower + length], h analytic in the strip.
 
+    Where all h are even and all begin at zero, the rule of 2n points on [-length, length] costs n
+    evaluations and converges as twice as many.
+
     Source: notes, §5; trefethen, Thm 19.3.
 
     Parameters
@@ -148,46 +146,27 @@ def integrate(
     length : lengths, accurate also where the ends are close, shape (m,).
     rtol : relative tolerance.
     lower : lower ends, shape (m,); None for zero.
-    even : True where h is even in y. If all are, and all begin at zero, half the nodes suffice.
+    even : True where h is even in y.
     analytic : strip and growth of h.
     """
-    if np.all(even if lower is None else even & (lower == 0)):
-        return integrate_even(h, length, rtol, analytic)
-    return integrate_plain(
-        h, np.zeros_like(length) if lower is None else lower, length, rtol, analytic
-    )
+    halved = bool(np.all(even if lower is None else even & (lower == 0)))
+    points = _EVEN_POINTS if halved else _POINTS
+    # The half lengths are computed once for each decade of the tolerance.
+    decade = max(floor(log10(rtol) + 1e-9), -15)
 
+    def by_rule(number: int, index: Chosen) -> Array:
+        span, start = length[index], None if lower is None else lower[index]
+        if number == len(points):
+            longest = 2 * float(_half_lengths((_PIECE_POINTS,), decade, analytic)[0])
+            rule = composite_rule(_PIECE_POINTS, ceil(float(span.max()) / longest))
+        else:
+            rule = (_half_rule if halved else composite_rule)(points[number])
+        return _apply(h, rule, start, span, index)
 
-def integrate_even(h: Integrand, upper: Array, rtol: float, analytic: Analytic = DEFAULT) -> Array:
-    """Return the integrals over [0, upper] of an h that is even in y.
-
-    The rule of 2n points on [-upper, upper] costs n evaluations and converges as twice as many.
-    Parameters: see `integrate`.
-    """
-
-    def by_rule(rule: int, index: Chosen) -> Array:
-        length = upper[index]
-        if rule < len(_EVEN_POINTS):
-            return _apply(h, _half_rule(_EVEN_POINTS[rule]), None, length, index)
-        return _pieces(h, np.zeros_like(length), length, index, rtol, analytic)
-
-    half_lengths = _half_lengths(_EVEN_POINTS, _decade(rtol), analytic)
-    return _by_groups(by_rule, upper, half_lengths, [points // 2 for points in _EVEN_POINTS])
-
-
-def integrate_plain(
-    h: Integrand, lower: Array, length: Array, rtol: float, analytic: Analytic = DEFAULT
-) -> Array:
-    """Return the integrals of h over [lower, lower + length]. Parameters: see `integrate`."""
-
-    def by_rule(rule: int, index: Chosen) -> Array:
-        start, span = lower[index], length[index]
-        if rule < len(_POINTS):
-            return _apply(h, composite_rule(_POINTS[rule], 1), start, span, index)
-        return _pieces(h, start, span, index, rtol, analytic)
-
-    half_lengths = _half_lengths(_POINTS, _decade(rtol), analytic)
-    return _by_groups(by_rule, length / 2, half_lengths, _POINTS)
+    half, evaluations = length / 2, list(points)
+    if halved:
+        half, evaluations = length, [count // 2 for count in points]
+    return _by_groups(by_rule, half, _half_lengths(points, decade, analytic), evaluations)
 
 
 def _by_groups(
@@ -236,44 +215,29 @@ def _chosen(index: Indices) -> Chosen:
     return slice(first, last + 1) if last - first + 1 == index.size else index
 
 
-def _pieces(
-    h: Integrand, lower: Array, length: Array, index: Chosen, rtol: float, analytic: Analytic
-) -> Array:
-    """Integrals over [lower, lower + length] in equal pieces of one rule."""
-    half = float(length.max()) / 2
-    count = ceil(half / float(_half_lengths((_PIECE_POINTS,), _decade(rtol), analytic)[0]))
-    return _apply(h, composite_rule(_PIECE_POINTS, count), lower, length, index)
-
-
 def _apply(
     h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
 ) -> Array:
     """Rule on [0, 1] applied to [lower, lower + length], in blocks that stay in the cache."""
-    step = max(_BLOCK // rule[0].size, 1)
-    if length.size <= step:
-        return _at_once(h, rule, lower, length, index)
-    result = np.empty_like(length)
-    for start in range(0, length.size, step):
-        block = slice(start, min(start + step, length.size))
-        if isinstance(index, slice):
-            part: Chosen = slice(index.start + block.start, index.start + block.stop)
-        else:
-            part = index[block]
-        low = None if lower is None else lower[block]
-        result[block] = _at_once(h, rule, low, length[block], part)
-    return result
-
-
-def _at_once(
-    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
-) -> Array:
     nodes, weights = rule
+    step = max(_BLOCK // nodes.size, 1)
+    if length.size > step:
+        result = np.empty_like(length)
+        for start in range(0, length.size, step):
+            part = slice(start, start + step)
+            low = None if lower is None else lower[part]
+            result[part] = _apply(h, rule, low, length[part], _part_of(index, part))
+        return result
     y = nodes[:, None] * length
     if lower is not None:
         y += lower
-    result: Array = weights @ h(y, index)
-    result *= length
-    return result
+    return np.asarray(weights @ h(y, index) * length)
+
+
+def _part_of(index: Chosen, part: slice) -> Chosen:
+    if isinstance(index, slice):
+        return slice(index.start + part.start, min(index.start + part.stop, index.stop))
+    return index[part]
 
 
 @lru_cache(maxsize=64)
@@ -284,7 +248,7 @@ def _half_rule(points: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=256)
-def composite_rule(points: int, count: int) -> tuple[Array, Array]:
+def composite_rule(points: int, count: int = 1) -> tuple[Array, Array]:
     """Return nodes and weights on [0, 1], cut into `count` equal pieces."""
     nodes, weights = gauss_legendre(points)
     starts = np.arange(count)[:, None]

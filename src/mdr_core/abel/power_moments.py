@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
-from mdr_core.abel.two_root import arcsinh_difference
+from mdr_core.abel.two_root import arcsinh_difference, inverse_hypot
 from mdr_core.quadrature import Analytic, integrate
 from mdr_core.typing import Array, Chosen
 
@@ -24,15 +24,11 @@ _AXIS: Final = 1e-30
 def root_step(annulus: Annulus, r: Array) -> Array:
     """Return sqrt(a^2 - r^2) - sqrt(c^2 - r^2), the second term for r < c only [length]."""
     a, inner, _ = annulus
-    root_a = a - r
-    root_a *= a + r
-    np.sqrt(root_a, out=root_a)
+    root_a = np.sqrt((a - r) * (a + r))
     if inner is None:
         return root_a
     width, c = inner
-    root_c = np.maximum(c - r, 0.0)
-    root_c *= c + r
-    np.sqrt(root_c, out=root_c)
+    root_c = inverse_hypot(c, r)
     return np.where(c > r, width * (a + c) / (root_a + root_c), root_a)
 
 
@@ -75,10 +71,7 @@ def power_moment(m: float, annulus: Annulus, r: Array, rtol: float) -> Array:
     growth = 2.0 ** (ceil(log2(max(abs(m), 1.0)) * _GROWTHS) / _GROWTHS)
 
     def h(y: Array, index: Chosen) -> Array:
-        np.cosh(y, out=y)
-        y *= ratio[index]
-        y **= m
-        return y
+        return (ratio[index] * np.cosh(y)) ** m
 
     root2 = (a - safe) * (a + safe)
     start = None

@@ -17,7 +17,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import where
-from mdr_core.quadrature import DEFAULT, Analytic, integrate, integrate_plain
+from mdr_core.quadrature import DEFAULT, Analytic, integrate
 from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 
 # weight(x, s, index) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b. x and s have
@@ -188,8 +188,8 @@ def _coincident_roots(problem: _Problem, index: Indices, r: Array) -> Array:
 
         low = (upper - width)[here]
         length = np.log1p(width[here] / low)
-        result[here] = integrate_plain(
-            over_annulus, np.log(low), length, problem.rtol, problem.analytic
+        result[here] = integrate(
+            over_annulus, length, problem.rtol, np.log(low), even=False, analytic=problem.analytic
         )
     here = (width >= upper).nonzero()[0]
     if here.size:
@@ -210,6 +210,6 @@ def _from_break(problem: _Problem, index: Indices, r: Array, upper: Array) -> Ar
     pole = problem.weight(r[None], nothing[None], index)[0]
     if pole.all():
         return np.full(r.shape, np.inf)
-    result = integrate_plain(integrand, nothing, length, problem.rtol, problem.analytic)
+    result = integrate(integrand, length, problem.rtol, even=False, analytic=problem.analytic)
     result[pole != 0] = np.inf
     return result

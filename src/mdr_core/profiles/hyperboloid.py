@@ -72,17 +72,8 @@ class Hyperboloid(Profile):
         top = root_step(Annulus(a), r) / rho
 
         def integrand(y: Array, index: Chosen) -> Array:
-            x = np.sinh(y)
-            x *= rho[index]
-            x *= x
-            x += r2[index]
-            np.sqrt(x, out=x)
-            np.cosh(y, out=y)
-            y *= rho[index]
-            y /= x
-            x /= h
-            y *= np.arctan(x, out=x)
-            return y
+            x = np.sqrt(np.square(rho[index] * np.sinh(y)) + r2[index])
+            return np.cosh(y) / x * np.arctan(x / h)
 
         if inner is None:
             smooth = integrate(integrand, np.arcsinh(top), rtol)
@@ -96,6 +87,4 @@ class Hyperboloid(Profile):
             smooth = integrate(integrand, length, rtol, np.arcsinh(bottom))
             # arctan(top) - arctan(bottom), of which gap2 is the difference of the squares.
             pole = np.arctan(gap2 / ((top + bottom) * (1 + top * bottom)))
-        smooth += h / rho * pole
-        smooth *= self.slope / pi
-        return smooth
+        return self.slope / pi * (rho * smooth + h / rho * pole)

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.two_root import arcsinh_difference
+from mdr_core.abel.two_root import arcsinh_difference, inverse_hypot
 from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
@@ -135,9 +135,7 @@ class Spheroid(Profile):
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """h/R times that of the sphere. Parameters: see `Profile`."""
-        kernel = sphere_kernel(self.radius, annulus, radius, rtol)
-        kernel *= self.height / self.radius
-        return kernel
+        return self.height / self.radius * sphere_kernel(self.radius, annulus, radius, rtol)
 
 
 def artanh_ratio(x: Array, equator: Parameter) -> Array:
@@ -183,16 +181,8 @@ def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -
     stretch = equator / np.sqrt(square)
 
     def h(y: Array, index: Chosen) -> Array:
-        z = np.sinh(y)
-        z *= stretch[index]
-        z *= z
-        z += tilt2[index]
-        np.sqrt(z, out=z)
-        np.cosh(y, out=y)
-        y *= z
-        np.arcsinh(z, out=z)
-        z /= y
-        return z
+        z2 = np.square(stretch[index] * np.sinh(y)) + tilt2[index]
+        return np.arcsinh(np.sqrt(z2)) / np.sqrt(z2 * (1 + z2))
 
     top = _sphere_root(equator, v, r, edge)
     if inner is None:
@@ -206,20 +196,13 @@ def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -
         gap2 = np.sinh(width) * np.sinh(2 * v - width) / (stretch * stretch)
         length = arcsinh_difference(top, cosh_top, bottom, cosh_bottom, gap2)
         smooth = integrate(h, length, rtol, np.arcsinh(bottom))
-    stretch *= length
-    smooth += stretch
-    smooth /= pi
-    return smooth
+    return stretch * (length + smooth) / pi
 
 
 def _sphere_root(equator: Parameter, v: Array, r: Array, edge: Array | None) -> Array:
     """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
     a = equator * np.tanh(v) if edge is None else edge
-    root = np.maximum(a - r, 0.0)
-    root *= a + r
-    np.sqrt(root, out=root)
-    root *= np.cosh(v) / equator
-    return root
+    return inverse_hypot(a, r) * (np.cosh(v) / equator)
 
 
 @dataclass(frozen=True)

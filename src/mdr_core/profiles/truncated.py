@@ -89,7 +89,7 @@ class Truncated(FlatEnded):
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
-        value = two_root_integral(
+        integral = two_root_integral(
             lambda x, s, _: self.weight(x, s),
             float(self.flat_radius),
             radius,
@@ -98,8 +98,7 @@ class Truncated(FlatEnded):
             rtol=rtol,
             analytic=self.analytic,
         )
-        value /= pi
-        return value
+        return integral / pi
 
 
 @dataclass(frozen=True)
@@ -143,14 +142,8 @@ class RoundedPunch(Truncated):
 
     def weight(self, x: Array, s: Array) -> Array:
         """(b/R) (2 s/b - arctan(s/b)) s/x."""
-        value = s / self.flat_radius
-        angle = np.arctan(value)
-        value += value
-        value -= angle
-        value *= s
-        value /= x
-        value *= self.flat_radius / self.rounding_radius
-        return value
+        z = s / self.flat_radius
+        return (2 * z - np.arctan(z)) * s / x * (self.flat_radius / self.rounding_radius)
 
 
 @dataclass(frozen=True)
