@@ -30,7 +30,7 @@ from tests.oracles.wear_explicit import Controls, Scene
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mdr_core.wear.annulus_state import AnnulusModel
+    from mdr_core.wear.initial_state import InitialState
 
     Array = NDArray[np.float64]
 
@@ -129,7 +129,7 @@ def test_worn_volume_follows_the_friction_work(kind: str, control: str) -> None:
 
 def limiting(result: evolution.WearEvolution) -> limit.LimitingWear:
     tangential_contact = result.initial.tangential_contact
-    constant = result.initial.constant.displacement
+    constant = result.initial.constant_displacement
     name = "tangential_displacement" if constant else "tangential_force"
     return limit.solve(
         result.initial.contact, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
@@ -308,9 +308,9 @@ def test_cost_is_independent_of_the_number_of_cycles(monkeypatch: pytest.MonkeyP
     called: list[int] = []
     rates = integrator.rates
 
-    def counted(model: AnnulusModel, vector: Array) -> Array:
+    def counted(initial: InitialState, vector: Array) -> Array:
         called[-1] += 1
-        return rates(model, vector)
+        return rates(initial, vector)
 
     monkeypatch.setattr(integrator, "rates", counted)
     for last in (1e4, 1e9):

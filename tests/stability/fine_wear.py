@@ -21,7 +21,6 @@ from mdr_core.profiles import (
     Sphere,
 )
 from mdr_core.wear import evolution
-from mdr_core.wear.annulus_state import ConstantQuantities
 from mdr_core.wear.initial_state import InitialState
 
 E_STAR, G_STAR, MU, WEAR = 1.0, 0.8, 0.4, 1e-3
@@ -34,11 +33,13 @@ PROFILES: dict[str, Profile] = {
     "rounded_punch": RoundedPunch(0.5, 1.0),
     "hyperboloid": Hyperboloid(0.5, 0.5),
 }
+#: Whether the normal force, not the depth, and the displacement amplitude, not that of the force,
+#: are constant.
 CONTROLS = {
-    "depth, displacement": ConstantQuantities(force=False, displacement=True),
-    "forces": ConstantQuantities(force=True, displacement=False),
-    "force, displacement": ConstantQuantities(force=True, displacement=True),
-    "depth, force": ConstantQuantities(force=False, displacement=False),
+    "depth, displacement": (False, True),
+    "forces": (True, False),
+    "force, displacement": (True, True),
+    "depth, force": (False, False),
 }
 #: Characteristic numbers of cycles for the decay of the pressure on the annulus.
 CYCLES = (0.1, 1.0, 10.0, 100.0, 1000.0)
@@ -51,16 +52,16 @@ STORED = Path(__file__).with_name("fine_wear.npz")
 @cache
 def worn(kind: str, name: str, resolution: int, rtol: float = 1e-6) -> evolution.WearEvolution:
     """Wear at half the displacement or force of full slip."""
-    profile, constant = PROFILES[kind], CONTROLS[name]
+    profile, (constant_force, constant_displacement) = PROFILES[kind], CONTROLS[name]
     contact = normal.solve(profile, E_STAR, indentation_depth=DEPTH)
-    if constant.force:
+    if constant_force:
         contact = normal.solve(profile, E_STAR, normal_force=float(contact.normal_force))
     force = PART * MU * float(contact.normal_force)
     tangential_contact = tangential.solve(contact, G_STAR, MU, tangential_force=force)
     amplitude = {"tangential_force": force}
-    if constant.displacement:
+    if constant_displacement:
         amplitude = {"tangential_displacement": float(tangential_contact.tangential_displacement)}
-    unit = InitialState(tangential_contact, WEAR, constant).cycle_unit
+    unit = InitialState(tangential_contact, WEAR, resolution).cycle_unit
     return evolution.solve(
         contact,
         G_STAR,

@@ -1,8 +1,8 @@
 """Fretting wear over the number of cycles, from the first cycle to the limiting state."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from functools import cached_property, partial
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import inf, isfinite
 from typing import ClassVar, Final
 
@@ -15,10 +15,10 @@ from mdr_core.normal import NormalContact
 from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
-from mdr_core.wear.annulus_state import ConstantQuantities
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
-from mdr_core.wear.worn_surface import WornSurface, worn_surface
+from mdr_core.wear.integrator import integrate
+from mdr_core.wear.worn_surface import WornSurface
 
 # Default of `resolution`, ...
 DEFAULT_RESOLUTION: Final = 24
@@ -112,7 +112,7 @@ class WearEvolution(Results, WornSurface):
             for block in np.split(r, range(_BLOCK, r.size, _BLOCK)):
                 values, others = (getattr(run, name)(block) for run in (self, self.coarse))
                 difference = max(difference, _largest(values, others))
-                if name == "pressure" and self.initial.constant.stick_moves:
+                if name == "pressure" and self.initial.stick_moves:
                     # It is singular at an edge whose position is inexact.
                     shifted = block * (1 + self.error_estimate)
                     moved = self.pressure(np.minimum(shifted, self.initial.contact.profile.domain))
@@ -121,7 +121,7 @@ class WearEvolution(Results, WornSurface):
             largest = max(largest, float(np.max(least.get(name, 0.0))))
             if largest > 0:
                 worst = max(worst, difference / largest)
-        safety = _SAFETY_OF_PEAK if self.initial.constant.stick_shrinks else _SAFETY
+        safety = _SAFETY_OF_PEAK if self.initial.stick_shrinks else _SAFETY
         return safety * worst + self.initial.tangential_contact.error_estimate
 
     def grid(self, points: int) -> Array:
@@ -131,7 +131,7 @@ class WearEvolution(Results, WornSurface):
         radius at rest; one that moves has an error. Errors as of `limit.LimitingWear.grid`.
         """
         edges = self.contact_radius[[0, -1]]
-        if not self.initial.constant.stick_moves:
+        if not self.initial.stick_moves:
             edges = np.append(edges, self.stick_radius[0])
         return grid(self.initial.contact.profile, edges, points)
 
@@ -256,16 +256,12 @@ def solve(
             ("tangential", name),
             "full slip: there is no stick zone; reduce the amplitude",
         )
-    constant = ConstantQuantities(
-        contact.control == "normal_force", name == "tangential_displacement"
-    )
-    initial = InitialState(tangential_contact, float(wear_coefficient), constant)
-    numbers = _checked_cycles(cycles)
-    nodes = int(resolution) + _MIN_NODES
-    run = partial(worn_surface, initial, numbers)
-    fine, coarse = run(nodes, rtol), run(int(nodes * _COARSER), _LOOSER * rtol)
-    parts = fine.states, fine.trail, fine.settled_at
-    found = WearEvolution(initial, numbers, *parts, coarse=coarse)
+    numbers, nodes = _checked_cycles(cycles), int(resolution) + _MIN_NODES
+    initial = InitialState(tangential_contact, float(wear_coefficient), nodes)
+    coarser = replace(initial, nodes=int(nodes * _COARSER))
+    parts = integrate(initial, numbers, rtol)
+    other = WornSurface(coarser, numbers, *integrate(coarser, numbers, _LOOSER * rtol))
+    found = WearEvolution(initial, numbers, *parts, coarse=other)
     if not found.error_estimate < _UNRESOLVED:
         detail = "the worn annulus is not resolved: more nodes may resolve it"
         raise AccuracyError(detail, ("resolution",))

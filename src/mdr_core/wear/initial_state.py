@@ -1,4 +1,8 @@
-"""Partial slip before the first cycle: constant quantities, and the units of the rates."""
+"""Partial slip before the first cycle: constant quantities, units, and the unworn shape.
+
+In the equations of wear lengths along the surface are in units of b_0 = sqrt(a_0^2 - c_0^2), depths
+in units of D_0 = d_0 - g_0(c_0), cycles in units of b_0/(kappa E* D_0), kappa = 4 K mu^2 E*/G*.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,27 +11,31 @@ from typing import Final
 import numpy as np
 
 from mdr_core.normal import NormalContact
+from mdr_core.quadrature import gauss_legendre
 from mdr_core.tangential import TangentialContact
-from mdr_core.wear.annulus_maps import annulus_maps
-from mdr_core.wear.annulus_state import AnnulusModel, ConstantQuantities, UnwornShape
-from mdr_core.wear.surface_tilt import SurfaceTilt
+from mdr_core.typing import Array
+from mdr_core.wear.annulus_maps import AnnulusMaps, annulus_maps
+from mdr_core.wear.surface_tilt import COUNT, SurfaceTilt
 
 # Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
 # contact of a paraboloid grows by half a width, that of a power 100 by less.
 _GROWTH: Final = 4.0
-# Full slip: the stick zone has shrunk to this part of its first distance from the flat or the axis.
-_VANISHED: Final = 1e-3
 # As near to the end of a profile as its functions are evaluated: they may be infinite there.
 _ALMOST: Final = 1 - 1e-9
+# Up to this part of the stick radius a step of g is the integral of its slope: a difference has
+# a rounding error of 1e-16/_NARROW, the rule of 8 points an error of _NARROW^16.
+_NARROW: Final = 0.05
+# Points of this rule.
+_POINTS: Final = 8
 
 
 @dataclass(frozen=True)
 class InitialState:
-    """A contact in partial slip before the first cycle."""
+    """A contact in partial slip before the first cycle, with the nodes of its annulus."""
 
     tangential_contact: TangentialContact
     wear_coefficient: float
-    constant: ConstantQuantities
+    nodes: int
 
     @property
     def contact(self) -> NormalContact:
@@ -40,15 +48,35 @@ class InitialState:
         return float(self.tangential_contact.slip_width) > 0
 
     @cached_property
-    def stick(self) -> float:
-        """c_0 [length]."""
-        return float(self.tangential_contact.stick_radius)
+    def constant_force(self) -> bool:
+        """The normal force is held constant, so that the depth grows; otherwise the depth."""
+        return self.contact.control == "normal_force"
+
+    @cached_property
+    def constant_displacement(self) -> bool:
+        """The displacement amplitude is held, and with it D; otherwise that of the force."""
+        return self.tangential_contact.control == "tangential_displacement"
+
+    @property
+    def stick_grows(self) -> bool:
+        """The growing depth moves the stick edge outwards, over worn material."""
+        return self.constant_force and self.constant_displacement
+
+    @property
+    def stick_shrinks(self) -> bool:
+        """The falling normal force moves the stick edge inwards, over unworn material."""
+        return not (self.constant_force or self.constant_displacement)
+
+    @property
+    def stick_moves(self) -> bool:
+        """The stick edge is not at rest."""
+        return self.constant_force == self.constant_displacement
 
     @cached_property
     def length_unit(self) -> float:
         """b_0 = sqrt(a_0^2 - c_0^2) [length]."""
         width = float(self.tangential_contact.slip_width)
-        return float(np.sqrt(width * (2 * self.stick + width)))
+        return float(np.sqrt(width * (2 * float(self.tangential_contact.stick_radius) + width)))
 
     @cached_property
     def depth_unit(self) -> float:
@@ -64,42 +92,80 @@ class InitialState:
         pressed = float(np.asarray(self.contact.e_star)) * self.depth_unit / self.length_unit
         return self.depth_unit / (self.wear_coefficient * friction * pressed * slipped)
 
-    @property
+    @cached_property
+    def stick(self) -> float:
+        """c_0 in its unit."""
+        return float(self.tangential_contact.stick_radius) / self.length_unit
+
+    @cached_property
+    def width(self) -> float:
+        """a_0 - c_0 in its unit."""
+        return float(self.tangential_contact.slip_width) / self.length_unit
+
+    @cached_property
     def domain(self) -> float:
         """Radius up to which the profile is evaluated [length]."""
         return _ALMOST * float(np.asarray(self.contact.profile.domain))
 
-    @property
+    @cached_property
     def room(self) -> float:
-        """Length by which the contact may grow before it reaches the profile's end [length]."""
-        return self.domain - float(self.contact.contact_radius)
+        """Growth at which the contact reaches the profile's end, in its unit."""
+        return (self.domain - float(self.contact.contact_radius)) / self.length_unit
 
     @cached_property
     def reach(self) -> float:
-        """Length by which the contact may grow in this method [length]."""
-        if not self.constant.stick_grows:
+        """Growth of the contact up to which this method resolves it, in its unit."""
+        if not self.stick_grows:
             return self.room
-        wide = 1 + float(self.tangential_contact.slip_width) / self.stick
-        return min(self.room, _GROWTH * float(self.tangential_contact.slip_width) * wide**2)
+        return min(self.room, _GROWTH * self.width * (1 + self.width / self.stick) ** 2)
 
-    @property
-    def ends(self) -> tuple[float, float]:
-        """`reach` and the smallest stick radius, where the integration ends, in its unit."""
-        profile = self.contact.profile
-        flat = float(profile.first_radius)
-        least = flat + _VANISHED * (self.stick - flat)
-        return self.reach / self.length_unit, least / self.length_unit
-
-    def model(self, nodes: int) -> AnnulusModel:
-        """Return the rates of wear on so many nodes, in their units.
+    @cached_property
+    def maps(self) -> AnnulusMaps:
+        """Maps between values at the nodes.
 
         A shrinking stick zone takes half as many again: the front outside it is eight times thinner
         than its distance from the edge, elsewhere both are alike. Source: notes, §11.
         """
-        nodes = nodes * 3 // 2 if self.constant.stick_shrinks else nodes
-        unit = self.length_unit
-        stick, width = self.stick / unit, float(self.tangential_contact.slip_width) / unit
-        tilt = SurfaceTilt(stick, width, self.reach / unit) if self.constant.stick_grows else None
-        parts = self.stick, unit, self.depth_unit, self.domain
-        shape = UnwornShape(self.contact.profile, *parts)
-        return AnnulusModel(annulus_maps(nodes), shape, self.constant, stick, width, tilt)
+        return annulus_maps(self.nodes * 3 // 2 if self.stick_shrinks else self.nodes)
+
+    @cached_property
+    def tilt(self) -> SurfaceTilt | None:
+        """Tilt of the surface outside the contact; only with a growing stick zone."""
+        return SurfaceTilt(self.stick, self.width, self.reach) if self.stick_grows else None
+
+    @cached_property
+    def first_edge(self) -> int:
+        """Index of b in the vector of `AnnulusState`."""
+        return self.maps.squares.size - 1
+
+    @property
+    def vector(self) -> Array:
+        """Vector before the first cycle."""
+        tilt = np.zeros(COUNT if self.tilt else 0)
+        return np.concatenate([np.zeros(self.first_edge), (1.0, 0.0, 0.0, 0.0), tilt])
+
+    @cached_property
+    def _singular(self) -> Array:
+        """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
+        profile = self.contact.profile
+        inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
+        return np.append(profile.contact_radius(inner), profile.domain)
+
+    def rise(self, stick_shift: float, offset: Array) -> Array:
+        """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift, in their units."""
+        profile, unit = self.contact.profile, self.length_unit
+        stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
+        by = unit * offset
+        # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
+        near = np.abs(self._singular - stick) < 2 * by[-1]
+        if by[-1] > _NARROW * stick or near.any():
+            g = profile.g(np.minimum(np.append(stick, stick + by), self.domain))
+            return np.asarray((g[1:] - g[0]) / self.depth_unit)
+        nodes, weights = gauss_legendre(_POINTS)
+        at = stick + np.multiply.outer(by, (1 + nodes) / 2)
+        return np.asarray(by / 2 * (profile.dg(at) @ weights) / self.depth_unit)
+
+    def slope(self, x: Array) -> Array:
+        """Return g_0'(x) in its unit."""
+        slope = self.contact.profile.dg(np.minimum(x * self.length_unit, self.domain))
+        return np.asarray(slope * (self.length_unit / self.depth_unit))

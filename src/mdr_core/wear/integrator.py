@@ -1,90 +1,64 @@
 """Implicit integration of the worn annulus over the cycles, with steps as long as wear allows."""
 
 import warnings
-from collections.abc import Callable, Iterator
-from math import inf
-from typing import Any, Final, NamedTuple
+from collections.abc import Callable
+from math import inf, isfinite
+from typing import Any, Final
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from mdr_core.errors import AccuracyError
+from mdr_core.errors import AccuracyError, InputError
 from mdr_core.typing import Array
-from mdr_core.wear.annulus_state import AnnulusModel, AnnulusState
+from mdr_core.wear.annulus_state import AnnulusState
+from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
 
-# Absolute tolerance, as a part of the relative one and of the wear so far.
-_ABSOLUTE: Final = 0.01
+# Absolute tolerance, as a part of the relative one and of the wear by the first cycles.
+_ABSOLUTE: Final = 0.1
 # Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
 # less, a growing stick zone takes it back before it counts.
 _MIN_SLIP: Final = 0.01
-# The wear of the first cycles has a separate tolerance in each such factor of cycles.
-_DECADE: Final = 10.0
+# Full slip: the stick zone has shrunk to this part of its first distance from the flat or the axis.
+_VANISHED: Final = 1e-3
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
 # About 5 times as many as 96 nodes take at a tolerance of 1e-10.
 _MAX_CALLS: Final = 40_000
 
 
-class StickTrail(NamedTuple):
-    """Radii that a growing stick zone has passed, and the wear w_c that the springs there keep."""
-
-    radius: Array
-    worn: Array
-
-    def until(self, state: AnnulusState) -> "StickTrail":
-        """Return the part that the stick edge has passed in one state."""
-        # While the stick edge rests, the wear at its radius grows.
-        rests = (self.radius == state.stick) & (self.worn <= state.retained_wear)
-        before = (self.radius < state.stick) | rests
-        return StickTrail(
-            np.append(self.radius[before], state.stick),
-            np.append(self.worn[before], state.retained_wear),
-        )
-
-    @property
-    def steps(self) -> tuple[Array, Array]:
-        """Middle radii of the intervals, and the steps of w_c over them."""
-        return (self.radius[1:] + self.radius[:-1]) / 2, np.diff(self.worn)
-
-
-NO_TRAIL: Final = StickTrail(np.empty(0), np.empty(0))
-
-
-class Integration(NamedTuple):
-    """States at the requested cycles, and the trail of the stick edge."""
-
-    states: tuple[AnnulusState, ...]
-    trail: StickTrail
-    settled_at: float
-    """Scaled cycles from which on nothing wears, infinite if these were not reached."""
-    profile_end_at: float
-    """Scaled cycles at which the contact reaches the end of the profile, or infinity."""
-    full_slip_at: float
-    """Scaled cycles at which the stick zone vanishes, or infinity."""
-
-
 def integrate(
-    model: AnnulusModel, cycles: Array, rtol: float, ends: tuple[float, float]
-) -> Integration:
-    """Return the states of the annulus at ascending numbers of cycles.
+    initial: InitialState, cycles: Array, rtol: float
+) -> tuple[tuple[AnnulusState, ...], float]:
+    """Return the states of the annulus at ascending numbers of cycles, and when wear stopped.
 
     The pressure in the annulus decays within some units of scaled cycles. Once it is below `rtol`
     everywhere, the state stays as it is, whatever the number of cycles. Source: notes, §11.
 
     Parameters
     ----------
-    model : rates of wear.
-    cycles : scaled numbers of cycles, ascending, (k,).
+    initial : contact before the first cycle.
+    cycles : numbers of cycles, ascending, (k,).
     rtol : relative tolerance.
-    ends : growth of the contact, and stick radius, at which the integration ends; in its unit.
+
+    Returns
+    -------
+    The states, (k,), none if there is no slip; and the number of cycles after which nothing wears,
+    infinite if this is not reached.
 
     Raises
     ------
-    AccuracyError : the integrator failed, or takes too many steps.
+    InputError : the contact reaches the end of the profile, or slides.
+    AccuracyError : the integrator failed, takes too many steps, or the contact grows too far.
     """
-    first = cycles[cycles > 0][:1]
-    if first.size and first[0] < _FIRST:
+    if not initial.slips:
+        return (), inf
+    unit, scaled = initial.cycle_unit, cycles / initial.cycle_unit
+    start, last = initial.vector, float(scaled[-1])
+    if last == 0:
+        return (AnnulusState(initial, start),) * cycles.size, inf
+    first = float(scaled[scaled > 0][0])
+    if first < _FIRST:
         detail = "so few cycles wear less than the integrator can resolve"
         raise AccuracyError(detail, ("cycles",))
     calls = 0
@@ -95,95 +69,90 @@ def integrate(
         if calls > _MAX_CALLS:
             detail = "the wear over the cycles takes too many steps: fewer nodes may take less"
             raise AccuracyError(detail, ("resolution",))
-        return rates(model, vector)
+        return rates(initial, vector)
 
-    vector, now, stopped = model.start, 0.0, [inf, inf, inf]
-    steps, states = [vector], []
-    for halt in _halts(cycles):
-        # A failure of LSODA is reported by an error below, not by a warning.
-        with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
-            run = solve_ivp(
-                counted,
-                (now, halt),
-                vector,
-                method="LSODA",
-                dense_output=True,
-                rtol=rtol,
-                atol=_ABSOLUTE * rtol * min(halt, 1.0) * _scale(model),
-                jac=lambda _time, vector: jacobian(model, vector),
-                events=_events(model, rtol, ends),
-            )
-        if run.status < 0 or not np.isfinite(run.y).all():
-            detail = "the wear over the cycles is not resolved: more nodes may resolve it"
-            raise AccuracyError(detail, ("resolution",))
-        last = float(run.t[-1])
-        between: Any = run.sol
-        states += [between(number) for number in cycles[(cycles > now) & (cycles <= last)]]
-        steps += [*run.y.T[1:]]
-        vector, now = run.y[:, -1], last
-        stopped = [now if times.size else inf for times in run.t_events or ()]
-        if run.status:
-            break
-    states = [model.start] * int((cycles == 0).sum()) + states
-    # Nothing wears from where it ended on.
-    states += [vector] * (cycles.size - len(states))
-    profile_end_at, settled_at, full_slip_at = stopped
-    trail = _trail(model, steps)
-    ended = tuple(AnnulusState(model, v) for v in states)
-    return Integration(ended, trail, settled_at, profile_end_at, full_slip_at)
-
-
-def _halts(cycles: Array) -> Iterator[float]:
-    """Yield the scaled cycles at which the absolute tolerance changes, and the last."""
-    last = float(cycles[-1])
-    halt = float(cycles[cycles > 0][0]) if last > 0 else 1.0
-    # An interval as short as the rounding error of its end is not integrated.
-    while halt < min(last / 2, 1.0):
-        yield halt
-        halt *= _DECADE
-    if last > 0:
-        yield last
+    # A failure of LSODA is reported by an error below, not by a warning.
+    with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
+        run = solve_ivp(
+            counted,
+            (0.0, last),
+            start,
+            method="LSODA",
+            dense_output=True,
+            rtol=rtol,
+            atol=_ABSOLUTE * rtol * min(first, 1.0) * _scale(initial),
+            jac=lambda _time, vector: jacobian(initial, vector),
+            events=_events(initial, rtol),
+        )
+    if run.status < 0 or not np.isfinite(run.y).all():
+        detail = "the wear over the cycles is not resolved: more nodes may resolve it"
+        raise AccuracyError(detail, ("resolution",))
+    ends = (float(times[0]) * unit if times.size else inf for times in run.t_events or ())
+    profile_end_at, settled_at, full_slip_at = ends
+    _require_stick_zone(initial, cycles, profile_end_at, full_slip_at)
+    between: Any = run.sol
+    trail = np.empty((2, 0))
+    if initial.stick_grows:
+        passed = (AnnulusState(initial, vector) for vector in run.y.T)
+        trail = np.array([(state.stick, state.retained_wear) for state in passed]).T
+    states = []
+    for number in np.minimum(scaled, run.t[-1]):
+        vector = between(number) if number > 0 else start
+        state = AnnulusState(initial, vector)
+        if initial.stick_grows:
+            here = [[state.stick], [state.retained_wear]]
+            before = np.append(trail[:, run.t < number], here, axis=1)
+            state = AnnulusState(initial, vector, before)
+        states.append(state)
+    return tuple(states), settled_at
 
 
-def _scale(model: AnnulusModel) -> Array:
+def _require_stick_zone(
+    initial: InitialState, cycles: Array, profile_end_at: float, full_slip_at: float
+) -> None:
+    """Raise an error if the integration has ended before the last of the cycles."""
+    if isfinite(profile_end_at):
+        if initial.reach < initial.room:
+            detail = "the contact grows beyond the range of this method"
+            raise AccuracyError(detail, ("cycles",))
+        raise InputError(
+            ("cycles", int(np.searchsorted(cycles, profile_end_at))),
+            f"after {profile_end_at:.3g} cycles the worn contact reaches radius "
+            f"{initial.domain:.6g}, where the profile ends or is no longer admissible",
+        )
+    if isfinite(full_slip_at):
+        raise InputError(
+            ("cycles", int(np.searchsorted(cycles, full_slip_at))),
+            f"after {full_slip_at:.3g} cycles the whole contact slides: wear at this depth reduces "
+            "the normal force until it no longer carries the tangential force",
+        )
+
+
+def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
-    edge = model.first_edge
+    edge, start = initial.first_edge, AnnulusState(initial, initial.vector)
     # In a narrow annulus all but b and the work change by a part b_0/a_0 only.
-    scale = np.full(model.start.size, 1 / (model.first_stick + model.first_width))
-    scale[:edge] = np.maximum(AnnulusState(model, model.start).slip[:-1], _MIN_SLIP)
+    scale = np.full(start.vector.size, 1 / (initial.stick + initial.width))
+    scale[:edge] = np.maximum(start.slip[:-1], _MIN_SLIP)
     scale[[edge, edge + 3]] = 1.0
     return scale
 
 
-def _events(model: AnnulusModel, rtol: float, ends: tuple[float, float]) -> list[Any]:
-    """Return the events that end the integration, in the order of `Integration`."""
-    latest = AnnulusState(model, model.start)
+def _events(initial: InitialState, rtol: float) -> list[Any]:
+    """Return the events that end the integration: the profile's end, no more wear, full slip."""
+    flat = float(initial.contact.profile.first_radius) / initial.length_unit
+    vanished = flat + _VANISHED * (initial.stick - flat)
 
     def event(function: Callable[[AnnulusState], float]) -> Any:
         def value(_time: float, vector: Array) -> float:
-            nonlocal latest
-            # All events of a step are evaluated for one vector.
-            if latest.vector is not vector:
-                latest = AnnulusState(model, vector)
-            return function(latest)
+            return function(AnnulusState(initial, vector))
 
         value.terminal = True  # type: ignore[attr-defined]  # read by `solve_ivp`
         return value
 
     return [
-        event(lambda state: state.growth - ends[0]),
+        event(lambda state: state.growth - initial.reach),
         # The work of a cycle is of the order of the square of the pressure.
         event(lambda state: state.end * state.pressure.max() - rtol * state.reduced_amplitude),
-        event(lambda state: state.stick - ends[1]),
+        event(lambda state: state.stick - vanished),
     ]
-
-
-def _trail(model: AnnulusModel, steps: list[Array]) -> StickTrail:
-    """Return the trail of a growing stick zone."""
-    if not model.constant.stick_grows:
-        return NO_TRAIL
-    states = [AnnulusState(model, vector) for vector in steps]
-    return StickTrail(
-        np.array([state.stick for state in states]),
-        np.array([state.retained_wear for state in states]),
-    )

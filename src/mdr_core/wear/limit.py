@@ -18,7 +18,6 @@ from mdr_core.typing import Array, Parameter
 from mdr_core.validation import checked_radii, first_index
 from mdr_core.wear import limit_fields, limiting_stick
 from mdr_core.wear.arguments import grid, one_amplitude
-from mdr_core.wear.worn_annulus import WornAnnulus
 
 # Width over that of the rise of g by the step, where both are narrow: the mean of r cos(t) - c up
 # to the angle arccos(c/r) is two thirds of r - c.
@@ -48,8 +47,6 @@ class LimitingWear(Results):
 
     tangential_contact: TangentialContact
     """The contact before any wear, with the amplitude applied once."""
-    amplitude: str
-    """Name of the prescribed amplitude: "tangential_displacement" or "tangential_force"."""
     stick_zone: limiting_stick.LimitingStick
     quantities: ClassVar[tuple[str, ...]] = (
         "stick_radius",
@@ -82,9 +79,9 @@ class LimitingWear(Results):
         else:
             target = np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
             start = np.where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
-            room = self.annulus.room.reshape(target.shape)
+            room = self.stick_zone.annulus.room.reshape(target.shape)
             flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * room)))
-            worn = self.annulus.width_where_worn(*flat).reshape(target.shape)
+            worn = self.stick_zone.annulus.width_where_worn(*flat).reshape(target.shape)
         return np.where(self.stick_zone.unbounded, inf, worn)
 
     @cached_property
@@ -128,7 +125,7 @@ class LimitingWear(Results):
         """Amplitude u_x [length]: constant, or mu (E*/G*) (d - g(c))."""
         contact, stick_zone = self.tangential_contact, self.stick_zone
         displacement = contact.tangential_displacement
-        if self.amplitude == "tangential_displacement":
+        if contact.control == "tangential_displacement":
             return np.broadcast_to(displacement, stick_zone.step.shape)
         if not self._normal.profile.has_no_partial_slip:
             displacement = contact.displacement_ratio * stick_zone.step
@@ -138,7 +135,7 @@ class LimitingWear(Results):
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
         contact = self.tangential_contact
-        if self.amplitude == "tangential_force" or self._normal.profile.has_no_partial_slip:
+        if contact.control == "tangential_force" or self._normal.profile.has_no_partial_slip:
             return np.where(self.stick_zone.separated, 0.0, contact.tangential_force)
         modulus = contact.friction_coefficient * self._normal.e_star
         carried = 2 * modulus * self.stick_zone.radius * self.stick_zone.step
@@ -155,7 +152,7 @@ class LimitingWear(Results):
         # Without slip there is no annulus.
         some = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
         step = np.ravel(self.stick_zone.step)[some]
-        volume[some] = self.annulus.chosen(some).worn_volume(flat[some], step)
+        volume[some] = self.stick_zone.annulus.chosen(some).worn_volume(flat[some], step)
         return np.where(unbounded, inf, volume.reshape(width.shape))
 
     @cached_property
@@ -163,12 +160,6 @@ class LimitingWear(Results):
         """Slip regime: "stick" (nothing wears), "partial_slip" or "full_slip"."""
         wearing = np.where(self.stick_zone.step > 0, "partial_slip", "stick").astype("U12")
         return np.where(self.stick_zone.unbounded | self.stick_zone.separated, "full_slip", wearing)
-
-    @cached_property
-    def annulus(self) -> WornAnnulus:
-        """Worn annuli of all loads, in one row."""
-        c, coordinate = np.ravel(self.stick_zone.radius), np.ravel(self.stick_zone.coordinate)
-        return WornAnnulus(self._normal.profile, c, coordinate)
 
     def initial_profile(self, radius: ArrayLike) -> Array:
         """Return the profile before wear, f(r) [length], (m,).
@@ -196,7 +187,7 @@ class LimitingWear(Results):
         (5.82); notes, §9. Shape and errors as of `limiting_profile`.
         """
         r = self._radii(radius)
-        return limit_fields.worn_depth(self.stick_zone, self.annulus, self.wear_radius, r)
+        return limit_fields.worn_depth(self.stick_zone, self.wear_radius, r)
 
     def pressure(self, radius: ArrayLike) -> Array:
         """Return the pressure in the limit, (loads, m), or (m,) for a single load [pressure].
@@ -210,9 +201,8 @@ class LimitingWear(Results):
         ------
         InputError : a radius that is negative or not finite.
         """
-        contact, r = self._normal, checked_radii(radius)
-        e_star = np.asarray(contact.e_star)
-        return limit_fields.pressure(contact.profile, self.stick_zone, e_star, r)
+        e_star = np.asarray(self._normal.e_star)
+        return limit_fields.pressure(self.stick_zone, e_star, checked_radii(radius))
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest worn annulus [length], (points,).
@@ -254,7 +244,9 @@ class LimitingWear(Results):
         Of the limit: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
         """
         wears = self.stick_zone.step > 0
-        path_dependent = not self._holds_depth and self.amplitude == "tangential_displacement"
+        path_dependent = (
+            not self._holds_depth and self.tangential_contact.control == "tangential_displacement"
+        )
         where = {
             "path_dependent": path_dependent & wears,
             "singular": wears & (self.stick_radius > 0),
@@ -318,7 +310,7 @@ def solve(
         raise InputError(("profile",), "a single profile is needed: no arrays of parameters")
     name, size = one_amplitude(tangential_displacement, tangential_force)
     unworn = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    result = LimitingWear(unworn, name, limiting_stick.find(unworn, name, size))
+    result = LimitingWear(unworn, limiting_stick.find(unworn, size))
     _require_room(result)
     beyond = ~result.stick_zone.unbounded & ~np.isfinite(result.wear_radius)
     if beyond.any():
@@ -334,12 +326,13 @@ def _require_room(wear: LimitingWear) -> None:
     profile = wear.tangential_contact.normal.profile
     if profile.has_no_partial_slip or not float(profile.domain) < inf:
         return
-    annulus, wearing = wear.annulus, (wear.stick_zone.step > 0) & ~wear.stick_zone.unbounded
+    stick_zone, annulus = wear.stick_zone, wear.stick_zone.annulus
+    wearing = (stick_zone.step > 0) & ~stick_zone.unbounded
     # Without a root the search for the width ends there.
     if not (np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * annulus.room).any():
         return
-    step = np.ravel(np.where(wearing, wear.stick_zone.step, 0.0))
-    beyond = (annulus.mean_rise(annulus.room) < step).reshape(wear.stick_zone.step.shape)
+    step = np.ravel(np.where(wearing, stick_zone.step, 0.0))
+    beyond = (annulus.mean_rise(annulus.room) < step).reshape(wearing.shape)
     if beyond.any():
         raise InputError(
             ("load", wear.tangential_contact.normal.control, *first_index(beyond)),

@@ -7,28 +7,20 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel import Annulus
-from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
-from mdr_core.wear.worn_annulus import RTOL, WornAnnulus
+from mdr_core.wear.worn_annulus import RTOL
 
 # Pairs of loads and radii handled at once: bounds the memory, whatever their number.
 _BLOCK: Final = 8192
 
 
-def worn_depth(stick_zone: LimitingStick, annulus: WornAnnulus, outer: Array, r: Array) -> Array:
+def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
     """Return (2/pi) int_c^r (d - g(x))/sqrt(r^2 - x^2) dx in the annulus up to `outer` [length].
 
     Source: mdr-5, Eqs. (5.75), (5.82).
-
-    Parameters
-    ----------
-    stick_zone : stick zones of the limit, (loads,).
-    annulus : worn annuli, (loads,).
-    outer : outer radii of the annuli [length], (loads,).
-    r : radii [length], (m,).
     """
-    profile, step = annulus.profile, np.ravel(stick_zone.step)
+    profile, annulus, step = stick_zone.profile, stick_zone.annulus, np.ravel(stick_zone.step)
     inner, end = annulus.stick[:, None], np.ravel(outer)[:, None]
     # In full slip the axis wears as well, and a flat punch wears up to its edge.
     worn = (r <= end if profile.has_no_partial_slip else r < end) & ((r > inner) | (inner == 0))
@@ -53,18 +45,12 @@ def worn_depth(stick_zone: LimitingStick, annulus: WornAnnulus, outer: Array, r:
     return result.reshape(outer.shape + r.shape)
 
 
-def pressure(profile: Profile, stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
+def pressure(stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
     """Return (E*/pi) [int_r^c g'/sqrt(x^2 - r^2) dx + (d - g(c))/sqrt(c^2 - r^2)] [pressure].
 
     Source: mdr-5, Eqs. (5.34), (5.79), (5.82).
-
-    Parameters
-    ----------
-    profile : profile before wear.
-    stick_zone : stick zones of the limit, (loads,).
-    e_star : effective modulus E* [pressure].
-    r : radii [length], (m,).
     """
+    profile = stick_zone.profile
     # In full slip the limiting pressure is zero.
     radius = np.where(stick_zone.separated | stick_zone.unbounded, 0.0, stick_zone.radius)
     c, step, edge = (np.ravel(part) for part in (radius, stick_zone.step, stick_zone.coordinate))

@@ -6,6 +6,7 @@ d - g(c) at the stick edge describe the whole limiting state. Source: notes, §9
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -13,9 +14,11 @@ import numpy as np
 from mdr_core import equivalent_1d
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
+from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import first_index
+from mdr_core.wear.worn_annulus import WornAnnulus
 
 # Points of the search for the largest of several possible stick zones ...
 _POINTS: Final = 65
@@ -30,6 +33,7 @@ class LimitingStick:
     In full slip c is zero, and the step is the depth.
     """
 
+    profile: Profile
     coordinate: Array
     """c in the profile's contact coordinate."""
     radius: Array
@@ -42,6 +46,11 @@ class LimitingStick:
     """Full slip at a constant depth: the contact wears until nothing touches."""
     unbounded: Flags
     """Full slip under a constant normal force: wear is unbounded."""
+
+    @cached_property
+    def annulus(self) -> WornAnnulus:
+        """Worn annuli of all loads, in one row."""
+        return WornAnnulus(self.profile, np.ravel(self.radius), np.ravel(self.coordinate))
 
 
 def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -121,26 +130,19 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         return _from(contact, np.zeros_like(share))
     top = np.broadcast_to(normal.coordinate, share.shape)
 
-    def carried(width: Array) -> Array:
-        """Return c (d - g(c)) at the coordinate `width` below the contact edge before wear."""
+    def carried(width: Array) -> tuple[Array, Array]:
+        """Return c (d - g(c)) at a coordinate `width` below that of the contact, and its slope."""
         edge = np.maximum(top - width, profile.first_coordinate)
-        return np.asarray(
-            profile.contact_radius(edge) * equivalent_1d.depth_step(profile, top, width, edge)
-        )
-
-    def slope(width: Array) -> Array:
-        edge = np.maximum(top - width, profile.first_coordinate)
-        step = equivalent_1d.depth_step(profile, top, width, edge)
-        shrinks = profile.radius_slope(edge) * step
-        return np.asarray(profile.contact_radius(edge) * profile.depth_slope(edge) - shrinks)
+        c, step = profile.contact_radius(edge), equivalent_1d.depth_step(profile, top, width, edge)
+        return c * step, c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
 
     def sloped(width: Array) -> tuple[Array, Array]:
-        value = carried(width)
-        return value, width * slope(width) / value
+        value, slope = carried(width)
+        return value, width * slope / value
 
     reach = top - profile.first_coordinate
     target = np.where(reach > 0, share, 0.0)
-    low, high, most = _first_crossing(carried, slope, reach, target)
+    low, high, most = _first_crossing(carried, reach, target)
     largest = 2 * contact.friction_coefficient * normal.e_star * most
     _reject_overload(contact, amplitude, most < target, largest)
     width = invert(
@@ -158,27 +160,24 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
 
 
 def _first_crossing(
-    function: Callable[[Array], Array],
-    slope: Callable[[Array], Array],
-    reach: Array,
-    target: Array,
+    sloped: Callable[[Array], tuple[Array, Array]], reach: Array, target: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the ends of the first interval on which the function rises to the target.
+    """Return the ends of the first interval on which a function, with its slope, rises to a target.
 
     And its largest value in [0, reach]: if this is below the target, there is no such interval.
     For a profile with a slope discontinuity the function can rise, fall and rise again.
     """
     places = np.multiply.outer(np.linspace(0.0, 1.0, _POINTS), reach)
     with np.errstate(divide="ignore", invalid="ignore"):
-        values = np.array([function(place) for place in places])
+        values = np.array([sloped(place)[0] for place in places])
         peak = np.argmax(values, axis=0)[None]
         left = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
         right = np.take_along_axis(places, np.minimum(peak + 1, _POINTS - 1), axis=0)[0]
         for _ in range(_HALVINGS):
             middle = (left + right) / 2
-            rising = slope(middle) > 0
+            rising = sloped(middle)[1] > 0
             left, right = np.where(rising, middle, left), np.where(rising, right, middle)
-        at_peak = function(left)
+        at_peak, _ = sloped(left)
     reached = values >= target
     found = reached.any(axis=0)
     index = np.argmax(reached, axis=0)[None]
@@ -202,7 +201,7 @@ def _reject_overload(
     )
 
 
-# By the constant load and the prescribed amplitude.
+# By the constant load and the amplitude.
 _BY_CONTROL: Final = {
     ("indentation_depth", "tangential_displacement"): by_depth_and_displacement,
     ("indentation_depth", "tangential_force"): by_depth_and_force,
@@ -211,9 +210,9 @@ _BY_CONTROL: Final = {
 }
 
 
-def find(contact: TangentialContact, name: str, size: Array) -> LimitingStick:
-    """Return the stick zone in the limit under a constant amplitude of this name and size."""
-    return _BY_CONTROL[contact.normal.control, name](contact, size)
+def find(contact: TangentialContact, amplitude: Array) -> LimitingStick:
+    """Return the stick zone in the limit under a constant amplitude, that of the contact."""
+    return _BY_CONTROL[contact.normal.control, contact.control](contact, amplitude)
 
 
 def _carried(contact: TangentialContact, force: Array, radius: Array) -> Array:
@@ -247,4 +246,5 @@ def _from(
         nowhere if separated is None else separated & loaded,
         nowhere if unbounded is None else unbounded & loaded,
     )
-    return LimitingStick(*(np.broadcast_to(part, contact.width.shape) for part in parts))
+    spread = (np.broadcast_to(part, contact.width.shape) for part in parts)
+    return LimitingStick(normal.profile, *spread)

@@ -1,7 +1,7 @@
 """Rates of change of the worn annulus with the number of cycles, and their Jacobian matrix.
 
 The contact's edge, the stick edge and the depth follow from the quantities that are constant. In
-the units of `mdr_core.wear.annulus_state`. Source: notes, §11.
+the units of `mdr_core.wear.initial_state`. Source: notes, §11.
 """
 
 from functools import cached_property
@@ -11,7 +11,8 @@ import numpy as np
 
 from mdr_core.errors import AccuracyError
 from mdr_core.typing import Array
-from mdr_core.wear.annulus_state import AnnulusModel, AnnulusState
+from mdr_core.wear.annulus_state import AnnulusState
+from mdr_core.wear.initial_state import InitialState
 
 # Step of a difference quotient, about the root of the rounding error.
 _STEP: Final = 1e-7
@@ -20,58 +21,62 @@ _STEP: Final = 1e-7
 _RETURN: Final = 10.0
 
 
-def rates(model: AnnulusModel, vector: Array) -> Array:
+def rates(initial: InitialState, vector: Array) -> Array:
     """Return the derivative of the vector with respect to the scaled number of cycles."""
-    return _EdgeBalance(AnnulusState(model, vector)).rates
+    return _EdgeBalance(initial, vector).rates
 
 
-def jacobian(model: AnnulusModel, vector: Array) -> Array:
+def jacobian(initial: InitialState, vector: Array) -> Array:
     """Return the derivative of the rates with respect to the vector, for Newton's method.
 
     By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
     rates is neglected.
     """
-    balance = _EdgeBalance(AnnulusState(model, vector))
-    state, n, maps = balance.state, model.first_edge, model.maps
-    in_worn, in_edges = balance.gradients()
+    state = _EdgeBalance(initial, vector)
+    n, maps = initial.first_edge, initial.maps
+    in_worn, in_edges = state.gradients()
     in_omega = state.end**2 * maps.mean * (state.reduced_amplitude - 2 * state.gamma)
     gradient = np.concatenate([in_worn[:-1], in_edges, (in_omega @ maps.from_slip)[None]])
     found = np.zeros((vector.size, vector.size))
-    if model.tilt:
-        passing = in_edges[2] - balance.stick_slope * in_edges[1]
-        rows = np.multiply.outer(model.tilt.rates(state.stick_shift), passing)
+    if initial.tilt:
+        passing = in_edges[2] - state.stick_slope * in_edges[1]
+        rows = np.multiply.outer(initial.tilt.rates(state.stick_shift), passing)
         gradient = np.concatenate([gradient, rows])
-        values, _ = model.tilt.basis(state.growth)
+        values, _ = initial.tilt.basis(state.growth)
         found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], values / state.end)
     found[:, :n] = gradient[:, :-1]
-    for edge in balance.unknown:
+    for edge in state.unknown:
         step = _STEP * (state.offset[-1] if edge == 1 else 1.0)
         moved = vector.copy()
         moved[n + edge] += step
-        found[:, n + edge] = (rates(model, moved) - balance.rates) / step
+        found[:, n + edge] = (rates(initial, moved) - state.rates) / step
     return found
 
 
-class _EdgeBalance:
+class _EdgeBalance(AnnulusState):
     """Rates of the edges from what stays constant; all others are linear in them.
 
     Columns: by wear alone, and per unit of the rates of b, c and d.
     """
 
-    def __init__(self, state: AnnulusState) -> None:
-        self.state = state
-        self.model, self.constant, self.maps = state.model, state.model.constant, state.model.maps
-        self.moves = self.constant.stick_moves
-        stick = np.array([state.stick])
-        self.stick_slope = float(self.model.shape.slope(stick)[0]) if self.moves else 0.0
-        # dx/dN of the nodes per unit of the rates of b and c.
-        b, c = state.end, state.stick
-        self.motion = np.stack([b * self.maps.squares, np.full(state.x.size, c)]) / state.x
+    @cached_property
+    def stick_slope(self) -> float:
+        """g_0'(c) of a stick edge that moves."""
+        if not self.initial.stick_moves:
+            return 0.0
+        return float(self.initial.slope(np.array([self.stick]))[0])
+
+    @cached_property
+    def motion(self) -> Array:
+        """dx/dN of the nodes per unit of the rates of b and c, (2, n)."""
+        stick = np.full(self.x.size, self.stick)
+        return np.stack([self.end * self.initial.maps.squares, stick]) / self.x
 
     @cached_property
     def inward(self) -> tuple[Array, Array]:
         """2 z d worn/dz for material that moves inwards, and its gradient in `worn`."""
-        return self.maps.inward @ self.state.worn, self.maps.inward
+        maps = self.initial.maps
+        return maps.inward @ self.worn, maps.inward
 
     @cached_property
     def outward(self) -> tuple[Array, Array]:
@@ -80,36 +85,34 @@ class _EdgeBalance:
         It has worn exponentially with its distance from the edge of the shrinking stick zone, so
         that v differs by orders of magnitude between neighbours: the slope is that of ln(v/z).
         """
-        maps, state = self.maps, self.state
-        v, first = state.slip, state.slip - state.worn
+        maps, v, first = self.initial.maps, self.slip, self.slip - self.worn
         steep = 2 + maps.outward @ np.log(v / maps.squares)
-        along = state.worn * steep + first * (maps.outward @ np.log1p(state.worn / first))
+        along = self.worn * steep + first * (maps.outward @ np.log1p(self.worn / first))
         return along, np.diag(steep) + v[:, None] * maps.outward / v
 
     @property
     def past_stick(self) -> tuple[Array, Array]:
         """Rate of `worn` per unit of the rate of c, and its gradient in `worn`."""
-        along, gradient = self.inward if self.constant.stick_grows else self.outward
-        state = self.state
-        scale = state.stick / (state.end**2 * self.maps.squares)
-        return scale * (state.worn + along), scale[:, None] * (np.eye(along.size) + gradient)
+        along, gradient = self.inward if self.initial.stick_grows else self.outward
+        scale = self.stick / (self.end**2 * self.initial.maps.squares)
+        return scale * (self.worn + along), scale[:, None] * (np.eye(along.size) + gradient)
 
     @cached_property
-    def worn(self) -> Array:
+    def worn_rates(self) -> Array:
         """Rates of `worn` at nodes that move with the edges, (n, 4)."""
-        state, b = self.state, self.state.end
-        columns = np.zeros((state.x.size, 4))
-        columns[:, 0] = state.pressure * state.slip
+        b = self.end
+        columns = np.zeros((self.x.size, 4))
+        columns[:, 0] = self.pressure * self.slip
         columns[:, 1] = self.inward[0] / b
-        if self.moves:
+        if self.initial.stick_moves:
             columns[:, 2] = self.past_stick[0]
-        if self.constant.stick_grows:
+        if self.initial.stick_grows:
             # The growth of w_c lowers all slip outside.
-            zeta = b * np.sqrt(self.maps.squares)
-            lever = 2 / np.pi * np.arctan2(zeta, state.stick) / zeta
+            zeta = b * np.sqrt(self.initial.maps.squares)
+            lever = 2 / np.pi * np.arctan2(zeta, self.stick) / zeta
             columns[:, 2] += lever * self.stick_slope
             columns[:, 3] = -lever
-            value, slope = state.tilt
+            value, slope = self.tilt
             columns[-1, 1] = (slope * self.motion[0, -1] - value / b) / b
             columns[-1, 2] = slope * self.motion[1, -1] / b + lever[-1] * self.stick_slope
         return columns
@@ -124,17 +127,17 @@ class _EdgeBalance:
     @cached_property
     def rates(self) -> Array:
         """Rates of the whole vector."""
-        worn = self.worn @ np.append(1.0, self.edges)
-        found = [worn[:-1], self.edges, np.array([self.state.power])]
-        if self.model.tilt:
+        worn = self.worn_rates @ np.append(1.0, self.edges)
+        found = [worn[:-1], self.edges, np.array([self.power])]
+        if self.initial.tilt:
             passing = self.edges[2] - self.stick_slope * self.edges[1]
-            found.append(self.model.tilt.rates(self.state.stick_shift) * passing)
+            found.append(self.initial.tilt.rates(self.stick_shift) * passing)
         return np.concatenate(found)
 
     @property
     def unknown(self) -> list[int]:
         """Indices of the edges that move, of b, c and d."""
-        return [0] + [1] * self.moves + [2] * self.constant.force
+        return [0] + [1] * self.initial.stick_moves + [2] * self.initial.constant_force
 
     def _solve(self, right: Array) -> Array:
         square = self.rows[:, 1:][:, self.unknown]
@@ -150,53 +153,53 @@ class _EdgeBalance:
 
         One row for each unknown edge, (k, 4).
         """
-        state, constant, maps = self.state, self.constant, self.maps
-        a, b, c = state.x[-1], state.end, state.stick
+        initial, maps = self.initial, self.initial.maps
+        a, b, c = self.x[-1], self.end, self.stick
         # Rates of (gamma - gamma_0)/x at the moving nodes, and of omega at the edge.
-        worn = maps.from_slip @ self.worn
+        worn = maps.from_slip @ self.worn_rates
         omega = worn[-1].copy()
-        slope = float(self.model.shape.slope(state.x[-1:])[0])
-        omega[1:3] += (slope - state.unworn[-1]) / a * self.motion[:, -1]
+        slope = float(initial.slope(self.x[-1:])[0])
+        omega[1:3] += (slope - self.unworn[-1]) / a * self.motion[:, -1]
         omega[2] -= self.stick_slope / a
         # Rates of D and of d - D, the depth g(c) of the stick edge.
-        grows = constant.force and not constant.displacement
+        grows = initial.constant_force and not initial.constant_displacement
         amplitude_rate = np.array([0.0, 0.0, 0.0, float(grows)])
-        stick_depth_rate = np.array([0.0, 0.0, 0.0, float(constant.stick_grows)])
-        if constant.stick_shrinks:
+        stick_depth_rate = np.array([0.0, 0.0, 0.0, float(initial.stick_grows)])
+        if initial.stick_shrinks:
             amplitude_rate[2], stick_depth_rate[2] = -self.stick_slope, self.stick_slope
         edge = np.array([0.0, *self.motion[:, -1], 0.0])
-        rows = [a * omega + edge * state.omega[-1] - amplitude_rate]
-        rows[0][0] += _RETURN * (state.gamma[-1] - state.reduced_amplitude)
-        if constant.force or constant.stick_shrinks:
+        rows = [a * omega + edge * self.omega[-1] - amplitude_rate]
+        rows[0][0] += _RETURN * (self.gamma[-1] - self.reduced_amplitude)
+        if initial.constant_force or initial.stick_shrinks:
             # Rate of int_c^a (gamma - D) dx, with gamma(a) = D. The integral of gamma_0 changes at
             # its ends only: by values at nodes it would jump where one passes a break of the slope.
-            integral_rate = b * b * (maps.mean @ worn) - edge * a * state.worn_omega[-1]
-            integral_rate[1] += 2 * state.worn_integral / b
+            integral_rate = b * b * (maps.mean @ worn) - edge * a * self.worn_omega[-1]
+            integral_rate[1] += 2 * self.worn_integral / b
             integral_rate[2] -= (a - c) * self.stick_slope
             integral_rate += (a - c) * stick_depth_rate
-            total = np.array([0, 0, 0, a]) if constant.force else c * amplitude_rate
+            total = np.array([0, 0, 0, a]) if initial.constant_force else c * amplitude_rate
             rows.append(total - integral_rate)
-        if constant.stick_grows:
-            rows.append(np.array([0.0, 0.0, state.gamma[0] / state.offset[0], -1.0]))
+        if initial.stick_grows:
+            rows.append(np.array([0.0, 0.0, self.gamma[0] / self.offset[0], -1.0]))
         return np.array(rows)
 
     def gradients(self) -> tuple[Array, Array]:
         """Return the gradients by `worn`, of its rates (n, n) and of the edges' rates (3, n)."""
-        state, maps = self.state, self.maps
-        b, (end, stick, _) = state.end, self.edges
-        stress = maps.to_pressure @ (state.x[:, None] * maps.from_slip) / b
-        direct = state.slip[:, None] * stress + end / b * self.inward[1]
-        direct += np.diag(state.pressure)
-        if self.moves:
+        initial, maps = self.initial, self.initial.maps
+        b, (end, stick, _) = self.end, self.edges
+        stress = maps.to_pressure @ (self.x[:, None] * maps.from_slip) / b
+        direct = self.slip[:, None] * stress + end / b * self.inward[1]
+        direct += np.diag(self.pressure)
+        if initial.stick_moves:
             direct += stick * self.past_stick[1]
         direct[-1] = 0.0
         last, mean = maps.from_slip[-1], maps.mean @ maps.from_slip
         edge = end * self.motion[0, -1] + stick * self.motion[1, -1]
-        rows = [state.x[-1] * (last @ direct) + (edge + _RETURN * state.x[-1]) * last]
-        if self.constant.force or self.constant.stick_shrinks:
+        rows = [self.x[-1] * (last @ direct) + (edge + _RETURN * self.x[-1]) * last]
+        if initial.constant_force or initial.stick_shrinks:
             rows.append(-b * b * (mean @ direct) - 2 * b * end * mean)
-        if self.constant.stick_grows:
-            rows.append(stick * state.x[0] / state.offset[0] * maps.from_slip[0])
-        edges = np.zeros((3, state.x.size))
+        if initial.stick_grows:
+            rows.append(stick * self.x[0] / self.offset[0] * maps.from_slip[0])
+        edges = np.zeros((3, self.x.size))
         edges[self.unknown] = self._solve(np.array(rows))
-        return direct + self.worn[:, 1:] @ edges, edges
+        return direct + self.worn_rates[:, 1:] @ edges, edges

@@ -18,7 +18,7 @@ class SurfaceTilt:
     """C(r) = -(2/pi) int arccos(c/r) dw_c as a Chebyshev series in 1/r, from a_0 outwards.
 
     w_c is the wear that the springs keep when the stick edge passes them. All in the units of
-    `mdr_core.wear.annulus_state`. Source: notes, §11.
+    `mdr_core.wear.initial_state`. Source: notes, §11.
     """
 
     stick: float

@@ -1,23 +1,21 @@
 """Worn contact from the states of its annulus: scalars and fields in the caller's units.
 
-Functions of a state alone are in the units of `mdr_core.wear.annulus_state`.
+Functions of a state alone are in the units of `mdr_core.wear.initial_state`.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isfinite
+from math import inf
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import fields, normal
-from mdr_core.errors import AccuracyError, InputError
 from mdr_core.typing import Array
 from mdr_core.validation import checked_radii
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
-from mdr_core.wear.integrator import NO_TRAIL, StickTrail, integrate
 
 
 @dataclass(frozen=True)
@@ -28,15 +26,13 @@ class WornSurface:
     cycles: Array
     states: tuple[AnnulusState, ...] = ()
     """One for each number of cycles; none if there is no slip."""
-    trail: StickTrail = NO_TRAIL
     settled_at: float = inf
     """Number of cycles after which wear has stopped."""
 
     def at(self, index: int) -> "WornSurface":
         """Return the surface at one of the numbers of cycles."""
         which = slice(index, index + 1)
-        parts = self.cycles[which], self.states[which]
-        return WornSurface(self.initial, *parts, self.trail, self.settled_at)
+        return WornSurface(self.initial, self.cycles[which], self.states[which], self.settled_at)
 
     @cached_property
     def indentation_depth(self) -> Array:
@@ -63,7 +59,7 @@ class WornSurface:
         """F_N [force]: at a constant depth F_N0(a) + 2 E* (a w(a) - int_c^a w dx), w = g - g_0."""
         initial = self.initial
         contact, profile = initial.contact, initial.contact.profile
-        if initial.constant.force or not self.states:
+        if initial.constant_force or not self.states:
             return np.full(self.cycles.shape, float(contact.normal_force))
         edge = profile.coordinate_from_radius(self.contact_radius)
         e_star, unit = float(contact.e_star), initial.depth_unit * initial.length_unit
@@ -77,7 +73,7 @@ class WornSurface:
     def worn_volume(self) -> Array:
         """V = 2 pi int h r dr [length^3]."""
         unit = self.initial.depth_unit * self.initial.length_unit**2
-        return self._each(lambda state: unit * _worn_volume(state, self.trail.until(state)), 0.0)
+        return self._each(lambda state: unit * _worn_volume(state), 0.0)
 
     @cached_property
     def dissipated_energy(self) -> Array:
@@ -102,8 +98,7 @@ class WornSurface:
         initial, r = self.initial, self._radii(radius)
         result = np.zeros((self.cycles.size, r.size))
         for row, state in zip(result, self.states, strict=False):
-            scaled = r / initial.length_unit
-            row[:] = _worn_depth(state, self.trail.until(state), scaled)
+            row[:] = _worn_depth(state, r / initial.length_unit)
         return initial.depth_unit * np.maximum.accumulate(result, axis=0)
 
     def profile(self, radius: ArrayLike) -> Array:
@@ -143,7 +138,7 @@ class WornSurface:
             within = normal.solve(
                 initial.contact.profile, e_star, contact_radius=initial.length_unit * state.stick
             )
-            worn = _stick_pressure(state, self.trail.until(state), scaled[sticks])
+            worn = _stick_pressure(state, scaled[sticks])
             result[sticks] = fields.pressure(within, radius[sticks]) + e_star * unit * worn
         return np.maximum(result, 0.0)
 
@@ -154,46 +149,7 @@ class WornSurface:
         return np.array([value(state) for state in self.states])
 
 
-def worn_surface(initial: InitialState, cycles: Array, nodes: int, rtol: float) -> WornSurface:
-    """Return the worn surface at ascending numbers of cycles.
-
-    Parameters
-    ----------
-    initial : contact before the first cycle.
-    cycles : numbers of cycles, (k,).
-    nodes : number of nodes of the annulus.
-    rtol : relative tolerance of the integration.
-
-    Raises
-    ------
-    InputError : the contact reaches the end of the profile, or slides.
-    AccuracyError : the wear is not resolved.
-    """
-    if not initial.slips:
-        return WornSurface(initial, cycles)
-    unit, scaled = initial.cycle_unit, cycles / initial.cycle_unit
-    found = integrate(initial.model(nodes), scaled, rtol, initial.ends)
-    if isfinite(found.profile_end_at):
-        cycle = found.profile_end_at * unit
-        if initial.reach < initial.room:
-            detail = "the contact grows beyond the range of this method"
-            raise AccuracyError(detail, ("cycles",))
-        raise InputError(
-            ("cycles", int(np.searchsorted(cycles, cycle))),
-            f"after {cycle:.3g} cycles the worn contact reaches radius {initial.domain:.6g}, where "
-            "the profile ends or is no longer admissible",
-        )
-    if isfinite(found.full_slip_at):
-        cycle = found.full_slip_at * unit
-        raise InputError(
-            ("cycles", int(np.searchsorted(cycles, cycle))),
-            f"after {cycle:.3g} cycles the whole contact slides: wear at this depth reduces the "
-            "normal force until it no longer carries the tangential force",
-        )
-    return WornSurface(initial, cycles, found.states, found.trail, found.settled_at * unit)
-
-
-def _worn_depth(state: AnnulusState, trail: StickTrail, radius: Array) -> Array:
+def _worn_depth(state: AnnulusState, radius: Array) -> Array:
     """Return h(r) = (sigma - S_0) H(r - c) + (2/pi) int_c0^min(r,c) arccos(x/r) dw_c(x).
 
     The second term is of the springs that a growing stick zone has passed.
@@ -203,8 +159,8 @@ def _worn_depth(state: AnnulusState, trail: StickTrail, radius: Array) -> Array:
     a = float(state.x[-1])
     inside = (radius > state.stick) & (radius < a)
     s = _root(radius[inside], state.stick)
-    result[inside] = s * state.model.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
-    at, step = trail.steps
+    result[inside] = s * state.initial.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
+    at, step = state.passed
     if step.any():
         worn = radius < a
         root = _root(radius[worn][:, None], at)
@@ -213,11 +169,11 @@ def _worn_depth(state: AnnulusState, trail: StickTrail, radius: Array) -> Array:
     return np.maximum(result, 0.0)
 
 
-def _worn_volume(state: AnnulusState, trail: StickTrail) -> float:
+def _worn_volume(state: AnnulusState) -> float:
     """Return 2 pi int h r dr. Source: notes, §11."""
     b, a = state.end, float(state.x[-1])
-    total = b**3 * float(state.model.maps.volume @ state.worn)
-    at, step = trail.steps
+    total = b**3 * float(state.initial.maps.volume @ state.worn)
+    at, step = state.passed
     root = _root(np.full(at.shape, a), at)
     total += float(step @ (a * a * np.arctan2(root, at) - at * root)) / np.pi
     return 2 * np.pi * total
@@ -225,7 +181,7 @@ def _worn_volume(state: AnnulusState, trail: StickTrail) -> float:
 
 def _annulus_pressure(state: AnnulusState, radius: Array) -> Array:
     """Return p/E* at radii of the annulus, c < r < a. Source: mdr-5, Eq. (5.79)."""
-    maps = state.model.maps
+    maps = state.initial.maps
     even = np.append(state.pressure[:-1] / maps.cosine[:-1], 0.0)
     # At the edge, from the even polynomial of degree 4 through its three neighbours.
     even[-1] = (15 * even[-2] - 6 * even[-3] + even[-4]) / 10
@@ -233,7 +189,7 @@ def _annulus_pressure(state: AnnulusState, radius: Array) -> Array:
     return np.asarray(maps.at(maps.cosine, squares) * maps.at(even, squares))
 
 
-def _stick_pressure(state: AnnulusState, trail: StickTrail, radius: Array) -> Array:
+def _stick_pressure(state: AnnulusState, radius: Array) -> Array:
     """Return the part of p/E* at r < c that is not of the unworn shape inside c.
 
     (1/pi) int g'(x)/sqrt(x^2 - r^2) dx over c < x < a, with the step g(c+) - g(c) of a worn
@@ -241,27 +197,27 @@ def _stick_pressure(state: AnnulusState, trail: StickTrail, radius: Array) -> Ar
 
     Source: mdr-5, Eqs. (5.34), (5.79).
     """
-    maps, c = state.model.maps, state.stick
+    maps, c = state.initial.maps, state.stick
     inner = _root(np.full(radius.shape, c), radius)
     total = (1 / np.sqrt(np.add.outer(inner**2, state.end**2 * maps.points))) @ (
         maps.steps @ state.gamma
     )
     total += float(maps.at_stick @ state.gamma) / inner
-    if trail.radius.size > 1:
-        total += _trail_stress(trail, radius)
+    if state.trail is not None:
+        total += _trail_stress(state.trail, radius)
     return np.asarray(total / np.pi)
 
 
-def _trail_stress(trail: StickTrail, radius: Array) -> Array:
+def _trail_stress(trail: Array, radius: Array) -> Array:
     """Return int dw_c(x)/sqrt(x^2 - r^2) over the part of the trail above each radius."""
-    at = radius[:, None]
-    ends = np.maximum(trail.radius, at)
+    (passed, worn), at = trail, radius[:, None]
+    ends = np.maximum(passed, at)
     logs = np.log(ends + np.sqrt((ends - at) * (ends + at)))
-    width, step = np.diff(trail.radius), np.diff(trail.worn)
+    width, step = np.diff(passed), np.diff(worn)
     wide = width > 0
     total = np.diff(logs, axis=1) @ np.where(wide, step / np.where(wide, width, 1.0), 0.0)
     # Where the edge rested, w_c rose at one radius.
-    return np.asarray(total + step[~wide].sum() / _root(trail.radius[-1:], radius))
+    return np.asarray(total + step[~wide].sum() / _root(passed[-1:], radius))
 
 
 def _root(r: Array, c: float | Array) -> Array:
