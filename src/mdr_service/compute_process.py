@@ -21,7 +21,7 @@ from anyio import CancelScope
 
 from mdr_core.errors import DefectError
 from mdr_service import problems
-from mdr_service.problems import Error, ProblemType, ServiceError
+from mdr_service.problems import ServiceError
 
 _Result = TypeVar("_Result")
 Room = Callable[[int], AbstractAsyncContextManager[None]]
@@ -45,14 +45,10 @@ class ProcessLostError(Exception):
     """The process ended or did not respond."""
 
 
-class _Outcome(NamedTuple):
-    """Result of a call, or the reason that there is none; exceptions do not pickle reliably."""
+class _Large(NamedTuple):
+    """In place of a large result, which is sent separately if there is room for it."""
 
-    result: Any = None
-    failure: tuple[ProblemType, str, tuple[Error, ...], int | None] | None = None
-    defect: str | None = None
-    length: int = 0
-    """Length of a large `result`, which is sent separately if there is room for it."""
+    length: int
 
 
 class ComputeProcess:
@@ -118,40 +114,34 @@ class ComputeProcess:
         except BaseException:
             self.kill()
             raise
-        if outcome is None:
-            self.kill()
-            if self._process.returncode == -signal.SIGALRM:
-                raise TimeoutError
-            raise ProcessLostError
-        if outcome.failure:
-            raise ServiceError(*outcome.failure)
-        if outcome.defect:
-            raise DefectError(f"in a compute process: {outcome.defect}")
-        result: _Result = outcome.result
-        return result
+        if isinstance(outcome, Exception):
+            raise outcome
+        return cast("_Result", outcome)
 
-    async def _exchange(self, message: bytes) -> _Outcome | None:
-        """Return the outcome of a call, or None once the process has ended."""
+    async def _exchange(self, message: bytes) -> object:
+        """Return the result of a call, or the exception to raise in place of it."""
         try:
             self._calls.writelines((len(message).to_bytes(_HEAD), message))
             await self._calls.drain()
             length = int.from_bytes(await self._outcomes.readexactly(_HEAD))
             # The pipe's other end is the server's own code.
-            outcome: _Outcome = pickle.loads(  # noqa: S301
+            outcome: object = pickle.loads(  # noqa: S301
                 await self._outcomes.readexactly(length)
             )
-            if not outcome.length:
+            if not isinstance(outcome, _Large):
                 return outcome
             async with self._room(outcome.length):
                 self._calls.write(_SEND)
-                return _Outcome(await self._outcomes.readexactly(outcome.length))
+                return await self._outcomes.readexactly(outcome.length)
         except ServiceError as error:
             self._calls.write(_DISCARD)
-            return _failed(error)
+            return error
         except (EOFError, OSError):
             # A signal to a process that is ending would compete with its exit status.
             await self._process.wait()
-            return None
+            self.kill()
+            by_alarm = self._process.returncode == -signal.SIGALRM
+            return TimeoutError() if by_alarm else ProcessLostError()
 
     def kill(self) -> None:
         """Terminate the process at once."""
@@ -177,33 +167,28 @@ def serve() -> None:
     # The pipe is for outcomes alone: printed text goes to standard error.
     os.dup2(2, 1)
     while head := calls.read(_HEAD):
-        outcome, content = _attempt(calls.read(int.from_bytes(head))), b""
-        if isinstance(outcome.result, bytes) and len(outcome.result) > _LARGE:
-            content = outcome.result
-            outcome = outcome._replace(result=None, length=len(content))
-        text = pickle.dumps(outcome)
+        outcome = _attempt(calls.read(int.from_bytes(head)))
+        is_large = isinstance(outcome, bytes) and len(outcome) > _LARGE
+        text = pickle.dumps(_Large(len(outcome)) if is_large else outcome)
         signal.setitimer(signal.ITIMER_REAL, 0)
         outcomes.write(len(text).to_bytes(_HEAD) + text)
         outcomes.flush()
-        if content and calls.read(1) == _SEND:
-            outcomes.write(content)
+        if is_large and calls.read(1) == _SEND:
+            outcomes.write(outcome)
             outcomes.flush()
 
 
-def _attempt(text: bytes) -> _Outcome:
+def _attempt(text: bytes) -> Any:
+    """Return the result of a call, or an exception that pickles."""
     try:
         # The pipe's other end is the server's own code.
         seconds, function, arguments = pickle.loads(text)  # noqa: S301
         signal.setitimer(signal.ITIMER_REAL, seconds)
-        return _Outcome(function(*arguments))
+        return function(*arguments)
     except problems.FAILURES as error:
-        return _failed(problems.to_problem(error))
+        return problems.to_problem(error)
     except Exception:  # noqa: BLE001 -- the server logs it and responds
-        return _Outcome(defect=traceback.format_exc())
-
-
-def _failed(error: ServiceError) -> _Outcome:
-    return _Outcome(failure=(error.type, error.detail, error.errors, error.retry_after))
+        return DefectError(f"in a compute process: {traceback.format_exc()}")
 
 
 def _end_with(parent: int) -> None:

@@ -65,29 +65,18 @@ Error = tuple[str, str]
 """JSON pointer into the request, and the reason."""
 
 
+@dataclass(eq=False)
 class ServiceError(Exception):
-    """Failure of a request, with the members of its problem document.
+    """Failure of a request, with the members of its problem document."""
 
-    Parameters
-    ----------
-    type_ : type of problem.
-    detail : explanation of this occurrence.
-    errors : JSON pointers into the request, each with the reason.
-    retry_after : seconds after which the same request may succeed.
-    """
+    type: ProblemType
+    detail: str
+    errors: Sequence[Error] = ()
+    retry_after: int | None = None
+    """Seconds after which the same request may succeed."""
 
-    def __init__(
-        self,
-        type_: ProblemType,
-        detail: str,
-        errors: Iterable[Error] = (),
-        retry_after: int | None = None,
-    ) -> None:
-        super().__init__(detail)
-        self.type = type_
-        self.detail = detail
-        self.errors = tuple(errors)
-        self.retry_after = retry_after
+    def __str__(self) -> str:
+        return self.detail
 
 
 INTERNAL_ERROR: Final = ServiceError(

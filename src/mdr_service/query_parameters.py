@@ -7,6 +7,7 @@ validated like any other; an error in it is reported for the parameter.
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
@@ -23,7 +24,6 @@ from pydantic_core import PydanticCustomError
 from mdr_core.errors import InputError
 from mdr_service import problems
 from mdr_service.content_negotiation import FORMAT, SIZE, Format
-from mdr_service.problems import ServiceError
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
@@ -127,7 +127,7 @@ class Parameters(BaseModel):
                 (problems.pointer([self._parameter(place[1:].replace("/", "."))]), detail)
                 for place, detail in found.errors
             ]
-            raise ServiceError(found.type, found.detail, errors, found.retry_after) from None
+            raise replace(found, errors=errors) from None
 
     def _join_range(self, given: dict[str, Any]) -> None:
         """Replace the ends of a range by its values."""

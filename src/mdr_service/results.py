@@ -16,7 +16,7 @@ from mdr_core.typing import Array, Flags
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.schemas.answers import SolvedAnswer
-from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.contacts import NormalQuery, Query
 
 Result = dict[str, Any]
 """The members of a JSON response in their order, with arrays for long lists."""
@@ -86,33 +86,36 @@ def response_metadata(method: str, error_estimate: float, warnings: Iterable[Not
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
     contact = unworn(source) if isinstance(source, Wear) else source
-    return [*_notices(query, contact), *source.warnings_without_bodies]
+    found = [*validity.notices(findings(query, contact)), *source.warnings_without_bodies]
+    if isinstance(query, NormalQuery):
+        return found
+    # Other responses hold no scalar that is singular; their fields have warnings of their own.
+    return [notice for notice in found if notice.code != "singular"]
 
 
-def _notices(query: Query, contact: Contact) -> list[Notice]:
-    """Limits that depend on the bodies, which are assessed for the bodies of the query."""
+def findings(query: Query, contact: Contact) -> list[validity.Finding]:
+    """Return the limits that depend on the bodies, which are those of the query."""
     material = query.material.effective
     if isinstance(contact, NormalContact):
         found = validity.findings(contact, material)
     else:
-        pressed = contact.contact if isinstance(contact, LoadHistory) else contact.normal
+        pressed, start = (
+            (contact.contact, contact.start)
+            if isinstance(contact, LoadHistory)
+            else (contact.normal, contact)
+        )
         slips_from = subsurface.slips_from(contact)
-        found = validity.findings(pressed, material, g_star=material.g_star, slips_from=slips_from)
+        found = validity.findings(pressed, material, g_star=start.g_star, slips_from=slips_from)
     if query.material.has("yield_strength"):
         ratios = material.poissons_ratios
         found.append(subsurface.yielding(contact, ratios, query.material.yield_strength))
-    return validity.notices(found)
+    return found
 
 
 def unworn(worn: Wear) -> TangentialContact:
     """Return the contact before any wear."""
     state = worn if isinstance(worn, LimitingWear) else worn.initial
     return state.tangential_contact
-
-
-def without_singular(warnings: Iterable[Notice]) -> list[Notice]:
-    """Leave out `singular` where the response has no singular scalar."""
-    return [notice for notice in warnings if notice.code != "singular"]
 
 
 def singular(

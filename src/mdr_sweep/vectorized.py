@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from mdr_core import normal, subsurface, tangential, validity
+from mdr_core import normal, tangential, validity
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import KINDS
@@ -18,6 +18,7 @@ from mdr_core.tangential import TangentialContact
 from mdr_service import problems
 from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import body, control, friction
+from mdr_service.results import findings
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
 from mdr_service.schemas.queries import SCHEMAS
@@ -135,7 +136,7 @@ def _call(
         source = tangential.solve(
             contact, **with_arrays(friction(query) | control(query.tangential))
         )
-    results: Results = {WARNING: _warnings(query, contact, source, size)}
+    results: Results = {WARNING: _warnings(query, source, size)}
     # Overflow, and the infinite mean pressure of a sharp tip without a load, are solved one by one.
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
@@ -148,18 +149,11 @@ def _call(
 
 
 def _warnings(
-    query: NormalQuery, contact: NormalContact, source: NormalContact | TangentialContact, size: int
+    query: NormalQuery, source: NormalContact | TangentialContact, size: int
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the order of the service."""
-    given: dict[str, Any] = {}
-    if isinstance(source, TangentialContact):
-        given = {"g_star": source.g_star, "slips_from": subsurface.slips_from(source)}
-    material = query.material.effective
-    findings = validity.findings(contact, material, **given)
-    if "yield_strength" in query.material.model_fields_set:
-        strength = query.material.yield_strength
-        findings.append(subsurface.yielding(source, material.poissons_ratios, strength))
-    flags: dict[str, Any] = {code: where for code, where, _ in findings}
+    contact = source.normal if isinstance(source, TangentialContact) else source
+    flags: dict[str, Any] = {code: where for code, where, _ in findings(query, source)}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags["table_end"] = validity.table_end(contact).where
     flags["singular"] = validity.infinite_pressure(contact)

@@ -161,11 +161,9 @@ def _to_last(grid: Array, result: Result) -> Array:
 
 def _first_loads(query: _Query) -> _Query:
     """Return the query with its first loads only."""
-    names = [name for name in ("load", "tangential", "oscillation") if getattr(query, name, None)]
-    choices = {name: getattr(query, name) for name in names}
     shorter = {
         name: choice.model_copy(update={choice.control: choice.value[:MAX_CURVES]})
-        for name, choice in choices.items()
+        for name, choice in query.controls.items()
         if isinstance(choice.value, list)
     }
     return query.model_copy(update=shorter)
@@ -173,13 +171,13 @@ def _first_loads(query: _Query) -> _Query:
 
 def _load_names(query: StressQuery | WearQuery) -> list[str]:
     """Return the labels of the loads: the controls that differ between them."""
-    listed = {each.control: each.value for each in query.controls if isinstance(each.value, list)}
+    listed = {
+        each.control: each.value
+        for each in query.controls.values()
+        if isinstance(each.value, list) and len(each.value) > 1
+    }
     return [
-        ", ".join(
-            f"{SYMBOLS[name]} = {values[index]:.4g}"
-            for name, values in listed.items()
-            if len(values) > 1
-        )
+        ", ".join(f"{SYMBOLS[name]} = {values[index]:.4g}" for name, values in listed.items())
         for index in range(min(query.loads, MAX_CURVES))
     ]
 

@@ -21,7 +21,6 @@ from mdr_service.results import (
     notices,
     response_metadata,
     singular,
-    without_singular,
 )
 from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, StressQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -89,7 +88,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
         for name in names
     )
-    warnings = without_singular(notices(query, source)) + singular(radius, values, infinite)
+    warnings = notices(query, source) + singular(radius, values, infinite)
     if source.error_estimate <= query.rtol < at_edges:
         warnings.append(normal_contact.not_reached(query.rtol))
     error = max(source.error_estimate, integrated) + at_edges

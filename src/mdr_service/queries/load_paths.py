@@ -14,7 +14,6 @@ from mdr_service.results import (
     members,
     notices,
     response_metadata,
-    without_singular,
 )
 from mdr_service.schemas.answers import HistoryAnswer
 from mdr_service.schemas.fields import LoadedQuery
@@ -85,7 +84,7 @@ def history_result(query: HistoryQuery, path: SolvedPath) -> Result:
     values = {name: np.asarray(getattr(history, name)) for name in _HISTORY}
     if path.cycles:
         values |= {name: np.asarray(getattr(path.cycles, name)) for name in _CYCLES}
-    warnings = without_singular(notices(query, history))
+    warnings = notices(query, history)
     return checked(query, values) | response_metadata(
         history.method, history.error_estimate, warnings
     )

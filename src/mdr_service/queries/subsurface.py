@@ -17,7 +17,6 @@ from mdr_service.results import (
     checked,
     notices,
     response_metadata,
-    without_singular,
 )
 from mdr_service.schemas.contacts import Bodies
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -59,7 +58,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     infinite = np.isinf(tensor.zz).reshape(shape)
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
-    warnings = without_singular(notices(query, source))
+    warnings = notices(query, source)
     if infinite.any():
         message = "stresses are infinite on the surface, where the pressure is"
         warnings.append(Notice("singular", message))

@@ -23,7 +23,6 @@ from mdr_service.results import (
     response_metadata,
     singular,
     unworn,
-    without_singular,
 )
 from mdr_service.schemas.answers import EvolutionAnswer, WearAnswer
 from mdr_service.schemas.wear import EvolutionField, EvolutionQuery, WearField, WearQuery
@@ -91,7 +90,7 @@ def _result(
     query: WearQuery | EvolutionQuery, worn: Wear, values: Result, radius: Array, unbounded: Flags
 ) -> Result:
     """Return the result of a wear query, with its fields at `radius` if there is any."""
-    warnings = without_singular(notices(query, worn))
+    warnings = notices(query, worn)
     infinite: dict[str, Any] = {"pressure": True}
     if unworn(worn).normal.profile.has_no_partial_slip:
         infinite |= dict.fromkeys(_PROFILES, True)

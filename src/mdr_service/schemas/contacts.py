@@ -1,6 +1,5 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
-from abc import abstractmethod
 from functools import cached_property, lru_cache
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -67,8 +66,10 @@ class Choice(Strict, json_schema_extra=_describe_choice):
         return len(self.value) if isinstance(self.value, list) else 1
 
     def place(self, index: int) -> tuple[str | int, ...]:
-        """Return the path from here to one of the values."""
-        return (self.control, index) if isinstance(self.value, list) else (self.control,)
+        """Return the path from here to one of the values, the last one if they are fewer."""
+        if isinstance(self.value, list):
+            return self.control, min(index, len(self.value) - 1)
+        return (self.control,)
 
 
 class Load(Choice):
@@ -180,6 +181,10 @@ Material = Annotated[
 ]
 
 
+# Fields of the loads, normal and tangential.
+_LOADS = ("load", "tangential", "oscillation")
+
+
 class Query(Strict):
     """Profile, material and accuracy of every query."""
 
@@ -188,9 +193,15 @@ class Query(Strict):
     rtol: float = quantity("1", "Required relative accuracy", default=1e-10, ge=1e-13, le=1e-3)
 
     @property
-    @abstractmethod
+    def controls(self) -> dict[str, Choice]:
+        """Given loads by the name of their field, unless they are a load path."""
+        given = vars(self)
+        return {name: given[name] for name in _LOADS if given.get(name) is not None}
+
+    @property
     def loads(self) -> int:
         """Number of entries over the loads in the response."""
+        return max([control.count for control in self.controls.values()], default=1)
 
     @property
     def path(self) -> Any:
@@ -202,22 +213,15 @@ class Query(Strict):
         """Number of values over the radius, or over positions, in the response."""
         return 0
 
-    @abstractmethod
     def place(self, index: int) -> tuple[str | int, ...]:
-        """Return the path to the load of an entry of the response."""
+        """Return the path to the normal load of an entry of the response."""
+        return ("load", *self.controls["load"].place(index))
 
 
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
     load: Load = Field(description="Exactly one control: depth, force or contact radius.")
-
-    @property
-    def loads(self) -> int:
-        return self.load.count
-
-    def place(self, index: int) -> tuple[str | int, ...]:
-        return ("load", *self.load.place(index))
 
 
 def friction(**field: Any) -> Any:
@@ -232,10 +236,6 @@ class TangentialQuery(NormalQuery):
     tangential: Tangential = Field(
         description="Exactly one control: force, displacement or stick radius."
     )
-
-    @property
-    def loads(self) -> int:
-        return max(self.load.count, self.tangential.count)
 
 
 # Pydantic inserts the branch of a union after these fields, or after the index of their items,

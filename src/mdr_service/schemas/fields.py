@@ -5,7 +5,7 @@ from typing import Annotated, Any, Final, Literal, TypeVar
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from mdr_service.schemas.contacts import Choice, Load, Query, Tangential, friction
+from mdr_service.schemas.contacts import Load, Query, Tangential, friction
 from mdr_service.schemas.load_paths import History, LoadPath
 from mdr_service.schemas.quantities import Size, left_out, one_of, places, quantity
 from mdr_service.settings import SETTINGS
@@ -81,22 +81,13 @@ class LoadedQuery(Query):
     )
 
     @property
-    def controls(self) -> list[Choice]:
-        """Given loads, unless they are a load path."""
-        return [getattr(self, name) for name in ("load", "tangential") if self.has(name)]
-
-    @property
-    def loads(self) -> int:
-        return max((control.count for control in self.controls), default=1)
-
-    @property
     def path(self) -> LoadPath | None:
         return self.history
 
     def place(self, index: int) -> tuple[str | int, ...]:
         if self.has("history"):
             return ("history", *self.history.place("normal", self.history.steps - 1))
-        return ("load", *self.load.place(index))
+        return super().place(index)
 
 
 NEEDED: Final = {

@@ -1,7 +1,6 @@
 """Requests about load histories: points of a load path, or identical cycles."""
 
 from abc import abstractmethod
-from typing import Any
 
 from pydantic import Field
 
@@ -69,22 +68,18 @@ class TangentialAmplitude(Choice):
     )
 
 
-def _samples_per_step() -> Any:
-    return quantity(
+class LoadPath(Strict):
+    """Load steps, along which normal and tangential control vary linearly."""
+
+    normal: Choice
+    tangential: Choice
+    samples_per_step: int = quantity(
         "1",
         "Number of samples per load step, evenly spaced in the controls, the last at its end",
         default=1,
         ge=1,
         le=SETTINGS.max_samples,
     )
-
-
-class LoadPath(Strict):
-    """Load steps, along which normal and tangential control vary linearly."""
-
-    normal: Choice
-    tangential: Choice
-    samples_per_step: int
 
     @property
     @abstractmethod
@@ -105,7 +100,7 @@ class LoadPath(Strict):
     def place(self, axis: str, step: int) -> tuple[str | int, ...]:
         """Return the path from here to the value at the end of a load step."""
         choice: Choice = getattr(self, axis)
-        return (axis, *choice.place(min(step, choice.count - 1)))
+        return (axis, *choice.place(step))
 
 
 class History(LoadPath):
@@ -115,7 +110,6 @@ class History(LoadPath):
     tangential: TangentialPoints = Field(
         description="Exactly one control: displacement or tangential force."
     )
-    samples_per_step: int = _samples_per_step()
 
     @property
     def steps(self) -> int:
@@ -135,7 +129,6 @@ class Cycles(LoadPath):
         description="Exactly one control: the amplitude of displacement or tangential force."
     )
     count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_cycles)
-    samples_per_step: int = _samples_per_step()
 
     @property
     def steps(self) -> int:

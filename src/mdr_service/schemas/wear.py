@@ -62,18 +62,6 @@ class WearQuery(_FrettingQuery):
         _WITH_RADII, default=["initial_profile", "limiting_profile"]
     )
 
-    @property
-    def controls(self) -> list[Choice]:
-        """Loads that can be lists."""
-        return [self.load, self.oscillation]
-
-    @property
-    def loads(self) -> int:
-        return max(self.load.count, self.oscillation.count)
-
-    def place(self, index: int) -> tuple[str | int, ...]:
-        return ("load", *self.load.place(index))
-
 
 class EvolutionQuery(_FrettingQuery):
     """Contact that wears under a tangential oscillation, over the cycles."""
@@ -116,6 +104,3 @@ class EvolutionQuery(_FrettingQuery):
     @property
     def loads(self) -> int:
         return len(self.cycles)
-
-    def place(self, _index: int) -> tuple[str | int, ...]:
-        return ("load", self.load.control)
