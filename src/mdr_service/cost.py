@@ -75,12 +75,12 @@ def seconds(query: Query | BatchQuery) -> float:
         return sum(time for time in times if time <= _LONGEST)
     if isinstance(query, SubsurfaceQuery):
         return _beneath(query)
-    scale, path = _complexity(query.profile), query.path
+    scale, path, loads = _complexity(query.profile), query.path, query.loads
     # Times that grow with the factor of the profile, and with its fourth root. A table is resolved
     # once for many queries.
     evaluated, integrated = 0.0, _START[HistoryQuery if path else type(query)]
     if query.numbers and isinstance(query, FieldQuery):
-        fields = query.loads * len(query.quantities) * (_FIELD + _VALUE * query.radii)
+        fields = loads * len(query.quantities) * (_FIELD + _VALUE * query.radii)
         if "normal_displacement" in query.quantities:
             evaluated += fields
         else:
@@ -92,17 +92,17 @@ def seconds(query: Query | BatchQuery) -> float:
         )
     elif isinstance(query, (NormalQuery, LoadedQuery)):
         with_friction = query.has("friction_coefficient")
-        evaluated += (_FRICTION if with_friction else _LOAD) * query.loads
-        evaluated += _ARRAYS if query.loads > 1 else 0.0
+        evaluated += (_FRICTION if with_friction else _LOAD) * loads
+        evaluated += _ARRAYS if loads > 1 else 0.0
         if isinstance(query, NormalQuery) and query.profile.kind in _SEARCHED_PROFILES:
-            integrated += _SEARCH_OF_ONE + _SEARCH_OF_EACH * query.loads
+            integrated += _SEARCH_OF_ONE + _SEARCH_OF_EACH * loads
         flat = query.profile.kind == "tabulated" and query.profile.f[1:2] == [0.0]
         if flat and isinstance(query, NormalQuery):
-            evaluated += _SEARCH * query.load.count
+            evaluated += _SEARCH * loads
     elif isinstance(query, EvolutionQuery):
-        integrated += _NODE * (_MIN_NODES + query.resolution) + _CYCLE * query.loads
+        integrated += _NODE * (_MIN_NODES + query.resolution) + _CYCLE * loads
     else:
-        evaluated += _WEAR * query.loads
+        evaluated += _WEAR * loads
     root: float = scale**0.25
     return scale * evaluated + root * integrated + _yielding(query)
 

@@ -48,8 +48,9 @@ def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
 
 def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Result:
     """Return the quantities of a contact in partial slip under a tangential load."""
-    values = by_load(contact.normal, _NORMAL, query.loads)
-    return _result(query, contact, values | by_load(contact, _PARTIAL_SLIP, query.loads))
+    loads = query.loads
+    values = by_load(contact.normal, _NORMAL, loads) | by_load(contact, _PARTIAL_SLIP, loads)
+    return _result(query, contact, values)
 
 
 def profile(model: Profile) -> profiles.Profile:
