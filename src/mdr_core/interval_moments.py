@@ -26,8 +26,8 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
 from mdr_core.typing import Array, Flags, Indices
 
-MAX_INTERVALS: Final = 1024
-"""Intervals evaluated at once, so that their nodes stay in the processor's cache."""
+# Intervals evaluated at once, so that their nodes stay in the processor's cache.
+_BLOCK: Final = 1024
 # Gauss nodes on an interval without a break. Beyond a break the remainder is of the order of
 # 2.4^-32 of the interval's moments, see notes, §10.
 _POINTS: Final = 16
@@ -110,10 +110,10 @@ class IntervalMoments:
             return Moments(span, np.zeros((3, span.size)))
         if ends is None:
             ends = self.contact_coordinate(np.array([low, low + span]))
-        if low.size > MAX_INTERVALS and not self.profile.swept:
-            blocks = [slice(i, i + MAX_INTERVALS) for i in range(0, low.size, MAX_INTERVALS)]
-            weights = [self.over(low[part], span[part], ends[:, part]).weights for part in blocks]
-            return Moments(span, np.concatenate(weights, axis=1))
+        if low.size > _BLOCK:
+            blocks = [slice(i, i + _BLOCK) for i in range(0, low.size, _BLOCK)]
+            parts = [self._part(part).over(low[part], span[part], ends[:, part]) for part in blocks]
+            return Moments(span, np.concatenate([part.weights for part in parts], axis=1))
         if not has_many_breaks(self.profile):
             return self._by_break(low, span, ends)
         breaks, normal_at_breaks = self._breaks
@@ -236,7 +236,7 @@ class IntervalMoments:
             weights[:, by_rule] = self._part(by_rule).over_narrow(*at)
         return Moments(span, weights)
 
-    def _part(self, chosen: Flags) -> "IntervalMoments":
+    def _part(self, chosen: Flags | slice) -> "IntervalMoments":
         """The chosen cases of a sweep."""
         profile = self.profile
         if not profile.swept:

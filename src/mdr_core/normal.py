@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.broadcasting import BLOCK, solve_cases
 from mdr_core.elementwise import some, where
 from mdr_core.equivalent_1d import (
     coordinate_from_depth,
@@ -194,15 +193,7 @@ def solve(
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
-
-    if spread.size <= BLOCK:
-        coordinate = _coordinate(profile, e_star, name, spread)
-    else:
-
-        def coordinates(part: Profile, modulus: Parameter, loads: Array) -> tuple[Array]:
-            return (_coordinate(part, modulus, name, loads),)
-
-        (coordinate,) = solve_cases(coordinates, profile, (e_star, spread))
+    coordinate = _coordinate(profile, e_star, name, spread)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread

@@ -7,10 +7,10 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.broadcasting import in_blocks, with_parameters
+from mdr_core.broadcasting import with_parameters
 from mdr_core.elementwise import is_number, some, where
 from mdr_core.equivalent_1d import depth_step
-from mdr_core.interval_moments import MAX_INTERVALS, interval_moments
+from mdr_core.interval_moments import interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
@@ -59,16 +59,9 @@ def slip_moment(
     return area
 
 
-def _by_springs(profile: Profile, *ends: Array) -> Array:
+def _by_springs(profile: Profile, high: Array, width: Array, low: Array) -> Array:
     """D^2/4 times the second Bernstein moment of the springs."""
-
-    def _moment(profile: Profile, high: Array, width: Array, low: Array) -> tuple[Array]:
-        span = depth_step(profile, high, width, low)
-        moments = interval_moments(profile, by_force=False)
-        found = moments.over(profile.depth(low), span, np.array([low, high]))
-        return (np.square(span) * found.weights[1] / 4,)
-
-    if ends[0].size <= MAX_INTERVALS:
-        return _moment(profile, *ends)[0]
-    (result,) = in_blocks(_moment, profile, ends, MAX_INTERVALS)
-    return result
+    span = depth_step(profile, high, width, low)
+    moments = interval_moments(profile, by_force=False)
+    found = moments.over(profile.depth(low), span, np.array([low, high]))
+    return np.asarray(np.square(span) * found.weights[1] / 4)

@@ -7,7 +7,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core import equivalent_1d
-from mdr_core.broadcasting import solve_cases
 from mdr_core.elementwise import full, least, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
@@ -62,18 +61,9 @@ def solve(
     ------
     InputError : a value without equilibrium, outside the contact or not finite.
     """
-    needed = CONTROLS[name]
-
-    def zone(profile: Profile, *columns: Array) -> StickZone:
-        e_star, coordinate, limit, shear_modulus, mu, value = columns
-        part = NormalContact(profile, e_star, coordinate, control=contact.control)
-        vars(part)[needed] = limit
-        sign, size = _sign_and_size(name, value)
-        edge, width, full, excess = _BY_CONTROL[name](part, shear_modulus, mu, size)
-        return StickZone(edge, width, sign, full, excess)
-
-    values = contact.e_star, contact.coordinate, getattr(contact, needed), g_star, friction, given
-    return StickZone(*solve_cases(zone, contact.profile, values))
+    sign, size = _sign_and_size(name, given)
+    edge, width, full, excess = _BY_CONTROL[name](contact, g_star, friction, size)
+    return StickZone(edge, width, sign, full, excess)
 
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
-from mdr_core.broadcasting import solve_cases
 from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -125,16 +124,9 @@ class TangentialContact(Results):
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E* over a divisor."""
-
-        def product(profile: Profile, *columns: Array) -> tuple[Array]:
-            mu, e_star, part, *ends = columns
-            # mu and G* are often single numbers beside an array E*.
-            return (mu / part * e_star * step(profile, *ends),)
-
-        factor = self.friction_coefficient, self.normal.e_star, divisor
-        values = *factor, self._coordinate, self.width, self._stick
-        (result,) = solve_cases(product, self.normal.profile, values)
-        return result
+        rise = step(self.normal.profile, self._coordinate, self.width, self._stick)
+        # mu and G* are often single numbers beside an array E*.
+        return self.friction_coefficient / divisor * self.normal.e_star * rise
 
     def _signed(self, size: Array) -> Array:
         return size if is_number(self.sign) and self.sign > 0 else self.sign * size
