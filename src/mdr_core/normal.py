@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
-from typing import ClassVar, Final
+from math import inf, isfinite
+from typing import ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,6 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.profiles import Profile
 from mdr_core.profiles.base import NORMAL_QUANTITIES
-from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     extremes,
@@ -39,7 +38,7 @@ _DECADES: Final = 150.0
 
 
 @dataclass(frozen=True, repr=False)
-class NormalContact(Results):
+class NormalContact(validity.ContactResults):
     """Profile pressed into a half-space, under any number of loads.
 
     Results are arrays over the loads and the cases of a sweep, without dimension if the load is a
@@ -54,6 +53,15 @@ class NormalContact(Results):
     control: str = "contact_radius"
     """Name of the prescribed load, which is exact."""
     quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
+    g_star: ClassVar[None] = None
+    """No shear modulus, as there is no friction."""
+    slips_from: ClassVar[float] = inf
+    """Least radius with slip; infinite without."""
+
+    @property
+    def normal(self) -> Self:
+        """The contact itself: a contact with friction has its normal contact here."""
+        return self
 
     @cached_property
     def contact_radius(self) -> Array:
@@ -116,11 +124,6 @@ class NormalContact(Results):
     def error_estimate(self) -> float:
         """Largest of `error_estimates` [1]."""
         return extremes(self.error_estimates)[1]
-
-    @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the profile, `half_space`, `plastic`, `singular` and `accuracy`."""
-        return validity.with_assumed_bodies(self, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

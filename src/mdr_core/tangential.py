@@ -14,7 +14,6 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.normal import NormalContact, not_reached
 from mdr_core.profiles import Profile
-from mdr_core.results import Results
 from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
@@ -32,7 +31,7 @@ _Step = Callable[[Profile, Array, Array, Array], Array]
 
 
 @dataclass(frozen=True, repr=False)
-class TangentialContact(Results):
+class TangentialContact(validity.ContactResults):
     """Normal contact under a tangential load, at any number of pairs of loads.
 
     Results are arrays over the broadcast loads. Each is computed on first use.
@@ -161,6 +160,11 @@ class TangentialContact(Results):
             c = where(self.width > 0, np.minimum(c, a), a)
         return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
 
+    @property
+    def slips_from(self) -> Array:
+        """Least radius with slip [length]; infinite without."""
+        return np.where(self.full_slip | (self.width > 0), self.stick_radius, np.inf)
+
     @cached_property
     def tangential_stiffness(self) -> Array:
         """dF_x/du_x = 2 G* c on further loading [force/length]. Source: mdr-5, Eq. (5.1)."""
@@ -246,11 +250,6 @@ class TangentialContact(Results):
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self._stick
         return conditioning.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
-
-    @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the normal contact, and `accuracy` if rtol is not reached."""
-        return validity.with_assumed_bodies(self.normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

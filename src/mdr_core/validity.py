@@ -15,6 +15,7 @@ from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
+from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes
 
@@ -61,35 +62,41 @@ class LoadedContact(Protocol):
     def loaded(self) -> Flags: ...
 
 
+class SolvedContact(Protocol):
+    """A contact with or without friction, on whose bodies its validity depends."""
+
+    @property
+    def normal(self) -> LoadedContact: ...
+    @property
+    def g_star(self) -> Parameter | None: ...
+    @property
+    def slips_from(self) -> Parameter: ...
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]: ...
+
+
+class ContactResults(Results):
+    """Results of a contact, with all of its warnings."""
+
+    @property
+    def warnings(self: SolvedContact) -> tuple[Notice, ...]:
+        """All warnings; where the bodies are unknown, as for one body on a rigid one."""
+        return (*notices(of_normal_contact(self.normal)), *self.warnings_without_bodies)
+
+
 def notices(findings: Iterable[Finding]) -> list[Notice]:
     """Return a warning for each finding that holds in some case."""
     return [Notice(code, message()) for code, where, message in findings if some(where)]
 
 
-def with_assumed_bodies(contact: LoadedContact, others: Iterable[Notice]) -> tuple[Notice, ...]:
-    """Return `half_space` and `plastic`, for unknown bodies, and the other warnings."""
-    return (*notices(of_normal_contact(contact)), *others)
-
-
-def findings(
-    contact: LoadedContact,
-    material: Material,
-    *,
-    g_star: Parameter | None = None,
-    slips_from: Parameter = np.inf,
-) -> list[Finding]:
+def findings(contact: SolvedContact, material: Material) -> list[Finding]:
     """Return all findings that depend on the bodies in contact.
 
-    Parameters
-    ----------
-    contact : a normal contact.
-    material : the bodies; Poisson's ratio 0.3 is assumed where they are unknown.
-    g_star : effective shear modulus of a contact with friction [pressure].
-    slips_from : least radius with slip in each case [length]; infinite without.
+    Poisson's ratio 0.3 is assumed where they are unknown.
     """
-    found = of_normal_contact(contact, material, slips_from)
-    if g_star is not None:
-        found += of_moduli(contact.e_star, g_star, material.dundurs_beta)
+    found = of_normal_contact(contact.normal, material, contact.slips_from)
+    if contact.g_star is not None:
+        found += of_moduli(contact.normal.e_star, contact.g_star, material.dundurs_beta)
     return found
 
 

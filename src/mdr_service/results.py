@@ -96,16 +96,7 @@ def notices(query: Query, source: Contact | Wear) -> list[Notice]:
 def findings(query: Query, contact: Contact) -> list[validity.Finding]:
     """Return the limits that depend on the bodies, which are those of the query."""
     material = query.material.effective
-    if isinstance(contact, NormalContact):
-        found = validity.findings(contact, material)
-    else:
-        pressed, start = (
-            (contact.contact, contact.start)
-            if isinstance(contact, LoadHistory)
-            else (contact.normal, contact)
-        )
-        slips_from = subsurface.slips_from(contact)
-        found = validity.findings(pressed, material, g_star=start.g_star, slips_from=slips_from)
+    found = validity.findings(contact, material)
     if query.material.has("yield_strength"):
         ratios = material.poissons_ratios
         found.append(subsurface.yielding(contact, ratios, query.material.yield_strength))

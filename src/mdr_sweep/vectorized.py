@@ -152,7 +152,7 @@ def _warnings(
     query: NormalQuery, source: NormalContact | TangentialContact, size: int
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the order of the service."""
-    contact = source.normal if isinstance(source, TangentialContact) else source
+    contact = source.normal
     flags: dict[str, Any] = {code: where for code, where, _ in findings(query, source)}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags["table_end"] = validity.table_end(contact).where

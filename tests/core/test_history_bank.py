@@ -96,8 +96,8 @@ def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
             failures += cycle_failures(case, index, map(float, pair))
         names = ("energy_per_cycle", "secant_stiffness")
         allowed = [bound_of(case) + input_error(case, name, index) for name in names]
-        allowed.append(full_slip_error(case, index, result.history))
-        failures += overstated(result.history.error_estimate, allowed, factor)
+        allowed.append(full_slip_error(case, index, result))
+        failures += overstated(result.error_estimate, allowed, factor)
     return failures
 
 
@@ -137,9 +137,9 @@ def failures_in_phase(case: dict[str, Any]) -> list[str]:
         count=3,
     )
     expected = case["expected"]
-    failures = overstated(result.history.error_estimate, [bound_of(case)], 50.0)
+    failures = overstated(result.error_estimate, [bound_of(case)], 50.0)
     top = case["mean"] + case["swing"]
-    limit = case["friction_coefficient"] * float(np.max(result.history.normal_force))
+    limit = case["friction_coefficient"] * float(np.max(result.normal_force))
     whole = limit * case["friction_coefficient"] * case["e_star"] / case["g_star"] * top
     for cycle in range(3):
         stiffness = expected["secant_stiffness"][cycle]

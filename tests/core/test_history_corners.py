@@ -415,10 +415,10 @@ def test_cycles_retain_their_loop_under_force_control(name: str) -> None:
         count=3,
         samples_per_step=2,
     )
-    assert result.history.tangential_force.shape == (2 * (2 + 2 * 3),)
+    assert result.tangential_force.shape == (2 * (2 + 2 * 3),)
     assert result.energy_per_cycle == near([result.energy_per_cycle[0]] * 3)
-    total = np.sum(result.history.dissipation)
-    assert result.history.dissipated_energy[-1] == near(float(total))
+    total = np.sum(result.dissipation)
+    assert result.dissipated_energy[-1] == near(float(total))
 
 
 def test_force_beyond_friction_is_rejected_with_its_index() -> None:
@@ -534,7 +534,7 @@ def test_stored_energy_at_the_plateaus_of_a_rough_table(seed: int, control: str)
         },
     }[control]
     found = history.solve(profile, 1.0, 1.0, MU, **path)
-    a = float(found.contact.contact_radius[-1])
+    a = float(found.normal.contact_radius[-1])
     stops = np.concatenate([profile.coordinate_breaks, fields.edges(found.state).radius])
     stops = np.unique([0.0, a, *stops[(stops > 0) & (stops < a)]])
     nodes, weights = np.polynomial.legendre.leggauss(60)

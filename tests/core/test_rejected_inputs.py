@@ -222,7 +222,7 @@ def test_loads_of_zero_are_accepted(load: str) -> None:
 def test_normal_amplitude_is_at_most_the_mean() -> None:
     given = {"indentation_depth": 1.0, "tangential_displacement": 0.1}
     whole = history.cycles(Paraboloid(1.0), 1.0, 1.0, 0.5, normal_amplitude=1.0, **given)
-    assert whole.history.indentation_depth.min() == 0
+    assert whole.indentation_depth.min() == 0
     with pytest.raises(InputError) as raised:
         history.cycles(Paraboloid(1.0), 1.0, 1.0, 0.5, normal_amplitude=1.0000001, **given)
     assert raised.value.path == ("history", "normal", "amplitude")

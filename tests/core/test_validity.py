@@ -38,9 +38,13 @@ def bodies(*poissons_ratios: float) -> Material:
 
 
 def warnings_of(
-    contact: normal.NormalContact, material: Material, **given: Any
+    contact: normal.NormalContact | tangential.TangentialContact, material: Material
 ) -> dict[str, validity.Finding]:
-    return {f.code: f for f in validity.findings(contact, material, **given) if np.any(f.where)}
+    return {f.code: f for f in validity.findings(contact, material) if np.any(f.where)}
+
+
+def sticking(contact: normal.NormalContact, g_star: float) -> tangential.TangentialContact:
+    return tangential.solve(contact, g_star, 0.3, tangential_displacement=0.0)
 
 
 def test_infinite_deviatoric_stress() -> None:
@@ -49,8 +53,9 @@ def test_infinite_deviatoric_stress() -> None:
     for profile in (Cone(0.01), TruncatedCone(0.5, 0.01)):
         contact = normal.solve(profile, rubber.e_star, contact_radius=1.0)
         assert warnings_of(contact, rubber) == {}
-        assert set(warnings_of(contact, rubber, slips_from=0.8)) == set()
-        assert set(warnings_of(contact, rubber, slips_from=0.0)) == {"plastic"}
+        for c, codes_ in ((0.8, set()), (0.0, {"plastic"})):
+            slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=c)
+            assert set(warnings_of(slips, rubber)) == codes_
         assert set(warnings_of(contact, steel)) == {"plastic"}
     for profile in (Power(1e-3, 0.9), FlatPunch(1.0)):
         sharper = normal.solve(profile, rubber.e_star, normal_force=1e-3)
@@ -133,21 +138,21 @@ def test_contact_without_material_assumes_the_worst_case() -> None:
 def test_moduli_of_real_bodies_are_accepted(nu: float, other: float | None) -> None:
     real = bodies(nu) if other is None else bodies(nu, other)
     contact = normal.solve(Paraboloid(1.0), real.e_star, contact_radius=0.01)
-    assert warnings_of(contact, Material(real.e_star, real.g_star), g_star=real.g_star) == {}
+    assert warnings_of(sticking(contact, real.g_star), Material(real.e_star, real.g_star)) == {}
 
 
 @pytest.mark.parametrize(("ratio", "possible"), [(0.74, 0), (0.76, 1), (1.49, 1), (1.51, 0)])
 def test_impossible_moduli_are_rejected(ratio: float, possible: int) -> None:
     contact = normal.solve(Paraboloid(1.0), ratio, contact_radius=0.01)
-    warning = warnings_of(contact, Material(ratio, 1.0), g_star=1.0)
+    warning = warnings_of(sticking(contact, 1.0), Material(ratio, 1.0))
     assert list(warning) == ([] if possible else ["impossible_moduli"])
 
 
 def test_elastic_similarity_warning() -> None:
     alike, unlike = bodies(0.3, 0.3), bodies(0.2)
     contact = normal.solve(Paraboloid(1.0), alike.e_star, contact_radius=0.01)
-    assert warnings_of(contact, alike, g_star=alike.g_star) == {}
-    assert list(warnings_of(contact, unlike, g_star=unlike.g_star)) == ["elastic_similarity"]
+    assert warnings_of(sticking(contact, alike.g_star), alike) == {}
+    assert list(warnings_of(sticking(contact, unlike.g_star), unlike)) == ["elastic_similarity"]
     # Without friction there is no coupling.
     assert warnings_of(contact, unlike) == {}
 

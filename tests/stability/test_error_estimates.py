@@ -85,7 +85,7 @@ def of_cycles() -> list[Measured]:
         for index, amplitude in enumerate(case["given"]):
             loads = {case["control"]: case["load"], case["tangential_control"]: amplitude}
             followed = history.cycles(*material(case), **loads, count=2)
-            estimate = max(estimate, followed.history.error_estimate)
+            estimate = max(estimate, followed.error_estimate)
             for name in ("energy_per_cycle", "secant_stiffness"):
                 found_there = float(getattr(followed, name)[1])
                 error = max(error, relative_error(found_there, case["expected"][name][index]))

@@ -48,7 +48,7 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
         scale = np.minimum(gaps, np.append(gaps[1:], gaps[-1])) / contact.profile.steepness
         rounding = 0.0 if contact.profile.has_no_partial_slip else EDGE_ROUNDING
         return Edges(radius, rounding * radius, scale)
-    normal = contact.normal if isinstance(contact, TangentialContact) else contact
+    normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
     beyond = a - profile.first_radius

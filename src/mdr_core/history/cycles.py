@@ -1,66 +1,47 @@
 """Cycles between two tangential loads, under a constant or an oscillating normal load."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import InputError
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.profiles import Profile
-from mdr_core.results import Results
 from mdr_core.typing import Array
 
 
 @dataclass(frozen=True, repr=False)
-class LoadCycles(Results):
+class LoadCycles(LoadHistory):
     """Load history of identical cycles, with the energy and the stiffness of each."""
 
-    history: LoadHistory
     count: int
-    quantities: ClassVar[tuple[str, ...]] = ("energy_per_cycle", "secant_stiffness")
-
-    def values(self) -> dict[str, Any]:
-        """Return the quantities by name, those of the history among them."""
-        return self.history.values() | super().values()
-
-    @property
-    def method(self) -> str:
-        """Most expensive method among the results."""
-        return self.history.method
-
-    @property
-    def error_estimate(self) -> float:
-        """Bound on the error of each result, relative to its largest value in the history."""
-        return self.history.error_estimate
-
-    @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the history."""
-        return self.history.warnings
+    quantities: ClassVar[tuple[str, ...]] = (
+        *LoadHistory.quantities,
+        "energy_per_cycle",
+        "secant_stiffness",
+    )
 
     @cached_property
     def energy_per_cycle(self) -> Array:
         """Energy dissipated in each cycle, the area of its loop [force length]."""
-        return np.asarray(self._by_cycle(self.history.dissipation).sum(axis=1))
+        return np.asarray(self._by_cycle(self.dissipation).sum(axis=1))
 
     @cached_property
     def secant_stiffness(self) -> Array:
         """(F_max - F_min)/(u_max - u_min) of each loop [force/length], infinite at constant u."""
-        force = self._turning_points(self.history.tangential_force)
-        displacement = self._turning_points(self.history.tangential_displacement)
+        force = self._turning_points(self.tangential_force)
+        displacement = self._turning_points(self.tangential_displacement)
         return np.asarray(np.ptp(force, axis=1) / np.ptp(displacement, axis=1))
 
     def _by_cycle(self, values: Array) -> Array:
         """Values in rows, one for each cycle from upper turning point to upper turning point."""
-        return values[2 * self.history.path.per_step :].reshape(self.count, -1)
+        return values[2 * self.path.per_step :].reshape(self.count, -1)
 
     def _turning_points(self, values: Array) -> Array:
         """Values at the turning points of each cycle."""
-        return self._by_cycle(values)[
-            :, self.history.path.per_step - 1 :: self.history.path.per_step
-        ]
+        return self._by_cycle(values)[:, self.path.per_step - 1 :: self.path.per_step]
 
 
 def cycles(
@@ -134,4 +115,5 @@ def cycles(
         samples_per_step=samples_per_step,
         rtol=rtol,
     )
-    return LoadCycles(history, count)
+    parts = {each.name: getattr(history, each.name) for each in fields(history)}
+    return LoadCycles(**parts, count=count)

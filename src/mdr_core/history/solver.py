@@ -17,7 +17,6 @@ from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.results import Results
 from mdr_core.typing import Array, Indices
 
 # Rounding error of the sums over the branches, relative to that of the profile.
@@ -25,13 +24,13 @@ _SUMS: Final = 40.0
 
 
 @dataclass(frozen=True, repr=False)
-class LoadHistory(Results):
+class LoadHistory(validity.ContactResults):
     """Results of a load history at every sample; each is computed on first use."""
 
     path: SampledPath
     start: ContactState
     """The unloaded contact."""
-    contact: NormalContact
+    normal: NormalContact
     """Normal contact of every sample, with zero load in separation."""
     results: StepResults | ExtrapolatedResults
     """Results of the tangential foundation in reduced units."""
@@ -58,23 +57,23 @@ class LoadHistory(Results):
     @cached_property
     def indentation_depth(self) -> Array:
         """d [length]; negative in separation."""
-        return self.path.normal if self.path.by_depth else self.contact.indentation_depth
+        return self.path.normal if self.path.by_depth else self.normal.indentation_depth
 
     @cached_property
     def normal_force(self) -> Array:
         """F_N [force]."""
-        return self.contact.normal_force
+        return self.normal.normal_force
 
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]; zero in separation."""
         separated = self.path.normal < 0
-        return np.where(separated, 0.0, self.contact.contact_radius)
+        return np.where(separated, 0.0, self.normal.contact_radius)
 
     @cached_property
     def elastic_energy(self) -> Array:
         """Energy stored by the normal load, int F_N dd [force length]."""
-        return self.contact.elastic_energy
+        return self.normal.elastic_energy
 
     @cached_property
     def tangential_force(self) -> Array:
@@ -115,6 +114,16 @@ class LoadHistory(Results):
         """
         return np.array(REGIMES)[self.results.regime]
 
+    @property
+    def g_star(self) -> float:
+        """Effective shear modulus [pressure]."""
+        return self.start.g_star
+
+    @property
+    def slips_from(self) -> Array:
+        """Least radius with slip [length], in full slip alone; else infinite."""
+        return np.where(self.regime == "full_slip", 0.0, np.inf)
+
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
@@ -152,12 +161,12 @@ class LoadHistory(Results):
     @property
     def method(self) -> str:
         """Most expensive method among the results."""
-        return self.contact.profile.tangential_method
+        return self.normal.profile.tangential_method
 
     @property
     def error_estimate(self) -> float:
         """Bound on the error of each result, relative to its largest value in the history."""
-        rounding = (_SUMS + self._condition_number) * self.contact.error_estimate
+        rounding = (_SUMS + self._condition_number) * self.normal.error_estimate
         chords = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
         return rounding + chords
 
@@ -166,19 +175,14 @@ class LoadHistory(Results):
         """Largest relative condition number of the results with respect to the loads."""
         limit = self.start.friction_coefficient * np.asarray(self.normal_force)
         if self.path.by_force:
-            return conditioning.of_forces(self.contact, np.abs(self.path.tangential), limit)
+            return conditioning.of_forces(self.normal, np.abs(self.path.tangential), limit)
         loads = self.path.tangential, self.tangential_force, limit
         return conditioning.of_sliding(*loads, lambda: self.dissipation)
 
     @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the normal contacts, and `accuracy` if rtol is not reached."""
-        return validity.with_assumed_bodies(self.contact, self.warnings_without_bodies)
-
-    @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
-        found = [each for each in self.contact.warnings_without_bodies if each.code != "accuracy"]
+        found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.rtol:
             text = f"rtol = {self.rtol:.1e} was not reached on this load path; see error_estimate"
             found.append(Notice("accuracy", text))

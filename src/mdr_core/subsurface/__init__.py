@@ -2,7 +2,7 @@
 
 from mdr_core.subsurface.peaks import MEASURES, Peak, largest
 from mdr_core.subsurface.stress import StressTensor, error_estimate, stress
-from mdr_core.subsurface.yielding import slips_from, yield_onset_force, yielding
+from mdr_core.subsurface.yielding import yield_onset_force, yielding
 
 __all__ = [
     "MEASURES",
@@ -10,7 +10,6 @@ __all__ = [
     "StressTensor",
     "error_estimate",
     "largest",
-    "slips_from",
     "stress",
     "yield_onset_force",
     "yielding",

@@ -68,7 +68,7 @@ def yield_onset_force(
     require_positive(("yield_strength",), yield_strength)
     limit = yield_strength if measure == "von_mises" else yield_strength / 2
     search = partial(largest, measure=measure, poissons_ratio=poissons_ratio, body=body)
-    pressed, (columns, shape) = _pressed(contact), _columns(contact)
+    pressed, (columns, shape) = contact.normal, _columns(contact)
     if not np.all(pressed.loaded):
         raise InputError(("load",), "the onset of yield needs a load that is not zero")
     # Loads in one ratio of the forces share the onset.
@@ -88,7 +88,7 @@ def yielding(
 
     Source: johnson, section 4.2; notes, §14.
     """
-    ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), _pressed(contact)
+    ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     (columns, shape), exponent = _columns(contact), _exponent(pressed.profile)
     if exponent is not None and not columns[1].any():
         # Under a power the stresses are similar at all loads.
@@ -132,23 +132,9 @@ def yielding(
     return Finding("yield", where, message)
 
 
-def slips_from(contact: TangentialContact | LoadHistory) -> Array:
-    """Return the least radius with slip under each load [length]; infinite without slip."""
-    if isinstance(contact, LoadHistory):
-        return np.where(contact.regime == "full_slip", 0.0, inf)
-    slips = contact.full_slip | (contact.width > 0)
-    return np.where(slips, contact.stick_radius, inf)
-
-
-def _pressed(contact: _Contact | LoadHistory) -> NormalContact:
-    if isinstance(contact, LoadHistory):
-        return contact.contact
-    return contact.normal if isinstance(contact, TangentialContact) else contact
-
-
 def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     """Coordinate, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of loads."""
-    pressed, ratio, friction = _pressed(contact), np.zeros(()), np.zeros(())
+    pressed, ratio, friction = contact.normal, np.zeros(()), np.zeros(())
     if not isinstance(contact, NormalContact):
         start = contact.start if isinstance(contact, LoadHistory) else contact
         friction = np.asarray(start.friction_coefficient)
@@ -197,7 +183,7 @@ def _onset(profile: Profile, case: list[float], search: "partial[Peak]", limit: 
     start, ratio, *rest = case
 
     def at(coordinate: float) -> NormalContact:
-        return _pressed(_under(profile, coordinate, 0.0, *rest))
+        return _under(profile, coordinate, 0.0, *rest).normal
 
     @cache
     def excess(place: float) -> float:

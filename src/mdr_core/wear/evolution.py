@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from mdr_core import tangential, validity
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
-from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
 from mdr_core.wear.arguments import grid, one_amplitude
@@ -62,7 +61,7 @@ _NEAR: Final = 0.05
 
 
 @dataclass(frozen=True, repr=False)
-class WearEvolution(Results, WornSurface):
+class WearEvolution(validity.ContactResults, WornSurface):
     """Worn contact at each requested number of cycles, with error estimates."""
 
     coarse: WornSurface = field(kw_only=True)
@@ -158,11 +157,9 @@ class WearEvolution(Results, WornSurface):
         return "quadrature" if self.initial.slips else self.initial.tangential_contact.method
 
     @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the contact before wear, and `limit_reached`."""
-        return validity.with_assumed_bodies(
-            self.initial.tangential_contact.normal, self.warnings_without_bodies
-        )
+    def normal(self) -> NormalContact:
+        """Normal contact before any wear."""
+        return self.initial.contact
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

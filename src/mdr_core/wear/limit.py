@@ -12,7 +12,6 @@ from mdr_core import tangential, validity
 from mdr_core.elementwise import some
 from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
-from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import checked_radii, first_index
@@ -38,7 +37,7 @@ _WARNINGS: Final = {
 
 
 @dataclass(frozen=True, repr=False)
-class LimitingWear(Results):
+class LimitingWear(validity.ContactResults):
     """State in which all slip has worn off; arrays over the broadcast loads.
 
     In full slip under a constant force the wear is unbounded: depth, wear radius and worn volume
@@ -58,12 +57,13 @@ class LimitingWear(Results):
     )
 
     @property
-    def _normal(self) -> NormalContact:
+    def normal(self) -> NormalContact:
+        """Normal contact before any wear."""
         return self.tangential_contact.normal
 
     @property
     def _holds_depth(self) -> bool:
-        return self._normal.control == "indentation_depth"
+        return self.normal.control == "indentation_depth"
 
     @property
     def stick_radius(self) -> Array:
@@ -74,8 +74,8 @@ class LimitingWear(Results):
     def wear_width(self) -> Array:
         """Width of the worn annulus [length], free of cancellation however narrow it is."""
         rests = self.stick_zone.step <= 0
-        if self._normal.profile.has_no_partial_slip:
-            worn = np.where(rests, 0.0, self._normal.contact_radius)
+        if self.normal.profile.has_no_partial_slip:
+            worn = np.where(rests, 0.0, self.normal.contact_radius)
         else:
             target = np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
             start = np.where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
@@ -95,7 +95,7 @@ class LimitingWear(Results):
     @cached_property
     def indentation_depth(self) -> Array:
         """Depth d [length]: constant, or g(c) and the step at the stick edge."""
-        contact = self._normal
+        contact = self.normal
         depth = np.broadcast_to(contact.indentation_depth, self.stick_zone.step.shape)
         if self._holds_depth:
             return depth
@@ -111,7 +111,7 @@ class LimitingWear(Results):
 
         Source: mdr-5, Eq. (5.90), for any profile.
         """
-        contact, profile = self._normal, self._normal.profile
+        contact, profile = self.normal, self.normal.profile
         if not self._holds_depth:
             return np.broadcast_to(contact.normal_force, self.stick_zone.step.shape)
         edge = np.where(
@@ -127,7 +127,7 @@ class LimitingWear(Results):
         displacement = contact.tangential_displacement
         if contact.control == "tangential_displacement":
             return np.broadcast_to(displacement, stick_zone.step.shape)
-        if not self._normal.profile.has_no_partial_slip:
+        if not self.normal.profile.has_no_partial_slip:
             displacement = contact.displacement_ratio * stick_zone.step
         return np.where(stick_zone.unbounded, inf, displacement)
 
@@ -135,9 +135,9 @@ class LimitingWear(Results):
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
         contact = self.tangential_contact
-        if contact.control == "tangential_force" or self._normal.profile.has_no_partial_slip:
+        if contact.control == "tangential_force" or self.normal.profile.has_no_partial_slip:
             return np.where(self.stick_zone.separated, 0.0, contact.tangential_force)
-        modulus = contact.friction_coefficient * self._normal.e_star
+        modulus = contact.friction_coefficient * self.normal.e_star
         carried = 2 * modulus * self.stick_zone.radius * self.stick_zone.step
         return np.where(self.stick_zone.unbounded, contact.limiting_force, carried)
 
@@ -168,7 +168,7 @@ class LimitingWear(Results):
         ------
         InputError : a radius that is negative, not finite or beyond the profile's end.
         """
-        return self._normal.profile.f(self._radii(radius))
+        return self.normal.profile.f(self._radii(radius))
 
     def limiting_profile(self, radius: ArrayLike) -> Array:
         """Return the limiting profile [length], (loads, m), or (m,) for a single load.
@@ -201,7 +201,7 @@ class LimitingWear(Results):
         ------
         InputError : a radius that is negative or not finite.
         """
-        e_star = np.asarray(self._normal.e_star)
+        e_star = np.asarray(self.normal.e_star)
         return limit_fields.pressure(self.stick_zone, e_star, checked_radii(radius))
 
     def grid(self, points: int) -> Array:
@@ -213,29 +213,22 @@ class LimitingWear(Results):
         ------
         InputError : fewer points than there are such radii.
         """
-        edges = self.stick_radius, self._normal.contact_radius, self.wear_radius
-        return grid(
-            self._normal.profile, np.concatenate([np.ravel(part) for part in edges]), points
-        )
+        edges = self.stick_radius, self.normal.contact_radius, self.wear_radius
+        return grid(self.normal.profile, np.concatenate([np.ravel(part) for part in edges]), points)
 
     def _radii(self, radius: ArrayLike) -> Array:
-        return checked_radii(radius, float(self._normal.profile.domain))
+        return checked_radii(radius, float(self.normal.profile.domain))
 
     @property
     def method(self) -> str:
         """Most expensive method: the outer edge of the annulus is a root of a quadrature."""
-        method = self._normal.profile.tangential_method
+        method = self.normal.profile.tangential_method
         return "quadrature" if method == "closed_form" else method
 
     @property
     def error_estimate(self) -> float:
         """Bound on the relative error of every quantity."""
         return self.tangential_contact.error_estimate
-
-    @property
-    def warnings(self) -> tuple[Notice, ...]:
-        """Warnings of the contact before wear, and those of the limit."""
-        return validity.with_assumed_bodies(self._normal, self.warnings_without_bodies)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -22,7 +22,7 @@ from mdr_service.plots.plot import (
     Plot,
     subset_note,
 )
-from mdr_service.queries.load_paths import SolvedPath, solve_path
+from mdr_service.queries.load_paths import solve_path
 from mdr_service.results import Result
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.load_paths import HistoryQuery
@@ -76,7 +76,7 @@ def tangential(_query: TangentialQuery, contact: TangentialContact, result: Resu
     )
 
 
-def history(query: HistoryQuery, path: SolvedPath, result: Result) -> Plot:
+def history(query: HistoryQuery, path: LoadHistory, result: Result) -> Plot:
     """Return force over displacement from first contact to the end, with the turning points."""
     given = query.path
     ends = slice(given.samples_per_step - 1, None, given.samples_per_step)
@@ -118,15 +118,15 @@ def _into_full_slip(
     )
 
 
-def _dense_path(query: HistoryQuery, path: SolvedPath) -> LoadHistory:
+def _dense_path(query: HistoryQuery, path: LoadHistory) -> LoadHistory:
     """Return the load history with enough samples for smooth curves."""
     samples = min(-(-_MAX_SAMPLES // query.path.steps), POINTS)
     if samples <= query.path.samples_per_step:
-        return path.history
+        return path
     dense = query.path.model_copy(update={"samples_per_step": samples})
     name = "cycles" if query.has("cycles") else "history"
     changes = {name: dense, "rtol": max(query.rtol, VISIBLE)}
-    return solve_path(query.model_copy(update=changes)).history
+    return solve_path(query.model_copy(update=changes))
 
 
 def _friction_limits(limit: float, force: Array, curve: int | None = None) -> list[Mark]:

@@ -13,7 +13,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 from mdr_service.queries.contacts import solve_normal, solve_tangential
-from mdr_service.queries.load_paths import require_few_samples, solve_points
+from mdr_service.queries.load_paths import require_few_samples, solve_path
 from mdr_service.results import (
     Contact,
     Result,
@@ -59,7 +59,7 @@ def require_loads(query: LoadedQuery) -> None:
 def solve_loaded(query: LoadedQuery) -> Contact:
     """Return the contact under the loads of a query, or its load history."""
     if query.has("history"):
-        return solve_points(query)
+        return solve_path(query)
     return solve_tangential(query) if query.has("tangential") else solve_normal(query)
 
 

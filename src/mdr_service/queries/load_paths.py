@@ -1,6 +1,6 @@
 """Queries about load histories."""
 
-from typing import Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,21 +17,14 @@ from mdr_service.results import (
 )
 from mdr_service.schemas.answers import HistoryAnswer
 from mdr_service.schemas.fields import LoadedQuery
-from mdr_service.schemas.load_paths import HistoryQuery, LoadPath
+from mdr_service.schemas.load_paths import Cycles, HistoryQuery, LoadPath
 from mdr_service.settings import SETTINGS
 
 _CYCLES: Final = ("energy_per_cycle", "secant_stiffness")
 _HISTORY: Final = members(HistoryAnswer, _CYCLES)
 
 
-class SolvedPath(NamedTuple):
-    """Load history, and its cycles if it is given as cycles."""
-
-    history: LoadHistory
-    cycles: LoadCycles | None = None
-
-
-def solve_history(query: HistoryQuery) -> SolvedPath:
+def solve_history(query: HistoryQuery) -> LoadHistory:
     """Return the load history of a query, given by its points or as cycles."""
     if query.has("history") == query.has("cycles"):
         place = "cycles" if query.has("cycles") else "history"
@@ -41,49 +34,33 @@ def solve_history(query: HistoryQuery) -> SolvedPath:
     return solve_path(query)
 
 
-def solve_path(query: HistoryQuery) -> SolvedPath:
+def solve_path(query: HistoryQuery | LoadedQuery) -> LoadHistory:
     """Return the load history of a query with any number of samples."""
-    if not query.has("cycles"):
-        return SolvedPath(solve_points(query))
-    given = query.cycles
+    name = "history" if query.has("history") else "cycles"
+    given: LoadPath = getattr(query, name)
+    solve: Any = load_history.solve
+    more: dict[str, float] = {}
+    if isinstance(given, Cycles):
+        solve = load_history.cycles
+        more = {"normal_amplitude": given.normal.amplitude, "count": given.count}
     try:
-        cycles = load_history.cycles(
+        return solve(
             **body(query),
             **friction(query),
             **control(given.normal),
             **control(given.tangential),
-            normal_amplitude=given.normal.amplitude,
-            count=given.count,
+            **more,
             samples_per_step=given.samples_per_step,
             rtol=query.rtol,
         )
     except InputError as error:
-        raise _in_request(error, "cycles", given) from None
-    return SolvedPath(cycles.history, cycles)
+        raise _in_request(error, name, given) from None
 
 
-def solve_points(query: HistoryQuery | LoadedQuery) -> LoadHistory:
-    """Return the load history of a query, given by its points."""
-    given = query.history
-    try:
-        return load_history.solve(
-            **body(query),
-            **friction(query),
-            **control(given.normal),
-            **control(given.tangential),
-            samples_per_step=given.samples_per_step,
-            rtol=query.rtol,
-        )
-    except InputError as error:
-        raise _in_request(error, "history", given) from None
-
-
-def history_result(query: HistoryQuery, path: SolvedPath) -> Result:
+def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
     """Return forces, displacements and energies at the samples of a load history."""
-    history = path.history
-    values = {name: np.asarray(getattr(history, name)) for name in _HISTORY}
-    if path.cycles:
-        values |= {name: np.asarray(getattr(path.cycles, name)) for name in _CYCLES}
+    names = (*_HISTORY, *_CYCLES) if isinstance(history, LoadCycles) else _HISTORY
+    values = {name: np.asarray(getattr(history, name)) for name in names}
     warnings = notices(query, history)
     return checked(query, values) | response_metadata(
         history.method, history.error_estimate, warnings
