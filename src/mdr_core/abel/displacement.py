@@ -221,7 +221,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         slope = branch.weight(x, s, part) * root * run
         return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
-    total = span * _in_blocks(values, weights.size, s_r.size)
+    total = span * in_blocks(values, weights.size, s_r.size)
     index = np.flatnonzero(split > s_low)
     if index.size:
         lower = _lower(branch, s_low[index], split[index], s_r[index], kernels, rtol)
@@ -278,14 +278,14 @@ def _lower(
         slope = branch.weight(x, s, part) * run
         return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
-    return length * _in_blocks(values, weights.size, s_r.size)
+    return length * in_blocks(values, weights.size, s_r.size)
 
 
-def _in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
-    """Values of a number of integrals with so many nodes each, in blocks."""
+def in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
+    """Return the values of a number of integrals with so many nodes each, in blocks."""
     step = max(_BLOCK // nodes, 1)
-    parts = [values(slice(start, start + step)) for start in range(0, count, step)]
-    return np.concatenate(parts, axis=1)
+    parts = [values(slice(start, start + step)) for start in range(0, max(count, 1), step)]
+    return np.concatenate(parts, axis=-1)
 
 
 def _reach(exponent: float, rtol: float) -> float:

@@ -13,16 +13,13 @@ from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
-from mdr_core.profiles.equator import slope_integral_inside, slope_integral_outside
+from mdr_core.profiles.spheroid_displacement import slope_integral_inside, slope_integral_outside
 from mdr_core.quadrature import integrate
 from mdr_core.typing import Array, Chosen, Flags, Parameter
 from mdr_core.validation import first_index
 
 # artanh(1 - 4 eps): closer to the equator R - a is dominated by rounding error.
 _EQUATOR: Final = -log(2 * float(np.finfo(float).eps)) / 2
-# Contact coordinate, a tenth of R before the equator, beyond which a radius does not resolve the
-# distance from the pole there.
-_NEAR_EQUATOR: Final = 1.5
 # a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
 # (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
 _SHALLOW: Final = 0.64
@@ -111,18 +108,14 @@ class Spheroid(Profile):
         return self.height * self.radius * bracket
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
-        """Integrated in v next to the equator. Parameters: see `Profile`."""
+        """Integrated in v. Parameters: see `Profile`."""
         v = artanh_ratio(r, self.radius)
-        if not v.max(initial=0.0) > _NEAR_EQUATOR:
-            return super().slip_kernel(c, r, rtol)
         width = self.coordinate_width(r, c, v, artanh_ratio(c, self.radius))
         equator, height = self._axes
         return 2 / pi * height * slope_integral_inside(equator, v, width, r, rtol)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
-        """Integrated in v next to the equator. Parameters: see `Profile`."""
-        if not coordinate > _NEAR_EQUATOR:
-            return super().outer_displacement(a, r, rtol, coordinate)
+        """Integrated in v. Parameters: see `Profile`."""
         equator, height = self._axes
         return 2 / pi * height * slope_integral_outside(equator, coordinate, r, rtol)
 

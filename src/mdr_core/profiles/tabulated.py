@@ -108,29 +108,11 @@ class Tabulated(FlatEnded):
     def tip_pressure(self) -> float:
         return float(self.resolved.rows[1, 0]) / 2
 
-    # Without a flat the contact coordinate is the radius itself.
-
     def contact_radius(self, coordinate: Array) -> Array:
-        if self.flat_radius == 0:
-            return coordinate
         return np.minimum(super().contact_radius(coordinate), self.domain)
 
-    def coordinate_from_radius(self, contact_radius: Array) -> Array:
-        if self.flat_radius == 0:
-            return contact_radius
-        return super().coordinate_from_radius(contact_radius)
-
-    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        """Parameters: see `Profile`."""
-        return a - c if self.flat_radius == 0 else super().coordinate_width(a, c, s_a, s_c)
-
-    def radius_width(self, s_a: Array, width: Array) -> Array:
-        return width if self.flat_radius == 0 else super().radius_width(s_a, width)
-
     def radius_slope(self, coordinate: Array) -> Array:
-        if self.flat_radius == 0:
-            return full(1.0, coordinate)
-        return super().radius_slope(coordinate)
+        return super().radius_slope(coordinate) if self.flat_radius > 0 else full(1.0, coordinate)
 
     # The shape, by its polynomials between the points.
 

@@ -20,7 +20,7 @@ from mdr_core.validation import first_index
 
 
 class FlatEnded(Profile):
-    """Profile with f = 0 up to b = `flat_radius`.
+    """Profile with f = 0 up to b = `flat_radius`, which is zero in a table without a flat.
 
     The contact coordinate is s = sqrt(a^2 - b^2), because a alone is not accurate as a -> b.
     Source: notes, §4.
@@ -50,7 +50,7 @@ class FlatEnded(Profile):
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
-        return width * (2 * s_a - width) / total
+        return width * (2 * s_a - width) / where(total > 0, total, 1.0)
 
 
 class Truncated(FlatEnded):

@@ -1,8 +1,7 @@
-"""Surface displacements of a spheroid that is indented nearly to its equator.
+"""Surface displacements of a spheroid, integrated over its contact coordinate v = artanh(x/R).
 
-There g' has a pole just beyond the contact edge, and a radius does not resolve the distance from
-it. The variable v = artanh(x/R) removes the pole and resolves the distance:
-g' dx = h (v sech^2 v + tanh v) dv.
+g' dx = h (v sech^2 v + tanh v) dv has no pole at the equator, and v resolves the distance from it.
+Source: notes, §7.
 """
 
 from math import ceil
@@ -10,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.abel.displacement import in_blocks
 from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards, nodes_of_pieces
 from mdr_core.typing import Array
 
@@ -18,9 +18,9 @@ _PIECE: Final = 2.0
 
 
 def slope_integral_outside(big_radius: float, v: float, r: Array, rtol: float) -> Array:
-    """Return (1/h) int_0^a g'(x) arcsin(x/r) dx for a = R tanh(v) near the equator [1].
+    """Return (1/h) int_0^a g'(x) arcsin(x/r) dx, a = R tanh(v) [1].
 
-    Source: mdr-5, Eq. (5.75), by parts; notes, §7.
+    Source: mdr-5, Eq. (5.75), by parts.
 
     Parameters
     ----------
@@ -29,13 +29,22 @@ def slope_integral_outside(big_radius: float, v: float, r: Array, rtol: float) -
     r : radii r >= a [length], shape (m,).
     rtol : relative tolerance.
     """
-    edge = _below_equator(big_radius, v)
-    beyond = np.maximum((r - big_radius) + edge, 0.0)
-    places, weights = _rule(v, _nearest_root(big_radius, edge, beyond), rtol)
+    edge = float(2 * big_radius / (np.exp(2 * v) + 1))
+    # Next to the equator R - a is accurate, next to the axis a is.
+    past = (r - big_radius) + edge if v > 1 else r - big_radius * np.tanh(v)
+    beyond = np.maximum(past, 0.0)
+    # The pieces halve towards the edge, down to the nearest root.
+    count = ceil(v / _PIECE) or 1
+    nearest = _nearest_root(big_radius, edge, beyond) * count
+    halvings = halvings_towards(nearest / v if v > 0 else 1.0)
+    places, weights = graded_rule(nodes_of_pieces(rtol), halvings, count)
     x, short, density = _stepped(big_radius, np.asarray(v), v * places)
-    root = np.sqrt(np.add.outer(short, beyond) * np.add.outer(x, r))
-    angle = np.arctan2(x[:, None], root)
-    return np.asarray(v * ((weights * density) @ angle))
+
+    def values(part: slice) -> Array:
+        root = np.sqrt(np.add.outer(short, beyond[part]) * np.add.outer(x, r[part]))
+        return (weights * density) @ np.arctan2(x[:, None], root)
+
+    return v * in_blocks(values, weights.size, r.size)
 
 
 def slope_integral_inside(
@@ -45,7 +54,7 @@ def slope_integral_inside(
 
     The substitution v - `width` u^2 for x removes the root at r.
 
-    Source: mdr-5, Eq. (5.40), by parts; notes, §7.
+    Source: mdr-5, Eq. (5.40), by parts.
 
     Parameters
     ----------
@@ -55,9 +64,12 @@ def slope_integral_inside(
     rtol : relative tolerance.
     """
     u, weights = composite_rule(nodes_of_pieces(rtol), ceil(float(width.max(initial=1.0))))
-    x, short, density = _stepped(big_radius, v, np.multiply.outer(u * u, width))
-    angle = np.arctan2(np.sqrt(short * (x + r)), x)
-    return np.asarray(width * ((2 * u * weights) @ (density * angle)))
+
+    def values(part: slice) -> Array:
+        x, short, density = _stepped(big_radius, v[part], np.multiply.outer(u * u, width[part]))
+        return (2 * u * weights) @ (density * np.arctan2(np.sqrt(short * (x + r[part])), x))
+
+    return width * in_blocks(values, weights.size, r.size)
 
 
 def _stepped(big_radius: float, v: Array, down: Array) -> tuple[Array, Array, Array]:
@@ -68,26 +80,15 @@ def _stepped(big_radius: float, v: Array, down: Array) -> tuple[Array, Array, Ar
     return x, short, at / np.cosh(at) ** 2 + np.tanh(at)
 
 
-def _below_equator(big_radius: float, v: float) -> float:
-    """R - a."""
-    return float(2 * big_radius / (np.exp(2 * v) + 1))
-
-
 def _nearest_root(big_radius: float, edge: float, beyond: Array) -> float:
-    """Distance in v of the edge from the nearest of the radii r = a + beyond, at most one.
+    """Distance in v of the edge R - `edge` from the nearest radius `beyond` it, at most one.
 
     Beyond the equator there is none: its root has an imaginary part of pi/2.
     """
-    least = float(beyond.min())
+    least = float(beyond.min(initial=edge))
     if least >= edge:
         return 1.0
     # artanh(r/R) - artanh(a/R).
     a = big_radius - edge
     difference = big_radius * least / (big_radius * edge + a * (edge - least))
     return min(float(np.arctanh(difference)), 1.0)
-
-
-def _rule(v: float, root: float, rtol: float) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], the edge at 0, where pieces halve down to the nearest root."""
-    count = ceil(v / _PIECE)
-    return graded_rule(nodes_of_pieces(rtol), halvings_towards(root * count / v), count)
