@@ -150,21 +150,6 @@ def stress(profile: Profile, annulus: Annulus, a: float, r: Array, rtol: float) 
     return result
 
 
-def slip_kernel(profile: Profile, c: float, r: Array, rtol: float) -> Array:
-    """Return S(c; r) of one stick radius [length], zero under a flat punch.
-
-    Parameters
-    ----------
-    profile : one profile.
-    c : stick radius [length].
-    r : radii r >= c [length], shape (m,).
-    rtol : relative accuracy.
-    """
-    if profile.has_no_partial_slip:
-        return np.zeros(r.shape)
-    return profile.slip_kernel(np.full(r.shape, c), r, rtol)
-
-
 def by_load(shape: tuple[int, ...], *columns: Any) -> list[list[float]]:
     """Return the values of each column under every load."""
     if not shape:

@@ -17,7 +17,7 @@ from mdr_core import equivalent_1d
 from mdr_core.abel import Annulus, InnerEnd
 from mdr_core.elementwise import number
 from mdr_core.fields.arc import Arc
-from mdr_core.fields.normal import by_load, fill, slip_kernel, stress
+from mdr_core.fields.normal import by_load, fill, stress
 from mdr_core.history import ContactState
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
@@ -148,8 +148,9 @@ def slip(
         for front, (below, above) in zip(fronts, slopes, strict=True):
             slips = inside & (r > front)
             if below != above and slips.any():
-                change = above - below
-                result[slips] -= change * slip_kernel(load.profile, front, r[slips], rtol)
+                at = r[slips]
+                kernel = load.profile.slip_kernel(np.full(at.shape, front), at, rtol)
+                result[slips] -= (above - below) * kernel
         for arc in filter(None, load.arcs):
             result[inside] -= arc.slip(r[inside], rtol)
         result *= load.ratio

@@ -89,6 +89,10 @@ class FlatPunch(Profile):
         depth = annulus.outer if annulus.inner is None else annulus.inner.width
         return depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """Zero: all springs slip at once. Parameters: see `Profile`."""
+        return np.zeros(r.shape)
+
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """(2/pi) d arcsin(a/r), with the depth as the contact coordinate.
 
