@@ -11,12 +11,12 @@ from mdr_command.exit_status import ExitStatus
 
 
 class Command(NamedTuple):
-    """Command with its summary, and its module with the functions `declare` and `run`."""
+    """Command with its summary, and its module with `run` and, for arguments, `declare`."""
 
     summary: str
-    module: str
     example: str
     """Command line that the help shows."""
+    module: str = "mdr_command.query"
 
 
 _STEEL: Final = "--kind paraboloid --radius 0.01 --e-star 1.15e11"
@@ -24,55 +24,47 @@ _SHEARED: Final = f"{_STEEL} --g-star 9.5e10 --friction-coefficient 0.3"
 COMMANDS: Final = {
     "normal": Command(
         "solve a frictionless normal contact",
-        "mdr_command.query",
         f"mdr normal {_STEEL} --normal-force 10",
     ),
     "tangential": Command(
         "solve a contact with friction",
-        "mdr_command.query",
         f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",
     ),
-    "history": Command(
-        "solve a load history", "mdr_command.query", "mdr history request.json -o history.json"
-    ),
+    "history": Command("solve a load history", "mdr history request.json -o history.json"),
     "stress": Command(
         "compute stresses and displacements over the radius",
-        "mdr_command.query",
         f"mdr stress {_STEEL} --normal-force 10 --quantities pressure --points 50 --format csv",
     ),
     "subsurface": Command(
         "compute stresses beneath the surface and yield",
-        "mdr_command.query",
         "mdr subsurface request.json --format npz -o stresses.npz",
     ),
     "wear": Command(
         "compute the limiting state of fretting wear",
-        "mdr_command.query",
         f"mdr wear {_SHEARED} --normal-force 10 --tangential-force 2",
     ),
     "evolution": Command(
         "integrate fretting wear over the cycles",
-        "mdr_command.query",
         "mdr evolution - < request.json > evolution.json",
     ),
     "sweep": Command(
         "run a parameter study over a table or a grid",
-        "mdr_sweep.command",
         "mdr sweep normal --template ball.json --grid load.normal_force=1:100:1000:log --out a.csv",
+        "mdr_sweep.command",
     ),
-    "profiles": Command("list the kinds of profile", "mdr_command.profiles", "mdr profiles"),
+    "profiles": Command("list the kinds of profile", "mdr profiles", "mdr_command.profiles"),
     "serve": Command(
-        "start the HTTP service", "mdr_command.serve", "mdr serve --host 127.0.0.1 --port 8000"
+        "start the HTTP service", "mdr serve --host 127.0.0.1 --port 8000", "mdr_command.serve"
     ),
     "openapi": Command(
         "print the OpenAPI document of the HTTP service",
-        "mdr_command.openapi",
         "mdr openapi > openapi.json",
+        "mdr_command.openapi",
     ),
     "completion": Command(
         "print a script that completes commands in a shell",
-        "mdr_command.completion",
         "mdr completion bash > ~/.local/share/bash-completion/completions/mdr",
+        "mdr_command.completion",
     ),
 }
 
@@ -120,7 +112,8 @@ def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
         if name in loaded:
             module = import_module(command.module)
             own.set_defaults(command=name, run=module.run)
-            module.declare(own)
+            if hasattr(module, "declare"):
+                module.declare(own)
     return parser
 
 

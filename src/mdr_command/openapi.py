@@ -7,10 +7,6 @@ import sys
 from mdr_service.app import create_app
 
 
-def declare(_parser: argparse.ArgumentParser) -> None:
-    """Declare no arguments."""
-
-
 def run(_arguments: argparse.Namespace) -> int:
     """Print the document, indented so that versions can be compared by line."""
     json.dump(create_app().openapi(), sys.stdout, indent=2, ensure_ascii=False)

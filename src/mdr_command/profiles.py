@@ -7,10 +7,6 @@ from mdr_core.profiles import KINDS
 from mdr_service.schemas.profiles import MODELS
 
 
-def declare(_parser: argparse.ArgumentParser) -> None:
-    """Declare no arguments."""
-
-
 def run(_arguments: argparse.Namespace) -> int:
     """Print a table of the kinds and return the exit status."""
     rows = [("kind", "fields", "f(r)")]

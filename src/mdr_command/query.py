@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from pydantic.fields import FieldInfo
+
 from mdr_command.exit_status import ExitStatus
 from mdr_core.errors import InputError
 from mdr_service import content_negotiation, problems
@@ -51,14 +53,14 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="file for the response (default: standard output)",
     )
-    if model := PARAMETERS.get(parser.get_default("command")):
+    if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
-        for name in _options(model):
+        for name, field in fields.items():
             group.add_argument(
                 f"--{name.replace('_', '-')}",
                 default=argparse.SUPPRESS,
                 metavar="TEXT" if name in _TEXTS else "NUMBER",
-                help=(model.model_fields[name].description or "").replace("%", "%%"),
+                help=(field.description or "").replace("%", "%%"),
             )
     parser.description = (
         f"{parser.description}\n\nA problem document goes to standard error, with the exit status "
@@ -108,17 +110,17 @@ def _content(arguments: argparse.Namespace) -> bytes:
         return respond(name, parameters.query(), media_type, parameters.members, size)
 
 
-def _options(model: type[Parameters]) -> list[str]:
+def _options(command: str) -> dict[str, FieldInfo]:
     """Return the parameters that are options; every command has options for a picture."""
-    return [name for name in model.model_fields if name not in {"format", "size"}]
+    fields = PARAMETERS[command].model_fields if command in PARAMETERS else {}
+    return {name: field for name, field in fields.items() if name not in {"format", "size"}}
 
 
 def _parameters(arguments: argparse.Namespace) -> Parameters | None:
     """Return the parameters that are given as options, None if there are none."""
-    model = PARAMETERS.get(arguments.command)
-    options = vars(arguments)
-    given = {name: options[name] for name in _options(model) if name in options} if model else {}
-    return model.model_validate(given) if model and given else None
+    command, options = arguments.command, vars(arguments)
+    given = {name: options[name] for name in _options(command) if name in options}
+    return PARAMETERS[command].model_validate(given) if given else None
 
 
 def _read(file: str) -> bytes:
