@@ -4,9 +4,8 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 
@@ -17,22 +16,19 @@ from mdr_service.settings import SETTINGS
 from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
 
-if TYPE_CHECKING:
-    from multiprocessing.process import BaseProcess
-
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     if supervisor := multiprocessing.parent_process():
         # A terminal signals all processes; the supervisor then ends the workers.
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
-        threading.Thread(target=_end_with, args=(supervisor,), daemon=True).start()
+        threading.Thread(target=_end_after, args=(supervisor.join,), daemon=True).start()
     async with app.state.workers.started(health.self_test):
         yield
 
 
-def _end_with(supervisor: "BaseProcess") -> None:
-    supervisor.join()
+def _end_after(wait: Callable[[], None]) -> None:
+    wait()
     os.kill(os.getpid(), signal.SIGTERM)
 
 

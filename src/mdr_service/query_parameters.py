@@ -5,7 +5,7 @@ validated like any other; an error in it is reported for the parameter.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Final, Literal
@@ -66,10 +66,12 @@ _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_loads), BeforeValidator(_wh
 # By the type of the field in JSON.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _LOADS: Final = frozenset({"load", "tangential", "oscillation"})
-_RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude"}
+_RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
+_TEXTS: Final = {
+    "profile.kind": "Kind of profile; POST takes series and tables as well",
+    "radius": "Radius r of the fields; `radius` is that of the profile [length]",
+}
 _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
-_Described = tuple[str, str, Any, str]
-"""Name, field of the request, type and description of a parameter."""
 
 
 class Parameters(BaseModel):
@@ -171,52 +173,41 @@ class Parameters(BaseModel):
         return given[1] if at_end else next(iter(given or inside), place)
 
 
-def _described(model: type[contacts.Query]) -> Iterator[_Described]:
-    """Yield the parameters that stand for a request, without the ends of ranges."""
+def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str]]:
+    """Yield name, field of the request, type and description of each parameter."""
     found = leaves(model.model_json_schema())
     # Of load paths only cycles consist of numbers.
     loads = _CYCLES if model is HistoryQuery else _LOADS
     # Members of groups come before what all queries have.
     for field, leaf in sorted(found, key=lambda each: "." not in each[0]):
         group, _, name = field.rpartition(".")
-        type_, text = _TYPES.get(leaf["type"]), leaf.get("description", "")
-        dimension = _dimension(text)
-        if field == "profile.kind":
-            text = "Kind of profile; POST takes series and tables as well"
-            yield name, field, Literal[_KINDS], text
-        elif field == "radius":
-            text = f"Radius r of the fields; `radius` is that of the profile {dimension}"
-            yield "r", field, _Number, text
-        elif field == "quantities":
-            text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
-            yield name, field, str | None, text
-        elif group == "material.bodies.#":
+        type_ = _TYPES.get(leaf["type"])
+        text: str = _TEXTS.get(field) or leaf.get("description", "")
+        dimension = text[text.rfind("[") :]
+        name = _RENAMED.get(field, name)
+        if group == "material.bodies.#":
             for body in (1, 2):
                 text = f"`{name}` of body {body}, absent for a rigid body {dimension}"
                 yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
+        elif field == "profile.kind":
+            yield name, field, Literal[_KINDS], text
+        elif field == "quantities":
+            text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
+            yield name, field, str | None, text
+        elif field == "radius" or group in loads & _LOADS:
+            yield name, field, _Number, text
+            for end, which in (("from", "First"), ("to", "Last")):
+                meaning = f"{which} of `n` values of `{name}` {dimension}"
+                yield f"{name}_{end}", field, _Number, meaning
         elif type_ and group in {"", "profile", "material", *loads}:
             if group == "profile":
                 text = f"`{name}` of the profile, see GET /v1/profiles {dimension}"
-            yield _RENAMED.get(field, name), field, type_, text
-
-
-def _with_ends(described: Iterable[_Described]) -> Iterator[_Described]:
-    """Yield parameters, and the ends of the ranges of those that are loads or radii."""
-    for name, field, type_, text in described:
-        yield name, field, type_, text
-        if field == "radius" or field.partition(".")[0] in _LOADS:
-            for end, which in (("from", "First"), ("to", "Last")):
-                meaning = f"{which} of `n` values of `{name}` {_dimension(text)}"
-                yield f"{name}_{end}", field, type_, meaning
-
-
-def _dimension(description: str) -> str:
-    return description[description.rfind("[") :]
+            yield name, field, type_, text
 
 
 def _parameters(model: type[contacts.Query]) -> type[Parameters]:
     """Return the parameters that stand for a request."""
-    described = list(_with_ends(_described(model)))
+    described = list(_described(model))
     definitions: dict[str, Any] = {
         name: (type_, Field(default=... if name == "kind" else None, description=text))
         for name, _, type_, text in described

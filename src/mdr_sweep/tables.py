@@ -138,15 +138,14 @@ def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.Recor
     held: list[pa.RecordBatch] = []
     size = 0
     for batch in batches:
-        rest = batch
-        while size + rest.num_rows >= rows:
-            yield _merged([*held, rest.slice(0, rows - size)])
-            rest = rest.slice(rows - size)
-            held, size = [], 0
-        if rest.num_rows:
-            held.append(rest)
-            size += rest.num_rows
-    if held:
+        held.append(batch)
+        size += batch.num_rows
+        if size >= rows:
+            whole = _merged(held)
+            end = size // rows * rows
+            yield from (whole.slice(start, rows) for start in range(0, end, rows))
+            held, size = [whole.slice(end)], size - end
+    if size:
         yield _merged(held)
 
 
@@ -180,7 +179,5 @@ def write(
 
 
 def _merged(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
-    if len(batches) == 1:
-        return batches[0]
     (whole,) = pa.Table.from_batches(batches).combine_chunks().to_batches()
     return whole

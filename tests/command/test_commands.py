@@ -44,7 +44,7 @@ def test_unknown_command_exits_with_usage(
 
 
 def test_missing_module_raises(monkeypatch: pytest.MonkeyPatch) -> None:
-    broken = command.Command("broken", "mdr_service.nowhere", "mdr broken")
+    broken = command.Command("broken", "mdr broken", "mdr_service.nowhere")
     monkeypatch.setitem(command.COMMANDS, "broken", broken)
     with pytest.raises(ModuleNotFoundError):
         command.main(["broken"])

@@ -1,7 +1,7 @@
 """Operation of the service, its documentation and the catalogue of profiles."""
 
 from importlib.resources import files
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
@@ -12,9 +12,6 @@ from mdr_service.api.documentation import PAGE_HEADERS, failures
 from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
 from mdr_service.schemas.profiles import MODELS
 from mdr_service.settings import SETTINGS, Settings
-
-if TYPE_CHECKING:
-    from mdr_service.workers import WorkerPool
 
 router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 
@@ -60,13 +57,8 @@ async def list_limits() -> Settings:
     return SETTINGS
 
 
-@router.get("/health", operation_id="health", tags=["operation"], summary="State of the service")
-async def health_() -> Health:
-    """Return 200 if requests are served."""
-    return _OK
-
-
 @router.get("/health/live", operation_id="live", tags=["operation"], summary="Liveness probe")
+@router.get("/health", operation_id="health", tags=["operation"], summary="State of the service")
 async def live() -> Health:
     """Return 200 without any work. Restart an instance that does not."""
     return _OK
@@ -84,8 +76,7 @@ async def ready(request: Request) -> Health:
 
     An instance that is busy is not ready for the moment.
     """
-    workers: WorkerPool = request.app.state.workers
-    await workers.check()
+    await request.app.state.workers.check()
     return _OK
 
 

@@ -52,9 +52,8 @@ def solve_wear(query: WearQuery) -> LimitingWear:
 
 def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
     """Return the limiting state of fretting wear."""
-    radius = limit.grid(query.points) if query.points else np.array(query.radius or ())
     values = by_load(limit, _WEAR, query.loads)
-    return _result(query, limit, values, radius, np.ravel(limit.stick_zone.unbounded))
+    return _result(query, limit, values, np.ravel(limit.stick_zone.unbounded))
 
 
 def solve_evolution(query: EvolutionQuery) -> WearEvolution:
@@ -77,19 +76,19 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
 
 def evolution_result(query: EvolutionQuery, worn: WearEvolution) -> Result:
     """Return fretting wear at the listed numbers of cycles."""
-    radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
-    estimate: Result = {}
-    if radius.size:
-        estimate["field_error_estimate"] = worn.field_error_estimate(radius, query.quantities)
     values = by_load(worn, _EVOLUTION, query.loads)
-    bounded = np.zeros(query.loads, dtype=bool)
-    return _result(query, worn, values, radius, bounded) | estimate
+    result = _result(query, worn, values, np.zeros(query.loads, dtype=bool))
+    if "radius" in result:
+        estimate = worn.field_error_estimate(result["radius"], query.quantities)
+        result["field_error_estimate"] = estimate
+    return result
 
 
 def _result(
-    query: WearQuery | EvolutionQuery, worn: Wear, values: Result, radius: Array, unbounded: Flags
+    query: WearQuery | EvolutionQuery, worn: Wear, values: Result, unbounded: Flags
 ) -> Result:
-    """Return the result of a wear query, with its fields at `radius` if there is any."""
+    """Return the result of a wear query, with its fields if it has radii."""
+    radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
     warnings = notices(query, worn)
     infinite: dict[str, Any] = {"pressure": True}
     if unworn(worn).normal.profile.has_no_partial_slip:
