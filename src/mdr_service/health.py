@@ -11,8 +11,6 @@ from mdr_service.problems import ServiceError
 from mdr_service.schemas.contacts import NormalQuery
 from mdr_service.serializers import json
 
-FAILURES: Final = (problems.LOST, problems.NOT_READY, problems.TIME_EXCEEDED)
-
 # A steel ball of 10 mm pressed into steel by a micrometre (SI units).
 _RADIUS, _MODULUS, _DEPTH = 0.01, 1.15e11, 1e-6
 _QUERY: Final = {

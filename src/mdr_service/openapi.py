@@ -3,7 +3,6 @@
 from typing import Any, Final
 
 from fastapi import FastAPI
-from pydantic.json_schema import models_json_schema
 
 from mdr_service.schemas.answers import Problem
 from mdr_service.schemas.examples import ANSWERS, EXAMPLES
@@ -71,9 +70,7 @@ def extend(app: FastAPI) -> None:
         if app.openapi_schema:
             return app.openapi_schema
         document = generate()
-        _, problem = models_json_schema([(Problem, "validation")], ref_template=_REFERENCE)
         schemas = document["components"]["schemas"]
-        schemas |= problem["$defs"]
         # The service validates each request of a batch alone, so that its model has any object.
         request = schemas["BatchItem"]["properties"]["request"]
         del request["type"], request["additionalProperties"]

@@ -57,10 +57,6 @@ NOT_READY = ProblemType("not-ready", 503, "Self-test failed")
 STOPPING = ProblemType("stopping", 503, "Service is shutting down")
 TIME_EXCEEDED = ProblemType("time-exceeded", 504, "Time limit exceeded")
 
-PROBLEM_TYPES: Final = tuple(
-    each for each in list(globals().values()) if isinstance(each, ProblemType)
-)
-
 Error = tuple[str, str]
 """JSON pointer into the request, and the reason."""
 

@@ -24,6 +24,13 @@ Wear = LimitingWear | WearEvolution
 Contact = NormalContact | TangentialContact | LoadHistory
 
 
+def require_one_of(query: Query, first: str, second: str) -> None:
+    """Raise InputError unless exactly one of two fields is given."""
+    if query.has(first) == query.has(second):
+        place = second if query.has(second) else first
+        raise InputError((place,), f"exactly one of {first}, {second} is needed")
+
+
 def members(model: type[SolvedAnswer], without: Iterable[str] = ()) -> tuple[str, ...]:
     """Return the names of the numbers that a response holds."""
     excluded = {*SolvedAnswer.model_fields, *without}

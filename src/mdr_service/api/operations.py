@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from mdr_core import profiles
-from mdr_service import health, observability, problems
+from mdr_service import observability, problems
 from mdr_service.api.documentation import PAGE_HEADERS, failures
 from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
 from mdr_service.schemas.profiles import MODELS
@@ -69,7 +69,7 @@ async def live() -> Health:
     operation_id="ready",
     tags=["operation"],
     summary="Readiness probe",
-    responses=failures(problems.BUSY, *health.FAILURES),
+    responses=failures(problems.BUSY, problems.LOST, problems.NOT_READY, problems.TIME_EXCEEDED),
 )
 async def ready(request: Request) -> Health:
     """Return 200 if a compute process solves a Hertzian contact correctly.

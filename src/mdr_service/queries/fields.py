@@ -19,6 +19,7 @@ from mdr_service.results import (
     Result,
     checked,
     notices,
+    require_one_of,
     response_metadata,
     singular,
 )
@@ -41,10 +42,8 @@ def solve_stress(query: StressQuery) -> Contact:
 
 def require_loads(query: LoadedQuery) -> None:
     """Raise InputError unless the query has loads, or a load history, that fit its friction."""
+    require_one_of(query, "load", "history")
     by_path = query.has("history")
-    if query.has("load") == by_path:
-        place = "history" if by_path else "load"
-        raise InputError((place,), "exactly one of load, history is needed")
     if by_path and query.has("tangential"):
         raise InputError(("tangential",), "must be absent: history contains the tangential load")
     if query.has("friction_coefficient") != (by_path or query.has("tangential")):
@@ -52,8 +51,7 @@ def require_loads(query: LoadedQuery) -> None:
         raise InputError(
             (missing,), "friction_coefficient is needed with tangential or history, and only then"
         )
-    if by_path:
-        require_few_samples("history", query.history)
+    require_few_samples(query)
 
 
 def solve_loaded(query: LoadedQuery) -> Contact:
@@ -139,9 +137,7 @@ def _require_consistent(query: StressQuery) -> None:
     for index, name in enumerate(query.quantities):
         if name in SHEAR_FIELDS and not with_friction:
             raise InputError(("quantities", index), f"{name} needs tangential or history")
-    if query.has("radius") == query.has("points"):
-        place = "points" if query.has("points") else "radius"
-        raise InputError((place,), "exactly one of radius, points is needed")
+    require_one_of(query, "radius", "points")
     require_few_numbers(query)
 
 

@@ -13,6 +13,7 @@ from mdr_service.results import (
     checked,
     members,
     notices,
+    require_one_of,
     response_metadata,
 )
 from mdr_service.schemas.answers import HistoryAnswer
@@ -26,11 +27,8 @@ _HISTORY: Final = members(HistoryAnswer, _CYCLES)
 
 def solve_history(query: HistoryQuery) -> LoadHistory:
     """Return the load history of a query, given by its points or as cycles."""
-    if query.has("history") == query.has("cycles"):
-        place = "cycles" if query.has("cycles") else "history"
-        raise InputError((place,), "exactly one of history, cycles is needed")
-    name = "cycles" if query.has("cycles") else "history"
-    require_few_samples(name, query.path)
+    require_one_of(query, "history", "cycles")
+    require_few_samples(query)
     return solve_path(query)
 
 
@@ -54,32 +52,29 @@ def solve_path(query: HistoryQuery | LoadedQuery) -> LoadHistory:
             rtol=query.rtol,
         )
     except InputError as error:
-        raise _in_request(error, name, given) from None
+        first, *rest = error.path
+        if first != "history":
+            raise
+        if len(rest) == 3:
+            # The core numbers points, not members.
+            rest = [*given.place(str(rest[0]), int(rest[2]))]
+        raise InputError((name, *rest), error.detail) from None
 
 
 def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
     """Return forces, displacements and energies at the samples of a load history."""
     names = (*_HISTORY, *_CYCLES) if isinstance(history, LoadCycles) else _HISTORY
     values = {name: np.asarray(getattr(history, name)) for name in names}
-    warnings = notices(query, history)
     return checked(query, values) | response_metadata(
-        history.method, history.error_estimate, warnings
+        history.method, history.error_estimate, notices(query, history)
     )
 
 
-def require_few_samples(name: str, path: LoadPath) -> None:
-    """Raise InputError if a load path has too many samples."""
-    if path.samples > SETTINGS.max_samples:
+def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:
+    """Raise InputError if the load path of a query has too many samples."""
+    path = query.path
+    if path and path.samples > SETTINGS.max_samples:
+        name = "cycles" if query.has("cycles") else "history"
         place = ("samples_per_step",) if path.samples_per_step > 1 else ()
         detail = f"the number of samples must not exceed {SETTINGS.max_samples}"
         raise InputError((name, *place), detail)
-
-
-def _in_request(error: InputError, name: str, path: LoadPath) -> InputError:
-    """Return the error with the path of the request; the core numbers points, not members."""
-    first, *rest = error.path
-    if first != "history":
-        return error
-    if len(rest) == 3:
-        rest = [*path.place(str(rest[0]), int(rest[2]))]
-    return InputError((name, *rest), error.detail)

@@ -29,9 +29,9 @@ def _describe_choice(schema: dict[str, Any]) -> None:
             "required": [name],
             "additionalProperties": schema["additionalProperties"],
         }
-        for name in fields.keys() - optional.keys()
+        for name in fields
+        if name not in optional
     ]
-    schema["oneOf"].sort(key=lambda each: list(fields).index(each["required"][0]))
     del schema["additionalProperties"]
 
 
