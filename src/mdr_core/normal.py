@@ -22,6 +22,7 @@ from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     extremes,
+    only_one,
     require_not_negative,
     require_positive,
     require_representable,
@@ -187,12 +188,7 @@ def solve(
     [9.0856e-05, 0.000181712]
     """
     loads = (indentation_depth, normal_force, contact_radius)
-    named = [
-        (name, load) for name, load in zip(_COORDINATE_FROM, loads, strict=True) if load is not None
-    ]
-    if len(named) != 1:
-        raise InputError(("load",), f"exactly one of {', '.join(_COORDINATE_FROM)} is needed")
-    name, load = named[0][0], np.asarray(named[0][1], dtype=float)[()]
+    name, load = only_one(("load",), dict(zip(_COORDINATE_FROM, loads, strict=True)))
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)

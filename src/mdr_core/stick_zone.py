@@ -1,8 +1,7 @@
 """Stick zone and slip annulus under one monotonic tangential load."""
 
-from collections.abc import Callable, Mapping
 from math import inf
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -10,25 +9,8 @@ from mdr_core import equivalent_1d
 from mdr_core.elementwise import full, least, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
-from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, first_index
-
-
-class StickZone(NamedTuple):
-    """Stick edge, slip annulus and displacement beyond full slip of every case."""
-
-    edge: Array
-    """Stick radius in the contact coordinate; undefined in full slip."""
-    width: Array
-    """Distance of the stick edge from the contact edge in the contact coordinate."""
-    sign: Array
-    """Direction of the load; a single 1 if all are positive."""
-    full: Flags
-    """True in full slip; a single False for no case."""
-    excess: Array
-    """Displacement beyond that of full slip [length]; a single 0 for no case."""
-
 
 # Quantities of the normal contact that limit those of the tangential one.
 CONTROLS: Final = {
@@ -38,7 +20,6 @@ CONTROLS: Final = {
 }
 # Edge, width, full and excess.
 _Slipped = tuple[Array, Array, Flags, Array]
-_Inverse = Callable[[Profile, Array, Array, Array], tuple[Array, Array]]
 _NO_EXCESS: Final = number(0.0)
 _POSITIVE: Final = number(1.0)
 _NO_FULL_SLIP: Final = _NO_EXCESS > 0
@@ -46,8 +27,8 @@ _NO_FULL_SLIP: Final = _NO_EXCESS > 0
 
 def solve(
     contact: NormalContact, g_star: Parameter, friction: Parameter, name: str, given: Array
-) -> StickZone:
-    """Return the stick zone of every case.
+) -> tuple[Array, Array, Array, Flags, Array]:
+    """Return stick edge, width, sign, full slip and excess of every case: see `TangentialContact`.
 
     Source: mdr-5, Eqs. (5.18)-(5.23).
 
@@ -62,8 +43,14 @@ def solve(
     InputError : a value without equilibrium, outside the contact or not finite.
     """
     sign, size = _sign_and_size(name, given)
-    edge, width, full, excess = _BY_CONTROL[name](contact, g_star, friction, size)
-    return StickZone(edge, width, sign, full, excess)
+    if name == "stick_radius":
+        edge, width, full_slip, excess = _by_radius(contact, size)
+    else:
+        by_force = name == "tangential_force"
+        ratio = friction if by_force else friction * contact.e_star / g_star
+        limit = ratio * getattr(contact, CONTROLS[name])
+        edge, width, full_slip, excess = _by_load(contact, size, limit, by_force=by_force)
+    return edge, width, sign, full_slip, excess
 
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
@@ -79,27 +66,11 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
     return np.sign(given), np.abs(given)
 
 
-def _by_force(
-    contact: NormalContact, _g_star: Parameter, friction: Parameter, size: Array
-) -> _Slipped:
-    limit = friction * contact.normal_force
-    return _within_limit(equivalent_1d.stick_from_force, contact, size, limit, bounded=True)
-
-
-def _by_displacement(
-    contact: NormalContact, g_star: Parameter, friction: Parameter, size: Array
-) -> _Slipped:
-    limit = friction * contact.e_star / g_star * contact.indentation_depth
-    return _within_limit(equivalent_1d.stick_from_depth, contact, size, limit, bounded=False)
-
-
-def _within_limit(
-    inverse: _Inverse, contact: NormalContact, size: Array, limit: Array, *, bounded: bool
-) -> _Slipped:
-    """Stick edge and annulus; full slip from the limit on, which a bounded load does not exceed."""
+def _by_load(contact: NormalContact, size: Array, limit: Array, *, by_force: bool) -> _Slipped:
+    """Stick edge and annulus; full slip from the limit on, which a force does not exceed."""
     left, full_slip, excess = limit - size, _NO_FULL_SLIP, _NO_EXCESS
     if least(left) <= 0:
-        if bounded and least(left) < 0:
+        if by_force and least(left) < 0:
             raise InputError(
                 ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
                 "no equilibrium: the force exceeds friction_coefficient x normal_force",
@@ -115,12 +86,11 @@ def _within_limit(
     left /= limit
     if contact.profile.has_no_partial_slip:
         return contact.coordinate, ratio, full_slip, excess
-    return *inverse(contact.profile, contact.coordinate, ratio, left), full_slip, excess
+    find = equivalent_1d.stick_from_force if by_force else equivalent_1d.stick_from_depth
+    return *find(contact.profile, contact.coordinate, ratio, left), full_slip, excess
 
 
-def _by_stick_radius(
-    contact: NormalContact, _g_star: Parameter, _friction: Parameter, radius: Array
-) -> _Slipped:
+def _by_radius(contact: NormalContact, radius: Array) -> _Slipped:
     profile, a = contact.profile, contact.contact_radius
     innermost = profile.first_radius
     all_slips = (radius == 0) & (a > 0)
@@ -146,12 +116,3 @@ def _by_stick_radius(
         # The coordinate of an edge that follows from a load is accurate, its radius may not be.
         width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
     return edge, width, all_slips, _NO_EXCESS
-
-
-_BY_CONTROL: Final[
-    Mapping[str, Callable[[NormalContact, Parameter, Parameter, Array], _Slipped]]
-] = {
-    "tangential_force": _by_force,
-    "tangential_displacement": _by_displacement,
-    "stick_radius": _by_stick_radius,
-}

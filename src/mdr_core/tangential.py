@@ -17,7 +17,7 @@ from mdr_core.profiles import Profile
 from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import extremes, require_positive
+from mdr_core.validation import extremes, only_one, require_positive
 
 # Rounding error of steps over the annulus, relative to that of the profile's closed forms.
 _STEP_ERROR: Final = 40.0
@@ -307,10 +307,7 @@ def solve(
     ):
         require_positive(path, value)
     loads = (tangential_force, tangential_displacement, stick_radius)
-    named = [(name, load) for name, load in zip(CONTROLS, loads, strict=True) if load is not None]
-    if len(named) != 1:
-        raise InputError(("tangential",), f"exactly one of {', '.join(CONTROLS)} is needed")
-    name, given = named[0][0], np.asarray(named[0][1], dtype=float)[()]
+    name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
     parameters = (g_star, friction_coefficient)
     shapes = given.shape, contact.coordinate.shape, *map(np.shape, parameters)
     try:
@@ -318,17 +315,9 @@ def solve(
     except ValueError:
         detail = f"the shape {given.shape} does not agree with the normal loads, {shapes[1]}"
         raise InputError(("tangential", name), detail) from None
-    zone = stick_zone.solve(contact, *parameters, name, given)
-    result = TangentialContact(
-        contact,
-        *parameters,
-        zone.edge,
-        broadcast(zone.width, shape),
-        zone.sign,
-        zone.full,
-        zone.excess,
-        name,
-    )
+    edge, width, *slipped = stick_zone.solve(contact, *parameters, name, given)
+    zone: Any = edge, broadcast(width, shape), *slipped, name
+    result = TangentialContact(contact, *parameters, *zone)
     if given.shape == shape:
         # The prescribed load is returned bit-identical.
         vars(result)[name] = given

@@ -1,5 +1,6 @@
 """Bounds of inputs and of results, cheap enough for a sweep over millions of cases."""
 
+from collections.abc import Mapping
 from math import inf
 from typing import Final
 
@@ -31,6 +32,21 @@ def extremes(values: float | ArrayLike) -> tuple[float, float]:
 def first_index(bad: Flags) -> tuple[int, ...]:
     """Return the index of the first true element, empty where `bad` has no dimension."""
     return (int(np.flatnonzero(bad)[0]),) if bad.ndim else ()
+
+
+def only_one(
+    path: tuple[str | int, ...], given: Mapping[str, ArrayLike | None]
+) -> tuple[str, Array]:
+    """Return name and values of the one quantity that is given.
+
+    Raises
+    ------
+    InputError : none or several, with the path.
+    """
+    named = [(name, values) for name, values in given.items() if values is not None]
+    if len(named) != 1:
+        raise InputError(path, f"exactly one of {', '.join(given)} is needed")
+    return named[0][0], np.asarray(named[0][1], dtype=float)[()]
 
 
 def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:

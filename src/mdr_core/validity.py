@@ -124,13 +124,9 @@ def of_normal_contact(
     of first order in the slope by the neglected radial displacement, and of second order by the
     geometry. `plastic`: the deviatoric stress is infinite somewhere, which no material can bear.
 
-    Source: hay; notes, §8.
+    `slips_from` is the least radius with slip in each case [length].
 
-    Parameters
-    ----------
-    contact : a normal contact.
-    material : the bodies; Poisson's ratio 0.3 is assumed where they are unknown.
-    slips_from : least radius with slip in each case [length]; infinite without.
+    Source: hay; notes, §8.
     """
     beta = None if material is None else material.dundurs_beta
     radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
@@ -169,11 +165,6 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> list[
     `impossible_moduli`: no pair of isotropic bodies has this ratio of E* and G*.
 
     Source: mdr-5, Eq. (5.3); notes, §8.
-
-    Parameters
-    ----------
-    e_star, g_star : effective moduli [pressure].
-    beta : Dundurs' beta [1]; None where the bodies are unknown.
     """
     if beta is not None:
         return [

@@ -87,35 +87,33 @@ class ContactState(Results):
     def _branches(self) -> TractionBranches:
         return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), by_force=False)
 
-    @cached_property
+    @property
     def depth(self) -> Array:
         """Depths w of the vertices, from 0 to d [length]; empty in separation."""
-        if not self.in_contact:
-            return _frozen(np.zeros(0))
-        return _frozen(np.append(self._branches.depth[:-1], self.indentation_depth))
+        vertices = np.append(self._branches.depth[:-1], self.indentation_depth)
+        return vertices if self.in_contact else vertices[:0]
 
-    @cached_property
+    @property
     def load(self) -> Array:
         """q_x of the springs at the vertices [force/length]; linear in w between them."""
-        if not self.in_contact:
-            return _frozen(np.zeros(0))
         tree = self._branches.tree
         above = np.cumsum((tree.slope * tree.span)[:0:-1])
-        return _frozen(self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0))
+        loads = self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
+        return loads if self.in_contact else loads[:0]
 
     @cached_property
     def coordinate(self) -> Array:
-        """Contact coordinates of the vertices; empty in separation."""
-        return _frozen(self._branches.coordinate if self.in_contact else np.zeros(0))
+        """Contact coordinates of the vertices; in separation that of the axis."""
+        return self._branches.coordinate
 
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
-        return _frozen(self._branches.tree.slope[1:])
+        return self._branches.tree.slope[1:]
 
     @cached_property
     def segments(self) -> TractionSegments:
-        """Segments of the traction, with the arcs of nonlinear load steps; empty in separation."""
+        """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
         if self.arcs is not None:
             return self.arcs
         tree = self._branches.tree
@@ -131,21 +129,17 @@ class ContactState(Results):
     @property
     def normal_force(self) -> float:
         """F_N [force]."""
-        if not self.in_contact:
-            return 0.0
         return float(self.e_star * self.profile.reduced_force(self.coordinate[-1]))
 
     @property
     def elastic_energy(self) -> float:
         """Energy stored by the normal load, int F_N dd [force length]."""
-        if not self.in_contact:
-            return 0.0
         return float(self.e_star * self.profile.reduced_energy(self.coordinate[-1]))
 
     @property
     def tangential_energy(self) -> float:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        return self._energy_unit * float(self._branches.square[-1]) if self.in_contact else 0.0
+        return self._energy_unit * float(self._branches.square[-1])
 
     @cached_property
     def dissipation(self) -> float:
@@ -165,7 +159,7 @@ class ContactState(Results):
     @property
     def slip_fronts(self) -> Array:
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
-        if self.profile.has_no_partial_slip or not self.in_contact:
+        if self.profile.has_no_partial_slip:
             return np.zeros(0)
         edges = self.coordinate if self.arcs is None else self.arcs.coordinate
         return self.profile.contact_radius(edges[1:-1])
@@ -173,8 +167,7 @@ class ContactState(Results):
     @property
     def tangential_force(self) -> float:
         """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
-        shear = float(self._branches.shear[-1]) if self.in_contact else 0.0
-        return self.friction_coefficient * self.e_star * shear
+        return self.friction_coefficient * self.e_star * float(self._branches.shear[-1])
 
 
 def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, by_force: bool) -> Array:
@@ -195,12 +188,6 @@ def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, by_force: b
         share = span / upper, tree.normal[short] / upper
         width[short] = find(profile, coordinate[1:][short], *share)[1]
     return width
-
-
-def _frozen(values: Array) -> Array:
-    """Return the array, marked read-only."""
-    values.flags.writeable = False
-    return values
 
 
 def unloaded(

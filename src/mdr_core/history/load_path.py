@@ -9,12 +9,11 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.errors import InputError
+from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_memory import LoadPoints
-from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
 
 # A force at the onset of full slip differs from mu F_N by the rounding of both.
@@ -25,6 +24,8 @@ _ROUNDING: Final = 8 * float(np.finfo(float).eps)
 class SampledPath:
     """Samples of a load history, in the quantities that are prescribed."""
 
+    start: ContactState
+    """The unloaded contact."""
     normal_name: str
     tangential_name: str
     normal: Array
@@ -62,50 +63,44 @@ class SampledPath:
         changes = np.diff(np.stack([self.normal, self.tangential]), axis=1, prepend=0.0)
         return np.asarray((changes != 0).all(axis=0))
 
-    def prescribed(self, e_star: float) -> Array:
-        """Return the depth [length] or the reduced force F_N/E* [length^2] at each sample."""
-        return self.normal if self.by_depth else self.normal / e_star
+    @cached_property
+    def prescribed(self) -> Array:
+        """Depth [length] or reduced force F_N/E* [length^2] at each sample."""
+        return self.normal if self.by_depth else self.normal / self.start.e_star
 
-    def contact_coordinate(self, profile: Profile, e_star: float) -> Array:
-        """Return the contact coordinate at each sample, that of zero load in separation."""
+    @cached_property
+    def contact_coordinate(self) -> Array:
+        """Contact coordinate at each sample, that of zero load in separation."""
         # Equal loads get equal coordinates: the last bit may depend on an element's position.
-        load, index = np.unique(np.maximum(self.prescribed(e_star), 0.0), return_inverse=True)
+        load, index = np.unique(np.maximum(self.prescribed, 0.0), return_inverse=True)
         find = coordinate_from_depth if self.by_depth else coordinate_from_force
-        return np.asarray(find(profile, load)[index])
+        return np.asarray(find(self.start.profile, load)[index])
 
-    def normal_coordinate(self, profile: Profile, e_star: float) -> Array:
-        """Return the normal coordinate at each sample, <= 0 in separation."""
-        prescribed = self.prescribed(e_star)
+    @property
+    def _normal_coordinate(self) -> Array:
+        """Normal coordinate at each sample, <= 0 in separation."""
+        prescribed, profile = self.prescribed, self.start.profile
         if self.by_depth != self.by_force:
             return prescribed
-        s, index = np.unique(self.contact_coordinate(profile, e_star), return_inverse=True)
+        s, index = np.unique(self.contact_coordinate, return_inverse=True)
         normal = (profile.reduced_force if self.by_force else profile.depth)(s)[index]
         return np.where(prescribed > 0, normal, np.minimum(prescribed, 0.0))
 
-    def load_points(
-        self, profile: Profile, e_star: float, friction_coefficient: float, scale: float
-    ) -> LoadPoints:
-        """Return one straight step to each sample.
-
-        Parameters
-        ----------
-        profile : profile of the contact.
-        e_star, friction_coefficient : effective modulus [pressure] and mu [1].
-        scale : divides the tangential load: mu E*/G* for displacements, mu E* for forces.
-
-        Returns
-        -------
-        Normal coordinates, and the reduced tangential loads.
+    @cached_property
+    def load_points(self) -> LoadPoints:
+        """One straight step to each sample, in normal coordinates and reduced tangential loads.
 
         Raises
         ------
         InputError : a tangential force above mu F_N at a sample.
         """
-        normal, tangential = self.normal_coordinate(profile, e_star), self.tangential / scale
+        mu, e_star = self.start.friction_coefficient, self.start.e_star
+        scale = mu * e_star / (1.0 if self.by_force else self.start.g_star)
+        normal, tangential = self._normal_coordinate, self.tangential / scale
         within, limit = tangential, scale * normal
         if self.by_force:
             within = self.within_friction(normal, tangential, self.step)
-            limit = friction_coefficient * (e_star * normal if self.by_depth else self.normal)
+            limit = mu * (e_star * normal if self.by_depth else self.normal)
         # At the given points the rounding of `scale` does not decide between the regimes.
         near = np.abs(np.abs(tangential) - normal) <= 2 * _ROUNDING * normal
         below = np.abs(self.tangential) < limit
@@ -119,12 +114,7 @@ class SampledPath:
         return LoadPoints(normal, tangential, self.continues, self.step)
 
     def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
-        """Return tangential forces that do not exceed friction.
-
-        Parameters
-        ----------
-        normal, tangential : reduced forces F_N/E* and F_x/(mu E*) [length^2], shape (n,).
-        step : load step of each.
+        """Return reduced tangential forces that do not exceed the reduced normal forces.
 
         Raises
         ------
@@ -144,12 +134,16 @@ class SampledPath:
 
 
 def build(
-    normal: tuple[str, ArrayLike], tangential: tuple[str, ArrayLike], samples_per_step: int
+    start: ContactState,
+    normal: tuple[str, Array],
+    tangential: tuple[str, Array],
+    samples_per_step: int,
 ) -> SampledPath:
     """Return the samples on the straight steps between the given points, from zero load.
 
     Parameters
     ----------
+    start : the unloaded contact.
     normal, tangential : name and points, shape (n,) or, for one of the two, a single value.
     samples_per_step : evenly spaced samples on each step, >= 1.
 
@@ -170,7 +164,7 @@ def build(
         )
     first, second = np.broadcast_arrays(normal_points, tangential_points)
     samples = _along(first, samples_per_step), _along(second, samples_per_step)
-    return SampledPath(normal[0], tangential[0], *samples, samples_per_step)
+    return SampledPath(start, normal[0], tangential[0], *samples, samples_per_step)
 
 
 def _along(points: Array, count: int) -> Array:
@@ -185,9 +179,9 @@ def _along(points: Array, count: int) -> Array:
     return np.asarray(np.where(start == stop, stop, samples).ravel())
 
 
-def _checked(axis: str, name: str, value: ArrayLike) -> Array:
+def _checked(axis: str, name: str, value: Array) -> Array:
     """Points of one load, checked to be finite and one-dimensional."""
-    points = np.atleast_1d(np.asarray(value, dtype=float))
+    points = np.atleast_1d(value)
     if points.ndim != 1 or points.size == 0:
         raise InputError(("history", axis, name), "must be a list of at least one number")
     negative = (points < 0) & (name == "normal_force")

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.history import slip_memory
-from mdr_core.history.contact_state import ContactState, TractionSegments, widths
+from mdr_core.history.contact_state import TractionSegments, widths
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import StepResults
@@ -47,15 +47,26 @@ class NonlinearSteps:
     """Arcs of a load path, one for each sample; those of straight steps have no rate."""
 
     path: SampledPath
-    profile: Profile
-    coordinate: Array
-    """Contact coordinate of each sample, after that of zero load; shape (n + 1,)."""
-    normal: Array
-    """Normal coordinate of each sample, after zero; shape (n + 1,)."""
-    conjugate: Array
-    """Prescribed depth or reduced force of each sample, after zero; shape (n + 1,)."""
-    tangential: Array
-    """Tangential coordinate of each sample, after zero; shape (n + 1,)."""
+
+    @property
+    def profile(self) -> Profile:
+        """Profile of the contact."""
+        return self.path.start.profile
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinate of each sample, after that of zero load; shape (n + 1,)."""
+        return np.append(self.profile.first_coordinate, self.path.contact_coordinate)
+
+    @cached_property
+    def conjugate(self) -> Array:
+        """Prescribed depth or reduced force of each sample, after zero; shape (n + 1,)."""
+        return np.append(0.0, self.path.prescribed)
+
+    @cached_property
+    def tangential(self) -> Array:
+        """Tangential coordinate of each sample, after zero; shape (n + 1,)."""
+        return np.append(0.0, self.path.load_points.tangential)
 
     @cached_property
     def rate(self) -> Array:
@@ -114,7 +125,7 @@ class NonlinearSteps:
         climbed = (self.along(s) - self.conjugate[arc]) / np.where(rise == 0, 1.0, rise)
         tangential = self.tangential[arc] + np.diff(self.tangential)[arc] * climbed
         normal = self.moments.normal(s)
-        normal[samples], tangential[samples] = self.normal[1:], self.tangential[1:]
+        normal[samples], tangential[samples], *_ = self.path.load_points
         step = self.path.step[arc]
         if self.path.by_force:
             tangential = self.path.within_friction(normal, tangential, step)
@@ -245,45 +256,28 @@ class ExtrapolatedResults:
         return found[0], found[1]
 
 
-def results(
-    path: SampledPath, start: ContactState, scale: float, rtol: float
-) -> ExtrapolatedResults:
+def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     """Return the results of a load path with nonlinear load steps.
 
-    Parameters
-    ----------
-    path : samples of the load path.
-    start : the unloaded contact.
-    scale : divides the tangential quantity: mu E*/G* for displacements, mu E* for forces.
-    rtol : relative accuracy that determines the number of chords.
+    `rtol` determines the number of chords.
 
     Raises
     ------
     InputError : a tangential force above mu F_N anywhere on the path.
     """
-    profile, e_star = start.profile, start.e_star
-    samples, conjugate = (
-        path.load_points(profile, e_star, start.friction_coefficient, scale),
-        path.prescribed(e_star),
-    )
     if path.by_force:
         # A force that changes while the bodies are separated exceeds friction there.
+        conjugate = path.prescribed
         separated = np.minimum(conjugate, np.append(0.0, conjugate[:-1])) < 0
         path.within_friction(
             0 * conjugate, np.where(separated & path.nonlinear, 1.0, 0.0), path.step
         )
-    coordinate = path.contact_coordinate(profile, e_star)
-    rows = samples.normal, conjugate, samples.tangential
-    nonlinear = NonlinearSteps(
-        path,
-        profile,
-        np.append(profile.first_coordinate, coordinate),
-        *(np.append(0.0, row) for row in rows),
-    )
+    nonlinear = NonlinearSteps(path)
     travel = np.sum(np.abs(np.diff(nonlinear.coordinate))) / np.max(nonlinear.coordinate)
     finest = int(min(max(rtol ** (-1 / 3), _MIN_CHORDS), _MAX_CHORDS, _MAX_TOTAL_CHORDS / travel))
     sets = []
     for halvings in range(_HALVINGS + 1):
         points, last = nonlinear.chords(finest, halvings)
-        sets.append((StepResults(profile, path.by_force, points, start.polyline), last))
+        start = path.start.polyline
+        sets.append((StepResults(nonlinear.profile, path.by_force, points, start), last))
     return ExtrapolatedResults(nonlinear, tuple(sets))

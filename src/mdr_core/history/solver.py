@@ -18,6 +18,7 @@ from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
+from mdr_core.validation import only_one
 
 # Rounding error of the sums over the branches, relative to that of the profile.
 _SUMS: Final = 40.0
@@ -28,8 +29,6 @@ class LoadHistory(validity.ContactResults):
     """Results of a load history at every sample; each is computed on first use."""
 
     path: SampledPath
-    start: ContactState
-    """The unloaded contact."""
     normal: NormalContact
     """Normal contact of every sample, with zero load in separation."""
     results: StepResults | ExtrapolatedResults
@@ -88,18 +87,18 @@ class LoadHistory(validity.ContactResults):
         it counts from the axis.
         """
         if self.path.by_force:
-            return self.start.displacement_ratio * self.results.displacement
+            return self.path.start.displacement_ratio * self.results.displacement
         return self.path.tangential
 
     @cached_property
     def tangential_energy(self) -> Array:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length], >= 0."""
-        return self._friction * self.start.displacement_ratio * self.results.energy
+        return self._friction * self.path.start.displacement_ratio * self.results.energy
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated by friction since the sample before [force length], >= 0."""
-        return self._friction * self.start.displacement_ratio * self.results.dissipation
+        return self._friction * self.path.start.displacement_ratio * self.results.dissipation
 
     @cached_property
     def dissipated_energy(self) -> Array:
@@ -117,7 +116,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def g_star(self) -> float:
         """Effective shear modulus [pressure]."""
-        return self.start.g_star
+        return self.path.start.g_star
 
     @property
     def slips_from(self) -> Array:
@@ -135,7 +134,7 @@ class LoadHistory(validity.ContactResults):
         line = steps.last
         if self.path.by_force:
             line = self._over_depths(part.depth_step[at[1:]], line)
-        state = replace(self.start, polyline=line, arcs=arcs)
+        state = replace(self.path.start, polyline=line, arcs=arcs)
         if line.in_contact:
             # Known here; the state would recompute them from its depths.
             vars(state)["coordinate"] = part.coordinate[at]
@@ -152,7 +151,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def slip_fronts(self) -> Array:
         """Radii of the slip fronts at the end of the history, ascending [length]."""
-        profile, steps = self.start.profile, self.results
+        profile, steps = self.path.start.profile, self.results
         if profile.has_no_partial_slip or isinstance(steps, ExtrapolatedResults):
             return self.state.slip_fronts
         part, at = steps.last_branches
@@ -173,7 +172,7 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def _condition_number(self) -> float:
         """Largest relative condition number of the results with respect to the loads."""
-        limit = self.start.friction_coefficient * np.asarray(self.normal_force)
+        limit = self.path.start.friction_coefficient * np.asarray(self.normal_force)
         if self.path.by_force:
             return conditioning.of_forces(self.normal, np.abs(self.path.tangential), limit)
         loads = self.path.tangential, self.tangential_force, limit
@@ -191,7 +190,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def _friction(self) -> float:
         """mu E* [pressure]."""
-        return self.start.friction_coefficient * self.start.e_star
+        return self.path.start.friction_coefficient * self.path.start.e_star
 
 
 def solve(
@@ -259,34 +258,23 @@ def solve(
         "tangential_displacement": tangential_displacement,
         "tangential_force": tangential_force,
     }
-    path = load_path.build(
-        _one("normal", normal_load), _one("tangential", tangential_load), samples_per_step
-    )
-    contact = _normal_contact(start, path, rtol)
-    scale = friction_coefficient * e_star / (1.0 if path.by_force else g_star)
+    pressed = only_one(("history", "normal"), normal_load)
+    pushed = only_one(("history", "tangential"), tangential_load)
+    path = load_path.build(start, pressed, pushed, samples_per_step)
+    contact = _normal_contact(path, rtol)
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if path.nonlinear.any() and not profile.has_no_partial_slip:
-        results = nonlinear_steps.results(path, start, scale, rtol)
-        return LoadHistory(path, start, contact, results, rtol)
-    points = path.load_points(profile, e_star, friction_coefficient, scale)
-    steps = StepResults(profile, path.by_force, points, start.polyline)
-    return LoadHistory(path, start, contact, steps, rtol)
+        return LoadHistory(path, contact, nonlinear_steps.results(path, rtol), rtol)
+    steps = StepResults(profile, path.by_force, path.load_points, start.polyline)
+    return LoadHistory(path, contact, steps, rtol)
 
 
-def _one(axis: str, given: dict[str, ArrayLike | None]) -> tuple[str, ArrayLike]:
-    """Return name and points of the one load that is given."""
-    named = [(name, value) for name, value in given.items() if value is not None]
-    if len(named) != 1:
-        raise InputError(("history", axis), f"exactly one of {', '.join(given)} is needed")
-    return named[0]
-
-
-def _normal_contact(start: ContactState, path: SampledPath, rtol: float) -> NormalContact:
+def _normal_contact(path: SampledPath, rtol: float) -> NormalContact:
     """Return the normal contact; raise InputError if a load is beyond the end of the profile."""
     name = path.normal_name
     loads = {name: np.maximum(path.normal, 0.0)}
     try:
-        return normal.solve(start.profile, start.e_star, **loads, rtol=rtol)
+        return normal.solve(path.start.profile, path.start.e_star, **loads, rtol=rtol)
     except InputError as error:
         if error.path[:1] != ("load",):
             raise

@@ -136,7 +136,7 @@ def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     """Coordinate, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of loads."""
     pressed, ratio, friction = contact.normal, np.zeros(()), np.zeros(())
     if not isinstance(contact, NormalContact):
-        start = contact.start if isinstance(contact, LoadHistory) else contact
+        start = contact.path.start if isinstance(contact, LoadHistory) else contact
         friction = np.asarray(start.friction_coefficient)
         limit = friction * pressed.normal_force
         ratio = np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0)

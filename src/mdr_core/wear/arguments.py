@@ -9,7 +9,7 @@ from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import require_not_negative
+from mdr_core.validation import only_one, require_not_negative
 
 # The grid extends beyond the worn annulus up to this multiple of its radius.
 _GRID_END: Final = 1.25
@@ -23,14 +23,11 @@ def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tu
     InputError : none or both; no value; a value that is negative or not finite.
     """
     given = {"tangential_displacement": displacement, "tangential_force": force}
-    named = [name for name, values in given.items() if values is not None]
-    if len(named) != 1:
-        raise InputError(("tangential",), f"exactly one of {', '.join(given)} is needed")
-    path, values = ("tangential", named[0]), np.asarray(given[named[0]], dtype=float)
+    name, values = only_one(("tangential",), given)
     if not values.size:
-        raise InputError(path, "at least one amplitude is needed")
-    require_not_negative(path, values)
-    return named[0], values
+        raise InputError(("tangential", name), "at least one amplitude is needed")
+    require_not_negative(("tangential", name), values)
+    return name, values
 
 
 def grid(profile: Profile, edges: Array, points: int) -> Array:

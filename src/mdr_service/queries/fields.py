@@ -117,7 +117,10 @@ def at_end(source: Contact) -> End:
         return source, None
     depth = max(float(source.indentation_depth[-1]), 0.0)
     end = normal_contact.solve(
-        source.start.profile, source.start.e_star, indentation_depth=depth, rtol=source.rtol
+        source.path.start.profile,
+        source.path.start.e_star,
+        indentation_depth=depth,
+        rtol=source.rtol,
     )
     return end, source.state
 
