@@ -59,7 +59,7 @@ def load_history_end(profile: Profile, control: str) -> LoadHistory:
 
 def stops(way: LoadHistory) -> list[float]:
     """Radii between which fields are smooth."""
-    profile, state = way.start.profile, way.state
+    profile, state = way.path.start.profile, way.state
     breaks = profile.contact_radius(profile.coordinate_breaks)
     result = [0.0, *map(float, profile.breaks), *breaks, *state.slip_fronts, state.contact_radius]
     return sorted({float(stop) for stop in result if stop <= state.contact_radius})

@@ -151,7 +151,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def slip_fronts(self) -> Array:
         """Radii of the slip fronts at the end of the history, ascending [length]."""
-        profile, steps = self.path.start.profile, self.results
+        profile, steps = self.normal.profile, self.results
         if profile.has_no_partial_slip or isinstance(steps, ExtrapolatedResults):
             return self.state.slip_fronts
         part, at = steps.last_branches

@@ -140,7 +140,7 @@ def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
         friction = np.asarray(start.friction_coefficient)
         limit = friction * pressed.normal_force
         ratio = np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0)
-        ratio = np.where(contact.regime == "full_slip", 1.0, ratio)
+        ratio = np.where(contact.regime == "full_slip", 1.0, np.minimum(ratio, 1.0))
     swept = [pressed.profile.parameters[name] for name in pressed.profile.swept]
     columns = np.broadcast_arrays(pressed.coordinate, ratio, friction, pressed.e_star, *swept)
     return np.array([np.ravel(each) for each in columns]), columns[0].shape
@@ -154,12 +154,9 @@ def _under(
     pressed = NormalContact(one, e_star, np.asarray(coordinate))
     if ratio == 0:
         return pressed
-    if ratio < 1:
-        load = {"tangential_force": ratio * friction * pressed.normal_force}
-    else:
-        load = {"tangential_displacement": 2 * friction * pressed.indentation_depth}
+    force = ratio * friction * pressed.normal_force
     # The stresses depend on the ratio of the forces alone, not on G*.
-    return tangential.solve(pressed, e_star, friction, **load)
+    return tangential.solve(pressed, e_star, friction, tangential_force=force)
 
 
 @lru_cache(maxsize=256)
