@@ -547,3 +547,42 @@ def test_stored_energy_at_the_plateaus_of_a_rough_table(seed: int, control: str)
     assert found.tangential_energy[-1] == pytest.approx(
         stored, rel=max(1e-9, found.error_estimate), abs=0
     )
+
+
+@pytest.mark.parametrize("seed", [8, 13, 22, 52])
+def test_estimate_of_nonlinear_steps_on_a_rough_table(seed: int) -> None:
+    """Against straight steps in depth and displacement between many points of the same path."""
+    random = np.random.default_rng(seed)
+    r = np.linspace(0.0, 1.0, 60)
+    f = np.maximum.accumulate(r * r / 2 * (1 + 0.03 * random.standard_normal(r.size)))
+    profile = Tabulated(r, f, interpolation="linear")
+    most = float(profile.reduced_force(np.array(profile.last_coordinate)))
+    force = most * random.uniform(0.2, 0.9, 4)
+    displacement = float(np.max(profile.domain)) ** 2 * random.uniform(-0.1, 0.1, 4)
+    found = history.solve(
+        profile, 1.0, 1.0, MU, normal_force=force, tangential_displacement=displacement
+    )
+    share = np.sin(np.linspace(0.0, np.pi / 2, 8_193)[1:]) ** 2
+    edges = profile.coordinate_from_reduced_force(force)
+    place = np.concatenate([a + (b - a) * share for a, b in pairwise([0.0, *edges])])
+    moved = np.interp(
+        np.arange(place.size) // share.size
+        + np.abs(profile.reduced_force(place) - np.repeat([0.0, *force[:-1]], share.size))
+        / np.repeat(np.abs(np.diff([0.0, *force])), share.size),
+        np.arange(5),
+        [0.0, *displacement],
+    )
+    exact = history.solve(
+        profile,
+        1.0,
+        1.0,
+        MU,
+        indentation_depth=profile.depth(place),
+        tangential_displacement=moved,
+    )
+    assert found.error_estimate < 1e-3
+    for name in ("tangential_force", "tangential_energy", "dissipated_energy"):
+        expected = getattr(exact, name)[share.size - 1 :: share.size]
+        # The straight steps leave an error below 1e-8.
+        bound = (found.error_estimate + 1e-8) * np.max(np.abs(expected))
+        assert getattr(found, name) == pytest.approx(expected, rel=0, abs=bound)

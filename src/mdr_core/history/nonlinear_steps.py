@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.breaks import has_many_breaks
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments, widths
 from mdr_core.history.load_path import SampledPath
@@ -36,6 +37,8 @@ _MAX_TOTAL_CHORDS: Final = 400_000
 _HALVINGS: Final = 2
 # The error of the extrapolated results, in units of the change by the last halving.
 _SAFETY: Final = 2.0
+# The same on tables, where chords converge less regularly: 9 is the most of 100 rough tables.
+_SAFETY_ON_TABLES: Final = 10.0
 # A corner of chords is off its arc by less than this part of its normal coordinate.
 _NEAREST: Final = 1e-3
 # Newton's method converges from a chord to its arc in four steps.
@@ -102,6 +105,33 @@ class NonlinearSteps:
         order = np.argsort(owner, kind="stable")
         return owner[order], starts[order], stops[order]
 
+    @cached_property
+    def _pieces(self) -> tuple[Indices, Array, Array, Array]:
+        """Pieces of the parts between the breaks of the profile, across which chords converge less.
+
+        Their part, their ends as shares of 90 degrees, and the contact coordinate at the second.
+        Chords that are even in the angle whose squared sine is the share of the part's length
+        cluster at both ends: the axis, and load points from which slip starts.
+        """
+        owner, start, stop = self._parts
+        breaks = self.profile.coordinate_breaks
+        low, high = np.sort([start, stop], axis=0)
+        first, last = np.searchsorted(breaks, low, "right"), np.searchsorted(breaks, high)
+        count = np.where(self.rate[owner] == 0, 0, np.maximum(last - first, 0))
+        if count.sum() << _HALVINGS > _MAX_TOTAL_CHORDS:
+            count[:] = 0
+        broken = np.repeat(np.arange(start.size), count)
+        number = np.arange(broken.size) - np.repeat(np.cumsum(count) - count, count)
+        at = breaks[first[broken] + number]
+        share = (at - start[broken]) / (stop - start)[broken]
+        begin = np.append(np.zeros(start.size), np.arcsin(np.sqrt(share)) / (np.pi / 2))
+        part = np.append(np.arange(start.size), broken)
+        order = np.lexsort((begin, part))
+        part, begin, at = part[order], begin[order], np.append(start, at)[order]
+        final = np.append(np.diff(part) > 0, True)
+        end = np.where(final, 1.0, np.roll(begin, -1))
+        return part, begin, end, np.where(final, stop[part], np.roll(at, -1))
+
     def chords(self, finest: int, halvings: int) -> tuple[LoadPoints, Indices]:
         """Return the ends of the chords, and which of them are the samples.
 
@@ -110,15 +140,17 @@ class NonlinearSteps:
         owner, start, stop = self._parts
         fewest = min(_MIN_CHORDS_ON_STEP, _MAX_TOTAL_CHORDS / (start.size << _HALVINGS))
         needed = np.abs(stop - start) / np.max(self.coordinate) * finest / 2**_HALVINGS
-        count = np.ceil(np.maximum(needed, fewest)).astype(int) << halvings
-        count[self.rate[owner] == 0] = 1
-        part = np.repeat(np.arange(count.size), count)
+        part, begin, end, place = self._pieces
+        count = np.maximum(np.ceil(np.maximum(needed, fewest))[part] * (end - begin), 1)
+        count = np.rint(count).astype(int) << halvings
+        count[self.rate[owner[part]] == 0] = 1
+        piece = np.repeat(np.arange(count.size), count)
         last = np.cumsum(count) - 1
-        share = (np.arange(part.size) - np.append(-1, last[:-1])[part]) / count[part]
-        # They cluster at both ends: the axis, and load points from which slip starts.
-        share = np.square(np.sin(np.pi / 2 * share))
-        s = start[part] + (stop - start)[part] * share
-        s[last] = stop
+        share = (np.arange(piece.size) - np.append(-1, last[:-1])[piece]) / count[piece]
+        angle = np.pi / 2 * (begin[piece] + (end - begin)[piece] * share)
+        part = part[piece]
+        s = start[part] + (stop - start)[part] * np.square(np.sin(angle))
+        s[last] = place
         arc = owner[part]
         samples = np.flatnonzero(np.append(np.diff(arc) > 0, True))
         rise = np.diff(self.conjugate)[arc]
@@ -231,12 +263,13 @@ class ExtrapolatedResults:
     @cached_property
     def error(self) -> float:
         """Bound on the error of the results by the chords, relative to the largest of each."""
+        safety = _SAFETY_ON_TABLES if has_many_breaks(self.nonlinear.profile) else _SAFETY
         worst = 0.0
         for name in ("shear", "displacement", "energy", "dissipation"):
             coarse, fine = self._extrapolated(name)
             largest = float(np.max(np.abs(fine)))
             if largest > 0:
-                worst = max(worst, _SAFETY * float(np.max(np.abs(fine - coarse))) / largest)
+                worst = max(worst, safety * float(np.max(np.abs(fine - coarse))) / largest)
         return worst
 
     def _extrapolated(self, name: str) -> tuple[Array, Array]:
