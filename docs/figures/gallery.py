@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from textwrap import dedent
 
-from mdr_service.dispatch import respond_to_body
+from mdr_service.dispatch import respond
 from mdr_service.schemas.queries import SCHEMAS
 
 DOCS = Path(__file__).parents[1]
@@ -17,7 +17,7 @@ def main() -> None:
     paths = re.findall(r"(/v1/[\w/]+)\?format=svg.*? -d @(\w+)\.json", page)
     queries = {schema.path: name for name, schema in SCHEMAS.items()}
     for path, name in paths:
-        picture = respond_to_body(queries[path], dedent(requests[name]).encode(), "image/svg+xml")
+        picture = respond(queries[path], dedent(requests[name]).encode(), "image/svg+xml")
         (DOCS / "gallery" / f"{name}.svg").write_bytes(picture)
 
 

@@ -63,18 +63,9 @@ class ComputeProcess:
 
     @classmethod
     async def start(cls, seconds: float, self_test: Callable[[], object], room: Room) -> Self:
-        """Start a process, and run a function in it within a time limit.
+        """Start a process, and call `self_test` in it, which raises an error if it is unusable.
 
-        Parameters
-        ----------
-        seconds : time limit [s].
-        self_test : function of a module, which raises an error if the process is unusable.
-        room : context in which a large result is read.
-
-        Raises
-        ------
-        OSError : the process cannot be started.
-        DefectError, ServiceError, TimeoutError, ProcessLostError : see `call`.
+        Raises OSError if the process cannot be started, and the errors of `call`.
         """
         # More BLAS threads than cores slow each other down. Modules are found as in the server.
         environment = {"OPENBLAS_NUM_THREADS": "1", **os.environ}

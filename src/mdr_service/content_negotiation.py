@@ -41,12 +41,7 @@ def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FOR
 
 
 def picture_size(text: str, media_type: str) -> tuple[int, int]:
-    """Return width and height of a picture [mm].
-
-    Raises
-    ------
-    ServiceError : the text is not a size, or the response is not a picture.
-    """
+    """Return width and height of a picture [mm]; raise ServiceError if there is none."""
     found = _SIZE.fullmatch(text)
     size = (int(found[1]), int(found[2])) if found else (0, 0)
     if media_type in PICTURES and min(size) >= _SMALLEST and max(size) <= _LARGEST:

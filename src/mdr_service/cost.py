@@ -136,12 +136,7 @@ def _point(query: Query) -> float:
 
 
 def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
-    """Return the expected time of a response.
-
-    Raises
-    ------
-    ServiceError : the query would certainly exceed the time limit.
-    """
+    """Return the expected time of a response; raise ServiceError if it far exceeds the limit."""
     expected = seconds(query) + (_PICTURE if media_type in PICTURES else 0.0)
     limit = SETTINGS.budget_seconds
     if expected > _LONGEST:
@@ -156,13 +151,7 @@ def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
 
 
 def is_short(expected: float, requests: int) -> bool:
-    """Return True if a query is computed on the event loop, for which all requests wait.
-
-    Parameters
-    ----------
-    expected : expected time of the query [s].
-    requests : number of requests in progress, this one included.
-    """
+    """Return True if a query runs on the event loop, for which all `requests` in progress wait."""
     return expected <= max(AT_ONCE_SECONDS, _AT_ONCE_ALONE / max(requests, 1))
 
 

@@ -26,7 +26,7 @@ _logger: Final = logging.getLogger(__name__)
 
 def respond(
     name: str,
-    query: Query | BatchQuery,
+    query: Query | BatchQuery | bytes,
     media_type: str,
     members: Sequence[str] = (),
     size: tuple[int, int] | None = None,
@@ -36,15 +36,19 @@ def respond(
     Parameters
     ----------
     name : name of the query, a key of `SCHEMAS`, or ``batch``.
-    query : the request.
+    query : the request, or its text, which is first parsed.
     media_type : media type of the content.
     members : members of the result to return, by default all; a picture shows all.
     size : width and height of a picture [mm].
 
     Raises
     ------
-    InputError, AccuracyError, ServiceError : the query has no result.
+    InputError, AccuracyError, ServiceError, ValidationError : the query has no result.
     """
+    if isinstance(query, bytes):
+        model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
+        query = model.model_validate_json(query)
+        cost.require_feasible(query, media_type)
     if isinstance(query, BatchQuery):
         return _respond_to_batch(query)
     # Complete results are checked for overflow.
@@ -65,22 +69,6 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
         if name not in result:
             raise InputError(("answers",), f"no member {name!r}; there are {', '.join(result)}")
     return {name: result[name] for name in members}
-
-
-def respond_to_body(
-    name: str, text: bytes, media_type: str, size: tuple[int, int] | None = None
-) -> bytes:
-    """Return the response content of a query in the body of a request; see `respond`.
-
-    Parameters
-    ----------
-    name, media_type, size : as of `respond`.
-    text : the request.
-    """
-    model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
-    query = model.model_validate_json(text)
-    cost.require_feasible(query, media_type)
-    return respond(name, query, media_type, size=size)
 
 
 def _respond_to_batch(batch: BatchQuery) -> bytes:

@@ -98,7 +98,8 @@ class ServiceMiddleware:
             await problem_response(problems.INTERNAL_ERROR)(scope, receive, sender)
         finally:
             self.transfers.remove(record)
-            observability.end(record, _routed(scope))
+            route = scope.get("route")
+            observability.end(record, route.path if isinstance(route, Route) else None)
 
 
 class _Sender:
@@ -232,11 +233,6 @@ async def read_body(request: Request) -> bytes:
 def _too_large() -> ServiceError:
     detail = f"the limit is {SETTINGS.max_body_bytes} bytes"
     return ServiceError(problems.BODY_TOO_LARGE, detail)
-
-
-def _routed(scope: Scope) -> str | None:
-    route = scope.get("route")
-    return route.path if isinstance(route, Route) else None
 
 
 def _failure(_request: Request, error: Exception) -> Response:

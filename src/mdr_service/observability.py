@@ -11,9 +11,8 @@ from time import perf_counter
 from typing import Any, Final
 
 import orjson
-from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram
 
-METRICS_MEDIA_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
 _OTHER: Final = "other"
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 
@@ -97,11 +96,6 @@ def end(record: RequestRecord, route: str | None) -> None:
 @cache
 def _metrics_of(route: str, status: int) -> tuple[Counter, Histogram]:
     return REQUESTS.labels(route, str(status)), LATENCIES.labels(route)
-
-
-def metrics() -> bytes:
-    """Return the metrics of this process in the text format of Prometheus."""
-    return generate_latest(REGISTRY)
 
 
 class JsonLines(logging.Formatter):

@@ -160,25 +160,21 @@ def _location(error: ErrorDetails) -> Iterator[str | int]:
         elif step in UNION_ITEMS:
             yield from itertools.islice(steps, 1)
             next(steps, None)
-    if error["type"] in _ABOUT_KIND:
+    if error["type"].startswith("union_tag"):
         yield "kind"
 
 
-# Pydantic's own sentences repeat the value sent, or name the tags of its union.
-_ABOUT_KIND: Final = {
+# Pydantic's own sentences repeat the value sent, name the tags of its union or, in queries of a
+# batch, the types of Python; a member it calls an input.
+_SENTENCES: Final = {
     "union_tag_invalid": "there is no such kind of profile; GET /v1/profiles lists them",
     "union_tag_not_found": "the kind of profile is missing; GET /v1/profiles lists them",
-}
-# In queries of a batch, pydantic names the types of Python; a member it calls an input.
-_IN_JSON: Final = {
     "model_type": "Input should be an object",
     "model_attributes_type": "Input should be an object",
     "dict_type": "Input should be an object",
     "list_type": "Input should be a valid array",
     "extra_forbidden": "there is no such member",
 }
-
-
 # Pydantic prints the bounds 1e-50 and 1e50 with all their zeros.
 _BOUNDS: Final = {"greater_than_equal": "ge", "less_than_equal": "le"}
 
@@ -186,4 +182,4 @@ _BOUNDS: Final = {"greater_than_equal": "ge", "less_than_equal": "le"}
 def _sentence(error: ErrorDetails) -> str:
     if bound := _BOUNDS.get(error["type"]):
         return f"{error['msg'].rpartition(' ')[0]} {error['ctx'][bound]:.15g}"
-    return (_ABOUT_KIND | _IN_JSON).get(error["type"], error["msg"])
+    return _SENTENCES.get(error["type"], error["msg"])

@@ -18,12 +18,7 @@ _READ_SECONDS: Final = 10.0
 
 
 class Transfers:
-    """Total length of the long request and response bodies.
-
-    Parameters
-    ----------
-    limit : maximum total [bytes], unless they belong to a single request.
-    """
+    """Total length of long bodies, at most `limit` bytes unless a single request has them."""
 
     def __init__(self, limit: int) -> None:
         self._limit = limit

@@ -34,12 +34,7 @@ _MAX_REASONS: Final = 10
 
 
 def run(arguments: Namespace) -> int:
-    """Run or resume the sweep of a command line and return the exit status.
-
-    Raises
-    ------
-    SweepError : the sweep is not valid, or cannot continue.
-    """
+    """Run or resume a sweep and return the exit status; raise SweepError if it cannot continue."""
     spec, source = specified(arguments)
     checkpoint = Checkpoint(arguments.out)
     _check_target(arguments, checkpoint)
@@ -76,12 +71,7 @@ def run(arguments: Namespace) -> int:
 
 
 def specified(arguments: Namespace) -> tuple[Spec, Source]:
-    """Return the specification and the cases that the arguments describe.
-
-    Raises
-    ------
-    UsageError : they are not valid.
-    """
+    """Return the specification and the cases of the arguments, or raise UsageError."""
     query = arguments.query
     template = _template(arguments.template)
     axes = {name: text for name, text in template.items() if str(text).count(":") >= 2}

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from prometheus_client import generate_latest
 
 from mdr_service import observability
 from mdr_service.dispatch import respond
@@ -62,4 +63,4 @@ def test_few_tables_are_kept_and_counted_in_the_metrics() -> None:
     contacts._tabulated.cache_clear()
     for factor in range(20):
         contacts.profile(table(curvature=1.0 + factor))
-    assert b"\nmdr_tables 16.0\n" in observability.metrics()
+    assert b"\nmdr_tables 16.0\n" in generate_latest(observability.REGISTRY)

@@ -4,6 +4,7 @@ from importlib.resources import files
 from typing import Final
 
 from fastapi import APIRouter, Request
+from prometheus_client import generate_latest
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from mdr_core import profiles
@@ -16,33 +17,29 @@ from mdr_service.settings import SETTINGS, Settings
 router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
+# The text format of Prometheus.
+_METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
 _OK: Final = Health(status="ok")
-
-
-def _catalogue() -> Catalogue:
-    return Catalogue(
-        profiles=[
-            ProfileKind(
-                kind=kind,
-                formula=profiles.KINDS[kind].formula,
-                fields=[
-                    ProfileField(
-                        name=name,
-                        dimension=str(extra["x-dimension"]),
-                        description=str(field.description).rpartition(" [")[0],
-                        required=field.is_required(),
-                    )
-                    for name, field in model.model_fields.items()
-                    if isinstance(extra := field.json_schema_extra, dict)
-                ],
-                closed_forms=list(profiles.KINDS[kind].closed_forms),
-            )
-            for kind, model in MODELS.items()
-        ]
-    )
-
-
-_CATALOGUE: Final = _catalogue()
+_CATALOGUE: Final = Catalogue(
+    profiles=[
+        ProfileKind(
+            kind=kind,
+            formula=profiles.KINDS[kind].formula,
+            fields=[
+                ProfileField(
+                    name=name,
+                    dimension=str(extra["x-dimension"]),
+                    description=str(field.description).rpartition(" [")[0],
+                    required=field.is_required(),
+                )
+                for name, field in model.model_fields.items()
+                if isinstance(extra := field.json_schema_extra, dict)
+            ],
+            closed_forms=list(profiles.KINDS[kind].closed_forms),
+        )
+        for kind, model in MODELS.items()
+    ]
+)
 
 
 @router.get("/v1/profiles", operation_id="profiles", tags=["catalogue"], summary="Profile kinds")
@@ -89,7 +86,7 @@ async def ready(request: Request) -> Health:
 )
 async def metrics() -> Response:
     """Return requests and latencies by route, problems by type, and the state of the queue."""
-    return Response(observability.metrics(), media_type=observability.METRICS_MEDIA_TYPE)
+    return Response(generate_latest(observability.REGISTRY), media_type=_METRICS)
 
 
 @router.get("/docs", include_in_schema=False)

@@ -17,7 +17,7 @@ from mdr_service.api.documentation import (
     Responses,
 )
 from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
-from mdr_service.dispatch import respond, respond_to_body
+from mdr_service.dispatch import respond
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
 from mdr_service.schemas import contacts
@@ -34,14 +34,7 @@ _MAX_PARAMETERS: Final = 100
 
 
 class Responder:
-    """Response to a query in the requested format.
-
-    Parameters
-    ----------
-    request : the HTTP request.
-    format_ : format of the response; if absent, the header ``Accept`` decides.
-    size : width and height of a picture.
-    """
+    """Response to a query in the format that a parameter or the header ``Accept`` requests."""
 
     formats: ClassVar[tuple[str, ...]] = tuple(FORMATS)
     responses: ClassVar[Responses] = POST_RESPONSES
@@ -65,21 +58,16 @@ class Responder:
         self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 
     async def __call__(
-        self, name: str, query: contacts.Query | BatchQuery, members: Sequence[str] = ()
+        self, name: str, query: contacts.Query | BatchQuery | bytes, members: Sequence[str] = ()
     ) -> Response:
-        """Compute on the event loop if that is short, else in a compute process."""
-        seconds = cost.require_feasible(query, self.media_type)
+        """Compute on the event loop if that is short, else or from a text in a compute process."""
         arguments = name, query, self.media_type, members, self.size
-        if cost.is_short(seconds, len(self.tasks)):
+        if not isinstance(query, bytes) and cost.is_short(
+            cost.require_feasible(query, self.media_type), len(self.tasks)
+        ):
             content = respond(*arguments)
         else:
             content = await self.workers.run_in_process(respond, *arguments)
-        return Response(content, media_type=self.media_type)
-
-    async def respond_to_body(self, name: str, text: bytes) -> Response:
-        """Parse, compute and serialize in a compute process."""
-        arguments = name, text, self.media_type, self.size
-        content = await self.workers.run_in_process(respond_to_body, *arguments)
         return Response(content, media_type=self.media_type)
 
 
@@ -112,9 +100,8 @@ class QueryRoute(APIRoute):
             if given:
                 raise _invalid(dict.fromkeys(given, "there is no such parameter"))
             text = await read_body(request)
-            if len(text) > respond_.at_once_bytes:
-                return await respond_.respond_to_body(name, text)
-            return await respond_(name, model.model_validate_json(text))
+            is_long = len(text) > respond_.at_once_bytes
+            return await respond_(name, text if is_long else model.model_validate_json(text))
 
         return handle
 

@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Iterable
-from threading import Lock
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,8 +14,6 @@ if TYPE_CHECKING:
 
 MEDIA_TYPES: Final = {"svg": "image/svg+xml", "png": "image/png", "pdf": "application/pdf"}
 
-# Width and height of a picture in millimetres.
-Size = tuple[int, int] | None
 # Millimetres in an inch.
 _INCH: Final = 25.4
 # Usual width of the picture and height of a panel, a single and one of several, in inches.
@@ -48,10 +45,6 @@ _STYLE: Final[dict[Any, Any]] = {
     # Equal plots give identical bytes.
     "svg.hashsalt": "mdr",
 }
-# Matplotlib keeps its style in one place for all threads.
-_lock: Final = Lock()
-
-
 # Time and version of the program would differ from run to run.
 _METADATA: Final = {
     "svg": {"Date": None, "Creator": None},
@@ -60,13 +53,16 @@ _METADATA: Final = {
 }
 
 
-def write(plot: Plot | Map, name: str, size: Size = None) -> bytes:
-    """Return the picture in a format of `MEDIA_TYPES`; equal plots give identical bytes."""
+def write(plot: Plot | Map, name: str, size: tuple[int, int] | None = None) -> bytes:
+    """Return the picture in a format of `MEDIA_TYPES`, with width and height in millimetres.
+
+    Equal plots give identical bytes.
+    """
     import matplotlib as mpl  # noqa: PLC0415 -- loading takes longer than all other imports
     from matplotlib.figure import Figure  # noqa: PLC0415 -- as above
 
     content = io.BytesIO()
-    with _lock, mpl.rc_context(_STYLE):
+    with mpl.rc_context(_STYLE):
         figure = Figure(layout="constrained")
         if isinstance(plot, Map):
             figure.set_size_inches(_WIDTH, _SINGLE)
