@@ -45,11 +45,6 @@ class LoadPoints(NamedTuple):
     load_step: Indices
     """Load step that each belongs to."""
 
-    def part(self, chosen: slice) -> "LoadPoints":
-        """Return some of the steps."""
-        normal, tangential, continues, load_step = self
-        return LoadPoints(normal[chosen], tangential[chosen], continues[chosen], load_step[chosen])
-
 
 class Polyline(NamedTuple):
     """Vertices from the axis to the load point; in separation the load point alone."""

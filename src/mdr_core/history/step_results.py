@@ -108,7 +108,8 @@ class StepResults:
         count, line = self.points.normal.size, self.start
         for begin in range(0, count, _BLOCK):
             chosen = slice(begin, begin + _BLOCK)
-            tree, path, line = slip_memory.apply_steps(line, self.points.part(chosen))
+            points = LoadPoints._make(row[chosen] for row in self.points)
+            tree, path, line = slip_memory.apply_steps(line, points)
             yield chosen, TractionBranches(self.profile, tree, self.by_force), path, line
 
     def _per_step(self, result: Callable[[TractionBranches, FrontPath], Any]) -> Array:

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.quadrature import piecewise_rule
 from mdr_core.typing import Array, Indices
 
 # Grading of the nodes, by the table in notes, §11: the distance from the stick edge grows by about
@@ -94,15 +94,15 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
     to_slip, to_pressure = np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
     for row, node in enumerate(theta):
         # In y, theta = node -+ y^2, the kernels have no root.
-        y, weights = _composite(np.sqrt(node - ends[row + 1 :: -1]))
+        y, weights = piecewise_rule(_POINTS, np.sqrt(node - ends[row + 1 :: -1]))
         at = node - y * y
         kernel = _rate(at) / np.sqrt(squares[row] * _gap(node, at, y * y))
         to_slip[row] = (kernel * 2 * y * weights / np.pi) @ _interpolation(at, nodes)[0]
-        y, weights = _composite(np.sqrt(ends[row + 1 :] - node))
+        y, weights = piecewise_rule(_POINTS, np.sqrt(ends[row + 1 :] - node))
         at = node + y * y
         kernel = 1 / np.sqrt(_gap(at, node, y * y))
         to_pressure[row] = (kernel * 2 * y * weights / np.pi) @ _interpolation(at, nodes)[1]
-    at, weights = _composite(ends)
+    at, weights = piecewise_rule(_POINTS, ends)
     points, values, slopes = _squares(at), *_interpolation(at, nodes)
     over_squares = weights * _rate(at)
     inner = theta[:-1]
@@ -131,13 +131,6 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
     for part in vars(found).values():
         part.flags.writeable = False
     return found
-
-
-def _composite(ends: Array) -> tuple[Array, Array]:
-    """Return points and weights of Gauss rules between adjacent ends, each (POINTS pieces,)."""
-    nodes, weights = gauss_legendre(_POINTS)
-    half = np.diff(ends)[:, None] / 2
-    return (ends[:-1, None] + half * (1 + nodes)).ravel(), (half * weights).ravel()
 
 
 def _squares(theta: Array) -> Array:

@@ -53,8 +53,6 @@ _UNRESOLVED: Final = 0.25
 # Radii at which the two runs are compared besides the given ones, as parts of the worn annulus at
 # up to so many numbers of cycles.
 _CYCLES: Final = 8
-# Radii at which fields are compared at once: bounds the memory.
-_BLOCK: Final = 2_000
 _SAMPLES: Final = np.linspace(0.02, 0.98, 33)
 # They are as near to the given radii as this part of the worn annulus.
 _NEAR: Final = 0.05
@@ -107,17 +105,13 @@ class WearEvolution(validity.ContactResults, WornSurface):
         }
         worst = 0.0
         for name in names:
-            largest, difference = 0.0, self._difference_near(name, r)
-            for block in np.split(r, range(_BLOCK, r.size, _BLOCK)):
-                values, others = (getattr(run, name)(block) for run in (self, self.coarse))
-                difference = max(difference, _largest(values, others))
-                if name == "pressure" and self.initial.stick_moves:
-                    # It is singular at an edge whose position is inexact.
-                    shifted = block * (1 + self.error_estimate)
-                    moved = self.pressure(np.minimum(shifted, self.initial.contact.profile.domain))
-                    difference = max(difference, _largest(values, moved))
-                largest = max(largest, _largest(values))
-            largest = max(largest, float(np.max(least.get(name, 0.0))))
+            values, others = (getattr(run, name)(r) for run in (self, self.coarse))
+            difference = max(self._difference_near(name, r), _largest(values, others))
+            if name == "pressure" and self.initial.stick_moves:
+                # It is singular at an edge whose position is inexact.
+                shifted = np.minimum(r * (1 + self.error_estimate), self.normal.profile.domain)
+                difference = max(difference, _largest(values, self.pressure(shifted)))
+            largest = max(_largest(values), float(np.max(least.get(name, 0.0))))
             if largest > 0:
                 worst = max(worst, difference / largest)
         safety = _SAFETY_OF_PEAK if self.initial.stick_shrinks else _SAFETY

@@ -89,7 +89,7 @@ def integrate(
         raise AccuracyError(detail, ("resolution",))
     ends = (float(times[0]) * unit if times.size else inf for times in run.t_events or ())
     profile_end_at, settled_at, full_slip_at = ends
-    _require_stick_zone(initial, cycles, profile_end_at, full_slip_at)
+    _require_all_cycles(initial, cycles, profile_end_at, full_slip_at)
     between: Any = run.sol
     trail = np.empty((2, 0))
     if initial.stick_grows:
@@ -107,7 +107,7 @@ def integrate(
     return tuple(states), settled_at
 
 
-def _require_stick_zone(
+def _require_all_cycles(
     initial: InitialState, cycles: Array, profile_end_at: float, full_slip_at: float
 ) -> None:
     """Raise an error if the integration has ended before the last of the cycles."""

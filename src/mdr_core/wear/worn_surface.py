@@ -5,8 +5,9 @@ Functions of a state alone are in the units of `mdr_core.wear.initial_state`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,9 @@ from mdr_core.typing import Array
 from mdr_core.validation import checked_radii
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
+
+# Radii at which a field is evaluated at once: bounds the memory.
+_BLOCK: Final = 2_000
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,7 @@ class WornSurface:
         initial, r = self.initial, self._radii(radius)
         result = np.zeros((self.cycles.size, r.size))
         for row, state in zip(result, self.states, strict=False):
-            row[:] = _worn_depth(state, r / initial.length_unit)
+            row[:] = _in_blocks(partial(_worn_depth, state), r / initial.length_unit)
         return initial.depth_unit * np.maximum.accumulate(result, axis=0)
 
     def profile(self, radius: ArrayLike) -> Array:
@@ -120,7 +124,7 @@ class WornSurface:
         if unworn.any():
             result[unworn] = fields.pressure(self.initial.contact, r)
         for index in np.flatnonzero(~unworn):
-            result[index] = self._pressure(self.states[index], r)
+            result[index] = _in_blocks(partial(self._pressure, self.states[index]), r)
         return result
 
     def _radii(self, radius: ArrayLike) -> Array:
@@ -147,6 +151,12 @@ class WornSurface:
         if not self.states:
             return np.full(self.cycles.shape, float(otherwise))
         return np.array([value(state) for state in self.states])
+
+
+def _in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
+    """Return a field at radii of which only some are evaluated at once."""
+    blocks = np.split(radius, range(_BLOCK, radius.size, _BLOCK))
+    return np.concatenate([field(block) for block in blocks])
 
 
 def _worn_depth(state: AnnulusState, radius: Array) -> Array:

@@ -36,8 +36,6 @@ _PROFILES: Final = frozenset({"initial_profile", "limiting_profile", "profile"})
 _UNBOUNDED: Final = frozenset(
     {"wear_radius", "indentation_depth", "worn_volume", "limiting_profile", "worn_depth"}
 )
-# Radii at which a worn surface is computed at once: bounds the memory.
-_RADII_AT_ONCE: Final = 2_000
 
 
 def solve_wear(query: WearQuery) -> LimitingWear:
@@ -110,12 +108,9 @@ def _result(
 
 
 def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:
-    """Return one field of a worn contact, in blocks of radii."""
-    field = getattr(worn, name)
-    blocks = np.split(radius, range(_RADII_AT_ONCE, radius.size, _RADII_AT_ONCE))
-    values = np.concatenate([field(block) for block in blocks], axis=-1)
+    """Return one field of a worn contact, by load if it depends on the load."""
     shape = (radius.size,) if name == "initial_profile" else (query.loads, radius.size)
-    return np.ascontiguousarray(values.reshape(shape))
+    return np.ascontiguousarray(getattr(worn, name)(radius).reshape(shape))
 
 
 def _require_radii(query: WearQuery | EvolutionQuery) -> None:
