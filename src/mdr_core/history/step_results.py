@@ -94,15 +94,11 @@ class StepResults:
     @property
     def _blocks(self) -> Iterable[_Block]:
         """Blocks of steps: a single one is kept, many are computed again, to bound the memory."""
-        return self._kept if self.points.normal.size <= _BLOCK else self._walk()
+        return [self._end] if self.points.normal.size <= _BLOCK else self._walk()
 
     @cached_property
     def _end(self) -> _Block:
-        return deque(self._blocks, maxlen=1)[0]
-
-    @cached_property
-    def _kept(self) -> tuple[_Block, ...]:
-        return tuple(self._walk())
+        return deque(self._walk(), maxlen=1)[0]
 
     def _walk(self) -> Iterator[_Block]:
         count, line = self.points.normal.size, self.start

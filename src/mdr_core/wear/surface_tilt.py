@@ -28,27 +28,20 @@ class SurfaceTilt:
     reach: float
     """How far the contact may grow."""
 
-    @property
-    def _first(self) -> float:
-        return self.stick + self.width
-
-    @property
-    def _stop(self) -> float:
-        return self._first + self.reach
-
     def rates(self, stick_shift: float) -> Array:
         """Return the terms of dC/dw_c, for a stick edge at c_0 + stick_shift, (COUNT,)."""
-        share = (1 + _POINTS) / 2 * self.reach / self._stop
-        c = self.stick + stick_shift
-        offset = self.width + share * self._first / (1 - share) - stick_shift
+        first, c = self.stick + self.width, self.stick + stick_shift
+        share = (1 + _POINTS) / 2 * self.reach / (first + self.reach)
+        offset = self.width + share * first / (1 - share) - stick_shift
         values = -2 / np.pi * np.arctan2(np.sqrt(offset * (offset + 2 * c)), c)
         return np.asarray(_TO_SERIES @ values)
 
     def basis(self, growth: float) -> tuple[Array, Array]:
         """Return the values of the terms at the radius a_0 + growth, and their slopes, (COUNT,)."""
-        radius = self._first + growth
-        place = 2 * growth * self._stop / (radius * self.reach) - 1
-        slope = 2 * self._first * self._stop / (radius**2 * self.reach)
+        first = self.stick + self.width
+        radius, stop = first + growth, first + self.reach
+        place = 2 * growth * stop / (radius * self.reach) - 1
+        slope = 2 * first * stop / (radius**2 * self.reach)
         values = chebyshev.chebvander(place, COUNT - 1)[0]
         return np.asarray(values), np.asarray(slope * (values @ _DERIVATIVE))
 
