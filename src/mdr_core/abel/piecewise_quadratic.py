@@ -28,8 +28,6 @@ _RULE: Final = 2 * _WEIGHTS * _Y ** np.arange(3)[:, None]
 _MASSES: Final = 16
 # Nodes of a block: interpolation leaves 7.3^-16 = 2e-14 of the block's part.
 _NODES_OF_BLOCKS: Final = 16
-# Ends of a panel, one over the other, up to which r is smooth in x^2: the rule leaves 3^-32.
-_STEEP: Final = 2.0
 # Jumps of the function within rounding, over its largest terms on both sides.
 _ROUNDING: Final = 256 * float(np.finfo(float).eps)
 
@@ -64,22 +62,14 @@ class PiecewiseQuadratic:
 
     @cached_property
     def _multipoles(self) -> Multipoles:
-        # Gauss's rule in x^2 has the same shares in all panels; next to the axis, where dr/dx^2
-        # varies too much, the rule is one in r.
         nodes, weights = gauss_legendre(_MASSES)
-        v = (1 + nodes)[:, None] / 2
         left, right = self.edges[:-1], self.edges[1:]
-        width, square = right - left, (right - left) * (right + left)
-        r = np.sqrt(left * left + square * (1 - v))
-        u, step = square * (1 - v) / (r + left), square / (2 * r)
-        own = np.flatnonzero(right > _STEEP * left)
-        u[:, own], step[:, own] = width[own] * (1 - v), width[own]
-        c0, c1, c2 = self.coefficients
-        masses = (c0 + u * (c1 + u * c2)) * step * weights[:, None] / 2
+        width, share = right - left, (1 + nodes)[:, None] / 2
+        u, c0, c1, c2 = width * share, *self.coefficients
+        masses = (c0 + u * (c1 + u * c2)) * width * weights[:, None] / 2
+        # Distance from the right end over the length, both in x^2.
+        v = (1 - share) * (right + left + u) / (right + left)
         total = at_nodes(v, masses, _NODES_OF_BLOCKS)
-        u, width, right = u[:, own], width[own], right[own]
-        v = (width - u) * (2 * right - width + u) / square[own]
-        total[:, own] = at_nodes(v, masses[:, own], _NODES_OF_BLOCKS)
         total += at_nodes(np.ones((1, 1)), self.impulses[None], _NODES_OF_BLOCKS)
         return multipoles(self.edges, total, above=True)
 

@@ -32,15 +32,6 @@ _POINTS: Final = 24
 _AXIS: Final = 1e-8
 
 
-@dataclass(frozen=True)
-class _Ends:
-    """Annulus c <= x <= a; `width` = a - c, accurate however narrow the annulus."""
-
-    a: float
-    c: float
-    width: float
-
-
 @dataclass(frozen=True, eq=False)
 class StressPanels:
     """W = dg/ds as a polynomial in u = s/length, s = sqrt(x^2 - left^2), on each panel."""
@@ -123,30 +114,29 @@ class StressPanels:
         width, c = (a, np.zeros(1)) if inner is None else inner
         annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width)])
         if annuli.shape[1] == 1:
-            return self._sorted(_Ends(*annuli[:, 0].tolist()), r)
+            return self._over(annuli[:, 0].tolist(), r)
         different, number = np.unique(annuli, axis=1, return_inverse=True)
         result = np.empty_like(r)
-        for i, column in enumerate(different.T.tolist()):
+        for i, ends in enumerate(different.T.tolist()):
             points = np.flatnonzero(number == i)
-            result[points] = self._sorted(_Ends(*column), r[points])
+            result[points] = self._over(ends, r[points])
         return result
 
-    def _sorted(self, annulus: _Ends, r: Array) -> Array:
-        order = np.argsort(r, kind="stable")
-        result = np.empty_like(r)
-        result[order] = self._over(annulus, r[order])
-        return result
-
-    def _over(self, annulus: _Ends, r: Array) -> Array:
-        """Kernel at ascending radii, over whole panels and those at the ends of the annulus."""
-        if self.smooth_tip and self.edges[0] == annulus.c == 0:
-            r = np.maximum(r, _AXIS * min(self.length[0], annulus.a))
-        last = min(int(np.searchsorted(self.edges, annulus.a)), self.length.size) - 1
-        first = int(np.searchsorted(self.edges, annulus.c))
+    def _over(self, ends: list[float], radius: Array) -> Array:
+        """Kernel of the annulus of a, c and width, over whole panels and those at its ends."""
+        a, c, width = ends
+        order = np.argsort(radius, kind="stable")
+        r = radius[order]
+        if self.smooth_tip and self.edges[0] == c == 0:
+            r = np.maximum(r, _AXIS * min(self.length[0], a))
+        last = min(int(np.searchsorted(self.edges, a)), self.length.size) - 1
+        first = int(np.searchsorted(self.edges, c))
         total = self._whole(first, last, r) if first < last else np.zeros_like(r)
         for panel in {last, first - 1} - {-1}:
-            total += self._cut(panel, annulus, r)
-        return total
+            total += self._cut(panel, a, c, width, r)
+        result = np.empty_like(r)
+        result[order] = total
+        return result
 
     def _whole(self, first: int, last: int, r: Array) -> Array:
         """Panels first <= i < last: as multipoles in the far field, the others one by one."""
@@ -161,10 +151,9 @@ class StressPanels:
             add(total, point, near(rows, self.length[panel], above, to_right))
         return total
 
-    def _cut(self, panel: int, annulus: _Ends, r: Array) -> Array:
-        """Part of one panel that lies in the annulus."""
-        b, c = float(self.edges[panel]), annulus.c
-        right = min(float(self.edges[panel + 1]), annulus.a)
+    def _cut(self, panel: int, a: float, c: float, width: float, r: Array) -> Array:
+        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii."""
+        b, right = float(self.edges[panel]), min(float(self.edges[panel + 1]), a)
         total = np.zeros_like(r)
         # For radii above c the integral starts at the radius and does not depend on c.
         beyond = int(np.searchsorted(r, c)) if c > b else 0
@@ -174,9 +163,8 @@ class StressPanels:
         above, to_right = (b - at) * (b + at), (right - at) * (right + at)
         total[beyond : beyond + at.size] = _panel_integral(rows, length, above, to_right)
         if beyond:
-            whole = (right - c) * (right + c)
-            if right == annulus.a:
-                whole = annulus.width * (right + c)
+            # The width is accurate however narrow the annulus.
+            whole = (width if right == a else right - c) * (right + c)
             total[:beyond] = self._from_inner(panel, c, whole, r[:beyond])
         return total
 

@@ -11,18 +11,21 @@ Source: notes, §5.
 """
 
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from functools import partial
+from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import where
 from mdr_core.quadrature import DEFAULT, Analytic, integrate
-from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
+from mdr_core.typing import Array, Chosen, Indices, Parameter
 
 # weight(x, s, index) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b. x and s have
 # shape (nodes, k); index (k,) selects their integrals.
 Weight = Callable[[Array, Array, Chosen], Array]
+# `integrate` with a tolerance and a strip.
+_Rule = Callable[..., Array]
 
 _TINY: Final = float(np.finfo(float).tiny)
 
@@ -105,34 +108,22 @@ def two_root_integral(
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
-    problem = _Problem(weight, annulus, odd, rtol, analytic)
-    on_break = r == b
-    if np.count_nonzero(on_break):
-        on_break &= r > 0
-    if not np.count_nonzero(on_break):
-        return _two_roots(problem, b, r)
+    rule = partial(integrate, rtol=rtol, analytic=analytic)
     # Points on the break have a rule of their own; any other radius replaces them here.
-    index = on_break.nonzero()[0]
-    elsewhere = np.array(r)
+    index = np.flatnonzero((r == b) & (r > 0))
+    elsewhere = r.copy()
     elsewhere[index] /= 2
-    result = _two_roots(problem, b, elsewhere)
-    result[index] = _coincident_roots(problem, index, r[index])
+    result = _two_roots(rule, weight, b, elsewhere, annulus, odd=odd)
+    if index.size:
+        result[index] = _coincident_roots(rule, weight, annulus.at(index), r[index], index)
     return result
 
 
-class _Problem(NamedTuple):
-    """Arguments of `two_root_integral` other than the break and the points."""
-
-    weight: Weight
-    annulus: Annulus
-    odd: bool
-    rtol: float
-    analytic: Analytic
-
-
-def _two_roots(problem: _Problem, b: float, r: Array) -> Array:
+def _two_roots(
+    rule: _Rule, weight: Weight, b: float, r: Array, annulus: Annulus, *, odd: bool
+) -> Array:
     """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
-    upper, inner, edge = problem.annulus
+    upper, inner, edge = annulus
     signed2 = (b - r) * (b + r)
     above = signed2 < 0
     epsilon = np.sqrt(np.abs(signed2))
@@ -153,7 +144,7 @@ def _two_roots(problem: _Problem, b: float, r: Array) -> Array:
         roots = np.sqrt(edge2) * np.where(above & (inner2 == 0), epsilon, lower) + root * upper
         length = np.arcsinh(gap2 / np.maximum(roots, _TINY))
         start = np.arcsinh(np.minimum(root, lower) / epsilon)
-    weight, shift, base2 = problem.weight, np.where(above, -signed2, 0.0), b * b
+    shift, base2 = np.where(above, -signed2, 0.0), b * b
 
     def h(y: Array, index: Chosen) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
@@ -164,52 +155,47 @@ def _two_roots(problem: _Problem, b: float, r: Array) -> Array:
         x = s + base2
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
-    even: Flags | bool = problem.odd or above
-    return integrate(h, length, problem.rtol, start, even=even, analytic=problem.analytic)
+    return rule(h, length, lower=start, even=odd or above)
 
 
-def _coincident_roots(problem: _Problem, index: Indices, r: Array) -> Array:
+def _coincident_roots(
+    rule: _Rule, weight: Weight, annulus: Annulus, r: Array, index: Indices
+) -> Array:
     """r = b: F dx/s = weight ds/s, in log(s) over an annulus, in arcsinh(s/b) from the break.
 
-    `index` selects these points. Infinite where F ~ 1/s and the annulus begins at b.
+    `index` selects these points for the weight. Infinite where F ~ 1/s and the annulus begins at b.
     """
-    upper, inner, _ = problem.annulus.at(index)
-    upper = np.full(r.shape, upper)
-    if inner is None:
-        return _from_break(problem, index, r, upper)
-    width, result = np.full(r.shape, inner.width), np.empty_like(r)
-    here = (width < upper).nonzero()[0]
+    upper = np.full(r.shape, annulus.outer)
+    width = upper if annulus.inner is None else np.full(r.shape, annulus.inner.width)
+    result = np.empty_like(r)
+    here = np.flatnonzero(width < upper)
     if here.size:
         place, at = index[here], r[here]
 
         def over_annulus(t: Array, chosen: Chosen) -> Array:
             s = np.exp(t)
-            return problem.weight(np.hypot(at[chosen], s), s, place[chosen])
+            return weight(np.hypot(at[chosen], s), s, place[chosen])
 
         low = (upper - width)[here]
-        length = np.log1p(width[here] / low)
-        result[here] = integrate(
-            over_annulus, length, problem.rtol, np.log(low), even=False, analytic=problem.analytic
+        result[here] = rule(
+            over_annulus, np.log1p(width[here] / low), lower=np.log(low), even=False
         )
-    here = (width >= upper).nonzero()[0]
+    here = np.flatnonzero(width >= upper)
     if here.size:
-        result[here] = _from_break(problem, index[here], r[here], upper[here])
+        result[here] = _from_break(rule, weight, upper[here], r[here], index[here])
     return result
 
 
-def _from_break(problem: _Problem, index: Indices, r: Array, upper: Array) -> Array:
+def _from_break(rule: _Rule, weight: Weight, upper: Array, r: Array, index: Indices) -> Array:
     """r = b <= x, in arcsinh(s/b)."""
 
     def integrand(y: Array, chosen: Chosen) -> Array:
         at = r[chosen]
         x, s = at * np.cosh(y), at * np.sinh(y)
-        return problem.weight(x, s, index[chosen]) * x / s
+        return weight(x, s, index[chosen]) * x / s
 
-    nothing = np.zeros(r.size)
-    length = np.arcsinh(upper / r)
-    pole = problem.weight(r[None], nothing[None], index)[0]
-    if pole.all():
-        return np.full(r.shape, np.inf)
-    result = integrate(integrand, length, problem.rtol, even=False, analytic=problem.analytic)
-    result[pole != 0] = np.inf
+    pole = weight(r[None], np.zeros((1, r.size)), index)[0] != 0
+    result = np.full(r.shape, np.inf)
+    if not pole.all():
+        result[~pole] = rule(integrand, np.arcsinh(upper / r), even=False)[~pole]
     return result

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.stress import StressPanels
-from mdr_core.abel.subpanels import Dips, Subpanels
+from mdr_core.abel.subpanels import Subpanels
 from mdr_core.abel.table_transform import resolve
 from mdr_core.errors import InputError, Notice
 from mdr_core.profiles.table_interpolation import RINGING, Interpolation, interpolate
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array
 
 # Relative difference below which two radii are equal.
 _SAME: Final = 1e-12
@@ -106,7 +106,8 @@ def resolve_table(
             rows, spline, panels, dips = monotone, False, other, other.dips()
     domain, plateaus = float(r[-1]), np.empty((0, 2))
     if dips.top.size:
-        noticed = _noticed(panels, dips)
+        # Smaller falls are within the interpolation error of a smooth body.
+        noticed = dips.depth > RINGING * panels.at_edges[0].max()
         large = dips.depth > _ROUGHNESS * panels.at_edges[0].max()
         plateaus = np.stack([dips.begin, dips.end], axis=1)
         panels = _subpanels(r, f, rows, plateaus, spline=spline)
@@ -128,11 +129,6 @@ def _subpanels(
     return resolve(
         r[first:], slope, np.empty((0, 2)) if plateaus is None else plateaus, spline=spline
     )
-
-
-def _noticed(panels: Subpanels, dips: Dips) -> Flags:
-    """True for the falls of g above the interpolation error of a smooth body."""
-    return np.asarray(dips.depth > RINGING * panels.at_edges[0].max())
 
 
 def _not_by_spline(name: str, radius: float) -> Notice:

@@ -94,10 +94,7 @@ def _lowest_slopes(rows: Array, width: Array) -> tuple[Array, Array]:
 
 def _pchip_slopes(r: Array, f: Array) -> Array:
     """Slopes at the points for which cubic polynomials are monotone. Source: fritsch-carlson."""
-    if r.size == 2:
-        return np.repeat((f[1] - f[0]) / (r[1] - r[0]), 2)
-    pchip = PchipInterpolator(r, f)
-    return np.append(pchip.c[2], pchip(r[-1], 1))
+    return np.asarray(PchipInterpolator(r, f)(r, 1))
 
 
 def _spline_slopes(r: Array, f: Array, segments: Sequence[slice], *, smooth: bool) -> list[Array]:
