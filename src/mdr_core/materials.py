@@ -72,24 +72,20 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     if not elastic:
         raise InputError(("material", "bodies"), "at least one body must be elastic")
     for i, body in elastic:
-        _check_body(i, body)
+        path = ("material", "bodies", i)
+        if not 0 < body.youngs_modulus < inf:
+            raise InputError((*path, "youngs_modulus"), "must be positive and finite")
+        if not -1 < body.poissons_ratio <= 0.5:
+            raise InputError((*path, "poissons_ratio"), "must lie in -1 < nu <= 1/2")
     parts = [body for _, body in elastic]
-    normal = sum(_normal_compliance(body) for body in parts)
+    # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
+    normal = sum(
+        (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus
+        for body in parts
+    )
     shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
     return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios)
-
-
-def _normal_compliance(body: Body) -> float:
-    """(1 - nu^2)/E, in factors free of cancellation as nu -> -1."""
-    return (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus
-
-
-def _check_body(i: int, body: Body) -> None:
-    if not 0 < body.youngs_modulus < inf:
-        raise InputError(("material", "bodies", i, "youngs_modulus"), "must be positive and finite")
-    if not -1 < body.poissons_ratio <= 0.5:
-        raise InputError(("material", "bodies", i, "poissons_ratio"), "must lie in -1 < nu <= 1/2")
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

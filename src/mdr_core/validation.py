@@ -22,8 +22,6 @@ def extremes(values: float | ArrayLike) -> tuple[float, float]:
         # A single number needs no reduction; NumPy's doubles are floats as well.
         return float(values), float(values)
     array = np.asarray(values, dtype=float)
-    if array.ndim == 0:
-        return float(array), float(array)
     if array.size == 0:
         return float("nan"), float("nan")
     return float(array.min()), float(array.max())

@@ -277,14 +277,9 @@ class Profile(ABC):
     def stick_from_depth_ratio(
         self, coordinate: Array, ratio: Array, rest: Array
     ) -> tuple[Array, Array] | None:
-        """Contact coordinate of the stick edge and its distance from the edge, where closed.
+        """`stick_from_force_ratio` for the ratio u_x/u_max of displacements.
 
-        Source: mdr-5, Eqs. (5.12), (5.29), (5.47).
-
-        Parameters
-        ----------
-        coordinate : contact coordinate of the edge.
-        ratio, rest : u_x/u_max and 1 - u_x/u_max, both accurate [1].
+        Source: mdr-5, Eqs. (5.12), (5.29), (5.47). Parameters: see `stick_from_force_ratio`.
         """
         return None
 

@@ -63,8 +63,9 @@ def cancellation(terms: LogTerms, last: float) -> float:
     """
     last = min(last, _MAX_LOG)
     u = np.linspace(-_REACH, _REACH, _SAMPLES)
+    # Two terms are of equal size at u = 0.
     samples = [
-        _crossing(one, other) + u / abs(one.exponent - other.exponent)
+        (one.size - other.size + u) / (other.exponent - one.exponent)
         for one in terms
         for other in terms
         if one.sign > 0 > other.sign
@@ -113,8 +114,3 @@ def _log_roots(terms: LogTerms) -> list[float]:
         for start, end in pairwise(turns)
         if _scaled_sum(terms, start) * _scaled_sum(terms, end) < 0
     ]
-
-
-def _crossing(one: LogTerm, other: LogTerm) -> float:
-    """Logarithm of the radius where both terms are of equal size."""
-    return (one.size - other.size) / (other.exponent - one.exponent)

@@ -13,12 +13,7 @@ from mdr_core.abel.power_moments import power_moment
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
-from mdr_core.profiles.power_functions import (
-    kappa,
-    power,
-    power_slope,
-    power_step,
-)
+from mdr_core.profiles.power_functions import kappa, power, power_slope, power_step
 from mdr_core.profiles.power_sums import cancellation, first_negative_radius, log_terms
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -65,12 +60,7 @@ class Series(Profile):
 
     kind: ClassVar[str] = "series"
     formula: ClassVar[str] = "Σ coefficientᵢ·r^exponentᵢ"
-    closed_forms: ClassVar[tuple[str, ...]] = (
-        "normal_force",
-        "mean_pressure",
-        "normal_stiffness",
-        "elastic_energy",
-    )
+    closed_forms: ClassVar[tuple[str, ...]] = (*Profile.closed_forms, "elastic_energy")
 
     def __post_init__(self) -> None:
         path = ("profile", "terms")

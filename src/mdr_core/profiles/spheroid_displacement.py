@@ -11,13 +11,13 @@ import numpy as np
 
 from mdr_core.abel.displacement import in_blocks
 from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards, nodes_of_pieces
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Parameter
 
 # Length of a piece in v; `nodes_of_pieces` returns its number of nodes.
 _PIECE: Final = 2.0
 
 
-def slope_integral_outside(big_radius: float, v: float, r: Array, rtol: float) -> Array:
+def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: float) -> Array:
     """Return (1/h) int_0^a g'(x) arcsin(x/r) dx, a = R tanh(v) [1].
 
     Source: mdr-5, Eq. (5.75), by parts.
@@ -48,7 +48,7 @@ def slope_integral_outside(big_radius: float, v: float, r: Array, rtol: float) -
 
 
 def slope_integral_inside(
-    big_radius: float, v: Array, width: Array, r: Array, rtol: float
+    big_radius: Parameter, v: Array, width: Array, r: Array, rtol: float
 ) -> Array:
     """Return (1/h) int_c^r g'(x) arccos(x/r) dx for r = R tanh(v), c = R tanh(v - width) [1].
 
@@ -72,7 +72,7 @@ def slope_integral_inside(
     return width * in_blocks(values, weights.size, r.size)
 
 
-def _stepped(big_radius: float, v: Array, down: Array) -> tuple[Array, Array, Array]:
+def _stepped(big_radius: Parameter, v: Array, down: Array) -> tuple[Array, Array, Array]:
     """x at v - down, its distance below R tanh(v), and g' dx/dv / h."""
     at = v - down
     x = big_radius * np.tanh(at)
@@ -80,7 +80,7 @@ def _stepped(big_radius: float, v: Array, down: Array) -> tuple[Array, Array, Ar
     return x, short, at / np.cosh(at) ** 2 + np.tanh(at)
 
 
-def _nearest_root(big_radius: float, edge: float, beyond: Array) -> float:
+def _nearest_root(big_radius: Parameter, edge: float, beyond: Array) -> float:
     """Distance in v of the edge R - `edge` from the nearest radius `beyond` it, at most one.
 
     Beyond the equator there is none: its root has an imaginary part of pi/2.

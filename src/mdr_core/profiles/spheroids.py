@@ -111,17 +111,13 @@ class Spheroid(Profile):
         """Integrated in v. Parameters: see `Profile`."""
         v = artanh_ratio(r, self.radius)
         width = self.coordinate_width(r, c, v, artanh_ratio(c, self.radius))
-        equator, height = self._axes
-        return 2 / pi * height * slope_integral_inside(equator, v, width, r, rtol)
+        integral = slope_integral_inside(self.radius, v, width, r, rtol)
+        return 2 / pi * self.height * integral
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """Integrated in v. Parameters: see `Profile`."""
-        equator, height = self._axes
-        return 2 / pi * height * slope_integral_outside(equator, coordinate, r, rtol)
-
-    @property
-    def _axes(self) -> tuple[float, float]:
-        return float(np.asarray(self.radius)), float(np.asarray(self.height))
+        integral = slope_integral_outside(self.radius, coordinate, r, rtol)
+        return 2 / pi * self.height * integral
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return np.tanh(coordinate) <= _SHALLOW

@@ -185,6 +185,7 @@ class TippedCone(Profile):
             square = where(c > b, width * (2 * a - width), 0.0)
             span = where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
             inner = InnerEnd(span, c)
+        distance = float(np.arcsinh(self._opposite_singularity / b))
         value = two_root_integral(
             lambda x, s, _: self._flank_weight(x, s),
             b,
@@ -192,15 +193,9 @@ class TippedCone(Profile):
             Annulus(s, inner, a),
             odd=False,
             rtol=rtol,
-            analytic=self._flank_analytic,
+            analytic=Analytic(strip=min(DEFAULT.strip, _INSIDE * distance)),
         )
         return value / pi
-
-    @cached_property
-    def _flank_analytic(self) -> Analytic:
-        """Strip in which the flank's weight is analytic."""
-        distance = float(np.arcsinh(self._opposite_singularity / self.tangent_radius))
-        return Analytic(strip=min(DEFAULT.strip, _INSIDE * distance))
 
 
 @dataclass(frozen=True)
