@@ -79,11 +79,7 @@ def in_order(weights: Array, values: Array) -> Array:
         return total
     added = (1,) * (values.ndim - weights.ndim)
     spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
-    return sum_in_order(np.multiply(spread, values, order="C"))
-
-
-def sum_in_order(terms: Array) -> Array:
-    """Return the sum over the first axis of a contiguous array, term by term."""
+    terms = np.multiply(spread, values, order="C")
     # NumPy adds numbers that are contiguous in pairs, rows in their order.
     return np.add.accumulate(terms)[-1] if terms[0].size == 1 else np.add.reduce(terms)
 
