@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import full, number, some, where
+from mdr_core.elementwise import full, some, where
 from mdr_core.equivalent_1d import force_slope, stick_from_force
 from mdr_core.inversion import Function
 from mdr_core.normal import NormalContact
@@ -83,11 +83,10 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     worst = np.argmax(ratio)
     if contact.profile.has_no_partial_slip or not ratio[worst] > _LATE:
         return 0.0
-    given = contact.coordinate[worst], ratio[worst], 1 - ratio[worst]
-    edge, _ = stick_from_force(contact.profile, *map(number, given))
-    ends = number(given[0]), edge
-    part = ratio[worst], partial[worst]
-    return float(near_full_slip(contact.profile, ends, *part, by_force=True, edges=False))
+    coordinate, part = contact.coordinate[worst], ratio[worst]
+    edge, _ = stick_from_force(contact.profile, coordinate, part, 1 - part)
+    ends = coordinate, edge
+    return float(near_full_slip(contact.profile, ends, part, part > 0, by_force=True, edges=False))
 
 
 def of_sliding(

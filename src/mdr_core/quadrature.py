@@ -94,17 +94,15 @@ def error_bound(points: int | Indices, half_length: float | Array, analytic: Ana
 
     Source: trefethen, Thm 19.3.
     """
-    given = np.asarray(half_length, dtype=float)
-    half = np.where(given > 0, given, 1.0)
     # log(rho), up to the ellipse that touches the edge of the strip.
-    part = np.multiply.outer(_ELLIPSES, np.arcsinh(analytic.strip / half))
+    part = np.multiply.outer(_ELLIPSES, np.arcsinh(analytic.strip / half_length))
     semi_axis = np.cosh(part)
-    log_bound = analytic.growth * half * (semi_axis - 1) - 2 * points * part
+    log_bound = analytic.growth * half_length * (semi_axis - 1) - 2 * points * part
     log_bound += analytic.zeros * np.log(semi_axis)
     bound = np.exp(np.minimum(log_bound, _LOG_LARGEST)) / -np.expm1(-2 * part)
     # The mean of a growing integrand, or of one with zeros, is by so much below its maximum.
-    factor = 64 / 15 * (1 + analytic.growth * half) * (1 + analytic.zeros)
-    return np.asarray(np.where(given > 0, bound.min(axis=0) * factor, 0.0))
+    factor = 64 / 15 * (1 + analytic.growth * half_length) * (1 + analytic.zeros)
+    return np.asarray(bound.min(axis=0) * factor)
 
 
 @lru_cache(maxsize=512)

@@ -55,16 +55,12 @@ def atan_gap(s: Array, b: Parameter) -> Array:
     return piecewise(z, _THRESHOLD, series, lambda _: s - b * np.arctan(z))
 
 
-def atanh_gap(t: Array) -> Array:
-    """Return artanh(t) - t for 0 <= t < 1 [1]: t^3/3 for small t."""
+def tanh_gap(v: Array) -> Array:
+    """Return v - tanh(v) for v >= 0 [1]: v^3/3 for small v, v - 1 for large."""
 
-    def series(t: Array) -> Array:
+    def series(v: Array) -> Array:
+        t = np.tanh(v)
         u = t * t
         return t * u * _horner(_ATANH, u)
 
-    return piecewise(t, _THRESHOLD, series, lambda t: np.arctanh(t) - t)
-
-
-def tanh_gap(v: Array) -> Array:
-    """Return v - tanh(v) for v >= 0 [1]: v^3/3 for small v, v - 1 for large."""
-    return piecewise(v, 1.0, lambda v: atanh_gap(np.tanh(v)), lambda v: v - np.tanh(v))
+    return piecewise(v, _THRESHOLD, series, lambda v: v - np.tanh(v))

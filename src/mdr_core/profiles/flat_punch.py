@@ -36,14 +36,12 @@ class FlatPunch(Profile):
     def f(self, radius: Array) -> Array:
         return where(radius <= self.radius, 0.0, np.inf)
 
-    def df(self, radius: Array) -> Array:
-        return self.f(radius)
+    df = f
 
     def g(self, x: Array) -> Array:
         return self.f(x)
 
-    def dg(self, x: Array) -> Array:
-        return self.f(x)
+    dg = g
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
