@@ -70,10 +70,6 @@ class TangentialContact(validity.ContactResults):
     def _coordinate(self) -> Array:
         return broadcast(self.normal.coordinate, self.width.shape)
 
-    @cached_property
-    def _stick(self) -> Array:
-        return broadcast(self.stick_coordinate, self.width.shape)
-
     @property
     def _beyond_load(self) -> Flags | None:
         """True where the contact radius is prescribed on a plateau of g, which carries no load."""
@@ -123,7 +119,7 @@ class TangentialContact(validity.ContactResults):
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E* over a divisor."""
-        rise = step(self.normal.profile, self._coordinate, self.width, self._stick)
+        rise = step(self.normal.profile, self._coordinate, self.width, self.stick_coordinate)
         # mu and G* are often single numbers beside an array E*.
         return self.friction_coefficient / divisor * self.normal.e_star * rise
 
@@ -153,8 +149,8 @@ class TangentialContact(validity.ContactResults):
         if profile.has_no_partial_slip:
             a = broadcast(self.normal.contact_radius, self.width.shape)
             return where(self.full_slip, 0.0, a)
-        c = profile.contact_radius(self._stick)
-        if c is not self._stick or self._beyond_load is not None:
+        c = profile.contact_radius(self.stick_coordinate)
+        if c is not self.stick_coordinate or self._beyond_load is not None:
             # By rounding error c may exceed a. Without slip both are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
@@ -185,7 +181,7 @@ class TangentialContact(validity.ContactResults):
         """Width of the slip annulus and stick radius in the contact coordinate."""
         first = self.normal.profile.first_coordinate
         width = where(self.full_slip, self._coordinate - first, self.width)
-        return width, where(self.full_slip, first, self._stick)
+        return width, where(self.full_slip, first, self.stick_coordinate)
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
@@ -248,7 +244,7 @@ class TangentialContact(validity.ContactResults):
         if profile.has_no_partial_slip:
             return 1.0 if by_force else conditioning.of_excess_displacement(size, self.excess)
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
-        ends = self._coordinate, self._stick
+        ends = self._coordinate, self.stick_coordinate
         return conditioning.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
 
     @property
@@ -316,7 +312,7 @@ def solve(
         detail = f"the shape {given.shape} does not agree with the normal loads, {shapes[1]}"
         raise InputError(("tangential", name), detail) from None
     edge, width, *slipped = stick_zone.solve(contact, *parameters, name, given)
-    zone: Any = edge, broadcast(width, shape), *slipped, name
+    zone: Any = broadcast(edge, shape), broadcast(width, shape), *slipped, name
     result = TangentialContact(contact, *parameters, *zone)
     if given.shape == shape:
         # The prescribed load is returned bit-identical.

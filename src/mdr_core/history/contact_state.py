@@ -139,7 +139,7 @@ class ContactState(Results):
     @property
     def tangential_energy(self) -> float:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        return self._energy_unit * float(self._branches.square[-1])
+        return self.energy_unit * float(self._branches.square[-1])
 
     @cached_property
     def dissipation(self) -> float:
@@ -147,12 +147,12 @@ class ContactState(Results):
         if self.last_step is None:
             return 0.0
         segments = slip_memory.slip_segments(self.last_step)
-        return self._energy_unit * float(
+        return self.energy_unit * float(
             dissipation.per_segment(self.profile, segments, by_force=False).sum()
         )
 
     @property
-    def _energy_unit(self) -> float:
+    def energy_unit(self) -> float:
         """(mu E*)^2/G* [pressure]."""
         return self.friction_coefficient * self.e_star * self.displacement_ratio
 

@@ -77,7 +77,10 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def tangential_force(self) -> Array:
         """F_x = mu E* sum k_i (I_i - I_i-1) over the branches [force]. Source: notes, §10."""
-        return self.path.tangential if self.path.by_force else self._friction * self.results.shear
+        start = self.path.start
+        if self.path.by_force:
+            return self.path.tangential
+        return start.friction_coefficient * start.e_star * self.results.shear
 
     @cached_property
     def tangential_displacement(self) -> Array:
@@ -93,12 +96,12 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def tangential_energy(self) -> Array:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length], >= 0."""
-        return self._friction * self.path.start.displacement_ratio * self.results.energy
+        return self.path.start.energy_unit * self.results.energy
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated by friction since the sample before [force length], >= 0."""
-        return self._friction * self.path.start.displacement_ratio * self.results.dissipation
+        return self.path.start.energy_unit * self.results.dissipation
 
     @cached_property
     def dissipated_energy(self) -> Array:
@@ -186,11 +189,6 @@ class LoadHistory(validity.ContactResults):
             text = f"rtol = {self.rtol:.1e} was not reached on this load path; see error_estimate"
             found.append(Notice("accuracy", text))
         return tuple(found)
-
-    @property
-    def _friction(self) -> float:
-        """mu E* [pressure]."""
-        return self.path.start.friction_coefficient * self.path.start.e_star
 
 
 def solve(
