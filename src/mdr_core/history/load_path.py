@@ -114,7 +114,12 @@ class SampledPath:
         return LoadPoints(normal, tangential, self.continues, self.step)
 
     def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
-        """Return reduced tangential forces that do not exceed the reduced normal forces.
+        """Return tangential forces that do not exceed friction.
+
+        Parameters
+        ----------
+        normal, tangential : reduced forces F_N/E* and F_x/(mu E*) [length^2], shape (n,).
+        step : load step of each.
 
         Raises
         ------
