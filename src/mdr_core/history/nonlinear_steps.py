@@ -24,12 +24,12 @@ from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
-# Chords from the axis to the largest contact: enough for the tolerance, as a cube root, within
+# Chords of the finest set from the axis to the largest contact: rtol^(-1/3), within
 # these limits.
 _MIN_CHORDS: Final = 64
-# It costs 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
+# They take 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
 _MAX_CHORDS: Final = 1024
-# Chords on every nonlinear load step, before they are halved.
+# Chords on every nonlinear load step, in the coarsest set.
 _MIN_CHORDS_ON_STEP: Final = 8
 # Chords of all steps together, which bounds time and memory.
 _MAX_TOTAL_CHORDS: Final = 400_000
@@ -37,7 +37,8 @@ _MAX_TOTAL_CHORDS: Final = 400_000
 _HALVINGS: Final = 2
 # The error of the extrapolated results, in units of the change by the last halving.
 _SAFETY: Final = 2.0
-# The same on tables, where chords converge less regularly: 9 is the most of 100 rough tables.
+# The same on tables, where chords converge less regularly: the largest factor for 100
+# rough tables is 9.
 _SAFETY_ON_TABLES: Final = 10.0
 # A corner of chords is off its arc by less than this part of its normal coordinate.
 _NEAREST: Final = 1e-3
@@ -107,11 +108,11 @@ class NonlinearSteps:
 
     @cached_property
     def _pieces(self) -> tuple[Indices, Array, Array, Array]:
-        """Pieces of the parts between the breaks of the profile, across which chords converge less.
+        """Pieces of the parts between the breaks of the profile, where chords converge regularly.
 
-        Their part, their ends as shares of 90 degrees, and the contact coordinate at the second.
-        Chords that are even in the angle whose squared sine is the share of the part's length
-        cluster at both ends: the axis, and load points from which slip starts.
+        The part, both ends as fractions of pi/2, and the contact coordinate of the second end. The
+        squared sine of the angle is the fraction of the part's length: chords that are even in the
+        angle cluster at both ends, the axis and load points from which slip starts.
         """
         owner, start, stop = self._parts
         breaks = self.profile.coordinate_breaks
@@ -135,7 +136,7 @@ class NonlinearSteps:
     def chords(self, finest: int, halvings: int) -> tuple[LoadPoints, Indices]:
         """Return the ends of the chords, and which of them are the samples.
 
-        `finest` chords reach from the axis to the largest contact, before they are halved.
+        `finest` chords reach from the axis to the largest contact after the last halving.
         """
         owner, start, stop = self._parts
         fewest = min(_MIN_CHORDS_ON_STEP, _MAX_TOTAL_CHORDS / (start.size << _HALVINGS))

@@ -1,4 +1,4 @@
-"""Responses of the endpoints, as OpenAPI documents them, and headers of the pages."""
+"""Texts and responses of the endpoints, as OpenAPI documents them, and headers of the pages."""
 
 from typing import Any, Final
 
@@ -103,8 +103,8 @@ to 1e-7 and within `error_estimate`. A negative depth is a separation, which era
 memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
 rejected.
 
-`error_estimate` is relative to the largest value on the path. A warning `accuracy` reports
-where `slip_fronts` is less accurate. `energy_per_cycle` and `secant_stiffness` belong to
+`error_estimate` is relative to the largest value on the path. It does not include
+`slip_fronts`. `energy_per_cycle` and `secant_stiffness` belong to
 `cycles`.""",
     ),
     "stress": (
