@@ -10,11 +10,12 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.power_moments import root_step
-from mdr_core.abel.two_root import inverse_hypot, two_root_integral
+from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.energy import energy_integral
+from mdr_core.profiles.truncated import TruncatedParaboloid
 from mdr_core.typing import Array, Parameter
 
 # Larger than any radius of 1e-50 to 1e50.
@@ -59,11 +60,6 @@ class CappedParaboloid(Profile):
             )
 
     @cached_property
-    def _curvature_step(self) -> Parameter:
-        """k = 1/R2 - 1/R1 [1/length]."""
-        return (self.tip_radius - self.radius) / (self.tip_radius * self.radius)
-
-    @cached_property
     def _relative_step(self) -> Parameter:
         """K = k R1 [1]."""
         return (self.tip_radius - self.radius) / self.radius
@@ -72,6 +68,12 @@ class CappedParaboloid(Profile):
     def _break(self) -> Parameter:
         """b, or an unreachable radius if K = 0 and there is no break [length]."""
         return where(self._relative_step > 0, self.cap_radius, _UNREACHABLE)
+
+    @cached_property
+    def _flank(self) -> TruncatedParaboloid:
+        """Part beyond b that is added to the cap; any, where there is no break."""
+        step = where(self._relative_step > 0, self._relative_step, 1.0)
+        return TruncatedParaboloid(self._break, self.tip_radius / step)
 
     @cached_property
     def _ratio(self) -> Parameter:
@@ -103,24 +105,20 @@ class CappedParaboloid(Profile):
         )
 
     def f(self, radius: Array) -> Array:
-        outer = inverse_hypot(radius, self._break)
-        return radius * radius / (2 * self.tip_radius) + self._curvature_step * outer * outer / 2
+        return radius * radius / (2 * self.tip_radius) + self._flank.f(radius)
 
     def df(self, radius: Array) -> Array:
-        return where(radius < self._break, radius / self.tip_radius, radius / self.radius)
+        return radius / self.tip_radius + self._flank.df(radius)
 
     def g(self, x: Array) -> Array:
-        return x * x / self.tip_radius + self._curvature_step * x * inverse_hypot(x, self._break)
+        return x * x / self.tip_radius + self._flank.g(x)
 
     def dg(self, x: Array) -> Array:
-        s = inverse_hypot(x, self._break)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            outer = self._curvature_step * (s + x * x / s)
-        return 2 * x / self.tip_radius + where(x < self._break, 0.0, outer)
+        return 2 * x / self.tip_radius + self._flank.dg(x)
 
     def _weight(self, x: Array, s: Array) -> Array:
         """dg/ds = g'(x) s/x beyond b [1]."""
-        return 2 * s / self.tip_radius + self._curvature_step * (s * s / x + x)
+        return 2 * s / self.tip_radius + self._flank.weight(x, s)
 
     # The contact coordinate.
 
@@ -163,7 +161,7 @@ class CappedParaboloid(Profile):
 
     def depth(self, coordinate: Array) -> Array:
         a = self.contact_radius(coordinate)
-        return a * a / self.tip_radius + self._curvature_step * a * self._outer(coordinate)
+        return a * (a / self.tip_radius + self._outer(coordinate) / self._flank.radius)
 
     def depth_slope(self, coordinate: Array) -> Array:
         beyond = self._weight(self.contact_radius(coordinate), self._outer(coordinate))
@@ -174,9 +172,7 @@ class CappedParaboloid(Profile):
         return self._force(self.contact_radius(coordinate), self._outer(coordinate))
 
     def _force(self, a: Array, s: Array) -> Array:
-        cap = 4 * a * a * a / (3 * self.tip_radius)
-        b = self._break
-        return cap + (2 / 3) * self._curvature_step * s * (2 * a * a + b * b)
+        return 4 * a * a * a / (3 * self.tip_radius) + self._flank.reduced_force(s)
 
     def coordinate_from_depth(self, depth: Array) -> Array:
         """With u = s^2/b^2 and D = R1 d/b^2 - 1 it is (D - u)^2 = K^2 u (1 + u)."""
@@ -204,21 +200,15 @@ class CappedParaboloid(Profile):
 
         Source: notes, §2. Parameters: see `Profile`.
         """
-        b, step, (outer, inner, edge) = float(self._break), float(self._curvature_step), annulus
+        outer, inner, edge = annulus
         s, beyond = self._outer(outer), None
         if inner is not None:
-            past = outer - inner.width > b
+            past = outer - inner.width > self._break
             beyond = InnerEnd(where(past, inner.width / self._ratio, s), inner.radius)
         total = root_step(self.radial(annulus), radius)
         total *= 2 / (pi * self.tip_radius)
         flank = np.full(radius.shape, s > 0)
-        if flank.any() and step > 0:
-            total[flank] += (step / pi) * two_root_integral(
-                lambda x, root, _: (x * x + root * root) / x,
-                b,
-                radius[flank],
-                Annulus(s, beyond, edge).at(flank),
-                odd=True,
-                rtol=rtol,
-            )
+        if flank.any():
+            annulus = Annulus(s, beyond, edge).at(flank)
+            total[flank] += self._flank.pressure_kernel(annulus, radius[flank], rtol)
         return total
