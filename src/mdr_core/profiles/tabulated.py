@@ -109,6 +109,8 @@ class Tabulated(FlatEnded):
         return float(self.resolved.rows[1, 0]) / 2
 
     def contact_radius(self, coordinate: Array) -> Array:
+        if self.flat_radius == 0:
+            return coordinate
         return np.minimum(super().contact_radius(coordinate), self.domain)
 
     def radius_slope(self, coordinate: Array) -> Array:
