@@ -41,7 +41,7 @@ def divided_breaks(profile: Profile) -> Array:
 
 
 def next_breaks(profile: Profile, breaks: Array, coordinate: Array, index: Indices) -> Indices:
-    """Return the indices of the next breaks, of places that rounding may put beside a plateau.
+    """Return the indices of the next breaks, corrected where rounding moves a place off a plateau.
 
     All places on a plateau of g have one depth. Their contact coordinates are those of its ends.
 
@@ -60,5 +60,5 @@ def next_breaks(profile: Profile, breaks: Array, coordinate: Array, index: Indic
 
 
 def has_many_breaks(profile: Profile) -> bool:
-    """True for tables, whose parameters are never arrays over the cases of a sweep."""
+    """True for tables of several intervals, whose parameters are never arrays."""
     return profile.coordinate_breaks.size > 1 and not profile.swept

@@ -7,7 +7,7 @@ from mdr_core.profiles import Profile
 
 
 def with_parameters(profile: Profile, parameters: Mapping[str, Any]) -> Profile:
-    """Return the profile with parameters replaced by parts of its own, which are not checked."""
+    """Return the profile with some parameters replaced, without a check."""
     if not parameters:
         return profile
     part = object.__new__(type(profile))

@@ -22,7 +22,7 @@ def is_number(value: Any) -> bool:
 
 
 def _number(value: Any) -> Any:
-    """Of Python's numbers neither comparisons nor results have NumPy's methods."""
+    """Return a Python float as np.float64, whose comparisons have NumPy's methods."""
     return np.float64(value) if type(value) is float else value
 
 

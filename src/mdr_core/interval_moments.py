@@ -31,13 +31,13 @@ _BLOCK: Final = 1024
 # Gauss nodes on an interval without a break. Beyond a break the remainder is of the order of
 # 2.4^-32 of the interval's moments, see notes, §10.
 _POINTS: Final = 16
-# An interval is wide if the contact coordinate or, before the first break, the normal coordinate
-# grows by more than this factor on it. Differences of closed forms over a wide interval do not
+# An interval before the first break is wide if the normal coordinate grows by more than this factor
+# on it. Differences of closed forms over a wide interval do not
 # suffer cancellation.
 _WIDE: Final = 16.0
-# The same factor of the contact coordinate before the first break.
+# The same for the contact coordinate.
 _WIDE_FROM_AXIS: Final = 400.0
-# The same factor beyond a break.
+# The same for the contact coordinate beyond a break.
 _WIDE_BEYOND_BREAK: Final = 2.5
 # Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
 _SHALLOW: Final = 1.5

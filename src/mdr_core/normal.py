@@ -128,7 +128,7 @@ class NormalContact(validity.ContactResults):
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        """Warnings that do not depend on the bodies."""
         found = list(self.profile.notices)
         if self.profile.kind == "tabulated":
             found += validity.notices([validity.table_end(self)])

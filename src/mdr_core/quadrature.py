@@ -1,6 +1,6 @@
 """Gauss-Legendre rules for integrands that are analytic in a strip about the real axis.
 
-The substitutions of `mdr_core.abel` turn every singular integral of the project into one whose
+The substitutions of `mdr_core.abel` turn every singular stress integral into one whose
 integrand h(y) is analytic for |Im y| < pi/2 and grows no faster than exp(growth |Re y|). The error
 of a rule for such functions is bounded a priori. Each integral therefore takes only the nodes that
 its length and the tolerance need, and nothing is evaluated twice.

@@ -67,7 +67,7 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
 
 
 def _by_load(contact: NormalContact, size: Array, limit: Array, *, by_force: bool) -> _Slipped:
-    """Stick edge and annulus; full slip from the limit on, which a force does not exceed."""
+    """Stick edge and annulus; full slip at the limit and beyond; a force cannot exceed it."""
     left, full_slip, excess = limit - size, _NO_FULL_SLIP, _NO_EXCESS
     if least(left) <= 0:
         if by_force and least(left) < 0:

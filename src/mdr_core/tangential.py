@@ -249,7 +249,7 @@ class TangentialContact(validity.ContactResults):
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        """Warnings that do not depend on the bodies."""
         found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.normal.rtol:
             found.append(not_reached(self.normal.rtol))

@@ -76,11 +76,11 @@ class SolvedContact(Protocol):
 
 
 class ContactResults(Results):
-    """Results of a contact, with all of its warnings."""
+    """Results of a contact, with its warnings."""
 
     @property
     def warnings(self: SolvedContact) -> tuple[Notice, ...]:
-        """All warnings; where the bodies are unknown, as for one body on a rigid one."""
+        """Warnings; those of unknown bodies are for Poisson's ratio 0.3 on a rigid body."""
         return (*notices(of_normal_contact(self.normal)), *self.warnings_without_bodies)
 
 
@@ -90,7 +90,7 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
 
 
 def findings(contact: SolvedContact, material: Material) -> list[Finding]:
-    """Return all findings that depend on the bodies in contact.
+    """Return the findings that depend on the bodies in contact, without `yield`.
 
     Poisson's ratio 0.3 is assumed where they are unknown.
     """

@@ -165,7 +165,7 @@ def _location(error: ErrorDetails) -> Iterator[str | int]:
 
 
 # Pydantic's own sentences repeat the value sent, name the tags of its union or, in queries of a
-# batch, the types of Python; a member it calls an input.
+# batch, the types of Python; it calls a member an input.
 _SENTENCES: Final = {
     "union_tag_invalid": "there is no such kind of profile; GET /v1/profiles lists them",
     "union_tag_not_found": "the kind of profile is missing; GET /v1/profiles lists them",

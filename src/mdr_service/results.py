@@ -101,7 +101,7 @@ def notices(query: Query, source: Contact | Wear) -> list[Notice]:
 
 
 def findings(query: Query, contact: Contact) -> list[validity.Finding]:
-    """Return the limits that depend on the bodies, which are those of the query."""
+    """Return the findings on validity for the bodies of a query."""
     material = query.material.effective
     found = validity.findings(contact, material)
     if query.material.has("yield_strength"):

@@ -16,8 +16,8 @@ import pyarrow.parquet as pq
 from mdr_sweep.request_columns import Values
 from mdr_sweep.spec import UsageError
 
-# Rows of a row group of a Parquet file, and the most in a chunk: about 10 MB. Arrays of so
-# many cases fit the processor's cache; larger ones take up to twice as long per case.
+# Rows of a row group of a Parquet file, and the largest number in a chunk: about 10 MB. Arrays of
+# so many cases fit the processor's cache; larger ones take up to twice as long per case.
 ROW_GROUP: Final = 65_536
 # Bytes of CSV that are parsed at once.
 _BLOCK: Final = 4 * 1024**2

@@ -282,7 +282,7 @@ def _lower(
 
 
 def in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
-    """Return the values of a number of integrals with so many nodes each, in blocks."""
+    """Return the values of `count` integrals with `nodes` nodes each, in blocks."""
     step = max(_BLOCK // nodes, 1)
     parts = [values(slice(start, start + step)) for start in range(0, max(count, 1), step)]
     return np.concatenate(parts, axis=-1)

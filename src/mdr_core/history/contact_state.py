@@ -25,7 +25,7 @@ class TractionSegments(NamedTuple):
     width: Array
     """Widths in the contact coordinate, without cancellation, shape (n,)."""
     slope: Array
-    """Slope of the anchor over depth, from -1 to 1; on an arc it is not constant."""
+    """Slope of the anchor over depth, from -1 to 1; zero on an arc, see `rate`."""
     rate: Array
     """On an arc the slope is rate 2x, or rate/(2x) where `inverse`; zero on straight segments."""
     inverse: bool = False
@@ -49,7 +49,7 @@ class ContactState(Results):
     arcs: TractionSegments | None = None
     """Segments with the arcs of nonlinear load steps, if there are any."""
     last_step: FrontPath | None = None
-    """Path of the slip front on the step of `advance` that led here, None at the start."""
+    """Path of the slip front on the step of `advance` that led here; None for other states."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -234,7 +234,7 @@ def advance(
     Parameters
     ----------
     state : state from `unloaded`, from an earlier step, or at the end of a history. After
-        nonlinear load steps chords stand for the arcs, with a relative error of up to 1e-6.
+        nonlinear load steps chords stand for the arcs, with a relative error of up to about 1e-5.
     indentation_depth : d after the step [length].
     tangential_displacement : u_x after the step [length].
 

@@ -183,7 +183,7 @@ class LoadHistory(validity.ContactResults):
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        """Warnings that do not depend on the bodies."""
         found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.rtol:
             text = f"rtol = {self.rtol:.1e} was not reached on this load path; see error_estimate"

@@ -62,7 +62,7 @@ class _Blocks(NamedTuple):
     """x^2 - low^2 of the nodes, shape (nodes, n)."""
     x: Array
     mass: Array
-    """Of q and q_x, if there is one, shape (1 or 2, nodes, n)."""
+    """Masses of q and, with friction, of q_x, shape (1 or 2, nodes, n)."""
 
 
 class Foundation:
@@ -72,7 +72,7 @@ class Foundation:
         self.load, profile = load, load.profile
         rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
         self.share = (1 if body == 2 else -1) * load.modulus / load.e_star
-        """Unit of the slopes k of the anchors, as the body feels them [1]."""
+        """Unit of the slopes k of the anchors, as they act on the body [1]."""
         self._slope, self._rate = self.share * load.slope, self.share * np.array(rate)
         self._inverse = any(arc and arc.inverse for arc in load.arcs)
         slopes = (self._slope != 0) | (self._rate != 0)

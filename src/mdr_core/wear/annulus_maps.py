@@ -71,7 +71,7 @@ class AnnulusMaps:
 
 @lru_cache(maxsize=16)
 def annulus_maps(nodes: int) -> AnnulusMaps:
-    """Return the maps on so many nodes, evenly spaced in the angle theta of the grading.
+    """Return the maps on a number of nodes, evenly spaced in the angle theta of the grading.
 
     Between the nodes functions are local polynomials in theta, reflected at both ends. Where a
     front is thinner than the nodes' spacing, they are wrong next to it and nowhere else; one

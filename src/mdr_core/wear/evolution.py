@@ -108,7 +108,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
             values, others = (getattr(run, name)(r) for run in (self, self.coarse))
             difference = max(self._difference_near(name, r), _largest(values, others))
             if name == "pressure" and self.initial.stick_moves:
-                # It is singular at an edge whose position is inexact.
+                # The pressure is singular at an edge whose position is inexact.
                 shifted = np.minimum(r * (1 + self.error_estimate), self.normal.profile.domain)
                 difference = max(difference, _largest(values, self.pressure(shifted)))
             largest = max(_largest(values), float(np.max(least.get(name, 0.0))))
@@ -147,7 +147,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @property
     def method(self) -> str:
-        """The slope of a worn profile is an integral."""
+        """Most expensive method: the slope of a worn profile is an integral."""
         return "quadrature" if self.initial.slips else self.initial.tangential_contact.method
 
     @property
@@ -157,7 +157,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`."""
+        """Warnings that do not depend on the bodies."""
         found = list(self.initial.tangential_contact.warnings_without_bodies)
         if isfinite(self.settled_at):
             found.append(

@@ -44,32 +44,32 @@ class InitialState:
 
     @property
     def slips(self) -> bool:
-        """There is a slip annulus, and so wear."""
+        """True if there is a slip annulus, and so wear."""
         return float(self.tangential_contact.slip_width) > 0
 
     @cached_property
     def constant_force(self) -> bool:
-        """The normal force is held constant, so that the depth grows; otherwise the depth."""
+        """True if the normal force is constant, so that the depth grows; otherwise the depth is."""
         return self.contact.control == "normal_force"
 
     @cached_property
     def constant_displacement(self) -> bool:
-        """The displacement amplitude is held, and with it D; otherwise that of the force."""
+        """True if the displacement amplitude is constant, and with it D; otherwise the force's."""
         return self.tangential_contact.control == "tangential_displacement"
 
     @property
     def stick_grows(self) -> bool:
-        """The growing depth moves the stick edge outwards, over worn material."""
+        """True if the growing depth moves the stick edge outwards, over worn material."""
         return self.constant_force and self.constant_displacement
 
     @property
     def stick_shrinks(self) -> bool:
-        """The falling normal force moves the stick edge inwards, over unworn material."""
+        """True if the falling normal force moves the stick edge inwards, over unworn material."""
         return not (self.constant_force or self.constant_displacement)
 
     @property
     def stick_moves(self) -> bool:
-        """The stick edge is not at rest."""
+        """True if the stick edge moves."""
         return self.constant_force == self.constant_displacement
 
     @cached_property
@@ -94,12 +94,12 @@ class InitialState:
 
     @cached_property
     def stick(self) -> float:
-        """c_0 in its unit."""
+        """c_0 [b_0]."""
         return float(self.tangential_contact.stick_radius) / self.length_unit
 
     @cached_property
     def width(self) -> float:
-        """a_0 - c_0 in its unit."""
+        """a_0 - c_0 [b_0]."""
         return float(self.tangential_contact.slip_width) / self.length_unit
 
     @cached_property
@@ -109,12 +109,12 @@ class InitialState:
 
     @cached_property
     def room(self) -> float:
-        """Growth at which the contact reaches the profile's end, in its unit."""
+        """Growth at which the contact reaches the profile's end [b_0]."""
         return (self.domain - float(self.contact.contact_radius)) / self.length_unit
 
     @cached_property
     def reach(self) -> float:
-        """Growth of the contact up to which this method resolves it, in its unit."""
+        """Growth of the contact up to which this method resolves it [b_0]."""
         if not self.stick_grows:
             return self.room
         return min(self.room, _GROWTH * self.width * (1 + self.width / self.stick) ** 2)
@@ -152,7 +152,7 @@ class InitialState:
         return np.append(profile.contact_radius(inner), profile.domain)
 
     def rise(self, stick_shift: float, offset: Array) -> Array:
-        """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift, in their units."""
+        """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift [D_0], all lengths in b_0."""
         profile, unit = self.contact.profile, self.length_unit
         stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
         by = unit * offset
@@ -166,6 +166,6 @@ class InitialState:
         return np.asarray(by / 2 * (profile.dg(at) @ weights) / self.depth_unit)
 
     def slope(self, x: Array) -> Array:
-        """Return g_0'(x) in its unit."""
+        """Return g_0'(x) [D_0/b_0], x in b_0."""
         slope = self.contact.profile.dg(np.minimum(x * self.length_unit, self.domain))
         return np.asarray(slope * (self.length_unit / self.depth_unit))

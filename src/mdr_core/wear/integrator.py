@@ -48,7 +48,7 @@ def integrate(
 
     Raises
     ------
-    InputError : the contact reaches the end of the profile, or slides.
+    InputError : the contact reaches the end of the profile, or full slip.
     AccuracyError : the integrator failed, takes too many steps, or the contact grows too far.
     """
     if not initial.slips:
@@ -59,7 +59,7 @@ def integrate(
         return (AnnulusState(initial, start),) * cycles.size, inf
     first = float(scaled[scaled > 0][0])
     if first < _FIRST:
-        detail = "so few cycles wear less than the integrator can resolve"
+        detail = "the wear in so few cycles is too small to be resolved: request more cycles"
         raise AccuracyError(detail, ("cycles",))
     calls = 0
 
@@ -67,7 +67,9 @@ def integrate(
         nonlocal calls
         calls += 1
         if calls > _MAX_CALLS:
-            detail = "the wear over the cycles takes too many steps: fewer nodes may take less"
+            detail = (
+                "the wear over the cycles takes too many steps: a lower resolution may take fewer"
+            )
             raise AccuracyError(detail, ("resolution",))
         return rates(initial, vector)
 

@@ -18,8 +18,8 @@ from mdr_core.validation import checked_radii, first_index
 from mdr_core.wear import limit_fields, limiting_stick
 from mdr_core.wear.arguments import grid, one_amplitude
 
-# Width over that of the rise of g by the step, where both are narrow: the mean of r cos(t) - c up
-# to the angle arccos(c/r) is two thirds of r - c.
+# Width of the worn annulus over that of the slip annulus, where both are narrow: the mean of
+# r cos(t) - c up to the angle arccos(c/r) is two thirds of r - c.
 _NARROW: Final = 1.5
 # Part of the room from which on a worn annulus may reach the end of the profile: 1 up to rounding.
 _AT_END: Final = 0.99
@@ -232,7 +232,7 @@ class LimitingWear(validity.ContactResults):
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies: all but `half_space` and `plastic`.
+        """Warnings that do not depend on the bodies.
 
         Of the limit: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
         """

@@ -211,7 +211,7 @@ _BY_CONTROL: Final = {
 
 
 def find(contact: TangentialContact, amplitude: Array) -> LimitingStick:
-    """Return the stick zone in the limit under a constant amplitude, that of the contact."""
+    """Return the stick zone in the limit; the amplitude is the contact's tangential load."""
     return _BY_CONTROL[contact.normal.control, contact.control](contact, amplitude)
 
 

@@ -54,7 +54,7 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
 
 
 class _EdgeBalance(AnnulusState):
-    """Rates of the edges from what stays constant; all others are linear in them.
+    """Rates of the edges from the constant quantities; all others are linear in them.
 
     Columns: by wear alone, and per unit of the rates of b, c and d.
     """

@@ -26,7 +26,7 @@ class SurfaceTilt:
     width: float
     """a_0 - c_0."""
     reach: float
-    """How far the contact may grow."""
+    """Largest growth of the contact radius."""
 
     def rates(self, stick_shift: float) -> Array:
         """Return the terms of dC/dw_c, for a stick edge at c_0 + stick_shift, (COUNT,)."""

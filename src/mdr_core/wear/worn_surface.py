@@ -154,7 +154,7 @@ class WornSurface:
 
 
 def _in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
-    """Return a field at radii of which only some are evaluated at once."""
+    """Return a field, in blocks of radii that bound the memory."""
     blocks = np.split(radius, range(_BLOCK, radius.size, _BLOCK))
     return np.concatenate([field(block) for block in blocks])
 

@@ -57,7 +57,7 @@ async def list_limits() -> Settings:
 @router.get("/health/live", operation_id="live", tags=["operation"], summary="Liveness probe")
 @router.get("/health", operation_id="health", tags=["operation"], summary="State of the service")
 async def live() -> Health:
-    """Return 200 without any work. Restart an instance that does not."""
+    """Return 200. Restart an instance that does not respond."""
     return _OK
 
 

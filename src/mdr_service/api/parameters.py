@@ -34,7 +34,7 @@ def _cacheable(request: Request, response: Response) -> Response:
 
 def _endpoint(name: str, model: Any) -> Callable[..., Awaitable[Response]]:
     async def get(parameters: Annotated[model, Query()], request: Request) -> Response:
-        """Compute the same as `POST` from numbers and at most one range.
+        """Return the response of `POST` for numbers and at most one range.
 
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """

@@ -60,7 +60,7 @@ class Responder:
     async def __call__(
         self, name: str, query: contacts.Query | BatchQuery | bytes, members: Sequence[str] = ()
     ) -> Response:
-        """Compute on the event loop if that is short, else or from a text in a compute process."""
+        """Return the content, of a long query or an unparsed one from a compute process."""
         arguments = name, query, self.media_type, members, self.size
         if not isinstance(query, bytes) and cost.is_short(
             cost.require_feasible(query, self.media_type), len(self.tasks)
