@@ -16,17 +16,9 @@ _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 
 def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FORMATS)) -> str:
-    """Return the media type of a response.
+    """Return the media type of a format; without its name, the header ``Accept`` selects one.
 
-    Parameters
-    ----------
-    name : name of the format; None leaves the choice to `accept`.
-    accept : value of the header ``Accept``, which prefers the first offered format of equals.
-    offered : names of the formats.
-
-    Raises
-    ------
-    ServiceError : no offered format is accepted.
+    Of equals it selects the first of the offered formats. Raises ServiceError if none is accepted.
     """
     types = [FORMATS[each] for each in offered]
     if name is not None:

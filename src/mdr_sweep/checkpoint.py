@@ -21,14 +21,10 @@ _UNFINISHED: Final = ".unfinished"
 
 
 class Checkpoint:
-    """Completed chunks of a sweep.
-
-    Parameters
-    ----------
-    target : path of the result; a symbolic link stays, and the file that it names is written.
-    """
+    """Completed chunks of a sweep, beside the path of its result."""
 
     def __init__(self, target: Path) -> None:
+        # A symbolic link stays, and the file that it names is written.
         self.target = target.resolve()
         self.folder = self.target.with_name(self.target.name + ".work")
         self._manifest = self.folder / "manifest.json"

@@ -29,12 +29,7 @@ SUFFIXES: Final = (".parquet", ".csv")
 
 
 class Grid:
-    """All combinations of the values of some axes; the last axis varies fastest.
-
-    Parameters
-    ----------
-    axes : by the name of a field ``start:stop:n`` or ``start:stop:n:log``.
-    """
+    """All combinations of the values of some axes, by field; the last axis varies fastest."""
 
     def __init__(self, axes: Mapping[str, str]) -> None:
         self.identity = dict(axes)

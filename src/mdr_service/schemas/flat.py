@@ -16,10 +16,7 @@ def leaves(
 ) -> Iterator[tuple[str, Schema]]:
     """Yield names and schemas of the numbers, strings and arrays of these in a request.
 
-    Parameters
-    ----------
-    root : JSON schema of the request.
-    node, name : the part of it to walk, and its name; by default all.
+    `root` is the JSON schema of the request, and `node` the part to walk, with its name.
     """
     node = root if node is None else node
     if "$ref" in node:
