@@ -122,7 +122,8 @@ def cluster(folder: Path) -> Iterator[str]:
         )
     ]
     try:
-        running.until(file.exists)
+        # The scheduler creates the file before it writes to it.
+        running.until(lambda: file.exists() and file.read_text().rstrip().endswith("}"))
         yield json.loads(file.read_text())["address"]
     finally:
         for process in processes:
