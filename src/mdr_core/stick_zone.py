@@ -1,14 +1,17 @@
 """Stick zone and slip annulus under one monotonic tangential load."""
 
+from functools import partial
 from math import inf
 from typing import Final
 
 import numpy as np
 
 from mdr_core import equivalent_1d
+from mdr_core.broadcasting import in_blocks
 from mdr_core.elementwise import full, least, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
+from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, first_index
 
@@ -42,14 +45,15 @@ def solve(
     ------
     InputError : a value without equilibrium, outside the contact or not finite.
     """
-    sign, size = _sign_and_size(name, given)
     if name == "stick_radius":
+        _, size = _sign_and_size(name, given)
         edge, width, full_slip, excess = _by_radius(contact, size)
-    else:
-        by_force = name == "tangential_force"
-        ratio = friction if by_force else friction * contact.e_star / g_star
-        limit = ratio * getattr(contact, CONTROLS[name])
-        edge, width, full_slip, excess = _by_load(contact, size, limit, by_force=by_force)
+        return edge, width, _POSITIVE, full_slip, excess
+    ratio = friction if name == "tangential_force" else friction * contact.e_star / g_star
+    columns = contact.coordinate, ratio, getattr(contact, CONTROLS[name]), given
+    edge, width, sign, full_slip, excess = in_blocks(
+        partial(_by_load, name), contact.profile, *columns
+    )
     return edge, width, sign, full_slip, excess
 
 
@@ -66,9 +70,16 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
     return np.sign(given), np.abs(given)
 
 
-def _by_load(contact: NormalContact, size: Array, limit: Array, *, by_force: bool) -> _Slipped:
-    """Stick edge and annulus; full slip at the limit and beyond; a force cannot exceed it."""
-    left, full_slip, excess = limit - size, _NO_FULL_SLIP, _NO_EXCESS
+def _by_load(
+    name: str, profile: Profile, coordinate: Array, ratio: Array, normal: Array, given: Array
+) -> tuple[Array, Array, Array, Flags, Array]:
+    """Results of `solve`; full slip at the limit and beyond, which a force cannot exceed.
+
+    The limit is the ratio times the `normal` load or depth.
+    """
+    sign, size = _sign_and_size(name, given)
+    limit, full_slip, excess = ratio * normal, _NO_FULL_SLIP, _NO_EXCESS
+    by_force, left = name == "tangential_force", limit - size
     if least(left) <= 0:
         if by_force and least(left) < 0:
             raise InputError(
@@ -76,18 +87,17 @@ def _by_load(contact: NormalContact, size: Array, limit: Array, *, by_force: boo
                 "no equilibrium: the force exceeds friction_coefficient x normal_force",
                 left < 0,
             )
-        some = limit > 0
+        loaded = limit > 0
         # Without loads there is no slip; without a normal load any displacement is full slip.
-        full_slip = where(some, left <= 0, size > 0)
+        full_slip = where(loaded, left <= 0, size > 0)
         excess = np.maximum(-left, 0.0)
         size = np.minimum(size, limit)
-        left, limit = where(some, np.maximum(left, 0.0), 1.0), where(some, limit, 1.0)
-    ratio = size / limit
-    left /= limit
-    if contact.profile.has_no_partial_slip:
-        return contact.coordinate, ratio, full_slip, excess
+        left, limit = where(loaded, np.maximum(left, 0.0), 1.0), where(loaded, limit, 1.0)
+    if profile.has_no_partial_slip:
+        return coordinate, size / limit, sign, full_slip, excess
     find = equivalent_1d.stick_from_force if by_force else equivalent_1d.stick_from_depth
-    return *find(contact.profile, contact.coordinate, ratio, left), full_slip, excess
+    edge, width = find(profile, coordinate, size / limit, left / limit)
+    return edge, width, sign, full_slip, excess
 
 
 def _by_radius(contact: NormalContact, radius: Array) -> _Slipped:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
+from mdr_core.broadcasting import in_blocks
 from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -119,9 +120,15 @@ class TangentialContact(validity.ContactResults):
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E* over a divisor."""
-        rise = step(self.normal.profile, self._coordinate, self.width, self.stick_coordinate)
-        # mu and G* are often single numbers beside an array E*.
-        return self.friction_coefficient / divisor * self.normal.e_star * rise
+
+        def product(profile: Profile, mu: Array, e_star: Array, part: Array, *ends: Array) -> Any:
+            # mu and G* are often single numbers beside an array E*.
+            return (mu / part * e_star * step(profile, *ends),)
+
+        factor = self.friction_coefficient, self.normal.e_star, divisor
+        values = *factor, self._coordinate, self.width, self.stick_coordinate
+        (result,) = in_blocks(product, self.normal.profile, *values)
+        return result
 
     def _signed(self, size: Array) -> Array:
         return size if is_number(self.sign) and self.sign > 0 else self.sign * size
