@@ -443,3 +443,25 @@ def test_radius_beyond_the_profile_is_rejected() -> None:
         with pytest.raises(InputError) as caught:
             field([0.0, 2.4, 2.6])
         assert caught.value.path == ("radius", 2)
+
+
+@pytest.mark.parametrize("cycles", [1e6, 1e12])
+def test_wear_settles_at_the_loosest_tolerance(cycles: float) -> None:
+    """Errors of the integration stay below the pressure at which wear counts as ended."""
+    contact = normal.solve(Paraboloid(0.1), 2.77, normal_force=1.5)
+    amplitude = {"tangential_force": 0.57 * 0.715 * 1.5}
+    worn = evolution.solve(
+        contact,
+        10.0,
+        0.715,
+        **amplitude,
+        wear_coefficient=0.354,
+        cycles=[cycles],
+        resolution=8,
+        rtol=1e-3,
+    )
+    limiting = limit.solve(contact, 10.0, 0.715, **amplitude)
+    assert worn.settled_at < 1e3
+    assert worn.worn_volume[0] == pytest.approx(
+        float(limiting.worn_volume), rel=worn.error_estimate, abs=0
+    )

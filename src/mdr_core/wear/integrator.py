@@ -14,8 +14,9 @@ from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
 
-# Absolute tolerance, as a part of the relative one and of the wear by the first cycles.
-_ABSOLUTE: Final = 0.1
+# Absolute tolerance, as a part of the relative one and of the wear by the first cycles. A larger
+# one leaves errors of the pressure above that at which wear counts as ended.
+_ABSOLUTE: Final = 0.01
 # Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
 # less, a growing stick zone takes it back before it counts.
 _MIN_SLIP: Final = 0.01
