@@ -10,9 +10,11 @@ from mdr_core.errors import InputError
 from mdr_core.profiles import Profile
 from mdr_core.typing import Parameter
 
-# Cases in a block, whose arrays fit into the processor's cache: a million contacts in partial slip
-# take two thirds of the time. Within a factor of two of this size the time is the same.
-_BLOCK: Final = 65_536
+BLOCK: Final = 65_536
+"""Cases in a block, whose arrays fit into the processor's cache.
+
+A million contacts in partial slip take two thirds of the time so.
+"""
 
 
 def with_parameters(profile: Profile, parameters: Mapping[str, Any]) -> Profile:
@@ -35,7 +37,7 @@ def in_blocks(
     named = profile.parameters
     arrays = [each for each in (*named.values(), *columns) if isinstance(each, np.ndarray)]
     shapes = {each.shape for each in arrays if each.ndim}
-    if len(shapes) != 1 or max(each.size for each in arrays) <= _BLOCK:
+    if len(shapes) != 1 or max(each.size for each in arrays) <= BLOCK:
         return function(profile, *columns)
     (shape,) = shapes
 
@@ -43,8 +45,8 @@ def in_blocks(
         return np.ravel(column)[place] if np.ndim(column) else column
 
     found: list[Any] = []
-    for start in range(0, prod(shape), _BLOCK):
-        place = slice(start, start + _BLOCK)
+    for start in range(0, prod(shape), BLOCK):
+        place = slice(start, start + BLOCK)
         block = with_parameters(profile, {name: part(named[name], place) for name in profile.swept})
         try:
             results = function(block, *(part(column, place) for column in columns))
