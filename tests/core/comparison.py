@@ -6,8 +6,6 @@ from decimal import Decimal
 from math import isfinite, isinf
 from typing import TYPE_CHECKING, Any
 
-import pytest
-
 from mdr_core.profiles import KINDS, PowerTerm, Profile
 
 if TYPE_CHECKING:
@@ -22,15 +20,6 @@ INPUT = 8 * EPS
 LARGEST_ALLOWANCE = 1e-3
 #: Kinds whose break is computed from their parameters and carries rounding error.
 DERIVED_BREAK = frozenset({"rounded_cone", "spherical_tip_cone"})
-
-
-def batched(cases: Iterable[Mapping[str, Any]]) -> pytest.MarkDecorator:
-    """Parametrize a test by batches of records, one per kind of profile and control."""
-    batches: dict[str, list[Mapping[str, Any]]] = {}
-    for case in cases:
-        name = "-".join(filter(None, (case["profile"]["kind"], case.get("control"))))
-        batches.setdefault(name, []).append(case)
-    return pytest.mark.parametrize("cases", list(batches.values()), ids=list(batches))
 
 
 def assert_each(

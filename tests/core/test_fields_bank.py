@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdr_core import fields
+from tests.core.batches import batched
 from tests.core.comparison import (
     allowance,
     assert_each,
-    batched,
     relative_error,
 )
 from tests.core.test_tangential_bank import solved

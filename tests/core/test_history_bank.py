@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from mdr_core import history
+from tests.core.batches import batched
 from tests.core.comparison import (
     EPS,
     INPUT,
     allowance,
     assert_each,
-    batched,
     overstated,
     profile_from,
     relative_error,

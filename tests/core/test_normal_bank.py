@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from mdr_core.normal import solve
-from tests.core.comparison import allowance, assert_each, batched, overstated, profile_from, wrong
+from tests.core.batches import batched
+from tests.core.comparison import allowance, assert_each, overstated, profile_from, wrong
 from tests.oracles import bank
 
 BOUND = 1e-13

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tests.core.batches import batched
 from tests.core.comparison import (
     DERIVED_BREAK,
     allowance,
     assert_each,
-    batched,
     profile_from,
     relative_error,
 )

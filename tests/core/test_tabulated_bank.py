@@ -8,10 +8,10 @@ import numpy as np
 
 from mdr_core import fields
 from mdr_core.normal import solve
+from tests.core.batches import batched
 from tests.core.comparison import (
     INPUT,
     assert_each,
-    batched,
     overstated,
     profile_from,
     relative_error,

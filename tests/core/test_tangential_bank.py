@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from mdr_core import normal, tangential
-from tests.core.comparison import allowance, assert_each, batched, overstated, profile_from, wrong
+from tests.core.batches import batched
+from tests.core.comparison import allowance, assert_each, overstated, profile_from, wrong
 from tests.oracles import bank
 
 BOUND = 1e-12

@@ -8,11 +8,11 @@ import pytest
 
 from mdr_core import normal
 from mdr_core.wear import limit
+from tests.core.batches import batched
 from tests.core.comparison import (
     INPUT,
     allowance,
     assert_each,
-    batched,
     overstated,
     profile_from,
     relative_error,
