@@ -1,6 +1,6 @@
 """Sweeps, where loads and parameters of a profile are arrays over the cases."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from math import prod
 from typing import Any, Final
 
@@ -26,9 +26,9 @@ def with_parameters(profile: Profile, parameters: Mapping[str, Any]) -> Profile:
     return part
 
 
-def in_blocks(
-    function: Callable[..., Sequence[Any]], profile: Profile, *columns: Parameter
-) -> Sequence[Any]:
+def solve_in_blocks(
+    function: Callable[..., tuple[Any, ...]], profile: Profile, *columns: Parameter
+) -> tuple[Any, ...]:
     """Return function(profile, *columns), arrays over the cases, computed in blocks of them.
 
     A result that is the same single number in every block stays one. An InputError has the index
@@ -58,4 +58,4 @@ def in_blocks(
                 found[i] = np.full(shape, whole)
             if found[i].ndim:
                 found[i].reshape(-1)[place] = result
-    return found
+    return tuple(found)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.broadcasting import BLOCK, in_blocks
+from mdr_core.broadcasting import BLOCK, solve_in_blocks
 from mdr_core.elementwise import some, where
 from mdr_core.equivalent_1d import (
     coordinate_from_depth,
@@ -193,10 +193,12 @@ def solve(
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
+    coordinate_of = partial(_coordinate, name)
     if spread.size > BLOCK:
-        (coordinate,) = in_blocks(partial(_coordinate, name), profile, e_star, spread)
+        (coordinate,) = solve_in_blocks(coordinate_of, profile, e_star, spread)
     else:
-        (coordinate,) = _coordinate(name, profile, e_star, spread)
+        # The shortest way from a small query to its closed form.
+        (coordinate,) = coordinate_of(profile, e_star, spread)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core import equivalent_1d
-from mdr_core.broadcasting import in_blocks
+from mdr_core.broadcasting import solve_in_blocks
 from mdr_core.elementwise import full, least, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
@@ -21,8 +21,8 @@ CONTROLS: Final = {
     "tangential_displacement": "indentation_depth",
     "stick_radius": "contact_radius",
 }
-# Edge, width, full and excess.
-_Slipped = tuple[Array, Array, Flags, Array]
+# Stick edge, width, sign, full slip and excess: see `TangentialContact`.
+StickZone = tuple[Array, Array, Array, Flags, Array]
 _NO_EXCESS: Final = number(0.0)
 _POSITIVE: Final = number(1.0)
 _NO_FULL_SLIP: Final = _NO_EXCESS > 0
@@ -30,8 +30,8 @@ _NO_FULL_SLIP: Final = _NO_EXCESS > 0
 
 def solve(
     contact: NormalContact, g_star: Parameter, friction: Parameter, name: str, given: Array
-) -> tuple[Array, Array, Array, Flags, Array]:
-    """Return stick edge, width, sign, full slip and excess of every case: see `TangentialContact`.
+) -> StickZone:
+    """Return the stick zone of every case.
 
     Source: mdr-5, Eqs. (5.18)-(5.23).
 
@@ -47,14 +47,10 @@ def solve(
     """
     if name == "stick_radius":
         _, size = _sign_and_size(name, given)
-        edge, width, full_slip, excess = _by_radius(contact, size)
-        return edge, width, _POSITIVE, full_slip, excess
+        return _by_radius(contact, size)
     ratio = friction if name == "tangential_force" else friction * contact.e_star / g_star
     columns = contact.coordinate, ratio, getattr(contact, CONTROLS[name]), given
-    edge, width, sign, full_slip, excess = in_blocks(
-        partial(_by_load, name), contact.profile, *columns
-    )
-    return edge, width, sign, full_slip, excess
+    return solve_in_blocks(partial(_by_load, name), contact.profile, *columns)
 
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
@@ -72,7 +68,7 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
 
 def _by_load(
     name: str, profile: Profile, coordinate: Array, ratio: Array, normal: Array, given: Array
-) -> tuple[Array, Array, Array, Flags, Array]:
+) -> StickZone:
     """Results of `solve`; full slip at the limit and beyond, which a force cannot exceed.
 
     The limit is the ratio times the `normal` load or depth.
@@ -100,7 +96,8 @@ def _by_load(
     return edge, width, sign, full_slip, excess
 
 
-def _by_radius(contact: NormalContact, radius: Array) -> _Slipped:
+def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
+    """Results of `solve` for a prescribed stick radius."""
     profile, a = contact.profile, contact.contact_radius
     innermost = profile.first_radius
     all_slips = (radius == 0) & (a > 0)
@@ -113,7 +110,7 @@ def _by_radius(contact: NormalContact, radius: Array) -> _Slipped:
         index = first_index(bad) if radius.ndim else ()
         raise InputError(("tangential", "stick_radius", *index), detail, bad)
     if profile.has_no_partial_slip:
-        return contact.coordinate, full(1.0, radius + a), all_slips, _NO_EXCESS
+        return contact.coordinate, full(1.0, radius + a), _POSITIVE, all_slips, _NO_EXCESS
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":
@@ -125,4 +122,4 @@ def _by_radius(contact: NormalContact, radius: Array) -> _Slipped:
     else:
         # The coordinate of an edge that follows from a load is accurate, its radius may not be.
         width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
-    return edge, width, all_slips, _NO_EXCESS
+    return edge, width, _POSITIVE, all_slips, _NO_EXCESS

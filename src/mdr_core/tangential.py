@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
-from mdr_core.broadcasting import in_blocks
 from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -120,15 +119,10 @@ class TangentialContact(validity.ContactResults):
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E* over a divisor."""
-
-        def product(profile: Profile, mu: Array, e_star: Array, part: Array, *ends: Array) -> Any:
-            # mu and G* are often single numbers beside an array E*.
-            return (mu / part * e_star * step(profile, *ends),)
-
-        factor = self.friction_coefficient, self.normal.e_star, divisor
-        values = *factor, self._coordinate, self.width, self.stick_coordinate
-        (result,) = in_blocks(product, self.normal.profile, *values)
-        return result
+        ends = self._coordinate, self.width, self.stick_coordinate
+        rise = step(self.normal.profile, *ends)
+        # mu and G* are often single numbers beside an array E*.
+        return self.friction_coefficient / divisor * self.normal.e_star * rise
 
     def _signed(self, size: Array) -> Array:
         return size if is_number(self.sign) and self.sign > 0 else self.sign * size
@@ -318,9 +312,11 @@ def solve(
     except ValueError:
         detail = f"the shape {given.shape} does not agree with the normal loads, {shapes[1]}"
         raise InputError(("tangential", name), detail) from None
-    edge, width, *slipped = stick_zone.solve(contact, *parameters, name, given)
-    zone: Any = broadcast(edge, shape), broadcast(width, shape), *slipped, name
-    result = TangentialContact(contact, *parameters, *zone)
+    edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
+    edge, width = broadcast(edge, shape), broadcast(width, shape)
+    result = TangentialContact(
+        contact, *parameters, edge, width, sign, full_slip, excess, control=name
+    )
     if given.shape == shape:
         # The prescribed load is returned bit-identical.
         vars(result)[name] = given

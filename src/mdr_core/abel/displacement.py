@@ -221,7 +221,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         slope = branch.weight(x, s, part) * root * run
         return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
-    total = span * in_blocks(values, weights.size, s_r.size)
+    total = span * integrals_in_blocks(values, weights.size, s_r.size)
     index = np.flatnonzero(split > s_low)
     if index.size:
         lower = _lower(branch, s_low[index], split[index], s_r[index], kernels, rtol)
@@ -278,10 +278,10 @@ def _lower(
         slope = branch.weight(x, s, part) * run
         return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
-    return length * in_blocks(values, weights.size, s_r.size)
+    return length * integrals_in_blocks(values, weights.size, s_r.size)
 
 
-def in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
+def integrals_in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
     """Return the values of `count` integrals with `nodes` nodes each, in blocks."""
     step = max(_BLOCK // nodes, 1)
     parts = [values(slice(start, start + step)) for start in range(0, max(count, 1), step)]

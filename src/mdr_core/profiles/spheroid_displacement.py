@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.displacement import in_blocks
+from mdr_core.abel.displacement import integrals_in_blocks
 from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards, nodes_of_pieces
 from mdr_core.typing import Array, Parameter
 
@@ -44,7 +44,7 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
         root = np.sqrt(np.add.outer(short, beyond[part]) * np.add.outer(x, r[part]))
         return (weights * density) @ np.arctan2(x[:, None], root)
 
-    return v * in_blocks(values, weights.size, r.size)
+    return v * integrals_in_blocks(values, weights.size, r.size)
 
 
 def slope_integral_inside(
@@ -69,7 +69,7 @@ def slope_integral_inside(
         x, short, density = _stepped(big_radius, v[part], np.multiply.outer(u * u, width[part]))
         return (2 * u * weights) @ (density * np.arctan2(np.sqrt(short * (x + r[part])), x))
 
-    return width * in_blocks(values, weights.size, r.size)
+    return width * integrals_in_blocks(values, weights.size, r.size)
 
 
 def _stepped(big_radius: Parameter, v: Array, down: Array) -> tuple[Array, Array, Array]:

@@ -102,7 +102,7 @@ class WornSurface:
         initial, r = self.initial, self._radii(radius)
         result = np.zeros((self.cycles.size, r.size))
         for row, state in zip(result, self.states, strict=False):
-            row[:] = _in_blocks(partial(_worn_depth, state), r / initial.length_unit)
+            row[:] = _field_in_blocks(partial(_worn_depth, state), r / initial.length_unit)
         return initial.depth_unit * np.maximum.accumulate(result, axis=0)
 
     def profile(self, radius: ArrayLike) -> Array:
@@ -124,7 +124,7 @@ class WornSurface:
         if unworn.any():
             result[unworn] = fields.pressure(self.initial.contact, r)
         for index in np.flatnonzero(~unworn):
-            result[index] = _in_blocks(partial(self._pressure, self.states[index]), r)
+            result[index] = _field_in_blocks(partial(self._pressure, self.states[index]), r)
         return result
 
     def _radii(self, radius: ArrayLike) -> Array:
@@ -153,7 +153,7 @@ class WornSurface:
         return np.array([value(state) for state in self.states])
 
 
-def _in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
+def _field_in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
     """Return a field, in blocks of radii that bound the memory."""
     blocks = np.split(radius, range(_BLOCK, radius.size, _BLOCK))
     return np.concatenate([field(block) for block in blocks])
