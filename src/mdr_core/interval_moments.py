@@ -32,8 +32,7 @@ _BLOCK: Final = 1024
 # 2.4^-32 of the interval's moments, see notes, §10.
 _POINTS: Final = 16
 # An interval before the first break is wide if the normal coordinate grows by more than this factor
-# on it. Differences of closed forms over a wide interval do not
-# suffer cancellation.
+# on it. Differences of closed forms over a wide interval do not suffer cancellation.
 _WIDE: Final = 16.0
 # The same for the contact coordinate.
 _WIDE_FROM_AXIS: Final = 400.0

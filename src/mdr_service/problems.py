@@ -71,6 +71,10 @@ class ServiceError(Exception):
     retry_after: int | None = None
     """Seconds after which the same request may succeed."""
 
+    def __post_init__(self) -> None:
+        # Compute processes pickle an exception by its arguments.
+        super().__init__(self.type, self.detail, self.errors, self.retry_after)
+
     def __str__(self) -> str:
         return self.detail
 

@@ -212,7 +212,7 @@ def test_state_is_immutable() -> None:
     state = history.advance(history.advance(state, 0.2, 0.0), 0.2, 0.05)
     with pytest.raises(dataclasses.FrozenInstanceError):
         state.indentation_depth = 0.3
-    for name in ("depth", "load"):
+    for name in ("depth", "load", "coordinate", "slope", "slip_fronts"):
         kept, array = getattr(state, name).copy(), getattr(state, name)
         with contextlib.suppress(ValueError):
             array[:] = 1.0

@@ -1,6 +1,7 @@
 """GET responses are identical to those of the equivalent POST requests."""
 
 import json
+import pickle
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -461,6 +462,15 @@ def test_problem_without_pointers_has_none_for_parameters() -> None:
     with pytest.raises(problems.ServiceError) as raised, given.pointing():
         raise problems.INTERNAL_ERROR
     assert not raised.value.errors
+
+
+def test_problem_of_parameters_pickles() -> None:
+    given = PARAMETERS["normal"].model_validate({"kind": "cone", "normal_force": "1"})
+    with pytest.raises(problems.ServiceError) as raised, given.pointing():
+        given.query()
+    copy = pickle.loads(pickle.dumps(raised.value))  # noqa: S301
+    assert raised.value.errors
+    assert vars(copy) == vars(raised.value)
 
 
 NAMES = sorted({name for model in PARAMETERS.values() for name in model.fields})

@@ -85,7 +85,11 @@ class ContactState(Results):
 
     @cached_property
     def _branches(self) -> TractionBranches:
-        return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), by_force=False)
+        tree = slip_memory.as_tree(self.polyline)
+        branches = TractionBranches(self.profile, tree, by_force=False)
+        # `coordinate` and `slope` return these arrays themselves.
+        branches.coordinate.flags.writeable = tree.slope.flags.writeable = False
+        return branches
 
     @property
     def depth(self) -> Array:
@@ -101,12 +105,12 @@ class ContactState(Results):
         loads = self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
         return loads if self.in_contact else loads[:0]
 
-    @cached_property
+    @property
     def coordinate(self) -> Array:
         """Contact coordinates of the vertices; in separation that of the axis."""
         return self._branches.coordinate
 
-    @cached_property
+    @property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
         return self._branches.tree.slope[1:]

@@ -24,8 +24,7 @@ from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
-# Chords of the finest set from the axis to the largest contact: rtol^(-1/3), within
-# these limits.
+# Chords of the finest set from the axis to the largest contact: rtol^(-1/3), within these limits.
 _MIN_CHORDS: Final = 64
 # They take 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
 _MAX_CHORDS: Final = 1024
@@ -37,8 +36,8 @@ _MAX_TOTAL_CHORDS: Final = 400_000
 _HALVINGS: Final = 2
 # The error of the extrapolated results, in units of the change by the last halving.
 _SAFETY: Final = 2.0
-# The same on tables, where chords converge less regularly: the largest factor for 100
-# rough tables is 9.
+# The same on tables, where chords converge less regularly: the largest factor for 100 rough tables
+# is 9.
 _SAFETY_ON_TABLES: Final = 10.0
 # A corner of chords is off its arc by less than this part of its normal coordinate.
 _NEAREST: Final = 1e-3

@@ -1,7 +1,8 @@
 """Implicit integration of the worn annulus over the cycles, with steps as long as wear allows."""
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import inf, isfinite
 from typing import Any, Final
 
@@ -94,20 +95,20 @@ def integrate(
     profile_end_at, settled_at, full_slip_at = ends
     _require_all_cycles(initial, cycles, profile_end_at, full_slip_at)
     between: Any = run.sol
-    trail = np.empty((2, 0))
+    numbers = np.minimum(scaled, run.t[-1])
+    states = [AnnulusState(initial, between(n) if n > 0 else start) for n in numbers]
     if initial.stick_grows:
-        passed = (AnnulusState(initial, vector) for vector in run.y.T)
-        trail = np.array([(state.stick, state.retained_wear) for state in passed]).T
-    states = []
-    for number in np.minimum(scaled, run.t[-1]):
-        vector = between(number) if number > 0 else start
-        state = AnnulusState(initial, vector)
-        if initial.stick_grows:
-            here = [[state.stick], [state.retained_wear]]
-            before = np.append(trail[:, run.t < number], here, axis=1)
-            state = AnnulusState(initial, vector, before)
-        states.append(state)
+        passed = _trail([AnnulusState(initial, vector) for vector in run.y.T])
+        states = [
+            replace(state, trail=np.append(passed[:, run.t < n], _trail([state]), axis=1))
+            for state, n in zip(states, numbers, strict=True)
+        ]
     return tuple(states), settled_at
+
+
+def _trail(states: Sequence[AnnulusState]) -> Array:
+    """Return stick radii and the wear that the springs keep there, shape (2, k)."""
+    return np.array([(state.stick, state.retained_wear) for state in states]).T
 
 
 def _require_all_cycles(
