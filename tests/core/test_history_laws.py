@@ -212,6 +212,12 @@ def test_state_is_immutable() -> None:
     state = history.advance(history.advance(state, 0.2, 0.0), 0.2, 0.05)
     with pytest.raises(dataclasses.FrozenInstanceError):
         state.indentation_depth = 0.3
+    require_unchangeable(state)
+    loads = np.full(3, 0.2), np.array([0.0, 0.05, 0.0])
+    require_unchangeable(solve((PROFILES["sphere"], 0.2), *loads).state)
+
+
+def require_unchangeable(state: history.ContactState) -> None:
     for name in ("depth", "load", "coordinate", "slope", "slip_fronts"):
         kept, array = getattr(state, name).copy(), getattr(state, name)
         with contextlib.suppress(ValueError):

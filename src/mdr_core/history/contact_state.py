@@ -85,11 +85,7 @@ class ContactState(Results):
 
     @cached_property
     def _branches(self) -> TractionBranches:
-        tree = slip_memory.as_tree(self.polyline)
-        branches = TractionBranches(self.profile, tree, by_force=False)
-        # `coordinate` and `slope` return these arrays themselves.
-        branches.coordinate.flags.writeable = tree.slope.flags.writeable = False
-        return branches
+        return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), by_force=False)
 
     @property
     def depth(self) -> Array:
@@ -105,15 +101,15 @@ class ContactState(Results):
         loads = self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
         return loads if self.in_contact else loads[:0]
 
-    @property
+    @cached_property
     def coordinate(self) -> Array:
         """Contact coordinates of the vertices; in separation that of the axis."""
-        return self._branches.coordinate
+        return read_only(self._branches.coordinate)
 
-    @property
+    @cached_property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
-        return self._branches.tree.slope[1:]
+        return read_only(self._branches.tree.slope[1:])
 
     @cached_property
     def segments(self) -> TractionSegments:
@@ -172,6 +168,12 @@ class ContactState(Results):
     def tangential_force(self) -> float:
         """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
         return self.friction_coefficient * self.e_star * float(self._branches.shear[-1])
+
+
+def read_only(values: Array) -> Array:
+    """Return the array, marked read-only."""
+    values.flags.writeable = False
+    return values
 
 
 def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, by_force: bool) -> Array:

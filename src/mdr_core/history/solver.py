@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from mdr_core import conditioning, normal, validity
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, nonlinear_steps, slip_memory
-from mdr_core.history.contact_state import ContactState, unloaded
+from mdr_core.history.contact_state import ContactState, read_only, unloaded
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.nonlinear_steps import ExtrapolatedResults
 from mdr_core.history.slip_memory import Polyline
@@ -140,7 +140,7 @@ class LoadHistory(validity.ContactResults):
         state = replace(self.path.start, polyline=line, arcs=arcs)
         if line.in_contact:
             # Known here; the state would recompute them from its depths.
-            vars(state)["coordinate"] = part.coordinate[at]
+            vars(state)["coordinate"] = read_only(part.coordinate[at])
         return state
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
