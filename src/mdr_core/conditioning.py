@@ -36,7 +36,7 @@ def near_full_slip(
     ratio: Array,
     partial: Flags,
     *,
-    by_force: bool,
+    force_prescribed: bool,
     edges: bool = True,
 ) -> Array:
     """Return the largest condition number of each load's results near full slip [1].
@@ -50,15 +50,15 @@ def near_full_slip(
     ends : a and c in the contact coordinate.
     ratio : load over that of full slip [1].
     partial : True in partial slip.
-    by_force : True if the tangential force is prescribed, False for the displacement.
+    force_prescribed : True if the tangential force is prescribed, False for the displacement.
     edges : True to include c and a - c beside forces, displacements and energies.
     """
     late = partial & (ratio > _LATE)
     if profile.has_no_partial_slip or not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
-    load, slope = _load(profile, by_force=by_force)
-    other, other_slope = _load(profile, by_force=not by_force)
+    load, slope = _load(profile, of_force=force_prescribed)
+    other, other_slope = _load(profile, of_force=not force_prescribed)
     with np.errstate(all="ignore"):
         moved = load(low) / (slope(low) * np.maximum(1 - ratio, _EPS / 2))
         condition = _CUBE * moved * other_slope(low) / (other(high) - other(low))
@@ -86,7 +86,9 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     coordinate, part = contact.coordinate[worst], ratio[worst]
     edge, _ = stick_from_force(contact.profile, coordinate, part, 1 - part)
     ends = coordinate, edge
-    return float(near_full_slip(contact.profile, ends, part, part > 0, by_force=True, edges=False))
+    return float(
+        near_full_slip(contact.profile, ends, part, part > 0, force_prescribed=True, edges=False)
+    )
 
 
 def of_sliding(
@@ -109,8 +111,8 @@ def of_sliding(
 
 def narrow_annulus(coordinate: Array, width: Array) -> Array:
     """Return the condition number 3 a/(a - c) of each annulus between two edges [1]."""
-    some = width > 0
-    return where(some, _CUBE * coordinate / where(some, width, 1.0), 0.0)
+    slips = width > 0
+    return where(slips, _CUBE * coordinate / where(slips, width, 1.0), 0.0)
 
 
 def of_excess_displacement(displacement: Array, excess: Array) -> Array:
@@ -129,7 +131,7 @@ def beyond_break(contact: NormalContact) -> Array:
     profile = contact.profile
     if not profile.coordinate_breaks.size:
         return full(0.0, contact.coordinate)
-    load, slope = _load(profile, by_force=contact.control == "normal_force")
+    load, slope = _load(profile, of_force=contact.control == "normal_force")
     if contact.control == "contact_radius":
         load, slope = profile.contact_radius, profile.radius_slope
     at = where(contact.coordinate > 0, contact.coordinate, np.nan)
@@ -146,8 +148,8 @@ def _radial_slope(profile: Profile, coordinate: Array) -> Array:
     return profile.depth_slope(coordinate) / profile.radius_slope(coordinate)
 
 
-def _load(profile: Profile, *, by_force: bool) -> tuple[Function, Function]:
+def _load(profile: Profile, *, of_force: bool) -> tuple[Function, Function]:
     """F_N/E* or d as a function of the contact coordinate, and its derivative."""
-    if by_force:
+    if of_force:
         return profile.reduced_force, force_slope(profile)
     return profile.depth, profile.depth_slope

@@ -79,17 +79,17 @@ class IntervalMoments:
     """Moments of one profile, over intervals of depth or of reduced force."""
 
     profile: Profile
-    by_force: bool
+    over_forces: bool
     """The normal coordinate is the reduced force [length^2], not the depth [length]."""
 
     @property
     def normal(self) -> Function:
         """Normal coordinate of a contact coordinate."""
-        return self.profile.reduced_force if self.by_force else self.profile.depth
+        return self.profile.reduced_force if self.over_forces else self.profile.depth
 
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
-        find = coordinate_from_force if self.by_force else coordinate_from_depth
+        find = coordinate_from_force if self.over_forces else coordinate_from_depth
         end = self.profile.last_coordinate
         if end is not None:
             normal = np.minimum(normal, self.normal(number(end)))
@@ -155,9 +155,9 @@ class IntervalMoments:
     def conjugate_step(self, low: Array, span: Array) -> Array:
         """Return the increase of the conjugate over each interval, a sum of positive terms."""
         lower, middle, upper = self.over(low, span).weights
-        at = low + span if self.by_force else low
+        at = low + span if self.over_forces else low
         a = self.profile.contact_radius(self.contact_coordinate(at))
-        if self.by_force:
+        if self.over_forces:
             return np.asarray(span * (1 / (2 * a) + upper + middle / 2))
         return np.asarray(span * (2 * a + lower + middle / 2))
 
@@ -183,7 +183,7 @@ class IntervalMoments:
     def _slope(self, s: Array) -> Array:
         """Derivative of the normal coordinate with respect to the contact coordinate."""
         slope = self.profile.depth_slope(s)
-        return 2 * self.profile.contact_radius(s) * slope if self.by_force else slope
+        return 2 * self.profile.contact_radius(s) * slope if self.over_forces else slope
 
     @cached_property
     def _chains(self) -> list[Moments]:
@@ -194,7 +194,7 @@ class IntervalMoments:
         # On a plateau the measure is concentrated at one normal coordinate.
         plateau = normal[:-1] == normal[1:]
         twice = 2 * self.profile.contact_radius(ends[:, plateau])
-        step = np.diff(1 / twice if self.by_force else twice, axis=0)
+        step = np.diff(1 / twice if self.over_forces else twice, axis=0)
         chains[0].weights[2, plateau] = np.abs(step)
         while chains[-1].span.size > size:
             last = chains[-1]
@@ -241,7 +241,7 @@ class IntervalMoments:
         if not profile.swept:
             return self
         part = {name: profile.parameters[name][chosen] for name in profile.swept}
-        return IntervalMoments(with_parameters(profile, part), self.by_force)
+        return IntervalMoments(with_parameters(profile, part), self.over_forces)
 
     def over_wide(self, span: Array, ends: Array, base: Array) -> Array:
         """Return the moments over wide intervals, by parts, in closed form.
@@ -265,7 +265,7 @@ class IntervalMoments:
         depth, force, energy = map(
             values, (profile.depth, profile.reduced_force, profile.reduced_energy)
         )
-        if self.by_force:
+        if self.over_forces:
             with np.errstate(divide="ignore"):
                 slope = 1 / twice
             conjugate, integral, sign = depth, depth * force - energy, -1.0
@@ -309,7 +309,7 @@ class IntervalMoments:
         rise = moved * profile.depth_slope_beyond(place, origin, past)
         twice = 2 * profile.contact_radius(place)
         measure = 2 * weights * moved * profile.radius_slope(place)
-        if self.by_force:
+        if self.over_forces:
             rise, measure = rise * twice, measure / np.square(twice)
         # Both scale with the width, which has fewer digits than the span.
         total = in_order(weights, rise)
@@ -321,9 +321,9 @@ class IntervalMoments:
         return in_order(measure, parts.swapaxes(0, 1))
 
 
-def interval_moments(profile: Profile, *, by_force: bool) -> IntervalMoments:
+def interval_moments(profile: Profile, *, over_forces: bool) -> IntervalMoments:
     """Return the moments of a profile over intervals of depth, or of reduced force."""
-    return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, by_force)
+    return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, over_forces)
 
 
 # The sums between breaks take as long as a short history; those of 2000 points have 1 MB.

@@ -62,6 +62,6 @@ def slip_moment(
 def _by_springs(profile: Profile, high: Array, width: Array, low: Array) -> Array:
     """D^2/4 times the second Bernstein moment of the springs."""
     span = depth_step(profile, high, width, low)
-    moments = interval_moments(profile, by_force=False)
+    moments = interval_moments(profile, over_forces=False)
     found = moments.over(profile.depth(low), span, np.array([low, high]))
     return np.asarray(np.square(span) * found.weights[1] / 4)

@@ -75,9 +75,9 @@ def _by_load(
     """
     sign, size = _sign_and_size(name, given)
     limit, full_slip, excess = ratio * normal, _NO_FULL_SLIP, _NO_EXCESS
-    by_force, left = name == "tangential_force", limit - size
+    force_prescribed, left = name == "tangential_force", limit - size
     if least(left) <= 0:
-        if by_force and least(left) < 0:
+        if force_prescribed and least(left) < 0:
             raise InputError(
                 ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
                 "no equilibrium: the force exceeds friction_coefficient x normal_force",
@@ -91,7 +91,7 @@ def _by_load(
         left, limit = where(loaded, np.maximum(left, 0.0), 1.0), where(loaded, limit, 1.0)
     if profile.has_no_partial_slip:
         return coordinate, size / limit, sign, full_slip, excess
-    find = equivalent_1d.stick_from_force if by_force else equivalent_1d.stick_from_depth
+    find = equivalent_1d.stick_from_force if force_prescribed else equivalent_1d.stick_from_depth
     edge, width = find(profile, coordinate, size / limit, left / limit)
     return edge, width, sign, full_slip, excess
 

@@ -238,15 +238,19 @@ class TangentialContact(validity.ContactResults):
     @property
     def _load_condition(self) -> Parameter:
         """Largest relative condition number of each load's results with respect to it [1]."""
-        by_force = self.control == "tangential_force"
-        size = np.abs(self.tangential_force if by_force else self.tangential_displacement)
-        limit = self.limiting_force if by_force else self._full_slip_displacement
+        force_prescribed = self.control == "tangential_force"
+        size = np.abs(self.tangential_force if force_prescribed else self.tangential_displacement)
+        limit = self.limiting_force if force_prescribed else self._full_slip_displacement
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         if profile.has_no_partial_slip:
-            return 1.0 if by_force else conditioning.of_excess_displacement(size, self.excess)
+            return (
+                1.0 if force_prescribed else conditioning.of_excess_displacement(size, self.excess)
+            )
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self.stick_coordinate
-        return conditioning.near_full_slip(profile, ends, ratio, partial, by_force=by_force)
+        return conditioning.near_full_slip(
+            profile, ends, ratio, partial, force_prescribed=force_prescribed
+        )
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

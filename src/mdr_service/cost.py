@@ -109,9 +109,9 @@ def seconds(query: Query | BatchQuery) -> float:
 
 def _beneath(query: SubsurfaceQuery) -> float:
     """Return the expected time of stresses beneath the surface."""
-    by_force = query.material.has("yield_strength") and not query.has("history")
+    searches_onset = query.material.has("yield_strength") and not query.has("history")
     points = query.loads * (query.positions + 2 * _SEARCHED * query.largest)
-    if by_force:
+    if searches_onset:
         # Loads in one ratio of the forces share the onset. Under a power the first step is exact.
         onsets = query.loads if query.has("friction_coefficient") else 1
         points += _SEARCHED * onsets * (4 if query.profile.kind in _SIMILAR else _ONSETS)

@@ -132,14 +132,14 @@ def limiting(result: evolution.WearEvolution) -> limit.LimitingWear:
     constant = result.initial.constant_displacement
     name = "tangential_displacement" if constant else "tangential_force"
     return limit.solve(
-        result.initial.contact, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
+        result.initial.normal, G_STAR, MU, **{name: float(getattr(tangential_contact, name))}
     )
 
 
 def distance(result: evolution.WearEvolution) -> float:
     """Largest distance of the last profile from the limiting one, relative to the depth."""
     r = np.linspace(0.0, 1.5 * float(result.contact_radius[-1]), 400)
-    r = r[r < 0.99 * float(np.asarray(result.initial.contact.profile.domain))]
+    r = r[r < 0.99 * float(np.asarray(result.initial.normal.profile.domain))]
     exact = np.asarray(limiting(result).worn_depth(r))
     gap = np.abs(result.worn_depth(r)[-1] - exact).max()
     return float(gap / result.indentation_depth[-1])
@@ -252,8 +252,8 @@ def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:
 def test_zero_cycles_is_the_initial_state() -> None:
     result = worn("paraboloid", CONTROLS[0])
     r = np.array([0.0, 0.3, 0.74, 0.8, 0.95, 1.3])
-    assert np.array_equal(result.pressure(r)[0], fields.pressure(result.initial.contact, r))
-    assert np.array_equal(result.profile(r)[0], result.initial.contact.profile.f(r))
+    assert np.array_equal(result.pressure(r)[0], fields.pressure(result.initial.normal, r))
+    assert np.array_equal(result.profile(r)[0], result.initial.normal.profile.f(r))
     assert result.contact_radius[0] == pytest.approx(1.0, rel=1e-14, abs=0)
 
 
@@ -266,7 +266,7 @@ def test_agreement_with_the_explicit_scheme(control: str) -> None:
     result = worn("paraboloid", control, cycles=(100.0, 300.0, 1000.0, 3000.0, 10000.0))
     r = np.arange(EXPLICIT_GRID) * (1.8 / EXPLICIT_GRID)
     scene = Scene(r, r * r / 2, E_STAR, G_STAR, MU, WEAR)
-    tangential_contact, contact = result.initial.tangential_contact, result.initial.contact
+    tangential_contact, contact = result.initial.tangential_contact, result.initial.normal
     force, moved = float(contact.normal_force), float(tangential_contact.tangential_displacement)
     held = {
         CONTROLS[0]: Controls(depth=float(contact.indentation_depth), displacement=moved),
@@ -324,7 +324,7 @@ def test_results_scale_with_units(control: str) -> None:
     old = worn("paraboloid", control)
     length, modulus = 1e-6, 1e11
     force = modulus * length**2
-    contact = old.initial.contact
+    contact = old.initial.normal
     load = (
         {"indentation_depth": float(contact.indentation_depth) * length}
         if control == CONTROLS[0]

@@ -85,7 +85,7 @@ class ContactState(Results):
 
     @cached_property
     def _branches(self) -> TractionBranches:
-        return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), by_force=False)
+        return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), over_forces=False)
 
     @property
     def depth(self) -> Array:
@@ -117,7 +117,7 @@ class ContactState(Results):
         if self.arcs is not None:
             return self.arcs
         tree = self._branches.tree
-        width = widths(self.profile, tree, self.coordinate, by_force=False)
+        width = widths(self.profile, tree, self.coordinate, over_forces=False)
         straight = np.zeros(self.slope.shape)
         return TractionSegments(self.coordinate, width, self.slope, straight)
 
@@ -148,7 +148,7 @@ class ContactState(Results):
             return 0.0
         segments = slip_memory.slip_segments(self.last_step)
         return self.energy_unit * float(
-            dissipation.per_segment(self.profile, segments, by_force=False).sum()
+            dissipation.per_segment(self.profile, segments, over_forces=False).sum()
         )
 
     @property
@@ -176,7 +176,7 @@ def read_only(values: Array) -> Array:
     return values
 
 
-def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, by_force: bool) -> Array:
+def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, over_forces: bool) -> Array:
     """Return the widths of a polyline's segments in the contact coordinate, shape (n - 1,).
 
     Parameters
@@ -184,13 +184,13 @@ def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, by_force: b
     profile : profile of the contact.
     tree : the polyline.
     coordinate : contact coordinates of its vertices, shape (n,).
-    by_force : True if its normal coordinates are reduced forces.
+    over_forces : True if its normal coordinates are reduced forces.
     """
     width = np.diff(coordinate)
     short = np.flatnonzero(tree.span[1:] < SHORT * tree.normal[1:])
     if short.size:
         upper, span = tree.normal[1:][short], tree.span[1:][short]
-        find = stick_from_force if by_force else stick_from_depth
+        find = stick_from_force if over_forces else stick_from_depth
         share = span / upper, tree.normal[short] / upper
         width[short] = find(profile, coordinate[1:][short], *share)[1]
     return width

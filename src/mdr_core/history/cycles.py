@@ -73,6 +73,12 @@ def cycles(
     normal_amplitude : of the same quantity, >= 0, at most the mean.
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
+    samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps.
+    rtol : relative accuracy, as of `solve`.
+
+    Returns
+    -------
+    The results at the samples of all load steps, and the energy and stiffness of each cycle.
 
     Raises
     ------

@@ -20,12 +20,12 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
 
-def per_segment(profile: Profile, segments: SlipSegments, *, by_force: bool) -> Array:
+def per_segment(profile: Profile, segments: SlipSegments, *, over_forces: bool) -> Array:
     """Return D/(mu E*) of every segment [length^3]."""
-    moments = interval_moments(profile, by_force=by_force)
+    moments = interval_moments(profile, over_forces=over_forces)
     dissipated = np.zeros(segments.step.size)
     full = np.flatnonzero(segments.full)
-    if full.size and not by_force:
+    if full.size and not over_forces:
         # In full slip friction is mu F_N. Prescribed forces do not exceed it.
         ends = segments.upper_gap[full], segments.lower_gap[full]
         low, high = np.minimum(*ends), np.maximum(*ends)

@@ -46,19 +46,19 @@ class SampledPath:
         return np.arange(self.normal.size) % self.per_step > 0
 
     @property
-    def by_force(self) -> bool:
+    def over_forces(self) -> bool:
         """Normal coordinates are reduced forces: the tangential force is prescribed."""
         return self.tangential_name == "tangential_force"
 
     @property
-    def by_depth(self) -> bool:
+    def depth_prescribed(self) -> bool:
         """The depth is prescribed, not the normal force."""
         return self.normal_name == "indentation_depth"
 
     @property
     def nonlinear(self) -> Flags:
         """Samples whose step is straight neither over depths nor over forces."""
-        if self.by_force != self.by_depth:
+        if self.over_forces != self.depth_prescribed:
             return np.zeros(self.normal.shape, dtype=bool)
         changes = np.diff(np.stack([self.normal, self.tangential]), axis=1, prepend=0.0)
         return np.asarray((changes != 0).all(axis=0))
@@ -66,24 +66,24 @@ class SampledPath:
     @cached_property
     def prescribed(self) -> Array:
         """Depth [length] or reduced force F_N/E* [length^2] at each sample."""
-        return self.normal if self.by_depth else self.normal / self.start.e_star
+        return self.normal if self.depth_prescribed else self.normal / self.start.e_star
 
     @cached_property
     def contact_coordinate(self) -> Array:
         """Contact coordinate at each sample, that of zero load in separation."""
         # Equal loads get equal coordinates: the last bit may depend on an element's position.
         load, index = np.unique(np.maximum(self.prescribed, 0.0), return_inverse=True)
-        find = coordinate_from_depth if self.by_depth else coordinate_from_force
+        find = coordinate_from_depth if self.depth_prescribed else coordinate_from_force
         return np.asarray(find(self.start.profile, load)[index])
 
     @property
     def _normal_coordinate(self) -> Array:
         """Normal coordinate at each sample, <= 0 in separation."""
         prescribed, profile = self.prescribed, self.start.profile
-        if self.by_depth != self.by_force:
+        if self.depth_prescribed != self.over_forces:
             return prescribed
         s, index = np.unique(self.contact_coordinate, return_inverse=True)
-        normal = (profile.reduced_force if self.by_force else profile.depth)(s)[index]
+        normal = (profile.reduced_force if self.over_forces else profile.depth)(s)[index]
         return np.where(prescribed > 0, normal, np.minimum(prescribed, 0.0))
 
     @cached_property
@@ -95,18 +95,18 @@ class SampledPath:
         InputError : a tangential force above mu F_N at a sample.
         """
         mu, e_star = self.start.friction_coefficient, self.start.e_star
-        scale = mu * e_star / (1.0 if self.by_force else self.start.g_star)
+        scale = mu * e_star / (1.0 if self.over_forces else self.start.g_star)
         normal, tangential = self._normal_coordinate, self.tangential / scale
         within, limit = tangential, scale * normal
-        if self.by_force:
+        if self.over_forces:
             within = self.within_friction(normal, tangential, self.step)
-            limit = mu * (e_star * normal if self.by_depth else self.normal)
+            limit = mu * (e_star * normal if self.depth_prescribed else self.normal)
         # At the given points the rounding of `scale` does not decide between the regimes.
         near = np.abs(np.abs(tangential) - normal) <= 2 * _ROUNDING * normal
         below = np.abs(self.tangential) < limit
         least, most = np.nextafter(normal, 0.0), np.nextafter(normal, 2 * normal)
         size = np.where(below, np.minimum(np.abs(tangential), least), normal)
-        if not self.by_force:
+        if not self.over_forces:
             beyond = np.abs(self.tangential) > limit
             size = np.where(beyond, np.maximum(np.abs(tangential), most), size)
         given = np.append(~self.continues[1:], True)

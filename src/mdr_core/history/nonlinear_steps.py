@@ -81,11 +81,11 @@ class NonlinearSteps:
     @property
     def moments(self) -> IntervalMoments:
         """Normal coordinate, and the inverse, of the contact coordinate."""
-        return interval_moments(self.profile, by_force=self.path.by_force)
+        return interval_moments(self.profile, over_forces=self.path.over_forces)
 
     def along(self, s: Array) -> Array:
         """Return the conjugate of a contact coordinate."""
-        return (self.profile.depth if self.path.by_force else self.profile.reduced_force)(s)
+        return (self.profile.depth if self.path.over_forces else self.profile.reduced_force)(s)
 
     @cached_property
     def _parts(self) -> tuple[Indices, Array, Array]:
@@ -95,7 +95,7 @@ class NonlinearSteps:
         """
         start, stop = self.coordinate[:-1], self.coordinate[1:]
         with np.errstate(divide="ignore"):
-            turn = np.abs(self.rate) / 2 if self.path.by_force else 1 / (2 * np.abs(self.rate))
+            turn = np.abs(self.rate) / 2 if self.path.over_forces else 1 / (2 * np.abs(self.rate))
         low, high = np.sort(self.profile.contact_radius(np.stack([start, stop])), axis=0)
         turned = np.flatnonzero((low < turn) & (turn < high))
         at = self.profile.coordinate_from_radius(turn[turned])
@@ -159,7 +159,7 @@ class NonlinearSteps:
         normal = self.moments.normal(s)
         normal[samples], tangential[samples], *_ = self.path.load_points
         step = self.path.step[arc]
-        if self.path.by_force:
+        if self.path.over_forces:
             tangential = self.path.within_friction(normal, tangential, step)
         continues = np.zeros(part.size, dtype=bool)
         continues[samples] = self.path.continues & (self.rate == 0)
@@ -190,7 +190,7 @@ class NonlinearSteps:
             coordinate[corners] = self._on_arcs(
                 coordinate[corners], end[corners], sign * rate[corners], sign, sums
             )
-        width = widths(self.profile, tree, coordinate, by_force=self.path.by_force)
+        width = widths(self.profile, tree, coordinate, over_forces=self.path.over_forces)
         beside = np.concatenate([corners - 1, corners])
         width[beside] = np.diff(coordinate)[beside]
         joined = chord[:-1] & chord[1:] & (line.load_step[1:-1] == line.load_step[2:])
@@ -201,7 +201,7 @@ class NonlinearSteps:
             np.add.reduceat(width, first),
             np.where(chord[first], 0.0, tree.slope[1:][first]),
             rate[last],
-            inverse=self.path.by_force,
+            inverse=self.path.over_forces,
         )
 
     def _on_arcs(self, s: Array, end: Indices, rate: Array, sign: Array, sums: Array) -> Array:
@@ -211,7 +211,9 @@ class NonlinearSteps:
             slope = profile.depth_slope(s)
             twice = 2 * profile.contact_radius(s)
             rise = (
-                slope * twice + rate * slope if self.path.by_force else slope + rate * slope * twice
+                slope * twice + rate * slope
+                if self.path.over_forces
+                else slope + rate * slope * twice
             )
             moved = self.along(s) - self.conjugate[end]
             miss = normal(s) + sign * self.tangential[end] + rate * moved - sums
@@ -298,7 +300,7 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     ------
     InputError : a tangential force above mu F_N anywhere on the path.
     """
-    if path.by_force:
+    if path.over_forces:
         # A force that changes while the bodies are separated exceeds friction there.
         conjugate = path.prescribed
         separated = np.minimum(conjugate, np.append(0.0, conjugate[:-1])) < 0
@@ -312,5 +314,5 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     for halvings in range(_HALVINGS + 1):
         points, last = nonlinear.chords(finest, halvings)
         start = path.start.polyline
-        sets.append((StepResults(nonlinear.profile, path.by_force, points, start), last))
+        sets.append((StepResults(nonlinear.profile, path.over_forces, points, start), last))
     return ExtrapolatedResults(nonlinear, tuple(sets))

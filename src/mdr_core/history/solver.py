@@ -56,7 +56,7 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def indentation_depth(self) -> Array:
         """d [length]; negative in separation."""
-        return self.path.normal if self.path.by_depth else self.normal.indentation_depth
+        return self.path.normal if self.path.depth_prescribed else self.normal.indentation_depth
 
     @cached_property
     def normal_force(self) -> Array:
@@ -78,7 +78,7 @@ class LoadHistory(validity.ContactResults):
     def tangential_force(self) -> Array:
         """F_x = mu E* sum k_i (I_i - I_i-1) over the branches [force]. Source: notes, §10."""
         start = self.path.start
-        if self.path.by_force:
+        if self.path.over_forces:
             return self.path.tangential
         return start.friction_coefficient * start.e_star * self.results.shear
 
@@ -89,7 +89,7 @@ class LoadHistory(validity.ContactResults):
         Source: notes, §10. After full slip under a prescribed force, which leaves it undetermined,
         it counts from the axis.
         """
-        if self.path.by_force:
+        if self.path.over_forces:
             return self.path.start.displacement_ratio * self.results.displacement
         return self.path.tangential
 
@@ -135,7 +135,7 @@ class LoadHistory(validity.ContactResults):
             steps = steps.finest
         part, at = steps.last_branches
         line = steps.last
-        if self.path.by_force:
+        if self.path.over_forces:
             line = self._over_depths(part.depth_step[at[1:]], line)
         state = replace(self.path.start, polyline=line, arcs=arcs)
         if line.in_contact:
@@ -176,7 +176,7 @@ class LoadHistory(validity.ContactResults):
     def _condition_number(self) -> float:
         """Largest relative condition number of the results with respect to the loads."""
         limit = self.path.start.friction_coefficient * np.asarray(self.normal_force)
-        if self.path.by_force:
+        if self.path.over_forces:
             return conditioning.of_forces(self.normal, np.abs(self.path.tangential), limit)
         loads = self.path.tangential, self.tangential_force, limit
         return conditioning.of_sliding(*loads, lambda: self.dissipation)
@@ -263,7 +263,7 @@ def solve(
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if path.nonlinear.any() and not profile.has_no_partial_slip:
         return LoadHistory(path, contact, nonlinear_steps.results(path, rtol), rtol)
-    steps = StepResults(profile, path.by_force, path.load_points, start.polyline)
+    steps = StepResults(profile, path.over_forces, path.load_points, start.polyline)
     return LoadHistory(path, contact, steps, rtol)
 
 

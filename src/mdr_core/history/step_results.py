@@ -28,7 +28,7 @@ class StepResults:
     """Results after each straight load step, in reduced units; each is computed on first use."""
 
     profile: Profile
-    by_force: bool
+    over_forces: bool
     """Normal coordinates are reduced forces."""
     points: LoadPoints
     start: Polyline
@@ -55,7 +55,7 @@ class StepResults:
 
         def dissipated(_part: TractionBranches, path: FrontPath) -> Array:
             segments = slip_memory.slip_segments(path)
-            each = dissipation.per_segment(self.profile, segments, by_force=self.by_force)
+            each = dissipation.per_segment(self.profile, segments, over_forces=self.over_forces)
             return np.asarray(np.bincount(segments.step, each, path.load.size), dtype=float)
 
         return self._per_step(dissipated)
@@ -94,19 +94,19 @@ class StepResults:
     @property
     def _blocks(self) -> Iterable[_Block]:
         """Blocks of steps: a single one is kept, many are computed again, to bound the memory."""
-        return [self._end] if self.points.normal.size <= _BLOCK else self._walk()
+        return [self._end] if self.points.normal.size <= _BLOCK else self._solve_blocks()
 
     @cached_property
     def _end(self) -> _Block:
-        return deque(self._walk(), maxlen=1)[0]
+        return deque(self._solve_blocks(), maxlen=1)[0]
 
-    def _walk(self) -> Iterator[_Block]:
+    def _solve_blocks(self) -> Iterator[_Block]:
         count, line = self.points.normal.size, self.start
         for begin in range(0, count, _BLOCK):
             chosen = slice(begin, begin + _BLOCK)
             points = LoadPoints._make(row[chosen] for row in self.points)
             tree, path, line = slip_memory.apply_steps(line, points)
-            yield chosen, TractionBranches(self.profile, tree, self.by_force), path, line
+            yield chosen, TractionBranches(self.profile, tree, self.over_forces), path, line
 
     def _per_step(self, result: Callable[[TractionBranches, FrontPath], Any]) -> Array:
         """Return a result of every step, zero in blocks without contact."""

@@ -31,12 +31,12 @@ class TractionBranches:
 
     profile: Profile
     tree: VertexTree
-    by_force: bool
+    over_forces: bool
     """The normal coordinate is I = F_N/E* [length^2], not the depth [length]."""
 
     @cached_property
     def _moments(self) -> IntervalMoments:
-        return interval_moments(self.profile, by_force=self.by_force)
+        return interval_moments(self.profile, over_forces=self.over_forces)
 
     @cached_property
     def coordinate(self) -> Array:
@@ -51,17 +51,17 @@ class TractionBranches:
     @cached_property
     def depth(self) -> Array:
         """Depth w of each vertex [length]."""
-        return self.profile.depth(self.coordinate) if self.by_force else self.tree.normal
+        return self.profile.depth(self.coordinate) if self.over_forces else self.tree.normal
 
     @cached_property
     def depth_step(self) -> Array:
         """Depth of each vertex above that of its parent [length]."""
-        return self._conjugate_step if self.by_force else self.tree.span
+        return self._conjugate_step if self.over_forces else self.tree.span
 
     @cached_property
     def force_step(self) -> Array:
         """Reduced force I of each vertex above that of its parent [length^2]."""
-        return self.tree.span if self.by_force else self._conjugate_step
+        return self.tree.span if self.over_forces else self._conjugate_step
 
     @cached_property
     def shear(self) -> Array:
@@ -86,7 +86,7 @@ class TractionBranches:
         ends = self.coordinate[np.array([below, own])]
         # No depth lies between the ends of a plateau.
         some = np.flatnonzero((tree.parent >= 0) & ((self.depth_step > 0) | (ends[1] > ends[0])))
-        moments = interval_moments(self.profile, by_force=False)
+        moments = interval_moments(self.profile, over_forces=False)
         given = self.depth[below], np.maximum(self.depth_step, 0.0), ends
         # The measure of the moments is 2 dx.
         weights = np.zeros((3, tree.normal.size))
@@ -106,7 +106,7 @@ class TractionBranches:
     def _conjugate_step(self) -> Array:
         """Conjugate of each vertex above that of its parent."""
         profile, tree = self.profile, self.tree
-        conjugate = self.depth if self.by_force else profile.reduced_force(self.coordinate)
+        conjugate = self.depth if self.over_forces else profile.reduced_force(self.coordinate)
         if profile.has_no_partial_slip:
             # Depth and force are proportional.
             some = np.where(tree.normal > 0, tree.normal, 1.0)

@@ -225,7 +225,7 @@ class Tabulated(FlatEnded):
         return (height > 0) & (_MARGIN * panels.increase(panel, coordinate) <= height)
 
     def axis_stress(self, coordinate: Array, rtol: float) -> Array:
-        """Parameters: see `Profile`."""
+        """Stress integral at the axis, in closed form. Parameters: see `Profile`."""
         del rtol
         place = _located(self._edges, coordinate)
         return self.resolved.panels.over_axis_at(*place) / np.pi

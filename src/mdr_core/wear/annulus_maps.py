@@ -74,7 +74,7 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
     """Return the maps on a number of nodes, evenly spaced in the angle theta of the grading.
 
     Between the nodes functions are local polynomials in theta, reflected at both ends. Where a
-    front is thinner than the nodes' spacing, they are wrong next to it and nowhere else; one
+    layer is thinner than the nodes' spacing, they are wrong next to it and nowhere else; one
     polynomial over all nodes would ripple over the whole annulus.
 
     Source: notes, §11.

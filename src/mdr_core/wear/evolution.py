@@ -126,7 +126,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         edges = self.contact_radius[[0, -1]]
         if not self.initial.stick_moves:
             edges = np.append(edges, self.stick_radius[0])
-        return grid(self.initial.contact.profile, edges, points)
+        return grid(self.initial.normal.profile, edges, points)
 
     def _difference_near(self, name: str, radius: Array) -> float:
         """Return the largest difference of a field between the two runs near some radii.
@@ -153,7 +153,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
     @property
     def normal(self) -> NormalContact:
         """Normal contact before any wear."""
-        return self.initial.contact
+        return self.initial.normal
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -38,7 +38,7 @@ class InitialState:
     nodes: int
 
     @property
-    def contact(self) -> NormalContact:
+    def normal(self) -> NormalContact:
         """Normal contact before wear."""
         return self.tangential_contact.normal
 
@@ -50,7 +50,7 @@ class InitialState:
     @cached_property
     def constant_force(self) -> bool:
         """True if the normal force is constant, so that the depth grows; otherwise the depth is."""
-        return self.contact.control == "normal_force"
+        return self.normal.control == "normal_force"
 
     @cached_property
     def constant_displacement(self) -> bool:
@@ -89,7 +89,7 @@ class InitialState:
         """b_0 G*/(4 K mu^2 E*^2 D_0) [1], about the number of cycles that wear the annulus."""
         friction = float(np.asarray(self.tangential_contact.friction_coefficient))
         slipped = 4 * float(self.tangential_contact.displacement_ratio) * self.depth_unit
-        pressed = float(np.asarray(self.contact.e_star)) * self.depth_unit / self.length_unit
+        pressed = float(np.asarray(self.normal.e_star)) * self.depth_unit / self.length_unit
         return self.depth_unit / (self.wear_coefficient * friction * pressed * slipped)
 
     @cached_property
@@ -105,25 +105,25 @@ class InitialState:
     @cached_property
     def domain(self) -> float:
         """Radius up to which the profile is evaluated [length]."""
-        return _ALMOST * float(np.asarray(self.contact.profile.domain))
+        return _ALMOST * float(np.asarray(self.normal.profile.domain))
 
     @cached_property
-    def room(self) -> float:
+    def growth_to_end(self) -> float:
         """Growth at which the contact reaches the profile's end [b_0]."""
-        return (self.domain - float(self.contact.contact_radius)) / self.length_unit
+        return (self.domain - float(self.normal.contact_radius)) / self.length_unit
 
     @cached_property
-    def reach(self) -> float:
+    def largest_growth(self) -> float:
         """Growth of the contact up to which this method resolves it [b_0]."""
         if not self.stick_grows:
-            return self.room
-        return min(self.room, _GROWTH * self.width * (1 + self.width / self.stick) ** 2)
+            return self.growth_to_end
+        return min(self.growth_to_end, _GROWTH * self.width * (1 + self.width / self.stick) ** 2)
 
     @cached_property
     def maps(self) -> AnnulusMaps:
         """Maps between values at the nodes.
 
-        A shrinking stick zone takes half as many again: the front outside it is eight times thinner
+        A shrinking stick zone takes half as many again: the layer outside it is eight times thinner
         than its distance from the edge, elsewhere both are alike. Source: notes, §11.
         """
         return annulus_maps(self.nodes * 3 // 2 if self.stick_shrinks else self.nodes)
@@ -131,7 +131,9 @@ class InitialState:
     @cached_property
     def tilt(self) -> SurfaceTilt | None:
         """Tilt of the surface outside the contact; only with a growing stick zone."""
-        return SurfaceTilt(self.stick, self.width, self.reach) if self.stick_grows else None
+        return (
+            SurfaceTilt(self.stick, self.width, self.largest_growth) if self.stick_grows else None
+        )
 
     @cached_property
     def first_edge(self) -> int:
@@ -147,13 +149,13 @@ class InitialState:
     @cached_property
     def _singular(self) -> Array:
         """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
-        profile = self.contact.profile
+        profile = self.normal.profile
         inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
         return np.append(profile.contact_radius(inner), profile.domain)
 
     def rise(self, stick_shift: float, offset: Array) -> Array:
         """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift [D_0], all lengths in b_0."""
-        profile, unit = self.contact.profile, self.length_unit
+        profile, unit = self.normal.profile, self.length_unit
         stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
         by = unit * offset
         # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
@@ -167,5 +169,5 @@ class InitialState:
 
     def slope(self, x: Array) -> Array:
         """Return g_0'(x) [D_0/b_0], x in b_0."""
-        slope = self.contact.profile.dg(np.minimum(x * self.length_unit, self.domain))
+        slope = self.normal.profile.dg(np.minimum(x * self.length_unit, self.domain))
         return np.asarray(slope * (self.length_unit / self.depth_unit))

@@ -116,7 +116,7 @@ def _require_all_cycles(
 ) -> None:
     """Raise an error if the integration has ended before the last of the cycles."""
     if isfinite(profile_end_at):
-        if initial.reach < initial.room:
+        if initial.largest_growth < initial.growth_to_end:
             detail = "the contact grows beyond the range of this method"
             raise AccuracyError(detail, ("cycles",))
         raise InputError(
@@ -144,7 +144,7 @@ def _scale(initial: InitialState) -> Array:
 
 def _events(initial: InitialState, rtol: float) -> list[Any]:
     """Return the events that end the integration: the profile's end, no more wear, full slip."""
-    flat = float(initial.contact.profile.first_radius) / initial.length_unit
+    flat = float(initial.normal.profile.first_radius) / initial.length_unit
     vanished = flat + _VANISHED * (initial.stick - flat)
 
     def event(function: Callable[[AnnulusState], float]) -> Any:
@@ -155,7 +155,7 @@ def _events(initial: InitialState, rtol: float) -> list[Any]:
         return value
 
     return [
-        event(lambda state: state.growth - initial.reach),
+        event(lambda state: state.growth - initial.largest_growth),
         # The work of a cycle is of the order of the square of the pressure.
         event(lambda state: state.end * state.pressure.max() - rtol * state.reduced_amplitude),
         event(lambda state: state.stick - vanished),

@@ -150,9 +150,9 @@ class LimitingWear(validity.ContactResults):
         unbounded, width = self.stick_zone.unbounded, self.wear_width
         volume, flat = np.zeros(width.size), np.ravel(width)
         # Without slip there is no annulus.
-        some = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
-        step = np.ravel(self.stick_zone.step)[some]
-        volume[some] = self.stick_zone.annulus.chosen(some).worn_volume(flat[some], step)
+        worn = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
+        step = np.ravel(self.stick_zone.step)[worn]
+        volume[worn] = self.stick_zone.annulus.chosen(worn).worn_volume(flat[worn], step)
         return np.where(unbounded, inf, volume.reshape(width.shape))
 
     @cached_property

@@ -23,7 +23,7 @@ _RETURN: Final = 10.0
 
 def rates(initial: InitialState, vector: Array) -> Array:
     """Return the derivative of the vector with respect to the scaled number of cycles."""
-    return _EdgeBalance(initial, vector).rates
+    return _MovingAnnulus(initial, vector).rates
 
 
 def jacobian(initial: InitialState, vector: Array) -> Array:
@@ -32,7 +32,7 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
     By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
     rates is neglected.
     """
-    state = _EdgeBalance(initial, vector)
+    state = _MovingAnnulus(initial, vector)
     n, maps = initial.first_edge, initial.maps
     in_worn, in_edges = state.gradients()
     in_omega = state.end**2 * maps.mean * (state.reduced_amplitude - 2 * state.gamma)
@@ -53,7 +53,7 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
     return found
 
 
-class _EdgeBalance(AnnulusState):
+class _MovingAnnulus(AnnulusState):
     """Rates of the edges from the constant quantities; all others are linear in them.
 
     Columns: by wear alone, and per unit of the rates of b, c and d.

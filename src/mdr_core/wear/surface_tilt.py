@@ -25,13 +25,13 @@ class SurfaceTilt:
     """c_0."""
     width: float
     """a_0 - c_0."""
-    reach: float
+    largest_growth: float
     """Largest growth of the contact radius."""
 
     def rates(self, stick_shift: float) -> Array:
         """Return the terms of dC/dw_c, for a stick edge at c_0 + stick_shift, (COUNT,)."""
         first, c = self.stick + self.width, self.stick + stick_shift
-        share = (1 + _POINTS) / 2 * self.reach / (first + self.reach)
+        share = (1 + _POINTS) / 2 * self.largest_growth / (first + self.largest_growth)
         offset = self.width + share * first / (1 - share) - stick_shift
         values = -2 / np.pi * np.arctan2(np.sqrt(offset * (offset + 2 * c)), c)
         return np.asarray(_TO_SERIES @ values)
@@ -39,9 +39,9 @@ class SurfaceTilt:
     def basis(self, growth: float) -> tuple[Array, Array]:
         """Return the values of the terms at the radius a_0 + growth, and their slopes, (COUNT,)."""
         first = self.stick + self.width
-        radius, stop = first + growth, first + self.reach
-        place = 2 * growth * stop / (radius * self.reach) - 1
-        slope = 2 * first * stop / (radius**2 * self.reach)
+        radius, stop = first + growth, first + self.largest_growth
+        place = 2 * growth * stop / (radius * self.largest_growth) - 1
+        slope = 2 * first * stop / (radius**2 * self.largest_growth)
         values = chebyshev.chebvander(place, COUNT - 1)[0]
         return np.asarray(values), np.asarray(slope * (values @ _DERIVATIVE))
 

@@ -41,7 +41,7 @@ class WornSurface:
     @cached_property
     def indentation_depth(self) -> Array:
         """d [length]: it grows where the normal force is constant."""
-        start, unit = float(self.initial.contact.indentation_depth), self.initial.depth_unit
+        start, unit = float(self.initial.normal.indentation_depth), self.initial.depth_unit
         return start + self._each(lambda state: unit * state.depth_increase, 0.0)
 
     @cached_property
@@ -55,14 +55,14 @@ class WornSurface:
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]: it grows as the contact edge wears."""
-        start, unit = float(self.initial.contact.contact_radius), self.initial.length_unit
+        start, unit = float(self.initial.normal.contact_radius), self.initial.length_unit
         return start + self._each(lambda state: unit * state.growth, 0.0)
 
     @cached_property
     def normal_force(self) -> Array:
         """F_N [force]: at a constant depth F_N0(a) + 2 E* (a w(a) - int_c^a w dx), w = g - g_0."""
         initial = self.initial
-        contact, profile = initial.contact, initial.contact.profile
+        contact, profile = initial.normal, initial.normal.profile
         if initial.constant_force or not self.states:
             return np.full(self.cycles.shape, float(contact.normal_force))
         edge = profile.coordinate_from_radius(self.contact_radius)
@@ -108,7 +108,7 @@ class WornSurface:
     def profile(self, radius: ArrayLike) -> Array:
         """Return the worn profile f(r) [length], (cycles, m). Errors as of `worn_depth`."""
         r = self._radii(radius)
-        return np.asarray(self.initial.contact.profile.f(r) + self.worn_depth(r))
+        return np.asarray(self.initial.normal.profile.f(r) + self.worn_depth(r))
 
     def pressure(self, radius: ArrayLike) -> Array:
         """Return p(r) [pressure], (cycles, m). Errors as of `worn_depth`.
@@ -122,16 +122,16 @@ class WornSurface:
         result = np.empty((self.cycles.size, r.size))
         unworn = self.worn_volume <= 0
         if unworn.any():
-            result[unworn] = fields.pressure(self.initial.contact, r)
+            result[unworn] = fields.pressure(self.initial.normal, r)
         for index in np.flatnonzero(~unworn):
             result[index] = _field_in_blocks(partial(self._pressure, self.states[index]), r)
         return result
 
     def _radii(self, radius: ArrayLike) -> Array:
-        return checked_radii(radius, float(np.asarray(self.initial.contact.profile.domain)))
+        return checked_radii(radius, float(np.asarray(self.initial.normal.profile.domain)))
 
     def _pressure(self, state: AnnulusState, radius: Array) -> Array:
-        initial, e_star = self.initial, float(self.initial.contact.e_star)
+        initial, e_star = self.initial, float(self.initial.normal.e_star)
         scaled, unit = radius / initial.length_unit, initial.depth_unit / initial.length_unit
         result = np.zeros(radius.shape)
         sticks = scaled < state.stick
@@ -140,7 +140,7 @@ class WornSurface:
         if sticks.any():
             # The pressure of the unworn foundation inside c, and that of the worn one.
             within = normal.solve(
-                initial.contact.profile, e_star, contact_radius=initial.length_unit * state.stick
+                initial.normal.profile, e_star, contact_radius=initial.length_unit * state.stick
             )
             worn = _stick_pressure(state, scaled[sticks])
             result[sticks] = fields.pressure(within, radius[sticks]) + e_star * unit * worn

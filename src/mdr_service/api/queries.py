@@ -90,18 +90,19 @@ class QueryRoute(APIRoute):
 
     def get_route_handler(self) -> Callable[[Request], Any]:
         """Return the handler of a request."""
-        query, responder = signature(self.endpoint).parameters.values()
-        model, make = get_args(query.annotation)[0], get_args(responder.annotation)[0]
+        query, respond = signature(self.endpoint).parameters.values()
+        model, responder_type = get_args(query.annotation)[0], get_args(respond.annotation)[0]
         name = str(self.operation_id)
 
         async def handle(request: Request) -> Response:
             given = url_parameters(request)
-            respond_: Responder = make(request, given.pop("format", None), given.pop("size", None))
+            options = given.pop("format", None), given.pop("size", None)
+            responder: Responder = responder_type(request, *options)
             if given:
                 raise _invalid(dict.fromkeys(given, "there is no such parameter"))
             text = await read_body(request)
-            is_long = len(text) > respond_.at_once_bytes
-            return await respond_(name, text if is_long else model.model_validate_json(text))
+            is_long = len(text) > responder.at_once_bytes
+            return await responder(name, text if is_long else model.model_validate_json(text))
 
         return handle
 

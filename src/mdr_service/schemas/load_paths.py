@@ -94,8 +94,8 @@ class LoadPath(Strict):
     @property
     def nonlinear(self) -> bool:
         """True for a depth with a tangential force, or a normal force with a displacement."""
-        by_force = self.tangential.control == "tangential_force"
-        return by_force == (self.normal.control == "indentation_depth")
+        force_prescribed = self.tangential.control == "tangential_force"
+        return force_prescribed == (self.normal.control == "indentation_depth")
 
     def place(self, axis: str, step: int) -> tuple[str | int, ...]:
         """Return the path from here to the value at the end of a load step."""
