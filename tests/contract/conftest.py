@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from urllib.parse import urlsplit
 
@@ -67,10 +68,18 @@ class Visit:
         entry = self.page.locator("#numbers div", has=self.page.get_by_text(label, exact=True))
         return entry.locator("dd").inner_text()
 
-    def fill(self, key: str, text: str) -> None:
-        self.page.fill(f"#field-{key}", text)
+    @contextmanager
+    def changing(self) -> Iterator[None]:
+        """Change the form within the context, then wait until URL and charts show the change."""
+        before = self.page.url
+        yield
         # The URL follows the form with a delay.
-        self.page.wait_for_timeout(400)
+        self.page.wait_for_url(lambda url: url != before)
+        self.drawn()
+
+    def fill(self, key: str, text: str) -> None:
+        with self.changing():
+            self.page.fill(f"#field-{key}", text)
 
 
 @pytest.fixture

@@ -84,7 +84,7 @@ def test_latest_slider_position_is_drawn(visit: Visit) -> None:
             }
         }"""
     )
-    visit.page.wait_for_timeout(400)
+    visit.page.wait_for_url("**amount=0.9&**")
     visit.drawn()
     assert visit.number("Tangential force") == "27 N"
 
@@ -93,9 +93,8 @@ def test_pasted_table_is_solved_and_invalid_line_is_reported(visit: Visit) -> No
     visit.open("?kind=tabulated")
     heading = "r, f\n"
     rows = [f"{1e-5 * i:.6g}, {5e-9 * i * i:.6g}" for i in range(41)]
-    visit.page.fill("#table", heading + "\n".join(rows))
-    visit.page.wait_for_timeout(400)
-    visit.drawn()
+    with visit.changing():
+        visit.page.fill("#table", heading + "\n".join(rows))
     assert visit.page.locator("#problem").is_hidden()
     visit.page.fill("#table", heading + "\n".join([*rows[:20], "0.0002, 1e-9", *rows[21:]]))
     problem = visit.page.locator("#table-problem")
@@ -122,15 +121,13 @@ def test_load_path_points_are_keyboard_accessible(visit: Visit) -> None:
     visit.open("?tab=cycle&path=100,0;100,20")
     before = visit.number("Tangential force")
     visit.page.locator("#editor circle").nth(1).focus()
-    visit.page.keyboard.press("ArrowLeft")
-    visit.page.keyboard.press("ArrowLeft")
-    visit.page.wait_for_timeout(400)
-    visit.drawn()
+    with visit.changing():
+        visit.page.keyboard.press("ArrowLeft")
+        visit.page.keyboard.press("ArrowLeft")
     assert before == "20 N"
     assert float(visit.number("Tangential force").split()[0]) == pytest.approx(19, rel=1e-12, abs=0)
     visit.page.get_by_role("button", name="Remove point 2").click()
-    visit.page.wait_for_timeout(400)
-    assert "path=100,0&" in visit.page.url
+    visit.page.wait_for_url("**path=100,0&**")
 
 
 def test_page_contents_can_be_downloaded(visit: Visit, tmp_path: Path) -> None:
@@ -178,7 +175,7 @@ def test_case_is_printed_on_one_sheet(visit: Visit, tab: str) -> None:
     plot = visit.page.locator("figure .main-svg").first
     assert plot.evaluate("plot => plot.clientWidth <= plot.closest('figure').clientWidth")
     visit.page.evaluate("dispatchEvent(new Event('afterprint'))")
-    visit.page.locator("#scene").wait_for()
+    visit.page.locator("#inputs").wait_for()
 
 
 ROUND_TRIP = Path(__file__).with_name("round_trip.js").read_text("utf-8")

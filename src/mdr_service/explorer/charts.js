@@ -19,18 +19,18 @@ function theme() {
 
 const scaled = (values, factor) => values.map((value) => (value === null ? null : value / factor));
 
-function axisTitle([label, dimension], scene) {
-  const { name } = unit(dimension, scene);
+function axisTitle([label, dimension], inputs) {
+  const { name } = unit(dimension, inputs);
   return name ? `${label} [${name}]` : label;
 }
 
-function curve(trace, spec, scene, colours) {
+function curve(trace, spec, inputs, colours) {
   const role = trace.role ?? "line";
   const colour = colours[role];
   return {
     name: trace.name,
-    x: scaled(trace.x, unit(spec.x[1], scene).factor),
-    y: scaled(trace.y, unit(spec.y[1], scene).factor),
+    x: scaled(trace.x, unit(spec.x[1], inputs).factor),
+    y: scaled(trace.y, unit(spec.y[1], inputs).factor),
     mode: trace.mode ?? "lines",
     line: { color: colour, width: 2, simplify: false, dash: role === "limit" ? "dash" : "solid" },
     marker: { color: colour, size: 10 },
@@ -40,23 +40,23 @@ function curve(trace, spec, scene, colours) {
   };
 }
 
-function contours(trace, spec, scene, colours) {
-  const factor = unit(spec.z[1], scene).factor;
+function contours(trace, spec, inputs, colours) {
+  const factor = unit(spec.z[1], inputs).factor;
   return {
     type: "contour",
-    x: scaled(trace.x, unit(spec.x[1], scene).factor),
-    y: scaled(trace.y, unit(spec.y[1], scene).factor),
+    x: scaled(trace.x, unit(spec.x[1], inputs).factor),
+    y: scaled(trace.y, unit(spec.y[1], inputs).factor),
     z: trace.z.map((row) => scaled(row, factor)),
     colorscale: "Viridis",
     ncontours: 24,
     line: { width: 0.4 },
-    colorbar: { title: { text: axisTitle(spec.z, scene), side: "right" }, tickfont: { color: colours.ink } },
+    colorbar: { title: { text: axisTitle(spec.z, inputs), side: "right" }, tickfont: { color: colours.ink } },
     hovertemplate: "x %{x:.4~g}, z %{y:.4~g}: %{z:.4~g}<extra></extra>",
   };
 }
 
-function verticals(spec, scene, colours) {
-  const factor = unit(spec.x[1], scene).factor;
+function verticals(spec, inputs, colours) {
+  const factor = unit(spec.x[1], inputs).factor;
   const at = (spec.edges ?? []).filter(([, radius]) => radius > 0);
   const edges = spec.map ? at.flatMap(([name, radius]) => [[`−${name}`, -radius], [name, radius]]) : at;
   const lines = edges.map(([, radius]) => ({
@@ -70,10 +70,10 @@ function verticals(spec, scene, colours) {
   return { lines, notes };
 }
 
-function layout(spec, scene, colours) {
-  const { lines, notes } = verticals(spec, scene, colours);
+function layout(spec, inputs, colours) {
+  const { lines, notes } = verticals(spec, inputs, colours);
   const axis = (title) => ({
-    title: { text: axisTitle(title, scene), standoff: 8 }, automargin: true,
+    title: { text: axisTitle(title, inputs), standoff: 8 }, automargin: true,
     gridcolor: colours.grid, zerolinecolor: colours.faint, linecolor: colours.faint,
     exponentformat: "power",
   });
@@ -94,8 +94,8 @@ function layout(spec, scene, colours) {
   };
 }
 
-function columns(spec, scene) {
-  const column = (title, values) => [title, scaled(values, unit(title[1], scene).factor)];
+function columns(spec, inputs) {
+  const column = (title, values) => [title, scaled(values, unit(title[1], inputs).factor)];
   const tables = [];
   for (const trace of spec.traces) {
     const known = tables.find((table) => table.x === trace.x);
@@ -106,15 +106,15 @@ function columns(spec, scene) {
   return tables;
 }
 
-function dataTable(spec, scene) {
-  const parts = spec.map ? mapTable(spec, scene) : columns(spec, scene).map(({ columns }) => columns);
+function dataTable(spec, inputs) {
+  const parts = spec.map ? mapTable(spec, inputs) : columns(spec, inputs).map(({ columns }) => columns);
   return parts.map((part) => {
     const table = document.createElement("table");
     const head = table.createTHead().insertRow();
     for (const [title] of part) {
       const cell = document.createElement("th");
       cell.scope = "col";
-      cell.textContent = axisTitle(title, scene);
+      cell.textContent = axisTitle(title, inputs);
       head.append(cell);
     }
     const body = table.createTBody();
@@ -127,11 +127,11 @@ function dataTable(spec, scene) {
 }
 
 /** Return the largest value of each depth: a map has too many values for a table to read. */
-function mapTable(spec, scene) {
+function mapTable(spec, inputs) {
   const { x, y, z } = spec.traces[0];
   const largest = z.map((row) => Math.max(...row.filter((value) => value !== null)));
   const where = z.map((row, i) => x[row.indexOf(largest[i])]);
-  const column = (title, values) => [title, scaled(values, unit(title[1], scene).factor)];
+  const column = (title, values) => [title, scaled(values, unit(title[1], inputs).factor)];
   return [[
     column(spec.y, y), column(["largest value", spec.z[1]], largest), column(["at x", spec.x[1]], where),
   ]];
@@ -170,7 +170,7 @@ function create(spec, actions) {
 
 function fillTable(figure) {
   const details = figure.element.querySelector("details");
-  if (details.open) details.querySelector(".data").replaceChildren(...dataTable(figure.spec, figure.scene));
+  if (details.open) details.querySelector(".data").replaceChildren(...dataTable(figure.spec, figure.inputs));
 }
 
 /** Show the radius under the cursor in every chart over the radius. */
@@ -187,11 +187,11 @@ function link(figure) {
   figure.plot.on("plotly_unhover", () => forOthers((other) => Plotly.Fx.unhover(other.plot)));
 }
 
-function plot({ spec, scene, plot }, size) {
+function plot({ spec, inputs, plot }, size) {
   const colours = theme();
-  const traces = spec.traces.map((trace) => (trace.z ? contours : curve)(trace, spec, scene, colours));
+  const traces = spec.traces.map((trace) => (trace.z ? contours : curve)(trace, spec, inputs, colours));
   const options = { displayModeBar: false, responsive: true };
-  return Plotly.react(plot, traces, { ...layout(spec, scene, colours), ...size }, options);
+  return Plotly.react(plot, traces, { ...layout(spec, inputs, colours), ...size }, options);
 }
 
 /** Draw the charts again at once, in the present colours and sizes. */
@@ -203,11 +203,11 @@ export function redraw() {
 }
 
 /**
- * Draw the charts of an answer, reusing those that are there.
+ * Draw the charts of a response, reusing those that are there.
  *
  * `actions.showRequest` and `actions.saveCsv` are called with the name of a chart's request.
  */
-export async function draw(container, specs, scene, actions) {
+export async function draw(container, specs, inputs, actions) {
   await plotlyLoaded;
   for (const [id, figure] of figures) {
     if (specs.some((spec) => spec.id === id)) continue;
@@ -218,12 +218,12 @@ export async function draw(container, specs, scene, actions) {
   for (const spec of specs) {
     const known = figures.get(spec.id);
     const figure = known ?? create(spec, actions);
-    Object.assign(figure, { spec, scene });
+    Object.assign(figure, { spec, inputs });
     figure.element.className = spec.size ?? "";
     figure.element.querySelector("h2").textContent = spec.title;
     figure.element.querySelectorAll("button").forEach((button) =>
       button.setAttribute("aria-label", `${button.textContent} of “${spec.title}”`));
-    figure.plot.setAttribute("aria-label", `${spec.title}: ${axisTitle(spec.y, scene)} over ${axisTitle(spec.x, scene)}`);
+    figure.plot.setAttribute("aria-label", `${spec.title}: ${axisTitle(spec.y, inputs)} over ${axisTitle(spec.x, inputs)}`);
     // In the order of the description, whatever was there before.
     container.append(figure.element);
     await plot(figure, { autosize: true });

@@ -19,11 +19,11 @@ function sliderOf(field, value, reference) {
  * `change(key, value)` is called with the new SI value while the slider moves and when a text
  * is a number. `reference` is the value in whose neighbourhood the slider moves.
  */
-export function row(field, scene, reference, change) {
-  return field.choices ? choiceRow(field, scene, change) : numberRow(field, scene, reference, change);
+export function row(field, inputs, reference, change) {
+  return field.choices ? choiceRow(field, inputs, change) : numberRow(field, inputs, reference, change);
 }
 
-function choiceRow(field, scene, change) {
+function choiceRow(field, inputs, change) {
   const label = document.createElement("label");
   label.className = "row";
   const name = document.createElement("span");
@@ -31,7 +31,7 @@ function choiceRow(field, scene, change) {
   const select = document.createElement("select");
   select.id = `field-${field.key}`;
   for (const { value, label: text } of field.choices) {
-    select.add(new Option(text, value, false, String(scene[field.key]) === String(value)));
+    select.add(new Option(text, value, false, String(inputs[field.key]) === String(value)));
   }
   select.addEventListener("change", () => {
     const { value } = field.choices[select.selectedIndex];
@@ -41,9 +41,9 @@ function choiceRow(field, scene, change) {
   return label;
 }
 
-function numberRow(field, scene, reference, change) {
+function numberRow(field, inputs, reference, change) {
   const { key, dimension } = field;
-  const { name } = unit(dimension, scene);
+  const { name } = unit(dimension, inputs);
   const element = document.createElement("div");
   element.className = "field";
   element.dataset.key = key;
@@ -52,19 +52,19 @@ function numberRow(field, scene, reference, change) {
   element.querySelector("span").textContent = field.label;
   element.querySelector(".unit").textContent = name;
   slider.setAttribute("aria-label", `${field.label}, slider`);
-  const { min, max, to, from } = sliderOf(field, scene[key], reference);
-  Object.assign(slider, { min, max, step: (max - min) / 400, value: to(scene[key]) });
-  const tell = (value) => slider.setAttribute("aria-valuetext", `${shown(value, dimension, scene)} ${name}`);
-  text.value = shown(scene[key], dimension, scene);
-  tell(scene[key]);
+  const { min, max, to, from } = sliderOf(field, inputs[key], reference);
+  Object.assign(slider, { min, max, step: (max - min) / 400, value: to(inputs[key]) });
+  const tell = (value) => slider.setAttribute("aria-valuetext", `${shown(value, dimension, inputs)} ${name}`);
+  text.value = shown(inputs[key], dimension, inputs);
+  tell(inputs[key]);
   slider.addEventListener("input", () => {
     const value = Number(from(Number(slider.value)).toPrecision(3));
-    text.value = shown(value, dimension, scene);
+    text.value = shown(value, dimension, inputs);
     tell(value);
     change(key, value);
   });
   text.addEventListener("input", () => {
-    const value = read(text.value, dimension, scene);
+    const value = read(text.value, dimension, inputs);
     const wrong = Number.isNaN(value);
     element.querySelector(".problem").textContent = wrong ? "not a number" : "";
     text.setAttribute("aria-invalid", String(wrong));

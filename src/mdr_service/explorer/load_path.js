@@ -1,7 +1,7 @@
 // Editor of a load path: points in the plane of tangential and normal load.
 
-import { dimensionOf, labelOf } from "./questions.js";
-import { pathPoints } from "./scene.js";
+import { dimensionOf, labelOf } from "./analyses.js";
+import { pathPoints } from "./inputs.js";
 import { format, read, shown, unit } from "./units.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -22,18 +22,18 @@ function svgElement(name, attributes, parent) {
   return element;
 }
 
-/** Show the editor of the scene's path in `container`; `change(path)` is called with a new one. */
-export function showEditor(container, scene, size, change) {
-  const points = pathPoints(scene);
+/** Show the editor of the load path in `container`; `change(path)` is called with a new one. */
+export function showEditor(container, inputs, size, change) {
+  const points = pathPoints(inputs);
   const focused = document.activeElement?.dataset?.point;
   const commit = () => change(points.map((point) => point.join(",")).join(";"));
   container.replaceChildren(
-    heading(scene, size, change), drawing(points, scene, commit), table(points, scene, commit),
+    heading(inputs, size, change), drawing(points, inputs, commit), table(points, inputs, commit),
   );
   if (focused) container.querySelector(`[data-point="${focused}"]`)?.focus();
 }
 
-function heading(scene, { normal, tangential }, change) {
+function heading(inputs, { normal, tangential }, change) {
   const element = document.createElement("div");
   element.className = "row";
   element.innerHTML = '<h2>Load path</h2><label for="preset">Start from</label><select id="preset"><option value="">…</option></select>';
@@ -48,7 +48,7 @@ function heading(scene, { normal, tangential }, change) {
   return element;
 }
 
-function drawing(points, scene, commit) {
+function drawing(points, inputs, commit) {
   const svg = svgElement("svg", {
     viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "group", "aria-label": "Points of the path; move them by the arrow keys",
   });
@@ -64,9 +64,9 @@ function drawing(points, scene, commit) {
   };
   svgElement("line", { x1: PAD, x2: WIDTH - PAD, y1: HEIGHT - PAD, y2: HEIGHT - PAD, class: "axis" }, svg);
   svgElement("line", { x1: WIDTH / 2, x2: WIDTH / 2, y1: PAD / 2, y2: HEIGHT - PAD, class: "axis" }, svg);
-  const title = (control) => `${labelOf(control)} [${unit(dimensionOf(control), scene).name}]`;
-  svgElement("text", { x: WIDTH - PAD, y: HEIGHT - 8, "text-anchor": "end" }, svg).textContent = title(scene.tangential);
-  svgElement("text", { x: WIDTH / 2 + 6, y: PAD / 2 + 2 }, svg).textContent = title(scene.normal);
+  const title = (control) => `${labelOf(control)} [${unit(dimensionOf(control), inputs).name}]`;
+  svgElement("text", { x: WIDTH - PAD, y: HEIGHT - 8, "text-anchor": "end" }, svg).textContent = title(inputs.tangential);
+  svgElement("text", { x: WIDTH / 2 + 6, y: PAD / 2 + 2 }, svg).textContent = title(inputs.normal);
   const line = svgElement("polyline", { class: "path" }, svg);
   const redraw = () => line.setAttribute("points", [[0, 0], ...points].map((p) => place(p).join(",")).join(" "));
   redraw();
@@ -74,7 +74,7 @@ function drawing(points, scene, commit) {
     const [x, y] = place(point);
     const handle = svgElement("circle", {
       cx: x, cy: y, r: 8, tabindex: 0, role: "slider", "data-point": i, "aria-label": `Point ${i + 1}`,
-      "aria-valuetext": valueText(point, scene), "aria-valuenow": i + 1,
+      "aria-valuetext": valueText(point, inputs), "aria-valuenow": i + 1,
     }, svg);
     const same = points.flatMap((other, j) => (other.join() === point.join() ? [j + 1] : []));
     const label = svgElement("text", { x, y: y - 13, "text-anchor": "middle", class: "point" }, svg);
@@ -108,19 +108,19 @@ function drawing(points, scene, commit) {
   return svg;
 }
 
-function valueText([n, t], scene) {
+function valueText([n, t], inputs) {
   const part = (value, control) => {
-    const { name, factor } = unit(dimensionOf(control), scene);
+    const { name, factor } = unit(dimensionOf(control), inputs);
     return `${labelOf(control)} ${format(value / factor, 3)} ${name}`;
   };
-  return `${part(n, scene.normal)}, ${part(t, scene.tangential)}`;
+  return `${part(n, inputs.normal)}, ${part(t, inputs.tangential)}`;
 }
 
-function table(points, scene, commit) {
+function table(points, inputs, commit) {
   const element = document.createElement("table");
   element.className = "points";
   const head = element.createTHead().insertRow();
-  for (const title of ["Point", labelOf(scene.normal), labelOf(scene.tangential), "Change"]) {
+  for (const title of ["Point", labelOf(inputs.normal), labelOf(inputs.tangential), "Change"]) {
     const cell = document.createElement("th");
     cell.scope = "col";
     cell.textContent = title;
@@ -130,14 +130,14 @@ function table(points, scene, commit) {
   points.forEach((point, i) => {
     const row = body.insertRow();
     row.insertCell().textContent = i + 1;
-    [scene.normal, scene.tangential].forEach((control, j) => {
+    [inputs.normal, inputs.tangential].forEach((control, j) => {
       const input = document.createElement("input");
-      input.value = shown(point[j], dimensionOf(control), scene);
+      input.value = shown(point[j], dimensionOf(control), inputs);
       input.inputMode = "decimal";
       input.dataset.point = `${i}-${j}`;
-      input.setAttribute("aria-label", `Point ${i + 1}, ${labelOf(control)} [${unit(dimensionOf(control), scene).name}]`);
+      input.setAttribute("aria-label", `Point ${i + 1}, ${labelOf(control)} [${unit(dimensionOf(control), inputs).name}]`);
       input.addEventListener("change", () => {
-        const value = read(input.value, dimensionOf(control), scene);
+        const value = read(input.value, dimensionOf(control), inputs);
         input.setAttribute("aria-invalid", String(Number.isNaN(value)));
         if (Number.isNaN(value)) return;
         points[i][j] = value;

@@ -1,19 +1,19 @@
-// The page: scene -> form -> requests -> numbers and charts -> address.
+// The page: inputs -> form -> requests -> numbers and charts -> address.
 
 import { draw } from "./charts.js";
 import { readTable, row, tableText } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS } from "./materials.js";
 import { showForPrint } from "./printing.js";
-import { bodyFields, loadFields, QUESTIONS } from "./questions.js";
-import { ask, askCsv, download, newestWins, Refusal, source } from "./requests.js";
-import { defaultScene, fromAddress, pathPoints, TABS, toAddress, withKind } from "./scene.js";
+import { bodyFields, loadFields, ANALYSES } from "./analyses.js";
+import { query, queryCsv, download, newestWins, Refusal, source } from "./requests.js";
+import { defaultInputs, fromAddress, pathPoints, TABS, toAddress, withKind } from "./inputs.js";
 import { DEFAULT_FIELDS, LABELS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
 import { BASE_UNITS, format, unit } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
-let scene = fromAddress(location.search, location.hash);
+let inputs = fromAddress(location.search, location.hash);
 let kinds = {};
 let requests = [];
 let last = null;
@@ -21,8 +21,8 @@ let rowOfTable = [];
 
 function change(key, value) {
   const structural = ["control", "push", "oscillation", "normal", "tangential"].includes(key);
-  const before = scene[key];
-  scene = { ...scene, [key]: value };
+  const before = inputs[key];
+  inputs = { ...inputs, [key]: value };
   if (structural && before !== value) {
     keepLoad(key, value);
     showForm();
@@ -33,36 +33,36 @@ function change(key, value) {
 /** Keep the state of the contact when another quantity is chosen to give it. */
 function keepLoad(key, value) {
   const known = last?.known ?? {};
-  if (key === "control" && known[value] > 0) scene.load = known[value];
+  if (key === "control" && known[value] > 0) inputs.load = known[value];
   if (key === "push") {
-    const share = known.tangential_force / (scene.mu * known.normal_force);
-    scene.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || scene.load / 10;
+    const share = known.tangential_force / (inputs.mu * known.normal_force);
+    inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
   }
   if (key === "oscillation") {
-    scene.amplitude = value === "tangential_force" ? defaultScene().amplitude : 2e-7;
+    inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
   }
-  if (key === "normal") scene.path = rescaled(0, value === "normal_force" ? 100 : 2e-6);
-  if (key === "tangential") scene.path = rescaled(1, value === "tangential_force" ? 20 : 4e-7);
+  if (key === "normal") inputs.path = rescaled(0, value === "normal_force" ? 100 : 2e-6);
+  if (key === "tangential") inputs.path = rescaled(1, value === "tangential_force" ? 20 : 4e-7);
 }
 
 function rescaled(column, largest) {
-  const points = pathPoints(scene);
+  const points = pathPoints(inputs);
   const size = Math.max(...points.map((point) => Math.abs(point[column]))) || 1;
   for (const point of points) point[column] = Number(((point[column] / size) * largest).toPrecision(6));
   return points.map((point) => point.join(",")).join(";");
 }
 
-function fill(container, fields, references = scene) {
+function fill(container, fields, references = inputs) {
   container.querySelectorAll(":scope > :not(legend)").forEach((element) => element.remove());
-  container.append(...fields.map((field) => row(field, scene, references[field.key] ?? scene[field.key], change)));
+  container.append(...fields.map((field) => row(field, inputs, references[field.key] ?? inputs[field.key], change)));
   container.hidden = fields.length === 0;
 }
 
 function profileFields() {
-  const known = kinds[scene.kind];
-  const fields = OWN_FIELDS[scene.kind] ?? known?.fields ?? [];
+  const known = kinds[inputs.kind];
+  const fields = OWN_FIELDS[inputs.kind] ?? known?.fields ?? [];
   return fields
-    .filter(({ name }) => name in DEFAULT_FIELDS[scene.kind] && name !== "interpolation")
+    .filter(({ name }) => name in DEFAULT_FIELDS[inputs.kind] && name !== "interpolation")
     .map(({ name, dimension, description }) => ({
       key: name, label: description, dimension,
       range: name.startsWith("exponent") ? [0.5, 10] : undefined,
@@ -74,16 +74,16 @@ function materialSelect(i) {
   label.className = "row";
   label.innerHTML = `<span>Body ${i}</span><select id="material-${i}"></select>`;
   const select = label.querySelector("select");
-  const current = Object.entries(MATERIALS).find(([, [e, nu]]) => e === scene[`e${i}`] && nu === scene[`nu${i}`]);
-  const chosen = scene[`e${i}`] === "rigid" ? "Rigid" : current?.[0] ?? "Custom";
+  const current = Object.entries(MATERIALS).find(([, [e, nu]]) => e === inputs[`e${i}`] && nu === inputs[`nu${i}`]);
+  const chosen = inputs[`e${i}`] === "rigid" ? "Rigid" : current?.[0] ?? "Custom";
   const offered = ["Custom", ...Object.keys(MATERIALS), ...(i === 2 ? ["Rigid"] : [])];
   for (const name of offered) select.add(new Option(name, name, false, name === chosen));
   select.addEventListener("change", () => {
-    if (select.value === "Rigid") scene = { ...scene, e2: "rigid" };
+    if (select.value === "Rigid") inputs = { ...inputs, e2: "rigid" };
     else {
-      const fallback = scene[`e${i}`] === "rigid" ? MATERIALS.Steel : [scene[`e${i}`], scene[`nu${i}`]];
+      const fallback = inputs[`e${i}`] === "rigid" ? MATERIALS.Steel : [inputs[`e${i}`], inputs[`nu${i}`]];
       const [e, nu] = MATERIALS[select.value] ?? fallback;
-      scene = { ...scene, [`e${i}`]: e, [`nu${i}`]: nu };
+      inputs = { ...inputs, [`e${i}`]: e, [`nu${i}`]: nu };
     }
     showForm();
     refresh();
@@ -92,20 +92,20 @@ function materialSelect(i) {
 }
 
 function showForm() {
-  const question = QUESTIONS[scene.tab];
-  $("#kind").value = scene.kind;
-  $("#formula").textContent = `f(r) = ${OWN_FORMULAS[scene.kind] ?? kinds[scene.kind]?.formula ?? "…"}`;
-  const tabulated = scene.kind === "tabulated";
+  const analysis = ANALYSES[inputs.tab];
+  $("#kind").value = inputs.kind;
+  $("#formula").textContent = `f(r) = ${OWN_FORMULAS[inputs.kind] ?? kinds[inputs.kind]?.formula ?? "…"}`;
+  const tabulated = inputs.kind === "tabulated";
   $("#table-fields").hidden = !tabulated;
   if (tabulated && document.activeElement !== $("#table")) {
-    $("#table").value = tableText(scene.table);
-    rowOfTable = scene.table.r.map((_, i) => i + 1);
+    $("#table").value = tableText(inputs.table);
+    rowOfTable = inputs.table.r.map((_, i) => i + 1);
   }
-  fill($("#profile-fields"), profileFields(), DEFAULT_FIELDS[scene.kind]);
-  fill($("#bodies"), bodyFields(scene));
+  fill($("#profile-fields"), profileFields(), DEFAULT_FIELDS[inputs.kind]);
+  fill($("#bodies"), bodyFields(inputs));
   $("#bodies legend").after(materialSelect(1), materialSelect(2));
-  fill($("#loading"), loadFields(scene));
-  fill($("#question"), question.fields(scene));
+  fill($("#loading"), loadFields(inputs));
+  fill($("#analysis"), analysis.fields(inputs));
   fill($("#units"), Object.values(BASE_UNITS).map(({ key, label, units }) => ({
     key, label, choices: units.map((name) => ({ value: name, label: name })),
   })));
@@ -113,11 +113,11 @@ function showForm() {
     $(`#field-${key}`).addEventListener("change", showForm);
   }
   document.querySelectorAll("[role=tab]").forEach((tab) => {
-    const selected = tab.id === `tab-${scene.tab}`;
+    const selected = tab.id === `tab-${inputs.tab}`;
     tab.setAttribute("aria-selected", String(selected));
     tab.tabIndex = selected ? 0 : -1;
   });
-  $("#lead").textContent = question.lead;
+  $("#lead").textContent = analysis.lead;
 }
 
 // Results ----------------------------------------------------------------------------------------
@@ -125,7 +125,7 @@ function showForm() {
 function showNumbers(numbers) {
   $("#numbers").replaceChildren(...numbers.map(([label, value, dimension]) => {
     const entry = document.createElement("div");
-    const shown = dimension ? unit(dimension, scene) : { name: "", factor: 1 };
+    const shown = dimension ? unit(dimension, inputs) : { name: "", factor: 1 };
     const text = typeof value === "string" ? value : `${format(value && value / shown.factor)} ${shown.name}`;
     entry.innerHTML = "<dt></dt><dd></dd>";
     entry.querySelector("dt").textContent = label;
@@ -134,14 +134,14 @@ function showNumbers(numbers) {
   }));
 }
 
-function showAccuracy(answers) {
-  const error = Math.max(...answers.map((answer) => answer.error_estimate));
-  const methods = [...new Set(answers.map((answer) => answer.method.replace("_", " ")))];
-  const fields = Math.max(...answers.map((answer) => answer.field_error_estimate ?? 0));
+function showAccuracy(responses) {
+  const error = Math.max(...responses.map((response) => response.error_estimate));
+  const methods = [...new Set(responses.map((response) => response.method.replace("_", " ")))];
+  const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
   const ofFields = fields ? `, of fields ${format(fields, 2)} of their largest value` : "";
   $("#accuracy").textContent =
     `Computed by ${methods.join(" and ")}; relative error at most ${format(error, 2)}${ofFields}.`;
-  const messages = new Map(answers.flatMap((answer) => answer.warnings.map((w) => [w.code, w.message])));
+  const messages = new Map(responses.flatMap((response) => response.warnings.map((w) => [w.code, w.message])));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) => {
     const item = document.createElement("li");
     item.innerHTML = "<strong></strong> ";
@@ -151,7 +151,7 @@ function showAccuracy(answers) {
   }));
 }
 
-// Member of a request -> keys of the scene that set it.
+// Member of a request -> keys of the inputs that set it.
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
@@ -170,7 +170,7 @@ function showProblem(error) {
   box.textContent = error instanceof Refusal ? `${title}: ${error.message}` : title;
   for (const { pointer, detail } of errors) {
     const point = pointer.match(/^\/profile\/[rf](?:\/(\d+))?$/);
-    if (scene.kind === "tabulated" && point) {
+    if (inputs.kind === "tabulated" && point) {
       const line = point[1] === undefined ? "" : `Line ${rowOfTable[Number(point[1])] ?? Number(point[1]) + 1}: `;
       $("#table-problem").textContent = line + detail;
       continue;
@@ -205,66 +205,66 @@ function showRequest(name) {
 
 async function saveCsv(name) {
   const { path, body } = requests.find((request) => request.name === name);
-  download(`${name.toLowerCase().replaceAll(" ", "-")}.csv`, await askCsv(path, body), "text/csv");
+  download(`${name.toLowerCase().replaceAll(" ", "-")}.csv`, await queryCsv(path, body), "text/csv");
 }
 
 function showPath() {
   const editor = $("#editor");
-  editor.hidden = scene.tab !== "cycle";
+  editor.hidden = inputs.tab !== "cycle";
   if (editor.hidden) return;
-  const points = pathPoints(scene);
+  const points = pathPoints(inputs);
   const normal = Math.max(...points.map(([n]) => n));
-  const force = scene.tangential === "tangential_force";
-  const tangential = force && scene.normal === "normal_force" ? scene.mu * normal : Math.max(...points.map(([, t]) => Math.abs(t))) || 1e-7;
-  showEditor(editor, scene, { normal, tangential }, (path) => {
-    scene = { ...scene, path };
+  const force = inputs.tangential === "tangential_force";
+  const tangential = force && inputs.normal === "normal_force" ? inputs.mu * normal : Math.max(...points.map(([, t]) => Math.abs(t))) || 1e-7;
+  showEditor(editor, inputs, { normal, tangential }, (path) => {
+    inputs = { ...inputs, path };
     showPath();
     refresh();
   });
 }
 
-const sketch = () => showSketch($("#sketch"), scene, last?.known?.contact_radius);
+const sketch = () => showSketch($("#sketch"), inputs, last?.known?.contact_radius);
 
 const solve = newestWins(async (outdated) => {
-  const asked = scene;
+  const current = inputs;
   const recorded = [];
   const recording = (name, path, body) => {
     recorded.push({ name, path, body });
-    return ask(path, body);
+    return query(path, body);
   };
   try {
-    const result = await QUESTIONS[asked.tab].solve(asked, recording);
+    const result = await ANALYSES[current.tab].solve(current, recording);
     requests = recorded;
     last = result;
     showProblem(null);
     showNumbers(result.numbers);
-    showAccuracy(result.answers);
+    showAccuracy(result.responses);
     sketch();
     showRequests();
-    await draw($("#charts"), result.charts, asked, { showRequest, saveCsv });
-    document.body.dataset.drawn = toAddress(asked);
+    await draw($("#charts"), result.charts, current, { showRequest, saveCsv });
+    document.body.dataset.drawn = toAddress(current);
   } catch (error) {
     if (!outdated()) showProblem(error);
     if (!(error instanceof Refusal) && !(error instanceof TypeError)) throw error;
   }
 });
 
-const showAddress = () => history.replaceState(null, "", toAddress(scene));
+const showAddress = () => history.replaceState(null, "", toAddress(inputs));
 
 function refresh() {
   clearTimeout(refresh.timer);
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(showAddress, 250);
-  if (scene.kind !== "tabulated" || scene.table.r.length) sketch();
+  if (inputs.kind !== "tabulated" || inputs.table.r.length) sketch();
   solve();
 }
 
 // Start ------------------------------------------------------------------------------------------
 
 function showTab(tab) {
-  scene = { ...scene, tab };
-  if (tab === "wear" && scene.control === "contact_radius") {
-    scene = { ...scene, control: "normal_force", load: last?.known?.normal_force ?? 100 };
+  inputs = { ...inputs, tab };
+  if (tab === "wear" && inputs.control === "contact_radius") {
+    inputs = { ...inputs, control: "normal_force", load: last?.known?.normal_force ?? 100 };
   }
   last = { ...last, numbers: [] };
   showForm();
@@ -276,7 +276,7 @@ function makeTabs() {
   const list = $("[role=tablist]");
   for (const tab of TABS) {
     const button = Object.assign(document.createElement("button"), {
-      type: "button", id: `tab-${tab}`, textContent: QUESTIONS[tab].title,
+      type: "button", id: `tab-${tab}`, textContent: ANALYSES[tab].title,
     });
     button.setAttribute("role", "tab");
     button.setAttribute("aria-controls", "results");
@@ -286,7 +286,7 @@ function makeTabs() {
   list.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
-    const next = TABS[(TABS.indexOf(scene.tab) + step + TABS.length) % TABS.length];
+    const next = TABS[(TABS.indexOf(inputs.tab) + step + TABS.length) % TABS.length];
     showTab(next);
     $(`#tab-${next}`).focus();
   });
@@ -296,7 +296,7 @@ function readTableField() {
   try {
     const { table, rowOf } = readTable($("#table").value);
     rowOfTable = rowOf;
-    scene = { ...scene, table };
+    inputs = { ...inputs, table };
     refresh();
   } catch (error) {
     $("#table-problem").textContent = error.message;
@@ -306,7 +306,7 @@ function readTableField() {
 function connect() {
   for (const [kind, label] of Object.entries(LABELS)) $("#kind").add(new Option(label, kind));
   $("#kind").addEventListener("change", () => {
-    scene = withKind(scene, $("#kind").value);
+    inputs = withKind(inputs, $("#kind").value);
     showForm();
     refresh();
   });
@@ -316,7 +316,7 @@ function connect() {
     readTableField();
   });
   $("#reset").addEventListener("click", () => {
-    scene = { ...defaultScene(), tab: scene.tab };
+    inputs = { ...defaultInputs(), tab: inputs.tab };
     showForm();
     showPath();
     refresh();
@@ -330,7 +330,7 @@ function connect() {
   addEventListener("afterprint", () => showForPrint(false));
   addEventListener("afterprint", solve);
   addEventListener("popstate", () => {
-    scene = fromAddress(location.search, location.hash);
+    inputs = fromAddress(location.search, location.hash);
     showForm();
     showPath();
     solve();
@@ -343,7 +343,7 @@ showForm();
 showPath();
 showAddress();
 solve();
-fetch("v1/profiles").then((answer) => answer.json()).then(({ profiles }) => {
+fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   kinds = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   showForm();
 });

@@ -23,13 +23,13 @@ async function post(path, body, accept) {
   throw new Refusal(problem);
 }
 
-/** Return the answer to a query. */
-export async function ask(path, body) {
+/** Return the response to a query. */
+export async function query(path, body) {
   return (await post(path, body, "application/json")).json();
 }
 
-/** Return the answer to a query as CSV. */
-export async function askCsv(path, body) {
+/** Return the response to a query as CSV. */
+export async function queryCsv(path, body) {
   return (await post(path, body, "text/csv")).text();
 }
 

@@ -64,20 +64,20 @@ export function measuredBall() {
 }
 
 /** Return the profile as the wire has it. */
-export function wireProfile(scene) {
-  const { kind } = scene;
+export function wireProfile(inputs) {
+  const { kind } = inputs;
   if (kind === "balls") {
-    const radius = 1 / (1 / scene.radius_1 + 1 / scene.radius_2);
+    const radius = 1 / (1 / inputs.radius_1 + 1 / inputs.radius_2);
     return { kind: "paraboloid", radius: Number(radius.toPrecision(15)) };
   }
   if (kind === "series") {
-    const term = (i) => ({ coefficient: scene[`coefficient_${i}`], exponent: scene[`exponent_${i}`] });
+    const term = (i) => ({ coefficient: inputs[`coefficient_${i}`], exponent: inputs[`exponent_${i}`] });
     return { kind, terms: [term(1), term(2)] };
   }
   if (kind === "tabulated") {
-    return { kind, r: scene.table.r, f: scene.table.f, interpolation: scene.interpolation };
+    return { kind, r: inputs.table.r, f: inputs.table.f, interpolation: inputs.interpolation };
   }
-  return { kind, ...Object.fromEntries(Object.keys(DEFAULT_FIELDS[kind]).map((k) => [k, scene[k]])) };
+  return { kind, ...Object.fromEntries(Object.keys(DEFAULT_FIELDS[kind]).map((k) => [k, inputs[k]])) };
 }
 
 const SHAPES = {

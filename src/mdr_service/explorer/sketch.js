@@ -2,11 +2,11 @@
 
 import { outline, wireProfile } from "./shapes.js";
 
-/** Draw the profile of a scene on its base, and the contact if its radius is known. */
-export function showSketch(svg, scene, contact) {
+/** Draw the profile of the inputs on its base, and the contact if its radius is known. */
+export function showSketch(svg, inputs, contact) {
   const [width, height] = [280, 120];
-  const profile = wireProfile(scene);
-  const reach = (contact ?? scene.radius ?? 1e-4) * 2;
+  const profile = wireProfile(inputs);
+  const reach = (contact ?? inputs.radius ?? 1e-4) * 2;
   const points = outline(profile, reach);
   const wall = profile.kind === "flat_punch";
   const [end, top] = [points.at(-1)[0], Math.max(...points.map(([, f]) => f)) || 1];

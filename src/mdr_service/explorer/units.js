@@ -1,4 +1,4 @@
-// Display units. The scene and the wire are in SI units throughout.
+// Display units. The inputs and the wire are in SI units throughout.
 
 const FACTORS = {
   length: { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 },
@@ -7,7 +7,7 @@ const FACTORS = {
   pressure: { GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 },
 };
 
-// Dimension of a base unit -> its key in the scene and its label in the form.
+// Dimension of a base unit -> its key in the inputs and its label in the form.
 export const BASE_UNITS = {
   length: { key: "ul", label: "Lengths", units: Object.keys(FACTORS.length) },
   displacement: { key: "ud", label: "Depths", units: Object.keys(FACTORS.displacement) },
@@ -28,15 +28,15 @@ const DERIVED = {
 const SUPERSCRIPTS = { 1: "", 2: "²", 3: "³" };
 
 /** Return the display unit `{name, factor}` of a dimension: SI value = shown value × factor. */
-export function unit(dimension, scene) {
+export function unit(dimension, inputs) {
   const base = BASE_UNITS[dimension];
-  if (base) return { name: scene[base.key], factor: FACTORS[dimension][scene[base.key]] };
+  if (base) return { name: inputs[base.key], factor: FACTORS[dimension][inputs[base.key]] };
   const derived = DERIVED[dimension];
   if (!derived) return { name: dimension.replace("length", "m"), factor: 1 };
   if (derived.fixed !== undefined) return { name: derived.fixed, factor: derived.factor };
   let [above, below, factor] = [[], [], 1];
   for (const [part, power] of Object.entries(derived)) {
-    const { name, factor: each } = unit(part, scene);
+    const { name, factor: each } = unit(part, inputs);
     factor *= each ** power;
     (power > 0 ? above : below).push(name + SUPERSCRIPTS[Math.abs(power)]);
   }
@@ -56,14 +56,14 @@ export function format(value, digits = 5) {
 }
 
 /** Return an SI value as text for an input in its display unit. */
-export function shown(value, dimension, scene) {
-  return String(Number((value / unit(dimension, scene).factor).toPrecision(12)));
+export function shown(value, dimension, inputs) {
+  return String(Number((value / unit(dimension, inputs).factor).toPrecision(12)));
 }
 
 /** Return the SI value of a text in its display unit, or NaN. */
-export function read(text, dimension, scene) {
+export function read(text, dimension, inputs) {
   const cleaned = text.trim().replace("−", "-");
   if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(cleaned)) return NaN;
   // The product of a decimal number and a power of ten, without its rounding error.
-  return Number((Number(cleaned) * unit(dimension, scene).factor).toPrecision(15));
+  return Number((Number(cleaned) * unit(dimension, inputs).factor).toPrecision(15));
 }

@@ -1,42 +1,42 @@
-// The answers to the questions: requests, and the numbers and charts of their responses.
+// The results of the analyses: requests, and the numbers and charts of their responses.
 
-import { basics, pathPoints } from "./scene.js";
+import { basics, pathPoints } from "./inputs.js";
 
 const POINTS = 400;
 
 /** Return the normal force of the load, by which all other requests give it. */
-async function normalForce(scene, ask) {
-  if (scene.control === "normal_force") return scene.load;
-  const load = { [scene.control]: scene.load };
-  return (await ask("Contact", "v1/normal", { ...basics(scene), load })).normal_force[0];
+async function normalForce(inputs, query) {
+  if (inputs.control === "normal_force") return inputs.load;
+  const load = { [inputs.control]: inputs.load };
+  return (await query("Contact", "v1/normal", { ...basics(inputs), load })).normal_force[0];
 }
 
 /** Return the tangential load on the wire; a share of the limiting force needs the normal force. */
-function pushOf(scene, force) {
-  if (scene.push !== "ratio") return { [scene.push]: scene.amount };
-  return { tangential_force: scene.amount * scene.mu * force };
+function pushOf(inputs, force) {
+  if (inputs.push !== "ratio") return { [inputs.push]: inputs.amount };
+  return { tangential_force: inputs.amount * inputs.mu * force };
 }
 
-/** Return an answer with the value of one load in place of each array. */
-function single(answer, index = 0) {
+/** Return a response with the value of one load in place of each array. */
+function single(response, index = 0) {
   const scalar = ([key, value]) => [key, Array.isArray(value) ? value.at(index) : value];
-  return Object.fromEntries(Object.entries(answer).map(scalar));
+  return Object.fromEntries(Object.entries(response).map(scalar));
 }
 
 const marker = (name, x, y) => ({ name, x: [x], y: [y], mode: "markers", role: "marker" });
 
-export async function solvePress(scene, ask) {
-  const force = await normalForce(scene, ask);
+export async function solvePress(inputs, query) {
+  const force = await normalForce(inputs, query);
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
   const [curve, field] = await Promise.all([
-    ask("Curve", "v1/normal", { ...basics(scene), load: { normal_force: forces } }),
-    ask("Pressure", "v1/stress", {
-      ...basics(scene), load: { normal_force: force }, points: POINTS, quantities: ["pressure"],
+    query("Curve", "v1/normal", { ...basics(inputs), load: { normal_force: forces } }),
+    query("Pressure", "v1/stress", {
+      ...basics(inputs), load: { normal_force: force }, points: POINTS, quantities: ["pressure"],
     }),
   ]);
   const now = single(curve, -1);
   return {
-    answers: [curve, field],
+    responses: [curve, field],
     known: now,
     numbers: [
       ["Contact radius a", now.contact_radius, "length"],
@@ -94,25 +94,25 @@ function within(field, contactRadius, quantity) {
   return field[quantity][0].map((value, i) => (field.radius[i] > contactRadius ? null : value));
 }
 
-export async function solvePush(scene, ask) {
-  const force = await normalForce(scene, ask);
-  const limit = scene.mu * force;
-  const base = { ...basics(scene), load: { normal_force: force }, friction_coefficient: scene.mu };
+export async function solvePush(inputs, query) {
+  const force = await normalForce(inputs, query);
+  const limit = inputs.mu * force;
+  const base = { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu };
   const shares = Array.from({ length: 61 }, (_, i) => 1 - (1 - i / 60) ** 2);
-  const tangential = pushOf(scene, force);
+  const tangential = pushOf(inputs, force);
   const [state, curve, field] = await Promise.all([
-    ask("State", "v1/tangential", { ...base, tangential }),
-    ask("Curve", "v1/tangential", {
+    query("State", "v1/tangential", { ...base, tangential }),
+    query("Curve", "v1/tangential", {
       ...base, tangential: { tangential_force: shares.map((share) => share * limit) },
     }),
-    ask("Fields", "v1/stress", {
+    query("Fields", "v1/stress", {
       ...base, tangential, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
     }),
   ]);
   const now = single(state);
   const edges = [["c", now.stick_radius], ["a", now.contact_radius]];
   return {
-    answers: [state, curve, field],
+    responses: [state, curve, field],
     known: now,
     numbers: [
       ["Regime", now.regime.replace("_", " ")],
@@ -125,7 +125,7 @@ export async function solvePush(scene, ask) {
       ["Dissipated energy", now.dissipated_energy, "energy"],
     ],
     charts: [
-      shearStressChart("Fields", field, scene.mu, edges),
+      shearStressChart("Fields", field, inputs.mu, edges),
       {
         id: "force-displacement", request: "Curve", title: "Tangential force over displacement",
         x: ["Tangential displacement", "displacement"], y: ["Tangential force", "force"],
@@ -151,21 +151,21 @@ export async function solvePush(scene, ask) {
   };
 }
 
-export async function solveCycle(scene, ask) {
-  const points = pathPoints(scene);
+export async function solveCycle(inputs, query) {
+  const points = pathPoints(inputs);
   const column = (i) => points.map((point) => point[i]);
   const body = {
-    ...basics(scene),
-    friction_coefficient: scene.mu,
+    ...basics(inputs),
+    friction_coefficient: inputs.mu,
     history: {
-      normal: { [scene.normal]: column(0) },
-      tangential: { [scene.tangential]: column(1) },
+      normal: { [inputs.normal]: column(0) },
+      tangential: { [inputs.tangential]: column(1) },
     },
   };
   const sampled = { ...body, history: { ...body.history, samples_per_step: 40 } };
   const [history, field] = await Promise.all([
-    ask("History", "v1/tangential/history", sampled),
-    ask("Fields at the end", "v1/stress", {
+    query("History", "v1/tangential/history", sampled),
+    query("Fields at the end", "v1/stress", {
       ...body, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
     }),
   ]);
@@ -173,7 +173,7 @@ export async function solveCycle(scene, ask) {
   const edges = [...history.slip_fronts.map((r) => ["", r]), ["a", last(history.contact_radius)]];
   const position = history.step.map((_, i) => (i + 1) / 40);
   return {
-    answers: [history, field],
+    responses: [history, field],
     known: { contact_radius: last(history.contact_radius) },
     numbers: [
       ["Regime at the end", last(history.regime).replace("_", " ")],
@@ -192,7 +192,7 @@ export async function solveCycle(scene, ask) {
           marker("end", last(history.tangential_displacement), last(history.tangential_force)),
         ],
       },
-      shearStressChart("Fields at the end", field, scene.mu, edges),
+      shearStressChart("Fields at the end", field, inputs.mu, edges),
       {
         id: "dissipation", request: "History", title: "Dissipated energy along the path",
         x: ["Point of the path", "1"], y: ["Dissipated energy", "energy"],
@@ -202,27 +202,27 @@ export async function solveCycle(scene, ask) {
   };
 }
 
-export async function solveStress(scene, ask) {
-  const force = await normalForce(scene, ask);
-  const tangential = pushOf(scene, force);
+export async function solveStress(inputs, query) {
+  const force = await normalForce(inputs, query);
+  const tangential = pushOf(inputs, force);
   const base = {
-    ...basics(scene), load: { normal_force: force }, friction_coefficient: scene.mu, tangential,
+    ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential,
   };
-  const material = { ...base.material, yield_strength: scene.yield };
+  const material = { ...base.material, yield_strength: inputs.yield };
   const [contact, field, map] = await Promise.all([
-    ask("Contact", "v1/normal", { ...basics(scene), load: { normal_force: force } }),
-    ask("Surface", "v1/stress", {
+    query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } }),
+    query("Surface", "v1/stress", {
       ...base, points: POINTS, quantities: ["pressure", "shear_stress", "normal_displacement"],
     }),
-    ask("Beneath", "v1/subsurface", {
-      ...base, material, body: scene.body, points: 61, quantities: ["von_mises"], largest: true,
+    query("Beneath", "v1/subsurface", {
+      ...base, material, body: inputs.body, points: 61, quantities: ["von_mises"], largest: true,
     }),
   ]);
   const now = single(contact);
   const [mises, shear] = [single(map.largest.von_mises), single(map.largest.maximum_shear)];
   const edges = [["a", now.contact_radius]];
   return {
-    answers: [contact, field, map],
+    responses: [contact, field, map],
     known: now,
     numbers: [
       ["Largest von Mises stress", mises.value, "pressure"],
@@ -245,7 +245,7 @@ export async function solveStress(scene, ask) {
         ],
       },
       pressureChart("Surface", field, edges),
-      shearStressChart("Surface", field, scene.mu, edges),
+      shearStressChart("Surface", field, inputs.mu, edges),
       {
         id: "displacement", request: "Surface", title: "Normal displacement of the surface", linked: true, edges, size: "wide",
         x: ["Radius", "length"], y: ["Displacement", "displacement"],
@@ -255,25 +255,25 @@ export async function solveStress(scene, ask) {
   };
 }
 
-export async function solveWear(scene, ask) {
+export async function solveWear(inputs, query) {
   const body = {
-    ...basics(scene),
-    load: { [scene.control]: scene.load },
-    friction_coefficient: scene.mu,
-    oscillation: { [scene.oscillation]: scene.amplitude },
+    ...basics(inputs),
+    load: { [inputs.control]: inputs.load },
+    friction_coefficient: inputs.mu,
+    oscillation: { [inputs.oscillation]: inputs.amplitude },
   };
   const decades = Array.from({ length: 17 }, (_, i) => 10 ** (i / 2));
-  const cycles = [...new Set([...decades, scene.cycles])].sort((a, b) => a - b);
-  const at = cycles.indexOf(scene.cycles);
-  const course = await ask("Evolution", "v1/wear/evolution", {
-    ...body, wear_coefficient: scene.wear, cycles, points: 200,
+  const cycles = [...new Set([...decades, inputs.cycles])].sort((a, b) => a - b);
+  const at = cycles.indexOf(inputs.cycles);
+  const course = await query("Evolution", "v1/wear/evolution", {
+    ...body, wear_coefficient: inputs.wear, cycles, points: 200,
   });
-  const limit = await ask("Limit", "v1/wear", { ...body, radius: course.radius });
+  const limit = await query("Limit", "v1/wear", { ...body, radius: course.radius });
   const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
   const now = single(limit);
   const edges = [["c", now.stick_radius], ["ã", now.wear_radius]];
   return {
-    answers: [limit, course],
+    responses: [limit, course],
     known: {
       contact_radius: course.contact_radius[at],
       normal_force: course.normal_force[at],
@@ -317,7 +317,7 @@ export async function solveWear(scene, ask) {
         x: ["Cycles", "1"], y: ["Worn volume", "volume"],
         traces: [
           { name: "worn volume", x: course.cycles, y: course.worn_volume },
-          marker("these cycles", scene.cycles, course.worn_volume[at]),
+          marker("these cycles", inputs.cycles, course.worn_volume[at]),
         ],
       },
     ],

@@ -1,6 +1,6 @@
-// The five questions and the fields that they add to the form.
+// The five analyses and the fields that they add to the form.
 
-import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./answers.js";
+import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
 const CONTROLS = {
   normal_force: ["Normal force", "force"],
@@ -20,27 +20,27 @@ const OSCILLATIONS = {
 const names = (table) => Object.entries(table).map(([value, [label]]) => ({ value, label }));
 const FRICTION = { key: "mu", label: "Friction coefficient µ", dimension: "1", range: [0.01, 1] };
 
-/** Return the fields of the materials of a scene. */
-export function bodyFields(scene) {
+/** Return the fields of the materials of the inputs. */
+export function bodyFields(inputs) {
   const modulus = (i) => ({ key: `e${i}`, label: `Young’s modulus ${i}`, dimension: "modulus" });
   const ratio = (i) => ({ key: `nu${i}`, label: `Poisson’s ratio ${i}`, dimension: "1", range: [0, 0.5] });
-  return scene.e2 === "rigid" ? [modulus(1), ratio(1)] : [modulus(1), ratio(1), modulus(2), ratio(2)];
+  return inputs.e2 === "rigid" ? [modulus(1), ratio(1)] : [modulus(1), ratio(1), modulus(2), ratio(2)];
 }
 
-/** Return the fields of the load of a scene. */
-export function loadFields(scene) {
-  if (scene.tab === "cycle") return [];
-  const choices = scene.tab === "wear" ? names(CONTROLS).slice(0, 2) : names(CONTROLS);
-  const [label, dimension] = CONTROLS[scene.control];
+/** Return the fields of the load of the inputs. */
+export function loadFields(inputs) {
+  if (inputs.tab === "cycle") return [];
+  const choices = inputs.tab === "wear" ? names(CONTROLS).slice(0, 2) : names(CONTROLS);
+  const [label, dimension] = CONTROLS[inputs.control];
   return [
     { key: "control", label: "Prescribed", choices },
     { key: "load", label, dimension },
   ];
 }
 
-function pushFields(scene) {
-  const [label, dimension] = PUSHES[scene.push];
-  const range = scene.push === "ratio" ? [0, 1] : undefined;
+function pushFields(inputs) {
+  const [label, dimension] = PUSHES[inputs.push];
+  const range = inputs.push === "ratio" ? [0, 1] : undefined;
   return [
     FRICTION,
     { key: "push", label: "Tangential load", choices: names(PUSHES) },
@@ -48,7 +48,7 @@ function pushFields(scene) {
   ];
 }
 
-export const QUESTIONS = {
+export const ANALYSES = {
   press: {
     title: "Press",
     lead: "Two bodies are pressed together: how large is the contact, and how high is the pressure?",
@@ -64,7 +64,7 @@ export const QUESTIONS = {
   cycle: {
     title: "Cycle",
     lead: "The load follows a path: how much energy is dissipated, and which shear stress remains?",
-    fields: (scene) => [
+    fields: (inputs) => [
       FRICTION,
       { key: "normal", label: "Normal control", choices: names(CONTROLS).slice(0, 2) },
       { key: "tangential", label: "Tangential control", choices: names(PUSHES).slice(1) },
@@ -74,8 +74,8 @@ export const QUESTIONS = {
   stress: {
     title: "Stress",
     lead: "What stresses act at the surface and beneath it, and at which load does the material yield?",
-    fields: (scene) => [
-      ...pushFields(scene),
+    fields: (inputs) => [
+      ...pushFields(inputs),
       { key: "body", label: "Stress in", choices: [{ value: 1, label: "body 1" }, { value: 2, label: "body 2" }] },
       { key: "yield", label: "Yield strength", dimension: "pressure" },
     ],
@@ -84,8 +84,8 @@ export const QUESTIONS = {
   wear: {
     title: "Wear",
     lead: "The contact oscillates with a small amplitude: what shape does fretting leave, and how fast?",
-    fields: (scene) => {
-      const [label, dimension] = OSCILLATIONS[scene.oscillation];
+    fields: (inputs) => {
+      const [label, dimension] = OSCILLATIONS[inputs.oscillation];
       return [
         FRICTION,
         { key: "oscillation", label: "Oscillation", choices: names(OSCILLATIONS) },
