@@ -46,8 +46,8 @@ class ContactState(Results):
     friction_coefficient: float
     polyline: Polyline
     """Polyline over depths; chords stand for the arcs of nonlinear load steps."""
-    arcs: TractionSegments | None = None
-    """Segments with the arcs of nonlinear load steps, if there are any."""
+    curved_segments: TractionSegments | None = None
+    """All segments, if nonlinear load steps have laid some, which are arcs; else None."""
     last_step: FrontPath | None = None
     """Path of the slip front on the step of `advance` that led here; None for other states."""
     quantities: ClassVar[tuple[str, ...]] = (
@@ -114,8 +114,8 @@ class ContactState(Results):
     @cached_property
     def segments(self) -> TractionSegments:
         """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
-        if self.arcs is not None:
-            return self.arcs
+        if self.curved_segments is not None:
+            return self.curved_segments
         tree = self._branches.tree
         width = widths(self.profile, tree, self.coordinate, over_forces=False)
         straight = np.zeros(self.slope.shape)
@@ -161,7 +161,7 @@ class ContactState(Results):
         """Radii inside the contact where the branch of q_x changes, ascending [length]."""
         if self.profile.has_no_partial_slip:
             return np.zeros(0)
-        edges = self.coordinate if self.arcs is None else self.arcs.coordinate
+        edges = self.coordinate if self.curved_segments is None else self.curved_segments.coordinate
         return self.profile.contact_radius(edges[1:-1])
 
     @property
@@ -270,4 +270,4 @@ def advance(
     once = np.zeros(1, dtype=bool), np.zeros(1, dtype=np.intp)
     points = LoadPoints(depth, displacement / state.displacement_ratio, *once)
     _, path, polyline = slip_memory.apply_steps(state.polyline, points)
-    return replace(state, polyline=polyline, arcs=None, last_step=path)
+    return replace(state, polyline=polyline, curved_segments=None, last_step=path)

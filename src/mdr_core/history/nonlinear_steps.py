@@ -165,7 +165,7 @@ class NonlinearSteps:
         continues[samples] = self.path.continues & (self.rate == 0)
         return LoadPoints(normal, tangential, continues, step), samples
 
-    def arcs(self, line: Polyline) -> TractionSegments | None:
+    def curved_segments(self, line: Polyline) -> TractionSegments | None:
         """Return the segments of the last polyline, with one arc for the chords of each step.
 
         Corners that chords have cut are moved to the arcs. None if no arc is left.

@@ -129,15 +129,15 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
-        steps, arcs = self.results, None
+        steps, curved_segments = self.results, None
         if isinstance(steps, ExtrapolatedResults):
-            arcs = steps.nonlinear.arcs(steps.finest.last)
+            curved_segments = steps.nonlinear.curved_segments(steps.finest.last)
             steps = steps.finest
         part, at = steps.last_branches
         line = steps.last
         if self.path.over_forces:
             line = self._over_depths(part.depth_step[at[1:]], line)
-        state = replace(self.path.start, polyline=line, arcs=arcs)
+        state = replace(self.path.start, polyline=line, curved_segments=curved_segments)
         if line.in_contact:
             # Known here; the state would recompute them from its depths.
             vars(state)["coordinate"] = read_only(part.coordinate[at])

@@ -147,7 +147,7 @@ def _require_consistent(query: StressQuery) -> None:
 def _method(source: Contact, contact: NormalContact, names: list[Any]) -> str:
     """Return the most expensive method of the fields."""
     closed = _FOUNDATION.union(contact.profile.closed_forms)
-    if isinstance(source, LoadHistory) and source.state.arcs:
+    if isinstance(source, LoadHistory) and source.state.curved_segments:
         # On nonlinear load paths shear fields are integrals.
         closed -= SHEAR_FIELDS
     return contact.method if closed.issuperset(names) else "quadrature"
