@@ -209,6 +209,21 @@ def test_equivalent_profile_of_a_rough_table_never_falls(seed: int) -> None:
     assert (np.diff(g) >= -1e-11 * g.max()).all()
 
 
+def test_depth_beyond_a_plateau_is_that_of_the_flanks() -> None:
+    """Beyond a plateau g is the sum of the steps of the slope again: Σ Jᵢ x arccos(rᵢ/x)."""
+    r = np.array([0.0, 0.1482, 0.2277, 0.9474, 0.9689, 1.0])
+    # A step down of the slope makes g fall beyond each radius.
+    f = np.array([0.0, 0.0131, 0.0194, 0.0724, 0.0743, 0.0771])
+    slope = np.diff(f) / np.diff(r)
+    jumps = np.append(slope[0], np.diff(slope))
+    body = Tabulated(tuple(r), tuple(f), "linear")
+    end = float(body.resolved.plateaus[1, 1])
+    for x in (end * (1 + 1e-6), 0.3, 0.5, 0.8):
+        depth = sum(j * x * np.arccos(b / x) for j, b in zip(jumps, r, strict=False) if b < x)
+        contact = solve(body, 1.0, contact_radius=x)
+        assert float(contact.indentation_depth) == pytest.approx(depth, rel=2e-14, abs=0)
+
+
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
 def test_contact_radius_on_a_plateau_has_the_load_of_its_inner_end(control: str, seed: int) -> None:

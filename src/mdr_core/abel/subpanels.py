@@ -32,8 +32,8 @@ _LAST_STEP: Final = 1e-9
 _STEPS: Final = 60
 # Relative fall of g that is rounding error.
 _DIP: Final = 1e-12
-# Halvings of the interval between two points of a subpanel, to 1e-10 of it.
-_BISECTIONS: Final = 30
+# Halvings of the interval between two points of a subpanel, to 4e-15 of it.
+_BISECTIONS: Final = 48
 # Points evaluated at once: their arrays stay in cache.
 _BLOCK: Final = 2048
 
