@@ -213,7 +213,8 @@ class Subpanels:
         rises = (self.depth * degrees) @ ends ** (degrees[:, None] - 1) > 0
         panel, place = np.nonzero(rises[:, :-1] & ~rises[:, 1:])
         low, high = ends[place], ends[place + 1]
-        for _ in range(_BISECTIONS):
+        # Smooth tables have no maximum, and bisecting none takes a tenth of their first query.
+        for _ in range(_BISECTIONS if panel.size else 0):
             middle = (low + high) / 2
             up = _sum(self.depth, panel, middle, degrees) > 0
             low, high = np.where(up, middle, low), np.where(up, high, middle)
