@@ -150,9 +150,9 @@ def stick_from_force(
     -------
     c and a - c in the contact coordinate.
     """
-    closed = profile.stick_from_force_ratio(coordinate, ratio, rest)
-    if closed is not None:
-        return closed
+    if closed := profile.stick_ratios:
+        inner, annulus = closed[1](ratio, rest)
+        return coordinate * inner, coordinate * annulus
     functions = profile.reduced_force, force_slope(profile)
     inverse = type(profile).coordinate_from_reduced_force
     load = coordinate, ratio, rest
@@ -167,9 +167,9 @@ def stick_from_depth(
     Source: mdr-5, Eq. (5.20). Parameters and returns: see `stick_from_force`, for the ratio
     u_x/u_x,max.
     """
-    closed = profile.stick_from_depth_ratio(coordinate, ratio, rest)
-    if closed is not None:
-        return closed
+    if closed := profile.stick_ratios:
+        inner, annulus = closed[0](ratio, rest)
+        return coordinate * inner, coordinate * annulus
     functions = profile.depth, profile.depth_slope
     inverse = type(profile).coordinate_from_depth
     load = coordinate, ratio, rest

@@ -15,6 +15,7 @@ from mdr_core.abel.stress import StressPanels
 from mdr_core.elementwise import full, number
 from mdr_core.errors import Notice
 from mdr_core.profiles.energy import energy_integral
+from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import require_positive
 
@@ -51,6 +52,8 @@ class Profile(ABC):
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
     # True if the profiles of the kind are one curve at different scales.
     similar: ClassVar[bool] = False
+    # Stick edges by u_x/u_max and by F_x/(mu F_N), in contact coordinates, where they are closed.
+    stick_ratios: ClassVar[StickRatios | None] = None
     # Bound on the relative rounding error of the closed forms.
     rounding: Parameter = 3e-14
 
@@ -259,29 +262,6 @@ class Profile(ABC):
         return None
 
     # The slip annulus.
-
-    def stick_from_force_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array] | None:
-        """Contact coordinate of the stick edge and its distance from the edge, where closed.
-
-        Source: mdr-5, Eqs. (5.16), (5.31), (5.49).
-
-        Parameters
-        ----------
-        coordinate : contact coordinate of the edge.
-        ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), both accurate [1].
-        """
-        return None
-
-    def stick_from_depth_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array] | None:
-        """`stick_from_force_ratio` for the ratio u_x/u_max of displacements.
-
-        Source: mdr-5, Eqs. (5.12), (5.29), (5.47). Parameters: see `stick_from_force_ratio`.
-        """
-        return None
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
         """Difference F(a)/E* - F(c)/E* where it is closed without cancellation, else None.

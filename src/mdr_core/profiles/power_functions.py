@@ -3,6 +3,7 @@
 Source: notes, §4.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, Final
 
@@ -93,21 +94,35 @@ def _kappa(exponent: Parameter) -> Array:
 _kappa_of_one = lru_cache(maxsize=256)(_kappa)
 
 
-def power_stick(a: Array, ratio: Array, rest: Array, exponent: Parameter) -> tuple[Array, Array]:
-    """Return c and a - c where 1 - (c/a)^m = ratio = 1 - rest, both accurate [length].
+# c/a and 1 - c/a from the load over that of full slip, and from 1 less that, all accurate [1].
+_StickRatio = Callable[[Array, Array], tuple[Array, Array]]
+StickRatios = tuple[_StickRatio, _StickRatio]
+"""Under a displacement and under a force."""
 
-    Source: mdr-5, Eqs. (5.29), (5.31); notes, §4.
 
-    Parameters
-    ----------
-    a : contact radius [length].
-    ratio, rest : load over that of full slip, and 1 - ratio, both accurate [1].
-    exponent : m > 0 [1].
-    """
+def linear_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where c/a = rest = 1 - ratio."""
+    return rest, ratio
+
+
+def square_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where (c/a)^2 = rest = 1 - ratio."""
+    k = np.sqrt(rest)
+    return k, ratio / (1 + k)
+
+
+def cubic_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where (c/a)^3 = rest = 1 - ratio."""
+    k = np.cbrt(rest)
+    return k, ratio / (1 + k * (1 + k))
+
+
+def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where (c/a)^exponent = rest = 1 - ratio. Source: notes, §4."""
     with np.errstate(divide="ignore"):
         exact = where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
     e = exact / exponent
-    return a * np.exp(e), -a * np.expm1(e)
+    return np.exp(e), -np.expm1(e)
 
 
 def log_annulus(a: Array, width: Array, c: Array) -> Array:

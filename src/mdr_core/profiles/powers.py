@@ -1,6 +1,7 @@
 """Powers of the radius: cone, paraboloid and C r^n."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import pi
 from typing import ClassVar, Final
 
@@ -12,12 +13,16 @@ from mdr_core.elementwise import full, some, where
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
+    StickRatios,
+    cubic_stick,
     kappa,
+    linear_stick,
     power,
     power_root,
     power_slope,
     power_step,
     power_stick,
+    square_stick,
 )
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -46,6 +51,8 @@ class Cone(Profile):
     kind: ClassVar[str] = "cone"
     formula: ClassVar[str] = "slope·r"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
+    # Source: mdr-5, Eqs. (5.47), (5.49).
+    stick_ratios: ClassVar[StickRatios] = (linear_stick, square_stick)
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
@@ -78,19 +85,6 @@ class Cone(Profile):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         return np.square(self.g(coordinate)) * coordinate / 3
-
-    def stick_from_force_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        """c/a = sqrt(1 - rho). Source: mdr-5, Eq. (5.49). Parameters: see `Profile`."""
-        k = np.sqrt(rest)
-        return coordinate * k, coordinate * (ratio / (1 + k))
-
-    def stick_from_depth_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        """Source: mdr-5, Eq. (5.47). Parameters: see `Profile`."""
-        return coordinate * rest, coordinate * ratio
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.48). Parameters: see `Profile`."""
@@ -142,6 +136,8 @@ class Paraboloid(Profile):
     kind: ClassVar[str] = "paraboloid"
     formula: ClassVar[str] = "r²/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
+    # Source: mdr-5, Eqs. (5.12), (5.16).
+    stick_ratios: ClassVar[StickRatios] = (square_stick, cubic_stick)
 
     def f(self, radius: Array) -> Array:
         return radius * radius / (2 * self.radius)
@@ -166,23 +162,6 @@ class Paraboloid(Profile):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         return np.square(self.g(coordinate)) * coordinate * (8 / 15)
-
-    def stick_from_force_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        """c/a = (1 - rho)^(1/3). Source: mdr-5, Eq. (5.16). Parameters: see `Profile`."""
-        k = np.cbrt(rest)
-        return coordinate * k, coordinate * (ratio / (1 + k * (1 + k)))
-
-    def stick_from_depth_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        """c^2 = R (d - G* u/(E* mu)).
-
-        Source: mdr-5, Eqs. (5.11), (5.12). Parameters: see `Profile`.
-        """
-        k = np.sqrt(rest)
-        return coordinate * k, coordinate * (ratio / (1 + k))
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.15). Parameters: see `Profile`."""
@@ -307,17 +286,10 @@ class Power(Profile):
         with np.errstate(over="ignore"):
             return np.square(self.g(coordinate)) * coordinate * factor
 
-    def stick_from_force_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        """c/a = (1 - rho)^(1/(n+1)). Source: mdr-5, Eq. (5.31). Parameters: see `Profile`."""
-        return power_stick(coordinate, ratio, rest, self.exponent + 1)
-
-    def stick_from_depth_ratio(
-        self, coordinate: Array, ratio: Array, rest: Array
-    ) -> tuple[Array, Array]:
-        """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
-        return power_stick(coordinate, ratio, rest, self.exponent)
+    @property
+    def stick_ratios(self) -> StickRatios:  # type: ignore[override]  # a constant of other kinds
+        """Source: mdr-5, Eqs. (5.29), (5.31)."""
+        return partial(power_stick, self.exponent), partial(power_stick, self.exponent + 1)
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.30). Parameters: see `Profile`."""
