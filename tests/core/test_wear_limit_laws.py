@@ -242,12 +242,12 @@ def test_forces_are_those_of_the_stick_zone(control: str, amplitude: str) -> Non
     p = wear.pressure(c * np.sin(turn))
     total = np.pi / 4 * 2 * np.pi * c * c * (weights @ (p * np.sin(turn) * np.cos(turn)))
     assert total == pytest.approx(float(wear.normal_force), rel=1e-12, abs=0)
-    force = size if amplitude == "tangential_force" else 2 * G_STAR * c * size
-    carried = 2 * MU * E_STAR * c * float(wear.stick_zone.step)
-    assert carried == pytest.approx(force, rel=1e-14, abs=0)
+    carried = 2 * G_STAR * c * float(wear.tangential_displacement)
+    assert carried == pytest.approx(float(wear.tangential_force), rel=1e-14, abs=0)
     assert float(getattr(wear, control)) == load
+    assert float(getattr(wear, amplitude)) == size
     # No point of the stick zone exceeds the friction limit: mu p >= tau = F_x/(2 pi c s).
-    tau = force / (2 * np.pi * c * c * np.cos(turn))
+    tau = float(wear.tangential_force) / (2 * np.pi * c * c * np.cos(turn))
     assert (MU * p >= tau * (1 - 1e-12)).all()
 
 

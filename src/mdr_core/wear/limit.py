@@ -121,6 +121,27 @@ class LimitingWear(validity.ContactResults):
         return contact.e_star * (inside + 2 * self.stick_zone.radius * self.stick_zone.step)
 
     @cached_property
+    def tangential_displacement(self) -> Array:
+        """Amplitude u_x [length]: constant, or mu (E*/G*) (d - g(c))."""
+        contact, stick_zone = self.tangential_contact, self.stick_zone
+        displacement = contact.tangential_displacement
+        if contact.control == "tangential_displacement":
+            return np.broadcast_to(displacement, stick_zone.step.shape)
+        if not self.normal.profile.has_no_partial_slip:
+            displacement = contact.displacement_ratio * stick_zone.step
+        return np.where(stick_zone.unbounded, inf, displacement)
+
+    @cached_property
+    def tangential_force(self) -> Array:
+        """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
+        contact = self.tangential_contact
+        if contact.control == "tangential_force" or self.normal.profile.has_no_partial_slip:
+            return np.where(self.stick_zone.separated, 0.0, contact.tangential_force)
+        modulus = contact.friction_coefficient * self.normal.e_star
+        carried = 2 * modulus * self.stick_zone.radius * self.stick_zone.step
+        return np.where(self.stick_zone.unbounded, contact.limiting_force, carried)
+
+    @cached_property
     def worn_volume(self) -> Array:
         """4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx over the worn annulus [length^3].
 
