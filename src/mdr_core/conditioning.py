@@ -73,10 +73,7 @@ def near_full_slip(
 def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     """Return the largest condition number of a history prescribed by forces near full slip [1].
 
-    Parameters
-    ----------
-    contact : normal contact of every load step.
-    size, limit : |F_x| and mu F_N of every load step [force].
+    All are of every load step: its normal contact, |F_x| as `size` and mu F_N as `limit` [force].
     """
     partial = (limit > 0) & (size < limit)
     ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)

@@ -44,11 +44,7 @@ _Slope = Callable[[Array, Array, Array], Array]
 def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
     """Return the contact coordinate at which g(a) is the indentation depth.
 
-    Source: mdr-5, Eqs. (5.7), (5.59); notes, §1.
-
-    Raises
-    ------
-    InputError : the profile ends before this depth is reached.
+    Source: mdr-5, Eqs. (5.7), (5.59); notes, §1. Raises InputError beyond the end of the profile.
     """
     closed = profile.coordinate_from_depth(indentation_depth)
     if closed is not None:
@@ -60,11 +56,8 @@ def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
 def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
     """Return the contact coordinate at which F_N/E* has the given value [length^2].
 
-    Source: mdr-5, Eqs. (5.14), (5.61); notes, §1: dF_N/da = 2 E* a g'(a).
-
-    Raises
-    ------
-    InputError : the profile ends before this force is reached.
+    Source: mdr-5, Eqs. (5.14), (5.61); notes, §1: dF_N/da = 2 E* a g'(a). Raises InputError beyond
+    the end of the profile.
     """
     closed = profile.coordinate_from_reduced_force(reduced_force)
     if closed is not None:
@@ -76,11 +69,8 @@ def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     """Return the contact coordinate of a contact radius; on a plateau of g, that of its inner end.
 
-    The springs on a plateau carry no load.
-
-    Raises
-    ------
-    InputError : the radius is beyond the end of the profile, or the profile is a flat punch.
+    The springs on a plateau carry no load. Raises InputError beyond the end of the profile, and
+    for a flat punch.
     """
     if not every(profile.domain == inf):
         _reject(contact_radius > profile.domain, profile, "contact_radius")

@@ -35,12 +35,7 @@ def first_index(bad: Flags) -> tuple[int, ...]:
 def only_one(
     path: tuple[str | int, ...], given: Mapping[str, ArrayLike | None]
 ) -> tuple[str, Array]:
-    """Return name and values of the one quantity that is given.
-
-    Raises
-    ------
-    InputError : none or several, with the path.
-    """
+    """Return name and values of the one quantity that is given, or raise InputError at the path."""
     named = [(name, values) for name, values in given.items() if values is not None]
     if len(named) != 1:
         raise InputError(path, f"exactly one of {', '.join(given)} is needed")
@@ -66,11 +61,8 @@ def require_not_negative(path: tuple[str | int, ...], values: Array) -> None:
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
     """Raise InputError at the first load whose results leave the range of double precision.
 
-    Parameters
-    ----------
-    path : the load in the request.
-    used : loads that are not zero.
-    results : positive quantities under these loads.
+    `path` is that of the load, `used` are the loads that are not zero, under which the results are
+    positive.
     """
     bad = np.zeros(used.shape, dtype=bool)
     for values in results:
@@ -83,9 +75,7 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
 def checked_radii(radius: ArrayLike, end: float = inf) -> Array:
     """Return the radii as an array (m,).
 
-    Raises
-    ------
-    InputError : no radius; one that is negative, not finite or beyond the end.
+    Raises InputError if there is none, or one that is negative, not finite or beyond the end.
     """
     r = np.atleast_1d(np.asarray(radius, dtype=float))
     if not r.size:

@@ -38,9 +38,7 @@ class Checkpoint:
     def opened(self, manifest: Mapping[str, Any], *, restart: bool) -> Iterator[set[int]]:
         """Lock the directory, create it if necessary, and yield the indices of completed chunks.
 
-        Raises
-        ------
-        UsageError : another process uses it, or it belongs to another sweep.
+        Raises UsageError if another process uses it, or if it belongs to another sweep.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / "lock").open("w") as lock:

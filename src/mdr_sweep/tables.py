@@ -98,9 +98,8 @@ Source: TypeAlias = Grid | Table
 def axis(name: str, text: str) -> Values:
     """Return the values of an axis, both ends included.
 
-    Raises
-    ------
-    UsageError : the text is not ``start:stop:n``, ``start:stop:n:lin`` or ``start:stop:n:log``.
+    Raises UsageError unless the text is ``start:stop:n``, ``start:stop:n:lin`` or
+    ``start:stop:n:log``.
     """
     try:
         first, last, number, *spacing = text.split(":")

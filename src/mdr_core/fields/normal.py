@@ -109,17 +109,9 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
 
 
 def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:
-    """Return the field of every load at all radii.
+    """Return the field of every load at all radii; `field` gives that of one load.
 
-    Parameters
-    ----------
-    shape : shape of the loads.
-    field : values under one load.
-    radius : radii [length], >= 0, shape (m,).
-
-    Raises
-    ------
-    InputError : no radius, or one that is negative or not finite.
+    Raises InputError if there is no radius, or one that is negative or not finite.
     """
     r = checked_radii(radius)
     out = np.empty((prod(shape), r.size))

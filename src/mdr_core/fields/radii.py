@@ -88,16 +88,9 @@ def edge_error(
 
 
 def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
-    """Return the error of a field by the error of the edges, relative to its largest value [1].
+    """Return the `edge_error` for the edges of all loads.
 
-    Radii within four units in the last place of an edge are excluded, because the relative error
-    at a root is unbounded.
-
-    Parameters
-    ----------
-    edges : edges of all loads.
-    radius : radii of the field [length], shape (m,).
-    root : True for stresses, which have a root at the edges, unlike displacements.
+    `root` is True for stresses, which have a root at the edges, unlike displacements.
     """
     used = (edges.error > 0) & (edges.scale > 0)
     if not some(used):
@@ -143,16 +136,9 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
 
 
 def graded(stops: Array, points: int) -> Array:
-    """Return radii from the first stop to the last, clustered at each of them.
+    """Return radii from the first of ascending stops to the last, clustered at each of them.
 
-    Parameters
-    ----------
-    stops : ascending radii [length].
-    points : number of radii.
-
-    Raises
-    ------
-    InputError : fewer points than stops.
+    Raises InputError if there are fewer points than stops.
     """
     end = stops[-1]
     if points < stops.size:

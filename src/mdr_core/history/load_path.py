@@ -90,9 +90,7 @@ class SampledPath:
     def load_points(self) -> LoadPoints:
         """One straight step to each sample, in normal coordinates and reduced tangential loads.
 
-        Raises
-        ------
-        InputError : a tangential force above mu F_N at a sample.
+        Raises InputError for a tangential force above mu F_N at a sample.
         """
         mu, e_star = self.start.friction_coefficient, self.start.e_star
         scale = mu * e_star / (1.0 if self.over_forces else self.start.g_star)

@@ -294,11 +294,8 @@ class ExtrapolatedResults:
 def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     """Return the results of a load path with nonlinear load steps.
 
-    `rtol` determines the number of chords.
-
-    Raises
-    ------
-    InputError : a tangential force above mu F_N anywhere on the path.
+    `rtol` determines the number of chords. Raises InputError for a tangential force above mu F_N
+    anywhere on the path.
     """
     if path.over_forces:
         # A force that changes while the bodies are separated exceeds friction there.

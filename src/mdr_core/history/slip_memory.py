@@ -141,17 +141,10 @@ class SlipSegments(NamedTuple):
 
 
 def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontPath, Polyline]:
-    """Return the polyline vertices after each of a sequence of straight load steps.
+    """Return the vertices of the polylines after a sequence of straight load steps.
 
-    Parameters
-    ----------
-    start : initial polyline.
-    points : load points, shape (n,). A normal coordinate <= 0 means separation and erases the
-        memory.
-
-    Returns
-    -------
-    The vertices of all polylines, the path of the slip front, and the last polyline.
+    And the path of the slip front, and the last polyline. A normal coordinate <= 0 of a load point
+    means separation and erases the memory.
     """
     count = points.normal.size
     held = len(start.forward) if start.in_contact else 0

@@ -154,9 +154,7 @@ def _not_a_knot(r: Array, f: Array, first: float | None = None, last: float | No
 def checked_heights(r: Array, f: Array) -> Array:
     """Return the heights, made monotone where they fall by rounding errors of the last height.
 
-    Raises
-    ------
-    InputError : the points are not those of a profile that rises from f(0) = 0.
+    Raises InputError unless the points are those of a profile that rises from f(0) = 0.
     """
     if r.ndim != 1 or r.size < 2:
         raise InputError(("profile", "r"), "at least two points are needed")

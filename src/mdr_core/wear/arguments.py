@@ -18,9 +18,7 @@ _GRID_END: Final = 1.25
 def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tuple[str, Array]:
     """Return the name and the values of the one amplitude that is prescribed.
 
-    Raises
-    ------
-    InputError : none or both; no value; a value that is negative or not finite.
+    Raises InputError for none or both, no value, or a value that is negative or not finite.
     """
     given = {"tangential_displacement": displacement, "tangential_force": force}
     name, values = only_one(("tangential",), given)
@@ -33,11 +31,8 @@ def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tu
 def grid(profile: Profile, edges: Array, points: int) -> Array:
     """Return radii from 0 to a quarter beyond the largest edge [length], shape (points,).
 
-    They cluster at the axis, the breaks and the edges that are finite.
-
-    Raises
-    ------
-    InputError : fewer points than there are such radii.
+    They cluster at the axis, the breaks and the edges that are finite. Raises InputError if there
+    are fewer points than such radii.
     """
     known = edges[np.isfinite(edges)]
     last = min(_GRID_END * float(known.max()) or 1.0, float(profile.domain))

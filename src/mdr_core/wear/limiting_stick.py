@@ -118,9 +118,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     Wear at a constant depth reduces F_N, and with it F_N(c) = F_N - F_x/mu: the stick zone shrinks,
     over unworn material, until it carries the whole remaining load. Source: notes, §9.
 
-    Raises
-    ------
-    InputError : a force that no stick zone carries: the wear ends in full slip, without a limit.
+    Raises InputError for a force that no stick zone carries: wear ends in full slip, without limit.
     """
     normal, profile = contact.normal, contact.normal.profile
     share = _carried(contact, amplitude, np.ones(()))

@@ -47,9 +47,7 @@ def flat(part: Any, path: tuple[str, ...] = ()) -> dict[str, Any]:
 def nested(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the request with the given fields, the inverse of `flat`.
 
-    Raises
-    ------
-    InputError : a name is a part of another one, or the indices of a list have a gap.
+    Raises InputError if a name is a part of another one, or the indices of a list have a gap.
     """
     root: dict[str, Any] = {}
     for name, value in values.items():
