@@ -38,9 +38,9 @@ _KERNELS: Final = 7
 _PANEL: Final = 2.0
 # Nodes of a panel.
 _NODES: Final = 14
-# Nodes of a block, and the least distance of a far singularity from it over its length, both in
-# x^2: interpolation errs by 5.8^-n.
-_JOINED, _FAR = 18, 1.0
+# Nodes of a block in x^2, and the least distance of a far singularity from its middle over its
+# length: interpolation errs by 5^-n.
+_JOINED, _FAR = 18, 1.3
 # Powers of s up to this one are resolved on a piece that doubles s.
 _STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
@@ -58,7 +58,7 @@ class _Blocks(NamedTuple):
     high: Array
     width: Array
     """high^2 - low^2, accurate however narrow, shape (n,)."""
-    offset: Array
+    past: Array
     """x^2 - low^2 of the nodes, shape (nodes, n)."""
     x: Array
     mass: Array
@@ -70,64 +70,60 @@ class Foundation:
 
     def __init__(self, load: Traction, body: int) -> None:
         self.load, profile = load, load.profile
-        rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
         self.share = (1 if body == 2 else -1) * load.modulus / load.e_star
         """Unit of the slopes k of the anchors, as they act on the body [1]."""
+        rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
         self._slope, self._rate = self.share * load.slope, self.share * np.array(rate)
-        self._inverse = any(arc and arc.inverse for arc in load.arcs)
         slopes = (self._slope != 0) | (self._rate != 0)
-        self.sheared = bool(slopes.any())
         # Least radius at which q_x has a slope, infinite if it has none.
         self.slips_from = float(load.radius[:-1][slopes].min(initial=inf))
         self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
-        if not self.loaded:
-            return
         if profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
             a, zero = load.radius[-1:], np.zeros((1, 1))
-            depths = [load.coordinate[-1], self._slope @ load.width][: 1 + self.sheared]
-            mass = np.array(depths)[:, None, None]
+            mass = np.array([[load.coordinate[-1:]], [self._slope * load.width]])
             self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
-            return
-        self._pieces = self._cut()
-        low, high, base, s_low, s_high, step = self._pieces
-        u, shares = (part[:, None] for part in composite_rule(_NODES, 1))
-        past = step * u
-        s = s_low + past
-        x = np.sqrt(base**2 + s * s)
-        mass = self._slopes(x, s, slice(None)) * (step * shares)
-        width, offset = step * (s_low + s_high), past * (s_low + s)
-        self._levels = [_Blocks(low, high, width, offset, x, mass)]
-        while self._levels[-1].low.size > 1:
-            self._levels.append(_merged(self._levels[-1]))
+        elif self.loaded:
+            self._levels = [self._pieces()]
+            while self._levels[-1].low.size > 1:
+                self._levels.append(_merged(self._levels[-1]))
 
-    def _cut(self) -> Array:
-        """Pieces low <= x <= high on which k g' is smooth in s = sqrt(x^2 - b^2), ascending.
+    @property
+    def sheared(self) -> bool:
+        """True if there is a tangential load."""
+        return self.slips_from < inf
 
-        low, high, b, s(low), s(high) and their difference, however narrow; shape (6, n) [length].
-        Empty ones at the end make n a power of two.
+    def _pieces(self) -> _Blocks:
+        """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), ascending.
+
+        Empty ones at the end make their number a power of two.
         """
         load, a = self.load, self.load.radius[-1]
         inner, outer = load.radius[:-1], load.radius[1:]
-        self._panels, self._branches = load.profile.panels, load.profile.branches
-        starts = np.array([max(branch.base, branch.start) for branch in self._branches])
-        cuts = [self._cuts(branch) for branch in self._branches]
+        branches = load.profile.branches
+        starts = np.array([max(branch.base, branch.start) for branch in branches])
+        cuts = [self._cuts(branch) for branch in branches]
         low = np.unique(np.concatenate([starts[:1], inner[inner > starts[0]], *cuts]))
         count = low.size
         low = np.append(low, np.full(2 ** ceil(log2(count)) - count, a))
         high = np.append(low[1:], a)
         self._owner = np.searchsorted(starts, low, side="right") - 1
         self._part = part = np.searchsorted(outer, high)
-        base = np.array([branch.base for branch in self._branches])[self._owner]
-        s_low, s_high = (np.sqrt((x - base) * (x + base)) for x in (low, high))
-        if base[-1] == starts[0] > 0:
+        self._base = np.array([branch.base for branch in branches])[self._owner]
+        ends = np.array([low, high])
+        self._ends = s_low, s_high = np.sqrt((ends - self._base) * (ends + self._base))
+        if self._base[-1] == starts[0] > 0:
             # The coordinate is sqrt(a^2 - b^2), accurate however narrow the annulus around a flat.
             s_low[count:] = s_high[count - 1 :] = load.coordinate[-1]
         # An annulus may be too narrow for its radii to resolve it.
         width = load.profile.radius_width(load.coordinate[1:], load.width)[part]
         narrow = (inner[part] == low) & (outer[part] == high)
         step = np.where(narrow, width * (low + high) / (s_low + s_high), s_high - s_low)
-        return np.array([low, high, base, s_low, s_high, step])
+        u, shares = (part[:, None] for part in composite_rule(_NODES, 1))
+        s = s_low + step * u
+        x = np.sqrt(self._base**2 + s * s)
+        mass = self._slopes(x, s, slice(None)) * (step * shares)
+        return _Blocks(low, high, step * (s_low + s_high), step * u * (s_low + s), x, mass)
 
     def _cuts(self, branch: Branch) -> list[float]:
         """Radii between which k g' of a branch is smooth."""
@@ -141,76 +137,71 @@ class Foundation:
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Array:
         """k dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,), shape (1 or 2, nodes, m)."""
-        owner = self._owner[index]
-        if self._panels is not None:
-            u = np.minimum(s / self._panels.length[owner], 1.0)
-            found = polynomial.polyval(u, self._panels.weight.T[:, owner], tensor=False)
+        owner, profile, found = self._owner[index], self.load.profile, np.empty_like(x)
+        if profile.panels is not None:
+            u = np.minimum(s / profile.panels.length[owner], 1.0)
+            found = polynomial.polyval(u, profile.panels.weight.T[:, owner], tensor=False)
         else:
-            found = np.empty_like(x)
-            for number, branch in enumerate(self._branches):
+            for number, branch in enumerate(profile.branches):
                 own = owner == number
                 found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
         if not self.sheared:
             return np.asarray(found[None])
-        part = self._part[index]
-        k = self._slope[part] + self._rate[part] * (0.5 / x if self._inverse else 2 * x)
+        part, inverse = self._part[index], any(arc and arc.inverse for arc in self.load.arcs)
+        k = self._slope[part] + self._rate[part] * (0.5 / x if inverse else 2 * x)
         return np.stack([found, k * found])
 
     def moments(self, r: Array, z: Array) -> Array:
         """Return the moments of q and q_x at points, z > 0, shape (2, 7, m)."""
         total = np.zeros((2, _KERNELS, r.size))
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
-        for size, level in reversed(list(enumerate(self._levels))):
-            at_r, at_z, high = r[point], z[point], level.high[block]
-            width = level.width[block]
-            # Re w less the square of either end; the nearer one is accurate in a narrow annulus.
-            above_low, above_high = (
-                (at_r - x) * (at_r + x) - at_z * at_z for x in (level.low[block], high)
-            )
-            nearer = np.abs(above_low) < np.abs(above_high)
-            above_low = np.where(nearer, above_low, above_high + width)
-            gap = np.maximum(np.maximum(-above_low, above_low - width), 0.0)
-            far = np.hypot(gap, 2 * at_r * at_z) >= _FAR * width
+        for level in reversed(self._levels):
+            if level.low.size > 1:
+                point, block = np.repeat(point, 2), np.repeat(2 * block, 2)
+                block[1::2] += 1
+            width, depth = level.width[block], z[point]
+            # Re w less the squares of both ends; the nearer one is accurate in a narrow annulus.
+            ends = np.array([level.low[block], level.high[block]])
+            low, high = (r[point] - ends) * (r[point] + ends) - depth * depth
+            nearer = np.abs(low) < np.abs(high)
+            low, high = np.where(nearer, (low, low - width), (high + width, high))
+            far = np.hypot(low - width / 2, 2 * r[point] * depth) >= _FAR * width
             for part in _in_cache(np.flatnonzero(far), len(level.x)):
-                depth, own = at_z[part], block[part]
-                square = above_low[part] + 2 * depth * depth - level.offset[:, own]
-                _add(total, point[part], square, level.x[:, own], depth, level.mass[..., own])
-            point, block = point[~far], block[~far]
-            if size:
-                point = np.repeat(point, 2)
-                block = (2 * block[:, None] + np.arange(2)).ravel()
+                own, deep = block[part], depth[part]
+                square = low[part] + 2 * deep * deep - level.past[:, own]
+                _add(total, point[part], square, level.x[:, own], deep, level.mass[..., own])
+            point, block, low, high = (part[~far] for part in (point, block, low, high))
         if point.size:
-            self._add_near(total, point, block, (r[point], z[point]))
+            self._add_near(total, point, block, r[point] + 1j * z[point], np.array([low, high]))
         return total
 
     def _add_near(
-        self, total: Array, point: Indices, index: Indices, place: tuple[Array, Array]
+        self, total: Array, point: Indices, index: Indices, at: Array, above: Array
     ) -> None:
-        """Add the moments of pieces at points near them, in s = p + q sinh(t)."""
-        low, high, base, s_low, s_high, step = self._pieces[:, index]
-        at = place[0] + 1j * place[1]
+        """Add the moments of pieces at points near them, in s = p + q sinh(t).
+
+        Parameters
+        ----------
+        at : r + i z of the points.
+        above : Re w less the squares of both ends of the pieces, shape (2, m).
+        """
+        base, (s_low, s_high) = self._base[index], self._ends[:, index]
         root = np.sqrt((at - base) * (at + base))
         p, q = root.real, root.imag
-        # Distances of s_0 from both ends, in a narrow annulus by its width.
-        past_low = ((at - low) * (at + low) / (root + s_low)).real
-        past_high = ((at - high) * (at + high) / (root + s_high)).real
-        nearer = np.abs(past_low) < np.abs(past_high)
-        bottom = np.arcsinh(-np.where(nearer, past_low, past_high + step) / q)
-        top = np.arcsinh(-np.where(nearer, past_low - step, past_high) / q)
-        length = top - bottom
-        count = np.maximum(np.ceil(length / _PANEL), 1).astype(int)
+        # p less s at both ends.
+        beyond = ((above + 2j * at.real * at.imag) / (root + self._ends[:, index])).real
+        bottom, top = np.arcsinh(-beyond / q)
+        count = np.maximum(np.ceil((top - bottom) / _PANEL), 1).astype(int)
         for panels in np.unique(count):
             u, shares = (part[:, None] for part in composite_rule(_NODES, int(panels)))
             for part in _in_cache(np.flatnonzero(count == panels), u.size):
-                sinh = np.sinh(top[part] - u * length[part])
-                s = np.maximum(p[part] + q[part] * sinh, s_low[part])
-                np.minimum(s, s_high[part], out=s)
+                depth, length = at.imag[part], top[part] - bottom[part]
+                sinh = np.sinh(top[part] - u * length)
+                s = np.minimum(np.maximum(p[part] + q[part] * sinh, s_low[part]), s_high[part])
                 x = np.sqrt(base[part] ** 2 + s * s)
-                depth = place[1][part]
                 square = 2 * depth * depth - q[part] * (sinh * (p[part] + s) + q[part])
-                run = q[part] * np.sqrt(1 + sinh * sinh) * length[part] * shares
-                mass = self._slopes(x, s, index[part]) * run
-                _add(total, point[part], square, x, depth, mass)
+                run = q[part] * np.sqrt(1 + sinh * sinh) * length * shares
+                _add(total, point[part], square, x, depth, self._slopes(x, s, index[part]) * run)
 
 
 def foundations(contact: Contact, body: int) -> tuple[list[Foundation], tuple[int, ...]]:
@@ -226,19 +217,13 @@ def _merged(blocks: _Blocks) -> _Blocks:
     """Neighbours as one block: Im K/x is interpolated between its nodes in x^2."""
     low, high = (_Blocks(*(part[..., i::2] for part in blocks)) for i in (0, 1))
     width = low.width + high.width
-    at, weights = gauss_legendre(_JOINED)
-    offset = (1 + at[:, None]) / 2 * width
-    known = np.concatenate([low.offset, low.width + high.offset]) / np.where(width > 0, width, 1.0)
-    # Sums of Legendre polynomials, which are orthogonal at the nodes.
-    norms = weights[:, None] * (np.arange(_JOINED) + 0.5)
-    shares = (
-        legendre.legvander(2 * known - 1, _JOINED - 1)
-        @ (legendre.legvander(at, _JOINED - 1) * norms).T
-    )
+    past = (1 + _AT[:, None]) / 2 * width
+    x = np.sqrt(low.low**2 + past)
+    known = np.concatenate([low.past, low.width + high.past]) / np.where(width > 0, width, 1.0)
+    shares = legendre.legvander(2 * known - 1, _JOINED - 1) @ _TO_NODES
     mass = np.concatenate([low.mass * low.x, high.mass * high.x], axis=1)
-    x = np.sqrt(low.low**2 + offset)
     mass = np.einsum("jin,ink->jkn", mass, shares) / x
-    return _Blocks(low.low, high.high, width, offset, x, mass)
+    return _Blocks(low.low, high.high, width, past, x, mass)
 
 
 def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
@@ -258,3 +243,8 @@ def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: 
     for number, kernel in enumerate(kernels):
         for row, each in enumerate(np.einsum("knm,nm->km", mass, kernel.imag)):
             np.add.at(total[row, number], point, each)
+
+
+_AT: Final = gauss_legendre(_JOINED)[0]
+# From the values of Legendre polynomials to those of Lagrange's at the nodes.
+_TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, _JOINED - 1))
