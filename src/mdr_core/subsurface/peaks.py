@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import ceil, cos, inf, log, sin
+from operator import itemgetter
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -102,23 +103,18 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
         """The measure by direction, r of either sign, and z; zero where it is infinite."""
         x, depth = (part.ravel() for part in np.meshgrid(r, z, indexing="ij"))
         e = np.exp(1j * angle[:, None]) * np.where(x < 0, -1, 1)
-        values = np.asarray(getattr(on_rings(under, np.abs(x), depth, e, nu), measure))
-        return np.where(np.isinf(values), 0.0, values).reshape(angle.size, r.size, z.size)
+        values = getattr(on_rings(under, np.abs(x), depth, e, nu), measure)
+        return np.nan_to_num(values, posinf=0.0).reshape(angle.size, r.size, z.size)
 
     r, z = _grid(under)
-    steps = [np.maximum(np.diff(x, append=x[-1]), np.diff(x, prepend=x[0])) for x in (r, z)]
     (values,) = on(np.zeros(1), r, z)
     tops = np.argwhere(values == maximum_filter(values, 3))
-    value, place, box = 0.0, np.zeros(3), np.zeros(3)
+    best = 0.0, np.zeros(3)
     for i, j in tops[np.argsort(-values[tuple(tops.T)])[:_PEAKS]]:
-        if values[i, j] >= _ALMOST * value:
-            around = np.array([0.0, steps[0][i], steps[1][j]])
-            top, at = _climbed(on, np.array([0.0, r[i], z[j]]), around)
-            if top > value:
-                value, place, box = top, at, around
-    if under.sheared:
-        value, place = _climbed(on, place, np.array([_TURN, *box[1:]]))
-    angle, radius, depth = place.tolist()
+        if values[i, j] >= _ALMOST * best[0]:
+            box = np.array([_TURN * under.sheared, np.gradient(r)[i], np.gradient(z)[j]])
+            best = max(best, _climbed(on, np.array([0.0, r[i], z[j]]), box), key=itemgetter(0))
+    value, (angle, radius, depth) = best
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
 
