@@ -1,8 +1,7 @@
 """Stresses beneath the surface of a contact."""
 
-from mdr_core.subsurface.peaks import MEASURES, Peak, largest
 from mdr_core.subsurface.stress import StressTensor, error_estimate, stress
-from mdr_core.subsurface.yielding import yield_onset_force, yielding
+from mdr_core.subsurface.yielding import MEASURES, Peak, largest, yield_onset_force, yielding
 
 __all__ = [
     "MEASURES",

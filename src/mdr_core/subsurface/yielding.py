@@ -1,35 +1,103 @@
-"""Normal force at which yield begins, and the loads under which a contact has yielded."""
+"""Largest stress of a contact, the load at which yield begins, and the loads beyond it.
 
-from functools import cache, lru_cache, partial
-from math import exp, inf, log
-from typing import Final, TypeAlias
+Source: notes, §14; johnson, section 4.2.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cache, lru_cache
+from math import ceil, cos, exp, inf, log, sin
+from operator import itemgetter
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
+from scipy.ndimage import maximum_filter
 from scipy.optimize import brentq
 
 from mdr_core import normal, tangential
 from mdr_core.broadcasting import with_parameters
 from mdr_core.errors import InputError
+from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
-from mdr_core.subsurface.foundation import Contact
-from mdr_core.subsurface.peaks import MEASURES, Peak, infinite_radii, largest
+from mdr_core.subsurface.foundation import Contact, Foundation, foundations
+from mdr_core.subsurface.stress import on_rings
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array
 from mdr_core.validation import require_positive
-from mdr_core.validity import ASSUMED_RATIO, Finding
+from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
+# Radii, and depths per e-fold, of a grid in the plane y = 0. The radii cluster at the axis, the
+# edges and the breaks; the depths lie between these parts of the contact radius.
+_RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
+# Peaks of the grid that are climbed if they reach this part of the highest one that is known.
+_PEAKS, _ALMOST = 3, 0.9
+# Points across a box around a peak, the factor by which it shrinks, and its last size over the
+# first: a smooth peak is missed by the square of it.
+_ACROSS, _SHRINK, _SMALLEST = np.linspace(-1, 1, 5), 0.3, 1e-3
+# Relative difference of equal stresses.
+_EQUAL: Final = 1e-12
+# Half of the directions in the first box: under weak friction a peak may leave the plane.
+_TURN: Final = np.pi / 6
 # Decimals of the logarithm of the stress at the onset, and accuracy of the contact coordinate's.
 _DIGITS, _XTOL = 5, 1e-5
 # Largest distance of that logarithm from the prescribed load.
 _REACH: Final = 60.0
 
-_Contact: TypeAlias = NormalContact | TangentialContact
+MEASURES: Final = ("von_mises", "maximum_shear")
+
+_Loaded: TypeAlias = NormalContact | TangentialContact
+
+
+class Peak(NamedTuple):
+    """Largest stress under each load [pressure], and its place [length]; shape of the loads.
+
+    The field is symmetric, so that y >= 0. Where the stress is infinite, the place is a radius of
+    infinite pressure on the surface.
+    """
+
+    value: Array
+    x: Array
+    y: Array
+    z: Array
+
+
+def largest(
+    contact: Contact, measure: str = "von_mises", *, poissons_ratio: float, body: int = 1
+) -> Peak:
+    """Return the largest von Mises or shear stress in a body under each load, and its place.
+
+    Its relative accuracy is about 1e-5.
+
+    Parameters
+    ----------
+    measure : "von_mises" or "maximum_shear".
+    contact, poissons_ratio, body : see `stress`.
+
+    Raises
+    ------
+    InputError : another measure.
+
+    Examples
+    --------
+    Hertz' contact, nu = 0.3: 0.31 p_0 at the depth 0.481 a, Johnson's section 4.2.
+
+    >>> from mdr_core.normal import solve
+    >>> from mdr_core.profiles import Paraboloid
+    >>> contact = solve(Paraboloid(2.0), 3.0, contact_radius=0.1)
+    >>> peak = largest(contact, "maximum_shear", poissons_ratio=0.3)
+    >>> [round(float(one), 3) for one in (peak.value / contact.maximum_pressure, peak.z / 0.1)]
+    [0.31, 0.481]
+    """
+    if measure not in MEASURES:
+        raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
+    under, shape = foundations(contact, body)
+    found = [_peak(each, measure, poissons_ratio) for each in under]
+    return Peak(*np.array(found).T.reshape(4, *shape))
 
 
 def yield_onset_force(
-    contact: _Contact,
+    contact: _Loaded,
     yield_strength: float,
     measure: str = "von_mises",
     *,
@@ -41,8 +109,6 @@ def yield_onset_force(
     Yield begins where the von Mises stress reaches the yield strength, or the largest shear stress
     half of it (Tresca). The force is 0 where the stress is infinite under any load, and inf where
     no load up to the end of the profile reaches it.
-
-    Source: johnson, section 4.2; notes, §14.
 
     Parameters
     ----------
@@ -66,144 +132,211 @@ def yield_onset_force(
     1.613
     """
     require_positive(("yield_strength",), yield_strength)
-    limit = yield_strength if measure == "von_mises" else yield_strength / 2
-    search = partial(largest, measure=measure, poissons_ratio=poissons_ratio, body=body)
-    pressed, (columns, shape) = contact.normal, _columns(contact)
-    if not np.all(pressed.loaded):
+    profile, (columns, shape) = contact.normal.profile, _columns(contact)
+    if not np.all(contact.normal.loaded):
         raise InputError(("load",), "the onset of yield needs a load that is not zero")
+    limit = yield_strength if measure == "von_mises" else yield_strength / 2
+
+    def excess(one: _Loaded) -> float:
+        """Logarithm of the measure over the limit."""
+        peak = largest(one, measure, poissons_ratio=poissons_ratio, body=body)
+        # Next to the equator of a body no double tells the contact from it: nothing is loaded.
+        return round(float(np.clip(np.log(peak.value / limit), -_REACH, _REACH)), _DIGITS)
+
     # Loads in one ratio of the forces share the onset.
     _, first, which = np.unique(columns[1:], axis=1, return_index=True, return_inverse=True)
-    onset = [_onset(pressed.profile, columns[:, i].tolist(), search, limit) for i in first]
+    with np.errstate(all="ignore"):
+        onset = [_onset(profile, columns[:, i].tolist(), excess, poissons_ratio) for i in first]
     return np.array(onset)[which].reshape(shape)
 
 
 def yielding(
-    contact: _Contact | LoadHistory, poissons_ratios: tuple[float, ...], yield_strength: float
+    contact: _Loaded | LoadHistory, poissons_ratios: tuple[float, ...], yield_strength: float
 ) -> Finding:
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
 
     `yield_strength` is that of the softer body, in uniaxial tension [pressure]. Poisson's ratio 0.3
     is assumed if none are known. Along a load history the forces of every sample count as applied
     once; at its end the traction is that of the path.
-
-    Source: johnson, section 4.2; notes, §14.
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
-    (columns, shape), exponent = _columns(contact), _exponent(pressed.profile)
+    profile, (columns, shape) = pressed.profile, _columns(contact)
+    exponent = {Cone: 1.0, Paraboloid: 2.0}.get(type(profile), getattr(profile, "exponent", None))
+
+    def yields(one: Contact) -> bool:
+        peaks = (largest(one, "maximum_shear", poissons_ratio=nu) for nu in ratios)
+        return any(2 * peak.value >= yield_strength for peak in peaks)
+
+    @cache
+    def reaches(*case: float) -> bool:
+        return yields(_under(profile, *case))
+
+    where = np.zeros(shape, dtype=bool)
     if exponent is not None and not columns[1].any():
         # Under a power the stresses are similar at all loads.
-        factor = np.max(
-            [np.vectorize(_factor, otypes=[float])(exponent, nu) for nu in ratios], axis=0
-        )
-        where = pressed.loaded & (2 * factor * pressed.mean_pressure >= yield_strength)
+        factors = [np.vectorize(_factor, otypes=[float])(exponent, nu) for nu in ratios]
+        peaks = 2 * np.max(factors, axis=0) * pressed.mean_pressure
+        where, boxes = where | (pressed.loaded & (peaks >= yield_strength)), []
     else:
-
-        def yields(one: Contact) -> bool:
-            peaks = (largest(one, MEASURES[1], poissons_ratio=nu) for nu in ratios)
-            return any(2 * peak.value >= yield_strength for peak in peaks)
-
-        @cache
-        def reaches(*case: float) -> bool:
-            return yields(_under(pressed.profile, *case))
-
-        where = np.zeros(shape, dtype=bool)
         loaded = np.flatnonzero(np.broadcast_to(pressed.loaded, shape))
         _, group = np.unique(columns[2:, loaded], axis=1, return_inverse=True)
         boxes = [loaded[group == number] for number in np.unique(group)]
-        # The largest stress grows with the load, and with the ratio of the forces: a box of both is
-        # cut in two unless a corner decides about all of it.
-        while boxes:
-            box = boxes.pop()
-            low, high = columns[:, box].min(axis=1), columns[:, box].max(axis=1)
-            if not reaches(*high.tolist()):
-                continue
-            if reaches(*low.tolist()):
-                where.flat[box] = True
-            else:
-                order = np.argsort(columns[int(low[0] == high[0]), box], kind="stable")
-                boxes += np.array_split(box[order], 2)
-        if isinstance(contact, LoadHistory) and not where[-1]:
-            where[-1] = yields(contact.state)
+    # The largest stress grows with the load, and with the ratio of the forces: a box of both is
+    # cut in two unless a corner decides about all of it.
+    while boxes:
+        box = boxes.pop()
+        low, high = columns[:, box].min(axis=1), columns[:, box].max(axis=1)
+        if not reaches(*high.tolist()):
+            continue
+        if reaches(*low.tolist()):
+            where.flat[box] = True
+        else:
+            order = np.argsort(columns[int(low[0] == high[0]), box], kind="stable")
+            boxes += np.array_split(box[order], 2)
+    if isinstance(contact, LoadHistory) and not where[-1]:
+        where[-1] = yields(contact.state)
 
     def message() -> str:
-        least = float(np.min(np.broadcast_to(pressed.normal_force, where.shape)[where]))
+        least = float(np.min(np.broadcast_to(pressed.normal_force, shape)[where]))
         return f"the stresses meet Tresca's criterion under a normal force of {least:.4g}"
 
     return Finding("yield", where, message)
 
 
-def _columns(contact: _Contact | LoadHistory) -> tuple[Array, tuple[int, ...]]:
-    """Coordinate, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of loads."""
+def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
+    """F_N, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of the loads."""
     pressed, ratio, friction = contact.normal, np.zeros(()), np.zeros(())
     if not isinstance(contact, NormalContact):
         start = contact.path.start if isinstance(contact, LoadHistory) else contact
         friction = np.asarray(start.friction_coefficient)
         limit = friction * pressed.normal_force
-        ratio = np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0)
-        ratio = np.where(contact.regime == "full_slip", 1.0, np.minimum(ratio, 1.0))
+        ratio = np.minimum(np.abs(contact.tangential_force) / np.where(limit > 0, limit, 1.0), 1.0)
     swept = [pressed.profile.parameters[name] for name in pressed.profile.swept]
-    columns = np.broadcast_arrays(pressed.coordinate, ratio, friction, pressed.e_star, *swept)
+    columns = np.broadcast_arrays(pressed.normal_force, ratio, friction, pressed.e_star, *swept)
     return np.array([np.ravel(each) for each in columns]), columns[0].shape
 
 
 def _under(
-    profile: Profile, coordinate: float, ratio: float, friction: float, e_star: float, *swept: float
-) -> _Contact:
+    profile: Profile, force: float, ratio: float, friction: float, e_star: float, *swept: float
+) -> _Loaded:
     """Contact under one load; parameters: see `_columns`."""
-    one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
-    pressed = NormalContact(one, e_star, np.asarray(coordinate))
+    pressed = normal.solve(_single(profile, swept), e_star, normal_force=force)
     if ratio == 0:
         return pressed
-    force = ratio * friction * pressed.normal_force
     # The stresses depend on the ratio of the forces alone, not on G*.
-    return tangential.solve(pressed, e_star, friction, tangential_force=force)
+    return tangential.solve(pressed, e_star, friction, tangential_force=ratio * friction * force)
+
+
+def _single(profile: Profile, swept: Sequence[float]) -> Profile:
+    """The profile of one case of a sweep."""
+    return with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
 
 
 @lru_cache(maxsize=256)
 def _factor(exponent: float, poissons_ratio: float) -> float:
     """Largest shear stress over the mean pressure under a power."""
     contact = normal.solve(Power(1.0, exponent), 1.0, contact_radius=1.0)
-    return float(
-        largest(contact, MEASURES[1], poissons_ratio=poissons_ratio).value / contact.mean_pressure
-    )
+    peak = largest(contact, "maximum_shear", poissons_ratio=poissons_ratio)
+    return float(peak.value / contact.mean_pressure)
 
 
-def _exponent(profile: Profile) -> Parameter | None:
-    """Exponent of a power, else None."""
-    if isinstance(profile, Power):
-        return profile.exponent
-    return {Cone: 1.0, Paraboloid: 2.0}.get(type(profile))
-
-
-def _onset(profile: Profile, case: list[float], search: "partial[Peak]", limit: float) -> float:
-    """Normal force at which a measure reaches a limit, the ratio of the forces held constant."""
-    start, ratio, *rest = case
-
-    def at(coordinate: float) -> NormalContact:
-        return _under(profile, coordinate, 0.0, *rest).normal
+def _onset(
+    profile: Profile, case: list[float], excess_of: Callable[[_Loaded], float], nu: float
+) -> float:
+    """Normal force at which an excess is zero, in the ratio of the forces of a case."""
+    force, ratio, friction, e_star, *swept = case
+    one = _single(profile, swept)
 
     @cache
     def excess(place: float) -> float:
-        """Logarithm of the measure over the limit, by that of the contact coordinate."""
-        with np.errstate(all="ignore"):
-            value = search(_under(profile, exp(place), ratio, *rest)).value
-            # Next to the equator of a body no double tells the contact from it: nothing is loaded.
-            return round(float(np.clip(np.log(value / limit), -_REACH, _REACH)), _DIGITS)
+        """The excess, by the logarithm of the force."""
+        return excess_of(_under(one, exp(place), ratio, friction, e_star))
 
-    one, slips_at = at(start).profile, 0.0 if ratio >= 1 else inf
-    radii = infinite_radii(one, search.keywords["poissons_ratio"], slips_at)
-    # The stress becomes infinite when the contact reaches this coordinate.
-    beyond = [np.asarray(b) for b in radii if b > one.first_radius]
-    singular = min((float(one.coordinate_from_radius(b)) for b in beyond), default=inf)
-    highest = log(min(start * exp(_REACH), singular, one.last_coordinate or inf)) - _XTOL
-    lowest = log(start) - _REACH
-    before = place = min(log(start), highest)
+    def mean_pressure(place: float) -> Array:
+        return normal.solve(one, e_star, normal_force=exp(place)).mean_pressure
+
+    # The stress becomes infinite when the contact reaches one of these radii.
+    radii = [
+        b for b in _infinite_radii(one, nu, 0.0 if ratio >= 1 else inf) if b > one.first_radius
+    ]
+    forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
+    singular = min(map(float, forces), default=inf)
+    last = inf if one.last_coordinate is None else one.reduced_force(np.array(one.last_coordinate))
+    lowest, highest = log(force) - _REACH, log(force) + _REACH
+    highest = min(highest, log(min(singular, e_star * last)) - _XTOL)
+    before = place = min(log(force), highest)
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
-    growth = log(at(exp(place)).mean_pressure / at(exp(place - _XTOL)).mean_pressure) / _XTOL
-    sign, step = 1 if excess(place) > 0 else -1, 1 / max(growth, 1 / _REACH)
+    growth = log(mean_pressure(place) / mean_pressure(place - _XTOL)) / _XTOL
+    sign, step = np.sign(excess(place)), 1 / max(growth, 1 / _REACH)
     while sign * excess(place) > 0:
-        if place == (lowest if sign > 0 else highest):
-            return 0.0 if sign > 0 else float(at(singular).normal_force) if singular < inf else inf
+        if place in (lowest, highest):
+            return 0.0 if sign > 0 else singular
         before, place = place, min(max(place - step * excess(place), lowest), highest)
         step *= 2
-    return float(at(exp(brentq(excess, before, place, xtol=_XTOL))).normal_force)
+    return exp(brentq(excess, before, place, xtol=_XTOL))
+
+
+def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
+    """Value and place of the largest stress in one case; parameters: see `largest`."""
+    if not under.loaded:
+        return 0.0, 0.0, 0.0, 0.0
+    for b in _infinite_radii(under.load.profile, nu, under.slips_from):
+        if b <= under.load.radius[-1]:
+            return inf, b, 0.0, 0.0
+
+    def on(angle: Array, r: Array, z: Array) -> Array:
+        """The measure by direction, r of either sign, and z; zero where it is infinite."""
+        x, depth = (part.ravel() for part in np.meshgrid(r, z, indexing="ij"))
+        e = np.exp(1j * angle[:, None]) * np.where(x < 0, -1, 1)
+        values = getattr(on_rings(under, np.abs(x), depth, e, nu), measure)
+        return np.nan_to_num(values, posinf=0.0).reshape(angle.size, r.size, z.size)
+
+    r, z = _grid(under)
+    (values,) = on(np.zeros(1), r, z)
+    tops = np.argwhere(values == maximum_filter(values, 3))
+    best = 0.0, np.zeros(3)
+    for i, j in tops[np.argsort(-values[tuple(tops.T)])[:_PEAKS]]:
+        if values[i, j] >= _ALMOST * best[0]:
+            box = np.array([_TURN * under.sheared, np.gradient(r)[i], np.gradient(z)[j]])
+            best = max(best, _climbed(on, np.array([0.0, r[i], z[j]]), box), key=itemgetter(0))
+    value, (angle, radius, depth) = best
+    return value, radius * cos(angle), abs(radius * sin(angle)), depth
+
+
+def _grid(under: Foundation) -> tuple[Array, Array]:
+    """Radii, of either sign if there is a tangential load, and depths."""
+    edges = under.load.radius
+    a = float(edges[-1])
+    stops = np.unique([0.0, *edges, *(float(b) for b in under.load.profile.breaks if b < a)])
+    r = graded(np.append(stops, 1.5 * a), max(_RADII, 4 * stops.size))
+    if under.sheared:
+        r = np.append(-r[:0:-1], r)
+    shallow, deep = min(_SHALLOWEST * a, 0.1 * float(np.diff(stops).min())), _DEEPEST * a
+    depths = np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow)))
+    return r, np.append(0.0, depths)
+
+
+def _climbed(
+    on: Callable[[Array, Array, Array], Array], place: Array, box: Array
+) -> tuple[float, Array]:
+    """Return the peak next to a place, and its own place, by boxes of points around it.
+
+    A box moves to its highest point, and shrinks unless that is a higher one on its boundary.
+    """
+    value, size = 0.0, 1.0
+    while size > _SMALLEST:
+        axes = place[:, None] + size * box[:, None] * _ACROSS
+        axes[2] = np.abs(axes[2])
+        values = on(*axes)
+        spot = np.unravel_index(values.argmax(), values.shape)
+        outward = (np.abs(_ACROSS[list(spot)]) == 1) & (box > 0)
+        if values[spot] <= value * (1 + _EQUAL) or not outward.any():
+            size *= _SHRINK
+        value, place = float(values[spot]), axes[range(3), spot]
+    return value, place
+
+
+def _infinite_radii(profile: Profile, poissons_ratio: float, slips_from: float) -> list[float]:
+    """Radii at which the deviatoric stress is infinite once the contact reaches them."""
+    radii = [np.asarray(b) for b in profile.infinite_pressure_radii]
+    return [b for b in radii if infinite_deviator(profile, b, (poissons_ratio,), slips_from)]
