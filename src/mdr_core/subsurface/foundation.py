@@ -78,6 +78,8 @@ class Foundation:
         # Least radius at which q_x has a slope, infinite if it has none.
         self.slips_from = float(load.radius[:-1][slopes].min(initial=inf))
         self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
+        radii = map(float, profile.infinite_pressure_radii)
+        self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]
         if profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
             a, zero = load.radius[-1:], np.zeros((1, 1))

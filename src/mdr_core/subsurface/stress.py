@@ -1,13 +1,15 @@
-"""Stress tensor of a contact at any points of either body."""
+"""Stress tensor of a contact at any points of either body. Source: notes, §14."""
 
 from math import inf
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mdr_core import fields
+from mdr_core.abel import Annulus
 from mdr_core.errors import InputError
+from mdr_core.fields.normal import stress as traction
 from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
@@ -21,10 +23,6 @@ _SURFACE: Final = 1e-18
 _AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
-
-
-# e^(i phi).
-Direction: TypeAlias = NDArray[Any]
 
 
 class StressTensor(NamedTuple):
@@ -87,8 +85,6 @@ def stress(
     The tangential force acts on body 1, the profile's, which passes it on: the shear stress on
     the surface of body 2 is that of `fields.shear_stress`, and on body 1 its opposite.
 
-    Source: notes, §14.
-
     Parameters
     ----------
     contact : a normal contact, or one that is loaded tangentially as well, under any loads; or
@@ -97,10 +93,6 @@ def stress(
     z : depth in the body, >= 0 [length]. The three broadcast to the shape of the points.
     poissons_ratio : of this body, -1 to 1/2 [1].
     body : 1 for the body of the profile, 2 for the other.
-
-    Returns
-    -------
-    Components of the shape of the loads and the points [pressure].
 
     Raises
     ------
@@ -131,7 +123,7 @@ def stress(
     return StressTensor(*found.reshape(6, *shape, *depth.shape))
 
 
-def on_rings(under: Foundation, r: Array, z: Array, e: Direction, nu: float) -> StressTensor:
+def on_rings(under: Foundation, r: Array, z: Array, e: NDArray[Any], nu: float) -> StressTensor:
     """Return the stress tensor under a load at points that share radii and depths, (..., m).
 
     Parameters: see `of_moments`.
@@ -143,24 +135,22 @@ def on_rings(under: Foundation, r: Array, z: Array, e: Direction, nu: float) -> 
     near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
     depth = np.maximum(z, _SURFACE * np.maximum(near, np.spacing(load.radius[-1])))
     pressed, sheared = moments = under.moments(r, depth)
-    origin = (r == 0) & (z == 0)
-    singular = load.profile.infinite_pressure_radii
-    if origin.any() and not (load.profile.has_no_partial_slip or 0.0 in singular):
+    infinite = (z == 0) & np.isin(r, under.infinite_radii)
+    origin = (z == 0) & (r == 0) & ~infinite
+    if origin.any():
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
-        whole = load._replace(slope=np.ones_like(load.slope), arcs=())
+        edge, axis = Annulus(load.coordinate[-1]), np.zeros(1)
+        pressure = traction(load.profile, edge, load.radius[-1], axis, _AXIS_RTOL)
         moments[..., origin] = 0.0
-        pressed[0, origin] = -np.pi * whole.stress(np.zeros(1), _AXIS_RTOL)
-        pressed[4, origin] = pressed[0, origin] / 2
-        sheared[0, origin] = -np.pi * under.share * load.stress(np.zeros(1), _AXIS_RTOL)
+        pressed[0, origin], pressed[4, origin] = -np.pi * pressure, -np.pi / 2 * pressure
+        sheared[0, origin] = -np.pi * under.share * load.stress(axis, _AXIS_RTOL)
     found = load.e_star / np.pi * of_moments(pressed, sheared, r, depth, e, nu)
-    for b in singular:
-        infinite = (r == b) & (z == 0) & bool(b <= load.radius[-1])
-        found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
+    found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
     return StressTensor(*found)
 
 
 def of_moments(
-    pressed: Array, sheared: Array, r: Array, z: Array, e: Direction, nu: float
+    pressed: Array, sheared: Array, r: Array, z: Array, e: NDArray[Any], nu: float
 ) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
 
@@ -184,16 +174,9 @@ def of_moments(
     # sigma_xx - sigma_yy + 2i tau_xy and tau_xz + i tau_yz.
     difference = e * (first + e * (second + e * third))
     along = shear - t_zz / 2 + e * (rz + e * (z * t_mixed - t_zz / 2))
-    return np.stack(
-        np.broadcast_arrays(
-            (total + difference.real) / 2,
-            (total - difference.real) / 2,
-            v_z + zz + t_rz * e.real,
-            difference.imag / 2,
-            along.real,
-            along.imag,
-        )
-    )
+    vertical = v_z + zz + t_rz * e.real
+    xx, yy = (total + difference.real) / 2, (total - difference.real) / 2
+    return np.array([xx, yy, vertical, difference.imag / 2, along.real, along.imag])
 
 
 def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> float:

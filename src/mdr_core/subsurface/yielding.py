@@ -3,7 +3,7 @@
 Source: notes, §14; johnson, section 4.2.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache, lru_cache
 from math import ceil, cos, exp, inf, log, sin
 from operator import itemgetter
@@ -220,16 +220,52 @@ def _under(
     profile: Profile, force: float, ratio: float, friction: float, e_star: float, *swept: float
 ) -> _Loaded:
     """Contact under one load; parameters: see `_columns`."""
-    pressed = normal.solve(_single(profile, swept), e_star, normal_force=force)
+    one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
+    pressed = normal.solve(one, e_star, normal_force=force)
     if ratio == 0:
         return pressed
     # The stresses depend on the ratio of the forces alone, not on G*.
     return tangential.solve(pressed, e_star, friction, tangential_force=ratio * friction * force)
 
 
-def _single(profile: Profile, swept: Sequence[float]) -> Profile:
-    """The profile of one case of a sweep."""
-    return with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
+def _onset(
+    profile: Profile, case: list[float], excess_of: Callable[[_Loaded], float], nu: float
+) -> float:
+    """Normal force at which an excess is zero, in the ratio of the forces of a case."""
+    force, ratio, *rest = case
+
+    def at(place: float) -> _Loaded:
+        return _under(profile, exp(place), ratio, *rest)
+
+    @cache
+    def excess(place: float) -> float:
+        """The excess, by the logarithm of the force."""
+        return excess_of(at(place))
+
+    one, e_star = at(log(force)).normal.profile, rest[1]
+    # The stress becomes infinite when the contact reaches this force.
+    singular = min(
+        (
+            float(normal.solve(one, e_star, contact_radius=b).normal_force)
+            for b in one.infinite_pressure_radii
+            if one.first_radius < b < inf
+            and infinite_deviator(one, b, (nu,), 0.0 if ratio >= 1 else inf)
+        ),
+        default=inf,
+    )
+    last = inf if one.last_coordinate is None else one.reduced_force(np.array(one.last_coordinate))
+    lowest = log(force) - _REACH
+    highest = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
+    before = place = min(log(force), highest)
+    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
+    means = [at(each).normal.mean_pressure for each in (place, place - _XTOL)]
+    sign, step = np.sign(excess(place)), 1 / max(log(means[0] / means[1]) / _XTOL, 1 / _REACH)
+    while sign * excess(place) > 0:
+        if place in (lowest, highest):
+            return 0.0 if sign > 0 else singular
+        before, place = place, min(max(place - step * excess(place), lowest), highest)
+        step *= 2
+    return exp(brentq(excess, before, place, xtol=_XTOL))
 
 
 @lru_cache(maxsize=256)
@@ -240,48 +276,12 @@ def _factor(exponent: float, poissons_ratio: float) -> float:
     return float(peak.value / contact.mean_pressure)
 
 
-def _onset(
-    profile: Profile, case: list[float], excess_of: Callable[[_Loaded], float], nu: float
-) -> float:
-    """Normal force at which an excess is zero, in the ratio of the forces of a case."""
-    force, ratio, friction, e_star, *swept = case
-    one = _single(profile, swept)
-
-    @cache
-    def excess(place: float) -> float:
-        """The excess, by the logarithm of the force."""
-        return excess_of(_under(one, exp(place), ratio, friction, e_star))
-
-    def mean_pressure(place: float) -> Array:
-        return normal.solve(one, e_star, normal_force=exp(place)).mean_pressure
-
-    # The stress becomes infinite when the contact reaches one of these radii.
-    radii = [
-        b for b in _infinite_radii(one, nu, 0.0 if ratio >= 1 else inf) if b > one.first_radius
-    ]
-    forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
-    singular = min(map(float, forces), default=inf)
-    last = inf if one.last_coordinate is None else one.reduced_force(np.array(one.last_coordinate))
-    lowest, highest = log(force) - _REACH, log(force) + _REACH
-    highest = min(highest, log(min(singular, e_star * last)) - _XTOL)
-    before = place = min(log(force), highest)
-    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
-    growth = log(mean_pressure(place) / mean_pressure(place - _XTOL)) / _XTOL
-    sign, step = np.sign(excess(place)), 1 / max(growth, 1 / _REACH)
-    while sign * excess(place) > 0:
-        if place in (lowest, highest):
-            return 0.0 if sign > 0 else singular
-        before, place = place, min(max(place - step * excess(place), lowest), highest)
-        step *= 2
-    return exp(brentq(excess, before, place, xtol=_XTOL))
-
-
 def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     """Value and place of the largest stress in one case; parameters: see `largest`."""
     if not under.loaded:
         return 0.0, 0.0, 0.0, 0.0
-    for b in _infinite_radii(under.load.profile, nu, under.slips_from):
-        if b <= under.load.radius[-1]:
+    for b in under.infinite_radii:
+        if infinite_deviator(under.load.profile, b, (nu,), under.slips_from):
             return inf, b, 0.0, 0.0
 
     def on(angle: Array, r: Array, z: Array) -> Array:
@@ -334,9 +334,3 @@ def _climbed(
             size *= _SHRINK
         value, place = float(values[spot]), axes[range(3), spot]
     return value, place
-
-
-def _infinite_radii(profile: Profile, poissons_ratio: float, slips_from: float) -> list[float]:
-    """Radii at which the deviatoric stress is infinite once the contact reaches them."""
-    radii = [np.asarray(b) for b in profile.infinite_pressure_radii]
-    return [b for b in radii if infinite_deviator(profile, b, (poissons_ratio,), slips_from)]

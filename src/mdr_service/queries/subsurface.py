@@ -11,13 +11,7 @@ from mdr_core.normal import not_reached
 from mdr_core.subsurface import StressTensor
 from mdr_core.typing import Array
 from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
-from mdr_service.results import (
-    Contact,
-    Result,
-    checked,
-    notices,
-    response_metadata,
-)
+from mdr_service.results import Contact, Result, checked, notices, response_metadata
 from mdr_service.schemas.contacts import Bodies
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 
@@ -48,42 +42,41 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     if query.has("x"):
         x, z = np.array(query.x), np.array(query.z)
     else:
-        # In separation all points lie on the axis: any other extent would depend on the units.
+        # In separation the points lie on the axis: any other extent would depend on the units.
         end = _BEYOND * float(np.max(contact.contact_radius))
         x, z = np.linspace(-end, end, query.points) + 0.0, np.linspace(0.0, end, query.points)
     place = x, query.y, z[:, None]
     tensor = subsurface.stress(loaded, *place, **body)
     shape = query.loads, z.size, x.size
-    values: Result = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
-    infinite = np.isinf(tensor.zz).reshape(shape)
+    values = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = notices(query, source)
-    if infinite.any():
-        message = "stresses are infinite on the surface, where the pressure is"
-        warnings.append(Notice("singular", message))
     if error > max(query.rtol, source.error_estimate):
         warnings.append(not_reached(query.rtol))
-    more: Result = {}
+    searched: Result = {}
     if query.largest:
-        more["largest"] = {
+        searched["largest"] = {
             measure: _by_load(subsurface.largest(loaded, measure, **body)._asdict())
             for measure in subsurface.MEASURES
         }
-        if any(np.isinf(peak["value"]).any() for peak in more["largest"].values()):
-            message = "the largest stress is infinite: see its place in `largest`"
-            warnings.append(Notice("singular", message))
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
         strength = query.material.yield_strength
-        onset = {
-            criterion: subsurface.yield_onset_force(source, strength, measure, **body)
-            for criterion, measure in _CRITERIA.items()
-        }
-        more["yield_onset_force"] = _by_load(onset)
-    if more:
-        more["search_error_estimate"] = _OF_SEARCH
+        searched["yield_onset_force"] = _by_load(
+            {
+                criterion: subsurface.yield_onset_force(source, strength, measure, **body)
+                for criterion, measure in _CRITERIA.items()
+            }
+        )
+    if searched:
+        searched["search_error_estimate"] = _OF_SEARCH
+    peaks = [peak["value"] for peak in searched.get("largest", {}).values()]
+    if any(np.isinf(each).any() for each in (tensor.zz, *peaks)):
+        message = "stresses are infinite on the surface, where the pressure is"
+        warnings.append(Notice("singular", message))
+    infinite = dict.fromkeys(values, np.isinf(tensor.zz).reshape(shape))
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
-    found = {"x": x, "z": z} | checked(query, values, dict.fromkeys(values, infinite)) | more
+    found = {"x": x, "z": z} | checked(query, values, infinite) | searched
     return found | response_metadata(method, error, warnings)
 
 
