@@ -1,24 +1,21 @@
 """Loads of the foundation and their moments, from which the stresses beneath a contact follow.
 
-With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are Im int k(x) g'(x) K dx for
+With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are int (1 + i k) g' Im K dx
+for
 
     K = 1/rho, zeta/rho^3, 1/(rho u), 1/rho^3, 1/u, 1/u^2, 1/(rho u^2),
 
-k = 1 for the normal load, and the slope of q_x over q for the tangential load.
-
-The contact is cut into pieces on which k g' is smooth, and pieces are merged in pairs into blocks.
-A block acts like masses at a few nodes on points that are far from it. On points that are near a
-piece, it is integrated by a substitution that moves their singularity away.
-
-Source: notes, §14.
+k the slope of q_x over q: the real part belongs to the normal load, the imaginary part to the
+tangential load. The kernels are singular at x^2 = w = (r + i z)^2. Source: notes, §14.
 """
 
 from collections.abc import Iterator
 from math import ceil, inf, log2, prod
-from typing import Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.polynomial import legendre, polynomial
+from numpy.typing import NDArray
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
@@ -61,8 +58,7 @@ class _Blocks(NamedTuple):
     past: Array
     """x^2 - low^2 of the nodes, shape (nodes, n)."""
     x: Array
-    mass: Array
-    """Masses of q and, with friction, of q_x, shape (1 or 2, nodes, n)."""
+    mass: NDArray[Any]
 
 
 class Foundation:
@@ -71,10 +67,11 @@ class Foundation:
     def __init__(self, load: Traction, body: int) -> None:
         self.load, profile = load, load.profile
         self.share = (1 if body == 2 else -1) * load.modulus / load.e_star
-        """Unit of the slopes k of the anchors, as they act on the body [1]."""
+        """k where the springs slip, as it acts on the body [1]."""
         rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
         self._slope, self._rate = self.share * load.slope, self.share * np.array(rate)
         slopes = (self._slope != 0) | (self._rate != 0)
+        self.sheared = bool(slopes.any())
         # Least radius at which q_x has a slope, infinite if it has none.
         self.slips_from = float(load.radius[:-1][slopes].min(initial=inf))
         self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
@@ -83,17 +80,12 @@ class Foundation:
         if profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
             a, zero = load.radius[-1:], np.zeros((1, 1))
-            mass = np.array([[load.coordinate[-1:]], [self._slope * load.width]])
+            mass = np.array([load.coordinate[-1:] + 1j * self._slope * load.width])
             self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
         elif self.loaded:
             self._levels = [self._pieces()]
             while self._levels[-1].low.size > 1:
                 self._levels.append(_merged(self._levels[-1]))
-
-    @property
-    def sheared(self) -> bool:
-        """True if there is a tangential load."""
-        return self.slips_from < inf
 
     def _pieces(self) -> _Blocks:
         """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), ascending.
@@ -106,26 +98,24 @@ class Foundation:
         starts = np.array([max(branch.base, branch.start) for branch in branches])
         cuts = [self._cuts(branch) for branch in branches]
         low = np.unique(np.concatenate([starts[:1], inner[inner > starts[0]], *cuts]))
-        count = low.size
-        low = np.append(low, np.full(2 ** ceil(log2(count)) - count, a))
+        low = np.append(low, np.full(2 ** ceil(log2(low.size)) - low.size, a))
         high = np.append(low[1:], a)
         self._owner = np.searchsorted(starts, low, side="right") - 1
         self._part = part = np.searchsorted(outer, high)
-        self._base = np.array([branch.base for branch in branches])[self._owner]
-        ends = np.array([low, high])
-        self._ends = s_low, s_high = np.sqrt((ends - self._base) * (ends + self._base))
-        if self._base[-1] == starts[0] > 0:
-            # The coordinate is sqrt(a^2 - b^2), accurate however narrow the annulus around a flat.
-            s_low[count:] = s_high[count - 1 :] = load.coordinate[-1]
+        self._base = base = np.array([branch.base for branch in branches])[self._owner]
         # An annulus may be too narrow for its radii to resolve it.
-        width = load.profile.radius_width(load.coordinate[1:], load.width)[part]
-        narrow = (inner[part] == low) & (outer[part] == high)
-        step = np.where(narrow, width * (low + high) / (s_low + s_high), s_high - s_low)
+        narrow = load.profile.radius_width(load.coordinate[1:], load.width)[part]
+        whole = (inner[part] == low) & (outer[part] == high)
+        width = np.where(whole, narrow, high - low) * (high + low)
+        s_low = np.sqrt((low - base) * (low + base))
+        s_high = np.sqrt(s_low * s_low + width)
+        self._ends = np.array([s_low, s_high])
         u, shares = (part[:, None] for part in composite_rule(_NODES, 1))
+        step = width / (s_low + s_high)
         s = s_low + step * u
-        x = np.sqrt(self._base**2 + s * s)
+        x = np.sqrt(base * base + s * s)
         mass = self._slopes(x, s, slice(None)) * (step * shares)
-        return _Blocks(low, high, step * (s_low + s_high), step * u * (s_low + s), x, mass)
+        return _Blocks(low, high, width, step * u * (s_low + s), x, mass)
 
     def _cuts(self, branch: Branch) -> list[float]:
         """Radii between which k g' of a branch is smooth."""
@@ -137,73 +127,70 @@ class Foundation:
         )
         return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
 
-    def _slopes(self, x: Array, s: Array, index: Chosen) -> Array:
-        """k dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,), shape (1 or 2, nodes, m)."""
+    def _slopes(self, x: Array, s: Array, index: Chosen) -> NDArray[Any]:
+        """(1 + i k) dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,)."""
         owner, profile, found = self._owner[index], self.load.profile, np.empty_like(x)
         if profile.panels is not None:
             u = np.minimum(s / profile.panels.length[owner], 1.0)
-            found = polynomial.polyval(u, profile.panels.weight.T[:, owner], tensor=False)
+            found[:] = polynomial.polyval(u, profile.panels.weight.T[:, owner], tensor=False)
         else:
             for number, branch in enumerate(profile.branches):
                 own = owner == number
                 found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
         if not self.sheared:
-            return np.asarray(found[None])
+            return found
         part, inverse = self._part[index], any(arc and arc.inverse for arc in self.load.arcs)
         k = self._slope[part] + self._rate[part] * (0.5 / x if inverse else 2 * x)
-        return np.stack([found, k * found])
+        return found * (1 + 1j * k)
 
-    def moments(self, r: Array, z: Array) -> Array:
-        """Return the moments of q and q_x at points, z > 0, shape (2, 7, m)."""
-        total = np.zeros((2, _KERNELS, r.size))
+    def moments(self, r: Array, z: Array) -> NDArray[Any]:
+        """Return the moments of q + i q_x at points, z > 0, shape (7, m)."""
+        total = np.zeros((_KERNELS, r.size), dtype=complex)
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
         for level in reversed(self._levels):
             if level.low.size > 1:
                 point, block = np.repeat(point, 2), np.repeat(2 * block, 2)
                 block[1::2] += 1
-            width, depth = level.width[block], z[point]
-            # Re w less the squares of both ends; the nearer one is accurate in a narrow annulus.
-            ends = np.array([level.low[block], level.high[block]])
-            low, high = (r[point] - ends) * (r[point] + ends) - depth * depth
+            at, width = r[point] + 1j * z[point], level.width[block]
+            # w less the squares of both ends; the nearer one is accurate in a narrow annulus.
+            low, high = ((at - x) * (at + x) for x in (level.low[block], level.high[block]))
             nearer = np.abs(low) < np.abs(high)
             low, high = np.where(nearer, (low, low - width), (high + width, high))
-            far = np.hypot(low - width / 2, 2 * r[point] * depth) >= _FAR * width
+            far = np.abs(low - width / 2) >= _FAR * width
             for part in _in_cache(np.flatnonzero(far), len(level.x)):
-                own, deep = block[part], depth[part]
-                square = low[part] + 2 * deep * deep - level.past[:, own]
-                _add(total, point[part], square, level.x[:, own], deep, level.mass[..., own])
+                own = block[part]
+                square = low.real[part] - level.past[:, own]
+                _add(
+                    total, point[part], square, level.x[:, own], z[point[part]], level.mass[:, own]
+                )
             point, block, low, high = (part[~far] for part in (point, block, low, high))
         if point.size:
-            self._add_near(total, point, block, r[point] + 1j * z[point], np.array([low, high]))
+            self._add_near(total, point, block, z[point], np.array([low, high]))
         return total
 
     def _add_near(
-        self, total: Array, point: Indices, index: Indices, at: Array, above: Array
+        self, total: NDArray[Any], point: Indices, index: Indices, z: Array, above: NDArray[Any]
     ) -> None:
         """Add the moments of pieces at points near them, in s = p + q sinh(t).
 
-        Parameters
-        ----------
-        at : r + i z of the points.
-        above : Re w less the squares of both ends of the pieces, shape (2, m).
+        `above` is w less the squares of both ends of the pieces, shape (2, m).
         """
         base, (s_low, s_high) = self._base[index], self._ends[:, index]
-        root = np.sqrt((at - base) * (at + base))
+        root = np.sqrt(above[0] + s_low * s_low)
         p, q = root.real, root.imag
-        # p less s at both ends.
-        beyond = ((above + 2j * at.real * at.imag) / (root + self._ends[:, index])).real
-        bottom, top = np.arcsinh(-beyond / q)
+        bottom, top = np.arcsinh(-(above / (root + self._ends[:, index])).real / q)
         count = np.maximum(np.ceil((top - bottom) / _PANEL), 1).astype(int)
         for panels in np.unique(count):
             u, shares = (part[:, None] for part in composite_rule(_NODES, int(panels)))
             for part in _in_cache(np.flatnonzero(count == panels), u.size):
-                depth, length = at.imag[part], top[part] - bottom[part]
+                length = top[part] - bottom[part]
                 sinh = np.sinh(top[part] - u * length)
                 s = np.minimum(np.maximum(p[part] + q[part] * sinh, s_low[part]), s_high[part])
                 x = np.sqrt(base[part] ** 2 + s * s)
-                square = 2 * depth * depth - q[part] * (sinh * (p[part] + s) + q[part])
+                square = -q[part] * (sinh * (p[part] + s) + q[part])
                 run = q[part] * np.sqrt(1 + sinh * sinh) * length * shares
-                _add(total, point[part], square, x, depth, self._slopes(x, s, index[part]) * run)
+                mass = self._slopes(x, s, index[part]) * run
+                _add(total, point[part], square, x, z[part], mass)
 
 
 def foundations(contact: Contact, body: int) -> tuple[list[Foundation], tuple[int, ...]]:
@@ -223,8 +210,8 @@ def _merged(blocks: _Blocks) -> _Blocks:
     x = np.sqrt(low.low**2 + past)
     known = np.concatenate([low.past, low.width + high.past]) / np.where(width > 0, width, 1.0)
     shares = legendre.legvander(2 * known - 1, _JOINED - 1) @ _TO_NODES
-    mass = np.concatenate([low.mass * low.x, high.mass * high.x], axis=1)
-    mass = np.einsum("jin,ink->jkn", mass, shares) / x
+    mass = np.concatenate([low.mass * low.x, high.mass * high.x])
+    mass = np.einsum("in,ink->kn", mass, shares) / x
     return _Blocks(low.low, high.high, width, past, x, mass)
 
 
@@ -233,18 +220,20 @@ def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
     return (index[start : start + step] for start in range(0, index.size, step))
 
 
-def _add(total: Array, point: Indices, square: Array, x: Array, z: Array, mass: Array) -> None:
-    """Add sums of mass Im K over nodes, from Re rho^2 there (nodes, m), at points (m,)."""
+def _add(
+    total: NDArray[Any], point: Indices, square: Array, x: Array, z: Array, mass: NDArray[Any]
+) -> None:
+    """Add sums of mass Im K over nodes, from Re w - x^2 there (nodes, m), at points (m,)."""
     zeta = z + 1j * x
-    rho = np.sqrt(square + 2j * (x * z))
+    # Its imaginary part is positive: the root never changes its sheet.
+    rho = np.sqrt(square + 2 * z * zeta)
     inverse, second = 1 / rho, 1 / (rho + zeta)
     mixed, cube = inverse * second, inverse * inverse * inverse
     kernels = [inverse, zeta * cube, mixed, cube, second]
-    if len(mass) > 1:
+    if np.iscomplexobj(mass):
         kernels += [second * second, mixed * second]
-    for number, kernel in enumerate(kernels):
-        for row, each in enumerate(np.einsum("knm,nm->km", mass, kernel.imag)):
-            np.add.at(total[row, number], point, each)
+    for row, kernel in zip(total, kernels, strict=False):
+        np.add.at(row, point, np.einsum("nm,nm->m", mass, kernel.imag))
 
 
 _AT: Final = gauss_legendre(_JOINED)[0]

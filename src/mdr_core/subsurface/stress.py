@@ -134,7 +134,8 @@ def on_rings(under: Foundation, r: Array, z: Array, e: NDArray[Any], nu: float) 
     edges = [0.0, *load.radius, *(float(np.asarray(b)) for b in load.profile.breaks)]
     near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
     depth = np.maximum(z, _SURFACE * np.maximum(near, np.spacing(load.radius[-1])))
-    pressed, sheared = moments = under.moments(r, depth)
+    moments = under.moments(r, depth)
+    pressed, sheared = moments.real, moments.imag
     infinite = (z == 0) & np.isin(r, under.infinite_radii)
     origin = (z == 0) & (r == 0) & ~infinite
     if origin.any():

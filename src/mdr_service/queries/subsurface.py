@@ -48,7 +48,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     place = x, query.y, z[:, None]
     tensor = subsurface.stress(loaded, *place, **body)
     shape = query.loads, z.size, x.size
-    values = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
+    values: Result = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = notices(query, source)
