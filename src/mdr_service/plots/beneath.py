@@ -14,7 +14,7 @@ from mdr_service.schemas.subsurface import SubsurfaceQuery
 _DOWN, _EXTENT = 81, 1.5
 
 
-def subsurface_map(query: SubsurfaceQuery, source: Contact, _result: Result) -> Map:
+def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> Map:
     """Return the von Mises stress of the first load in the plane of the request."""
     contact, partial = at_end(source)
     a = float(np.ravel(contact.contact_radius)[0])
@@ -27,5 +27,8 @@ def subsurface_map(query: SubsurfaceQuery, source: Contact, _result: Result) -> 
         stick = float(np.ravel(source.stick_radius)[0])
     down, across = np.unravel_index(np.argmax(first), first.shape)
     peak = float(x[across]), float(z[down])
+    if "largest" in result and query.y == 0:
+        found = result["largest"]["von_mises"]
+        peak = float(found["x"][0]), float(found["z"][0])
     loads = subset_note(1, query.loads, "loads")
     return Map(x, z, first, "von Mises stress", a, stick, peak, loads)
