@@ -36,11 +36,6 @@ def every(flags: Any) -> bool:
     return bool(np.count_nonzero(flags) == flags.size if isinstance(flags, np.ndarray) else flags)
 
 
-def least(values: Any) -> Any:
-    """Return the smallest value; see `some`."""
-    return values.min() if isinstance(values, np.ndarray) else values
-
-
 def where(condition: Any, this: Any, other: Any) -> Any:
     """Return `this` where the condition holds, else `other`."""
     if isinstance(condition, np.bool_ | bool):

@@ -172,14 +172,7 @@ def _by_groups(
     """Evaluate integrals that share a rule in one call; the rule after the last one uses pieces.
 
     A few integrals are merged with those of the next finer rule where one more call would take
-    longer than the additional nodes.
-
-    Parameters
-    ----------
-    by_rule : integrals of the given index by the rule of the given number.
-    half_length : half lengths of the integrals, shape (m,).
-    longest : half length up to which each rule meets the tolerance, ascending.
-    nodes : evaluations of each rule.
+    longer than the additional `nodes`. Up to the half length `longest` a rule meets the tolerance.
     """
     if half_length.size * nodes[-1] <= _CALL:
         finest = int(longest.searchsorted(half_length.max(initial=0.0)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdr_core import equivalent_1d
 from mdr_core.broadcasting import solve_in_blocks
-from mdr_core.elementwise import full, least, number, some, where
+from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -76,8 +76,8 @@ def _by_load(
     sign, size = _sign_and_size(name, given)
     limit, full_slip, excess = ratio * normal, _NO_FULL_SLIP, _NO_EXCESS
     force_prescribed, left = name == "tangential_force", limit - size
-    if least(left) <= 0:
-        if force_prescribed and least(left) < 0:
+    if some(left <= 0):
+        if force_prescribed and some(left < 0):
             raise InputError(
                 ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
                 "no equilibrium: the force exceeds friction_coefficient x normal_force",

@@ -302,11 +302,8 @@ def solve(
     >>> [float(f"{c:.6g}") for c in partial.stick_radius / contact.contact_radius]
     [1.0, 0.5]
     """
-    for path, value in (
-        (("material", "g_star"), g_star),
-        (("friction_coefficient",), friction_coefficient),
-    ):
-        require_positive(path, value)
+    require_positive(("material", "g_star"), g_star)
+    require_positive(("friction_coefficient",), friction_coefficient)
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
     parameters = (g_star, friction_coefficient)

@@ -50,7 +50,8 @@ def respond(
         query = model.model_validate_json(query)
         cost.require_feasible(query, media_type)
     if isinstance(query, BatchQuery):
-        return _respond_to_batch(query)
+        _require_few_numbers(query)
+        return b'{"answers":[' + b",".join(map(_entry, query.queries)) + b"]}"
     # Complete results are checked for overflow.
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
@@ -69,11 +70,6 @@ def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, A
         if name not in result:
             raise InputError(("answers",), f"no member {name!r}; there are {', '.join(result)}")
     return {name: result[name] for name in members}
-
-
-def _respond_to_batch(batch: BatchQuery) -> bytes:
-    _require_few_numbers(batch)
-    return b'{"answers":[' + b",".join(map(_entry, batch.queries)) + b"]}"
 
 
 def _require_few_numbers(batch: BatchQuery) -> None:

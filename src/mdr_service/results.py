@@ -92,7 +92,7 @@ def response_metadata(method: str, error_estimate: float, warnings: Iterable[Not
 
 def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
-    contact = unworn(source) if isinstance(source, Wear) else source
+    contact = source.tangential_contact if isinstance(source, Wear) else source
     found = [*validity.notices(findings(query, contact)), *source.warnings_without_bodies]
     if isinstance(query, NormalQuery):
         return found
@@ -108,12 +108,6 @@ def findings(query: Query, contact: Contact) -> list[validity.Finding]:
         ratios = material.poissons_ratios
         found.append(subsurface.yielding(contact, ratios, query.material.yield_strength))
     return found
-
-
-def unworn(worn: Wear) -> TangentialContact:
-    """Return the contact before any wear."""
-    state = worn if isinstance(worn, LimitingWear) else worn.initial
-    return state.tangential_contact
 
 
 def singular(

@@ -215,12 +215,9 @@ def unloaded(
     ------
     InputError : a modulus or a friction coefficient that is not positive and finite.
     """
-    for path, value in (
-        (("material", "e_star"), e_star),
-        (("material", "g_star"), g_star),
-        (("friction_coefficient",), friction_coefficient),
-    ):
-        require_positive(path, value)
+    require_positive(("material", "e_star"), e_star)
+    require_positive(("material", "g_star"), g_star)
+    require_positive(("friction_coefficient",), friction_coefficient)
     polyline = slip_memory.separated(0.0, 0.0)
     return ContactState(profile, e_star, g_star, friction_coefficient, polyline)
 

@@ -1,6 +1,6 @@
 """Cycles between two tangential loads, under a constant or an oscillating normal load."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -121,5 +121,4 @@ def cycles(
         samples_per_step=samples_per_step,
         rtol=rtol,
     )
-    parts = {each.name: getattr(history, each.name) for each in fields(history)}
-    return LoadCycles(**parts, count=count)
+    return LoadCycles(history.path, history.normal, history.results, rtol, count)

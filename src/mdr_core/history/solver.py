@@ -157,6 +157,7 @@ class LoadHistory(validity.ContactResults):
         profile, steps = self.normal.profile, self.results
         if profile.has_no_partial_slip or isinstance(steps, ExtrapolatedResults):
             return self.state.slip_fronts
+        # The state would be built for them alone.
         part, at = steps.last_branches
         return profile.contact_radius(part.coordinate[at[1:-1]])
 

@@ -125,15 +125,6 @@ def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, 
     return np.exp(e), -np.expm1(e)
 
 
-def log_annulus(a: Array, width: Array, c: Array) -> Array:
-    """Return log(a/c) [1], from the width while the annulus is narrow; infinite for c = 0."""
-    safe = where(a > 0, a, 1.0)
-    part = np.minimum(width / safe, 0.5)
-    with np.errstate(divide="ignore"):
-        wide = np.log(np.maximum(c, 0.0) / safe)
-    return -where(width < safe / 2, np.log1p(-part), wide)
-
-
 def power_step(a: Array, width: Array, c: Array, exponent: Parameter) -> Array:
     """Return 1 - (c/a)^m [1].
 
@@ -142,4 +133,9 @@ def power_step(a: Array, width: Array, c: Array, exponent: Parameter) -> Array:
     a, width, c : outer radius, a - c and inner radius [length].
     exponent : m > 0 [1].
     """
-    return -np.expm1(-exponent * log_annulus(a, width, c))
+    safe = where(a > 0, a, 1.0)
+    # From the width while the annulus is narrow.
+    part = np.minimum(width / safe, 0.5)
+    with np.errstate(divide="ignore"):
+        wide = np.log(np.maximum(c, 0.0) / safe)
+    return -np.expm1(exponent * where(width < safe / 2, np.log1p(-part), wide))

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from mdr_core import tangential, validity
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
 from mdr_core.wear.arguments import grid, one_amplitude
@@ -77,7 +78,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
-        return _SAFETY * worst + self.initial.tangential_contact.error_estimate
+        return _SAFETY * worst + self.tangential_contact.error_estimate
 
     def field_error_estimate(self, radius: ArrayLike, names: Sequence[str] = FIELDS) -> float:
         """Return a bound on the error of the fields at some radii [1].
@@ -96,7 +97,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         """
         r = self._radii(radius)
         if not self.states or not r.size:
-            return self.initial.tangential_contact.error_estimate
+            return self.tangential_contact.error_estimate
         c, a = self.stick_radius, self.contact_radius
         annulus = np.pi * (a - c) * (a + c)
         least = {
@@ -115,7 +116,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
             if largest > 0:
                 worst = max(worst, difference / largest)
         safety = _SAFETY_OF_PEAK if self.initial.stick_shrinks else _SAFETY
-        return safety * worst + self.initial.tangential_contact.error_estimate
+        return safety * worst + self.tangential_contact.error_estimate
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
@@ -148,7 +149,12 @@ class WearEvolution(validity.ContactResults, WornSurface):
     @property
     def method(self) -> str:
         """Most expensive method: the slope of a worn profile is an integral."""
-        return "quadrature" if self.initial.slips else self.initial.tangential_contact.method
+        return "quadrature" if self.initial.slips else self.tangential_contact.method
+
+    @property
+    def tangential_contact(self) -> TangentialContact:
+        """The contact before any wear, with the amplitude applied once."""
+        return self.initial.tangential_contact
 
     @property
     def normal(self) -> NormalContact:
@@ -158,7 +164,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found = list(self.initial.tangential_contact.warnings_without_bodies)
+        found = list(self.tangential_contact.warnings_without_bodies)
         if isfinite(self.settled_at):
             found.append(
                 Notice(

@@ -26,7 +26,7 @@ from mdr_service.plots.plot import (
 )
 from mdr_service.queries.fields import at_end, field, solve_stress
 from mdr_service.queries.wear import solve_wear
-from mdr_service.results import Contact, Result, Wear, unworn
+from mdr_service.results import Contact, Result, Wear
 from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
@@ -72,7 +72,7 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
     """Return the initial and the limiting profile over the radius, and other requested fields."""
     shown = limit if query.loads <= MAX_CURVES else solve_wear(_first_loads(query))
     loads = min(query.loads, MAX_CURVES)
-    breaks = len(unworn(shown).normal.profile.breaks)
+    breaks = len(shown.normal.profile.breaks)
     radius = _to_last(shown.grid(POINTS + 3 * loads + breaks), result)
     bounded = np.isfinite(np.ravel(shown.wear_radius))
     names = [
@@ -95,7 +95,7 @@ def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Pl
     size = worn.cycles.size
     shown = np.unique(np.linspace(0, size - 1, min(size, MAX_CURVES)).round().astype(int))
     names = [f"N = {worn.cycles[index]:.4g}" for index in shown]
-    breaks = len(unworn(worn).normal.profile.breaks)
+    breaks = len(worn.normal.profile.breaks)
     radius = _to_last(worn.grid(POINTS + breaks), result)
     drawn = ["profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])]
     dense = {name: getattr(worn, name)(radius) for name in drawn}
@@ -129,7 +129,7 @@ def _panels(
 
 
 def _initial(worn: Wear, radius: Array) -> Curve:
-    return Curve(radius, unworn(worn).normal.profile.f(radius), "initial", style="--")
+    return Curve(radius, worn.normal.profile.f(radius), "initial", style="--")
 
 
 def _limits(curves: list[Curve]) -> tuple[float, float]:

@@ -22,7 +22,6 @@ from mdr_service.results import (
     notices,
     response_metadata,
     singular,
-    unworn,
 )
 from mdr_service.schemas.answers import EvolutionAnswer, WearAnswer
 from mdr_service.schemas.wear import EvolutionField, EvolutionQuery, WearField, WearQuery
@@ -89,7 +88,7 @@ def _result(
     radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
     warnings = notices(query, worn)
     infinite: dict[str, Any] = {"pressure": True}
-    if unworn(worn).normal.profile.has_no_partial_slip:
+    if worn.normal.profile.has_no_partial_slip:
         infinite |= dict.fromkeys(_PROFILES, True)
     if radius.size:
         surface: Result = {name: _surface(worn, name, radius, query) for name in query.quantities}
