@@ -1,5 +1,6 @@
 """OpenAPI document of the framework, extended by problem documents and examples."""
 
+from collections.abc import Iterable
 from typing import Any, Final
 
 from fastapi import FastAPI
@@ -39,7 +40,6 @@ TAGS: Final = [
     {"name": "catalogue", "description": "Kinds of profile."},
     {"name": "operation", "description": "Health, metrics and limits."},
 ]
-_REFERENCE: Final = "#/components/schemas/{model}"
 
 
 def _describe_defaults(schema: dict[str, Any]) -> None:
@@ -58,6 +58,13 @@ def _describe_defaults(schema: dict[str, Any]) -> None:
             member["description"] = f"{meaning}; default {shown}{bracket}{dimension}"
 
 
+def _refer(schema: dict[str, Any], member: str, models: Iterable[type]) -> None:
+    """Describe a member of any type as one of several models."""
+    entry = schema["properties"][member]
+    del entry["type"], entry["additionalProperties"]
+    entry["anyOf"] = [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]
+
+
 def extend(app: FastAPI) -> None:
     """Extend the OpenAPI document of `app` by problem documents and examples.
 
@@ -72,10 +79,8 @@ def extend(app: FastAPI) -> None:
         document = generate()
         schemas = document["components"]["schemas"]
         # The service validates each request of a batch alone, so that its model has any object.
-        request = schemas["BatchItem"]["properties"]["request"]
-        del request["type"], request["additionalProperties"]
-        models = [query.model.__name__ for query in SCHEMAS.values()]
-        request["anyOf"] = [{"$ref": _REFERENCE.format(model=model)} for model in models]
+        _refer(schemas["BatchItem"], "request", [query.model for query in SCHEMAS.values()])
+        _refer(schemas["BatchItemAnswer"], "answer", [query.answer for query in SCHEMAS.values()])
         schemas["Settings"]["additionalProperties"] = False
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])
