@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import inf
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -43,14 +43,9 @@ _SETTLED: Final = 4 * float(np.finfo(float).eps)
 _BLOCK: Final = 65_536
 
 
-class _Brackets(NamedTuple):
-    """Intervals of the contact coordinate that may hold the highest peak of a load; all (k,)."""
-
-    load: Indices
-    low: Array
-    high: Array
-    sample: Array
-    """The stress at a point inside."""
+# Intervals of the contact coordinate that may hold the highest peak of a load: the load, both ends
+# and the stress at a point inside, all (k,).
+_Brackets = tuple[Indices, Array, Array, Array]
 
 
 def largest_stress(
@@ -159,7 +154,7 @@ def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brac
     row, at = np.nonzero(peak & (reach >= best[load][:, None]))
     last = samples.shape[1] - 1
     ends = samples[row, np.maximum(at - 1, 0)], samples[row, np.minimum(at + 1, last)]
-    return _Brackets(load[row], *ends, values[row, at])
+    return load[row], *ends, values[row, at]
 
 
 def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:

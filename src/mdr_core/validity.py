@@ -96,7 +96,7 @@ def findings(contact: SolvedContact, material: Material) -> list[Finding]:
     """
     found = of_normal_contact(contact.normal, material, contact.slips_from)
     if contact.g_star is not None:
-        found += of_moduli(contact.normal.e_star, contact.g_star, material.dundurs_beta)
+        found.append(of_moduli(contact.normal.e_star, contact.g_star, material.dundurs_beta))
     return found
 
 
@@ -158,8 +158,8 @@ def of_normal_contact(
     return [steep, Finding("plastic", plastic, places)]
 
 
-def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> list[Finding]:
-    """Return `elastic_similarity` and `impossible_moduli`, of contacts with friction.
+def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:
+    """Return `elastic_similarity`, or `impossible_moduli`, of contacts with friction.
 
     `elastic_similarity`: without Eq. (5.3) normal and tangential contact are coupled.
     `impossible_moduli`: no pair of isotropic bodies has this ratio of E* and G*.
@@ -167,30 +167,23 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> list[
     Source: mdr-5, Eq. (5.3); notes, §8.
     """
     if beta is not None:
-        return [
-            Finding(
-                "elastic_similarity",
-                number(abs(beta)) > _SIMILARITY,
-                lambda: (
-                    f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): normal "
-                    "and tangential contact are coupled, which the model neglects, by a relative "
-                    "error of this order"
-                ),
-            )
-        ]
+        coupled = number(abs(beta)) > _SIMILARITY
+        message = (
+            f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): normal and "
+            "tangential contact are coupled, which the model neglects, by a relative error of this "
+            "order"
+        )
+        return Finding("elastic_similarity", coupled, lambda: message)
     ratio = number(1.0) * e_star / g_star
     impossible = (ratio < _MODULI[0]) | (ratio > _MODULI[1])
-    return [
-        Finding(
-            "impossible_moduli",
-            impossible,
-            lambda: (
-                f"e_star/g_star = {np.extract(impossible, ratio)[0]:.4g} is impossible for "
-                "isotropic bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's "
-                "ratio is negative"
-            ),
+
+    def unphysical() -> str:
+        return (
+            f"e_star/g_star = {np.extract(impossible, ratio)[0]:.4g} is impossible for isotropic "
+            "bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's ratio is negative"
         )
-    ]
+
+    return Finding("impossible_moduli", impossible, unphysical)
 
 
 def infinite_pressure(contact: LoadedContact) -> Flags:

@@ -127,7 +127,9 @@ class _Sender:
             try:
                 self.transfers.add_response(self.record, size)
             except ServiceError as error:
-                message, size = self._replace(problem_response(error)), 0
+                response = problem_response(error)
+                self.start.update(status=response.status_code, headers=response.raw_headers)
+                message, size = {"type": message["type"], "body": response.body}, 0
         if size > LONG:
             with self.transfers.sending() as scope:
                 await self._send_in_pieces(message, size)
@@ -165,12 +167,6 @@ class _Sender:
             while (await self.receive()).get("more_body"):
                 pass
         await self._send({"type": "http.response.body"})
-
-    def _replace(self, response: Response) -> Message:
-        """Replace the start of the response; return the message with the new body."""
-        headers = response.raw_headers
-        self.start = {**self.start, "status": response.status_code, "headers": headers}
-        return {"type": "http.response.body", "body": response.body}
 
 
 def problem_response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:

@@ -100,6 +100,10 @@ class VertexTree:
         forward, backward = self.growth.T
         return np.asarray((forward - backward) / (forward + backward))
 
+    def at_load_points(self, values: Array) -> Array:
+        """Return the values of the vertices of the load points, zero in separation."""
+        return np.where(self.top >= 0, values[self.top], 0.0)
+
     def summed(self, step: Array) -> Array:
         """Return for each vertex the sum of the steps from the axis to it."""
         total = np.empty(step.shape)

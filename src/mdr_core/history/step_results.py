@@ -37,17 +37,17 @@ class StepResults:
     @cached_property
     def shear(self) -> Array:
         """F_x/(mu E*) [length^2]."""
-        return self._at_load_points(lambda part: part.shear)
+        return self._per_step(lambda part, _: part.tree.at_load_points(part.shear))
 
     @cached_property
     def displacement(self) -> Array:
         """G* u_x/(mu E*) [length], from zero on the axis."""
-        return self._at_load_points(lambda part: part.anchor)
+        return self._per_step(lambda part, _: part.tree.at_load_points(part.anchor))
 
     @cached_property
     def energy(self) -> Array:
         """Stored tangential energy over (mu E*)^2/G* [length^3], >= 0."""
-        return self._at_load_points(lambda part: part.square)
+        return self._per_step(lambda part, _: part.tree.at_load_points(part.square))
 
     @cached_property
     def dissipation(self) -> Array:
@@ -115,12 +115,3 @@ class StepResults:
             if part.tree.normal.size:
                 values[chosen] = result(part, path)
         return values
-
-    def _at_load_points(self, result: Callable[[TractionBranches], Array]) -> Array:
-        """Return a result of the load points, zero in separation."""
-
-        def at_tops(part: TractionBranches, _path: FrontPath) -> Array:
-            top = part.tree.top
-            return np.where(top >= 0, result(part)[top], 0.0)
-
-        return self._per_step(at_tops)
