@@ -33,6 +33,7 @@ def solve(
 ) -> StickZone:
     """Return the stick zone of every case.
 
+    Raises InputError for a value without equilibrium, outside the contact or not finite.
     Source: mdr-5, Eqs. (5.18)-(5.23).
 
     Parameters
@@ -40,10 +41,6 @@ def solve(
     contact : the normal contact.
     g_star, friction : effective shear modulus [pressure] and friction coefficient [1].
     name, given : one of `CONTROLS`, and its value.
-
-    Raises
-    ------
-    InputError : a value without equilibrium, outside the contact or not finite.
     """
     if name == "stick_radius":
         _, size = _sign_and_size(name, given)

@@ -51,18 +51,10 @@ def by_load(source: object, names: Iterable[str], loads: int) -> Result:
 def checked(
     query: Query, values: Result, infinite: Mapping[str, bool | Flags] | None = None
 ) -> Result:
-    """Return `values` if they are finite, or infinite only where the exact value is infinite.
+    """Return `values` by name if they are finite, or infinite only where `infinite` allows it.
 
-    Parameters
-    ----------
-    query : the request, whose load an overflow points at.
-    values : arrays over the loads, or over loads and radii, by name.
-    infinite : flags by name, True where the exact value can be infinite.
-
-    Raises
-    ------
-    InputError : a value overflows.
-    DefectError : a value is NaN without an overflow.
+    Raises InputError, which points at the load of the query, if a value overflows, and DefectError
+    if one is NaN without an overflow.
     """
     suspect = {name: np.asarray(v) for name, v in values.items() if not _finite(v)}
     for name, array in suspect.items():

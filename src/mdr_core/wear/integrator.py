@@ -34,24 +34,12 @@ def integrate(
 ) -> tuple[tuple[AnnulusState, ...], float]:
     """Return the states of the annulus at ascending numbers of cycles, and when wear stopped.
 
-    The pressure in the annulus decays within some units of scaled cycles. Once it is below `rtol`
-    everywhere, the state stays as it is, whatever the number of cycles. Source: notes, §11.
+    There are no states without slip, and the number of cycles after which nothing wears is infinite
+    if it is not reached. The pressure in the annulus decays within some units of scaled cycles.
+    Once it is below `rtol` everywhere, the state stays as it is. Source: notes, §11.
 
-    Parameters
-    ----------
-    initial : contact before the first cycle.
-    cycles : numbers of cycles, ascending, (k,).
-    rtol : relative tolerance.
-
-    Returns
-    -------
-    The states, (k,), none if there is no slip; and the number of cycles after which nothing wears,
-    infinite if this is not reached.
-
-    Raises
-    ------
-    InputError : the contact reaches the end of the profile, or full slip.
-    AccuracyError : the integrator failed, takes too many steps, or the contact grows too far.
+    Raises InputError if the contact reaches the end of the profile or full slip, and AccuracyError
+    if the integrator fails or takes too many steps, or the contact grows too far.
     """
     if not initial.slips:
         return (), inf

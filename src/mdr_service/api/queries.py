@@ -10,12 +10,7 @@ from fastapi.routing import APIRoute
 from starlette.responses import Response
 
 from mdr_service import cost, problems
-from mdr_service.api.documentation import (
-    BATCH_RESPONSES,
-    POST_RESPONSES,
-    QUERY_TEXTS,
-    Responses,
-)
+from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES, QUERY_TEXTS, Responses
 from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
 from mdr_service.dispatch import respond
 from mdr_service.middleware import header, read_body

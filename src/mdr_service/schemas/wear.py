@@ -7,12 +7,7 @@ from pydantic import Field
 from mdr_service.schemas.contacts import Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 from mdr_service.schemas.load_paths import TangentialAmplitude
-from mdr_service.schemas.quantities import (
-    ScalarOrArray,
-    Size,
-    positive,
-    quantity,
-)
+from mdr_service.schemas.quantities import ScalarOrArray, Size, positive, quantity
 from mdr_service.settings import SETTINGS
 
 WearField = Literal["initial_profile", "limiting_profile", "worn_depth", "pressure"]
