@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
+from scipy.optimize import brentq
 
 from mdr_core import fields, normal, tangential
 from mdr_core.errors import InputError
@@ -247,6 +248,28 @@ def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:
     assert grown == pytest.approx(1.5, rel=max(1e-4, part), abs=0)
     assert result.stick_radius[-1] - result.stick_radius[0] <= 2 * width**2 + 1e-9 * width
     assert result.error_estimate <= 0.02
+
+
+@pytest.mark.parametrize("part", [1e-3, 0.01, 0.1, 0.3])
+def test_small_force_amplitude_at_constant_depth_reaches_the_limit(part: float) -> None:
+    """The stick edge hardly moves: the layer outside it is thinner than the nodes' spacing.
+
+    Reference: Eqs. (5.83) and (5.88) with c from 2 mu E* c (d - g(c)) = F_x, g = x^2, d = 1.
+    """
+    result = worn("paraboloid", BY_FORCE, part, cycles=(1e9,))
+    c = brentq(lambda x: x - x**3 - part * 2 / 3, 0.6, 1.0, xtol=1e-15)
+
+    def height(a: float) -> float:
+        """Limiting less initial profile at a radius a."""
+        root = np.sqrt(a * a - c * c)
+        return float((1 - a * a / 2) * np.arccos(c / a) - c * root / 2) * 2 / pi
+
+    a = brentq(height, c * (1 + 1e-9), 2.0, xtol=1e-15)
+    assert result.stick_radius[0] == pytest.approx(c, rel=1e-7, abs=0)
+    assert result.contact_radius[0] == pytest.approx(a, rel=1e-7, abs=0)
+    angle, root = np.arccos(c / a), np.sqrt(a * a - c * c)
+    volume = 2 * (a * a * angle - c * root) - (a**4 * angle + c * (a * a - 2 * c * c) * root) / 2
+    assert result.worn_volume[0] == pytest.approx(volume, rel=1e-6, abs=0)
 
 
 def test_zero_cycles_is_the_initial_state() -> None:

@@ -75,20 +75,26 @@ class _MovingAnnulus(AnnulusState):
     @cached_property
     def inward(self) -> tuple[Array, Array]:
         """2 z d worn/dz for material that moves inwards, and its gradient in `worn`."""
-        maps = self.initial.maps
-        return maps.inward @ self.worn, maps.inward
+        return self._along(self.initial.maps.inward)
 
     @cached_property
     def outward(self) -> tuple[Array, Array]:
-        """2 z d worn/dz for material that moves outwards, and its gradient in `worn`.
+        """2 z d worn/dz for material that moves outwards, and its gradient in `worn`."""
+        return self._along(self.initial.maps.outward)
 
-        It has worn exponentially with its distance from the edge of the shrinking stick zone, so
-        that v differs by orders of magnitude between neighbours: the slope is that of ln(v/z).
+    def _along(self, slope: Array) -> tuple[Array, Array]:
+        """2 z d worn/dz and its gradient in `worn`, by a map to slopes.
+
+        Material outside a shrinking stick zone has worn exponentially with its distance from the
+        edge, so that v differs by orders of magnitude between neighbours. The slope of ln(v/z)
+        keeps v positive there; that of v overshoots where the layer is thin.
         """
-        maps, v, first = self.initial.maps, self.slip, self.slip - self.worn
-        steep = 2 + maps.outward @ np.log(v / maps.squares)
-        along = self.worn * steep + first * (maps.outward @ np.log1p(self.worn / first))
-        return along, np.diag(steep) + v[:, None] * maps.outward / v
+        if not self.initial.stick_shrinks:
+            return slope @ self.worn, slope
+        v, first = self.slip, self.slip - self.worn
+        steep = 2 + slope @ np.log(v / self.initial.maps.squares)
+        along = self.worn * steep + first * (slope @ np.log1p(self.worn / first))
+        return along, np.diag(steep) + v[:, None] * slope / v
 
     @property
     def past_stick(self) -> tuple[Array, Array]:
