@@ -5,8 +5,8 @@ compiles this file as it stands, with the C types of `slip_memory_kernel.pxd`; u
 the same bits, about a hundred times slower.
 
 The polyline is a stack of vertices. On a random path branch prediction fails, so what can be
-selected by an index is not selected by an `if`. One file holds all
-functions, since Cython inlines within a module only.
+selected by an index is not selected by an `if`. One file holds all functions, since Cython inlines
+within a module only.
 """
 
 from mdr_core.typing import Array, Indices

@@ -40,10 +40,9 @@ class Profile(ABC):
     radius, depth and force are all accurate: the radius a, or sqrt(a^2 - b^2) beyond a flat of
     radius b, next to which a does not resolve them. At zero load it is `first_coordinate`.
 
-    A kind defines f, f', g, g', F_N/E* and its closed forms. Every other
-    method has a general implementation here. Parameters may be arrays over the cases of a sweep;
-    they broadcast with the loads. Arrays called c, r, x, coordinate have the dimension [length]
-    unless stated otherwise.
+    A kind defines f, f', g, g', F_N/E* and its closed forms. Every other method has a general
+    implementation here. Parameters may be arrays over the cases of a sweep; they broadcast with the
+    loads. Arrays called c, r, x, coordinate have the dimension [length] unless stated otherwise.
     """
 
     kind: ClassVar[str]

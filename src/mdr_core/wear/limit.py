@@ -21,7 +21,8 @@ from mdr_core.wear.arguments import grid, one_amplitude
 # Width of the worn annulus over that of the slip annulus, where both are narrow: the mean of
 # r cos(t) - c up to the angle arccos(c/r) is two thirds of r - c.
 _NARROW: Final = 1.5
-# Part of the room from which on a worn annulus may reach the end of the profile: 1 up to rounding.
+# Part of the largest width from which on a worn annulus may reach the end of the profile, 1 but for
+# rounding.
 _AT_END: Final = 0.99
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
@@ -79,8 +80,8 @@ class LimitingWear(validity.ContactResults):
         else:
             target = np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
             start = np.where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
-            room = self.stick_zone.annulus.room.reshape(target.shape)
-            flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * room)))
+            widest = self.stick_zone.annulus.largest_width.reshape(target.shape)
+            flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * widest)))
             worn = self.stick_zone.annulus.width_where_worn(*flat).reshape(target.shape)
         return np.where(self.stick_zone.unbounded, inf, worn)
 
@@ -322,10 +323,12 @@ def _require_room(wear: LimitingWear) -> None:
     stick_zone, annulus = wear.stick_zone, wear.stick_zone.annulus
     wearing = (stick_zone.step > 0) & ~stick_zone.unbounded
     # Without a root the search for the width ends there.
-    if not (np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * annulus.room).any():
+    if not (
+        np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * annulus.largest_width
+    ).any():
         return
     step = np.ravel(np.where(wearing, stick_zone.step, 0.0))
-    beyond = (annulus.mean_rise(annulus.room) < step).reshape(wearing.shape)
+    beyond = (annulus.mean_rise(annulus.largest_width) < step).reshape(wearing.shape)
     if beyond.any():
         raise InputError(
             ("load", wear.tangential_contact.normal.control, *first_index(beyond)),

@@ -108,8 +108,8 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     )
     moved = np.where(unbounded, contact.stick_coordinate, top - width)
     radius = np.where(width > 0, profile.contact_radius(moved), contact.stick_radius)
-    reach = profile.radius_width(top, width)
-    return _from(contact, step, unbounded=unbounded, moved=(moved, radius, reach))
+    slip_width = profile.radius_width(top, width)
+    return _from(contact, step, unbounded=unbounded, moved=(moved, radius, slip_width))
 
 
 def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -138,9 +138,9 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         value, slope = carried(width)
         return value, width * slope / value
 
-    reach = top - profile.first_coordinate
-    target = np.where(reach > 0, share, 0.0)
-    low, high, most = _first_crossing(carried, reach, target)
+    widest = top - profile.first_coordinate
+    target = np.where(widest > 0, share, 0.0)
+    low, high, most = _first_crossing(carried, widest, target)
     largest = 2 * contact.friction_coefficient * normal.e_star * most
     _reject_overload(contact, amplitude, most < target, largest)
     width = invert(
@@ -158,14 +158,14 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
 
 
 def _first_crossing(
-    sloped: Callable[[Array], tuple[Array, Array]], reach: Array, target: Array
+    sloped: Callable[[Array], tuple[Array, Array]], widest: Array, target: Array
 ) -> tuple[Array, Array, Array]:
     """Return the ends of the first interval on which a function, with its slope, rises to a target.
 
-    And its largest value in [0, reach]: if this is below the target, there is no such interval.
+    And its largest value in [0, widest]: if this is below the target, there is no such interval.
     For a profile with a slope discontinuity the function can rise, fall and rise again.
     """
-    places = np.multiply.outer(np.linspace(0.0, 1.0, _POINTS), reach)
+    places = np.multiply.outer(np.linspace(0.0, 1.0, _POINTS), widest)
     with np.errstate(divide="ignore", invalid="ignore"):
         values = np.array([sloped(place)[0] for place in places])
         peak = np.argmax(values, axis=0)[None]
@@ -223,26 +223,25 @@ def _from(
     contact: TangentialContact,
     step: Array,
     *,
-    separated: Flags | None = None,
-    unbounded: Flags | None = None,
+    separated: Flags | bool = False,
+    unbounded: Flags | bool = False,
     moved: tuple[Array, Array, Array] | None = None,
 ) -> LimitingStick:
     """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`."""
     unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
-    coordinate, radius, reach = unworn if moved is None else moved
+    coordinate, radius, slip_width = moved or unworn
     normal = contact.normal
     # Without a normal load nothing wears.
     loaded = np.asarray(normal.coordinate > normal.profile.first_coordinate)
     # A flat punch either sticks or slides as a whole.
-    rests = (reach <= 0) | ~loaded
-    nowhere = np.zeros((), dtype=bool)
+    rests = (slip_width <= 0) | ~loaded
     parts = (
         np.where(rests, normal.coordinate, coordinate),
         np.where(rests, normal.contact_radius, radius),
         np.where(rests, 0.0, step),
-        np.where(rests, 0.0, reach),
-        nowhere if separated is None else separated & loaded,
-        nowhere if unbounded is None else unbounded & loaded,
+        np.where(rests, 0.0, slip_width),
+        separated & loaded,
+        unbounded & loaded,
     )
     spread = (np.broadcast_to(part, contact.width.shape) for part in parts)
     return LimitingStick(normal.profile, *spread)

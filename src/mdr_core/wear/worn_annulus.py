@@ -44,7 +44,7 @@ class WornAnnulus:
         return float(self.profile.first_radius)
 
     @property
-    def room(self) -> Array:
+    def largest_width(self) -> Array:
         """Width at which the annulus reaches the end of the profile [length]."""
         ends = [float(self.profile.domain)]
         # An interval that ends before its pole does not reach it.
@@ -120,7 +120,7 @@ class WornAnnulus:
             step,
             start,
             np.zeros_like(step),
-            self.room,
+            self.largest_width,
             f"{self.profile.kind}'s worn annulus",
             smooth=len(self.profile.branches) == 1,
         )
