@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mdr_service.dispatch import respond
-from mdr_service.queries import QUERIES
 from mdr_service.serializers.json import MEDIA_TYPE
 
 FOLDER: Final = Path(__file__).parent
@@ -24,10 +23,7 @@ BLUE, RED, GREY = "tab:blue", "tab:red", "0.5"
 
 def ask(name: str, query: dict[str, Any]) -> dict[str, Any]:
     """Return the response to a request, as JSON."""
-    content = json.dumps(query).encode()
-    found: dict[str, Any] = json.loads(
-        respond(name, QUERIES[name].model.model_validate_json(content), MEDIA_TYPE)
-    )
+    found: dict[str, Any] = json.loads(respond(name, json.dumps(query).encode(), MEDIA_TYPE))
     return found
 
 
