@@ -29,12 +29,9 @@ from mdr_core.typing import Array, Chosen, Indices
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
-# Number of the kernels K.
-_KERNELS: Final = 7
-# Longest panel in t: the nearest singularity lies pi/2 beside the axis, or log(2) beyond an end.
-_PANEL: Final = 2.0
-# Nodes of a panel.
-_NODES: Final = 14
+# Longest panel in t, and its nodes: the nearest singularity lies pi/2 beside the axis, or log(2)
+# beyond an end.
+_PANEL, _NODES = 2.0, 14
 # Nodes of a block in x^2, and the least distance of a far singularity from its middle over its
 # length: interpolation errs by 5^-n.
 _JOINED, _FAR = 18, 1.3
@@ -145,7 +142,7 @@ class Foundation:
 
     def moments(self, r: Array, z: Array) -> NDArray[Any]:
         """Return the moments of q + i q_x at points, z > 0, shape (7, m)."""
-        total = np.zeros((_KERNELS, r.size), dtype=complex)
+        total = np.zeros((7, r.size), dtype=complex)
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
         for level in reversed(self._levels):
             if level.low.size > 1:

@@ -47,7 +47,7 @@ class StressTensor(NamedTuple):
     @property
     def von_mises(self) -> Array:
         """Von Mises' equivalent stress [pressure]; infinite where the stress is."""
-        xx, yy, zz, xy, xz, yz = self._finite
+        xx, yy, zz, xy, xz, yz = np.where(np.isinf(self), 0.0, self)
         normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
         values = np.sqrt(normal / 2 + 3 * (xy**2 + xz**2 + yz**2))
         return np.where(np.isinf(self.zz), inf, values)
@@ -55,7 +55,7 @@ class StressTensor(NamedTuple):
     @property
     def principal(self) -> Array:
         """Principal stresses, ascending in a last axis of length 3 [pressure]."""
-        xx, yy, zz, xy, xz, yz = self._finite
+        xx, yy, zz, xy, xz, yz = np.where(np.isinf(self), 0.0, self)
         rows = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         values = np.linalg.eigvalsh(np.moveaxis(rows, (0, 1), (-2, -1)))
         return np.where(np.isinf(self.zz)[..., None], -inf, values)
@@ -63,12 +63,9 @@ class StressTensor(NamedTuple):
     @property
     def maximum_shear(self) -> Array:
         """Largest shear stress, half the difference of the extreme principal ones [pressure]."""
-        low, _, high = np.moveaxis(self._finite.principal, -1, 0)
-        return np.where(np.isinf(self.zz), inf, (high - low) / 2)
-
-    @property
-    def _finite(self) -> "StressTensor":
-        return StressTensor(*(np.where(np.isinf(part), 0.0, part) for part in self))
+        low, _, high = np.moveaxis(self.principal, -1, 0)
+        span = np.subtract(high, low, out=np.full_like(low, inf), where=np.isfinite(low))
+        return np.asarray(span / 2)
 
 
 def stress(
@@ -131,43 +128,40 @@ def on_rings(under: Foundation, r: Array, z: Array, e: NDArray[Any], nu: float) 
     load = under.load
     if not under.loaded:
         return StressTensor(*np.zeros((6, *e.shape)))
-    edges = [0.0, *load.radius, *(float(np.asarray(b)) for b in load.profile.breaks)]
+    edges = [0.0, *load.radius, *map(float, load.profile.breaks)]
     near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
     depth = np.maximum(z, _SURFACE * np.maximum(near, np.spacing(load.radius[-1])))
     moments = under.moments(r, depth)
-    pressed, sheared = moments.real, moments.imag
     infinite = (z == 0) & np.isin(r, under.infinite_radii)
     origin = (z == 0) & (r == 0) & ~infinite
     if origin.any():
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         edge, axis = Annulus(load.coordinate[-1]), np.zeros(1)
         pressure = traction(load.profile, edge, load.radius[-1], axis, _AXIS_RTOL)
-        moments[..., origin] = 0.0
-        pressed[0, origin], pressed[4, origin] = -np.pi * pressure, -np.pi / 2 * pressure
-        sheared[0, origin] = -np.pi * under.share * load.stress(axis, _AXIS_RTOL)
-    found = load.e_star / np.pi * of_moments(pressed, sheared, r, depth, e, nu)
+        shear = under.share * load.stress(axis, _AXIS_RTOL)
+        moments[:, origin], moments[0, origin] = 0.0, -np.pi * (pressure + 1j * shear)
+        moments[4, origin] = moments[0, origin] / 2
+    found = load.e_star / np.pi * of_moments(moments, r, depth, e, nu)
     found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
     return StressTensor(*found)
 
 
-def of_moments(
-    pressed: Array, sheared: Array, r: Array, z: Array, e: NDArray[Any], nu: float
-) -> Array:
+def of_moments(moments: NDArray[Any], r: Array, z: Array, e: NDArray[Any], nu: float) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
 
     Sum and difference of the in-plane stresses have few harmonics of the direction.
 
     Parameters
     ----------
-    pressed, sheared : moments of the normal and of the tangential load, shape (7, m).
+    moments : of the normal load, and times i of the tangential load, shape (7, m).
     r, z : radii and depths [length], shape (m,).
     e : directions e^(i phi), shape (..., m).
     nu : Poisson's ratio of this body [1].
     """
-    v_z, zz, mixed, rz, om, _, _ = pressed
+    v_z, zz, mixed, rz, om, _, _ = moments.real
     zz, mixed, rz = z * zz, z * mixed, z * r * rz
     second = (1 - 2 * nu) * (v_z - 2 * om) + 2 * mixed - zz
-    shear, t_zz, t_mixed, t_rz, _, ring, z_ring = sheared
+    shear, t_zz, t_mixed, t_rz, _, ring, z_ring = moments.imag
     t_zz, t_r, t_rz = z * t_zz, r * t_mixed, z * r * t_rz
     first = (2 - nu) * t_r - t_rz / 2
     third = nu * (2 * r * ring - t_r) + r * (2 * z * z_ring) - t_rz / 2
