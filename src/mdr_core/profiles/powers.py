@@ -49,6 +49,7 @@ class Cone(Profile):
     slope: Parameter
 
     kind: ClassVar[str] = "cone"
+    exponent: ClassVar[float] = 1.0
     formula: ClassVar[str] = "slope·r"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
     # Source: mdr-5, Eqs. (5.47), (5.49).
@@ -134,6 +135,7 @@ class Paraboloid(Profile):
     radius: Parameter
 
     kind: ClassVar[str] = "paraboloid"
+    exponent: ClassVar[float] = 2.0
     formula: ClassVar[str] = "r²/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
     # Source: mdr-5, Eqs. (5.12), (5.16).

@@ -23,7 +23,7 @@ from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import on_rings
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 from mdr_core.validation import require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
@@ -118,18 +118,6 @@ def yield_onset_force(
     Raises
     ------
     InputError : another measure, no load, or a yield strength that is not positive.
-
-    Examples
-    --------
-    Hertz' contact, nu = 0.3: p_0 = 1.61 Y, Johnson's Eq. (4.10).
-
-    >>> from mdr_core.normal import solve
-    >>> from mdr_core.profiles import Paraboloid
-    >>> contact = solve(Paraboloid(2.0), 3.0, contact_radius=0.1)
-    >>> force = yield_onset_force(contact, 0.01, "maximum_shear", poissons_ratio=0.3)
-    >>> p0 = float(solve(Paraboloid(2.0), 3.0, normal_force=force).maximum_pressure)
-    >>> round(p0 / 0.01, 3)
-    1.613
     """
     require_positive(("yield_strength",), yield_strength)
     profile, (columns, shape) = contact.normal.profile, _columns(contact)
@@ -161,38 +149,39 @@ def yielding(
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     profile, (columns, shape) = pressed.profile, _columns(contact)
-    exponent = {Cone: 1.0, Paraboloid: 2.0}.get(type(profile), getattr(profile, "exponent", None))
 
     def yields(one: Contact) -> bool:
         peaks = (largest(one, "maximum_shear", poissons_ratio=nu) for nu in ratios)
         return any(2 * peak.value >= yield_strength for peak in peaks)
 
-    @cache
-    def reaches(*case: float) -> bool:
-        return yields(_under(profile, *case))
+    reaches = cache(lambda *case: yields(_under(profile, *case)))
 
-    where = np.zeros(shape, dtype=bool)
-    if exponent is not None and not columns[1].any():
-        # Under a power the stresses are similar at all loads.
-        factors = [np.vectorize(_factor, otypes=[float])(exponent, nu) for nu in ratios]
-        peaks = 2 * np.max(factors, axis=0) * pressed.mean_pressure
-        where, boxes = where | (pressed.loaded & (peaks >= yield_strength)), []
-    else:
-        loaded = np.flatnonzero(np.broadcast_to(pressed.loaded, shape))
-        _, group = np.unique(columns[2:, loaded], axis=1, return_inverse=True)
-        boxes = [loaded[group == number] for number in np.unique(group)]
-    # The largest stress grows with the load, and with the ratio of the forces: a box of both is
-    # cut in two unless a corner decides about all of it.
-    while boxes:
-        box = boxes.pop()
+    def decide(box: Indices) -> None:
+        """Find the loads of a box that yield, which is cut in two unless a corner decides.
+
+        The largest stress grows with the load, and with the ratio of the forces.
+        """
         low, high = columns[:, box].min(axis=1), columns[:, box].max(axis=1)
         if not reaches(*high.tolist()):
-            continue
+            return
         if reaches(*low.tolist()):
             where.flat[box] = True
         else:
             order = np.argsort(columns[int(low[0] == high[0]), box], kind="stable")
-            boxes += np.array_split(box[order], 2)
+            for half in np.array_split(box[order], 2):
+                decide(half)
+
+    if isinstance(profile, Cone | Paraboloid | Power) and not columns[1].any():
+        # Under a power the stresses are similar at all loads.
+        factors = [np.vectorize(_factor, otypes=[float])(profile.exponent, nu) for nu in ratios]
+        peaks = 2 * np.max(factors, axis=0) * pressed.mean_pressure
+        where = np.broadcast_to(pressed.loaded & (peaks >= yield_strength), shape).copy()
+    else:
+        where = np.zeros(shape, dtype=bool)
+        loaded = np.flatnonzero(np.broadcast_to(pressed.loaded, shape))
+        _, group = np.unique(columns[2:, loaded], axis=1, return_inverse=True)
+        for number in np.unique(group):
+            decide(loaded[group == number])
     if isinstance(contact, LoadHistory) and not where[-1]:
         where[-1] = yields(contact.state)
 
@@ -237,22 +226,13 @@ def _onset(
     def at(place: float) -> _Loaded:
         return _under(profile, exp(place), ratio, *rest)
 
-    @cache
-    def excess(place: float) -> float:
-        """The excess, by the logarithm of the force."""
-        return excess_of(at(place))
-
-    one, e_star = at(log(force)).normal.profile, rest[1]
-    # The stress becomes infinite when the contact reaches this force.
-    singular = min(
-        (
-            float(normal.solve(one, e_star, contact_radius=b).normal_force)
-            for b in one.infinite_pressure_radii
-            if one.first_radius < b < inf
-            and infinite_deviator(one, b, (nu,), 0.0 if ratio >= 1 else inf)
-        ),
-        default=inf,
-    )
+    excess = cache(lambda place: excess_of(at(place)))
+    one, e_star, slips_from = at(log(force)).normal.profile, rest[1], 0.0 if ratio >= 1 else inf
+    # The stress becomes infinite when the contact reaches one of these radii.
+    radii = [b for b in one.infinite_pressure_radii if one.first_radius < b < inf]
+    radii = [b for b in radii if infinite_deviator(one, b, (nu,), slips_from)]
+    forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
+    singular = min(map(float, forces), default=inf)
     last = inf if one.last_coordinate is None else one.reduced_force(np.array(one.last_coordinate))
     lowest = log(force) - _REACH
     highest = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
