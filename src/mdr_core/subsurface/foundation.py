@@ -35,6 +35,9 @@ _PANEL, _NODES = 2.0, 14
 # Nodes of a block in x^2, and the least distance of a far singularity from its middle over its
 # length: interpolation errs by 5^-n.
 _JOINED, _FAR = 18, 1.3
+_AT: Final = gauss_legendre(_JOINED)[0]
+# From the values of Legendre polynomials to those of Lagrange's at the nodes.
+_TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, _JOINED - 1))
 # Powers of s up to this one are resolved on a piece that doubles s.
 _STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
@@ -66,18 +69,17 @@ class Foundation:
         self.share = (1 if body == 2 else -1) * load.modulus / load.e_star
         """k where the springs slip, as it acts on the body [1]."""
         rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
-        self._slope, self._rate = self.share * load.slope, self.share * np.array(rate)
-        slopes = (self._slope != 0) | (self._rate != 0)
-        self.sheared = bool(slopes.any())
+        self._anchors = self.share * np.array([load.slope, rate])
         # Least radius at which q_x has a slope, infinite if it has none.
-        self.slips_from = float(load.radius[:-1][slopes].min(initial=inf))
+        self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)
+        self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
         radii = map(float, profile.infinite_pressure_radii)
         self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]
         if profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
             a, zero = load.radius[-1:], np.zeros((1, 1))
-            mass = np.array([load.coordinate[-1:] + 1j * self._slope * load.width])
+            mass = load.coordinate[-1:] + 1j * self._anchors[:1] * load.width
             self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
         elif self.loaded:
             self._levels = [self._pieces()]
@@ -116,7 +118,7 @@ class Foundation:
 
     def _cuts(self, branch: Branch) -> list[float]:
         """Radii between which k g' of a branch is smooth."""
-        base, curved, profile = branch.base, bool(self._rate.any()), self.load.profile
+        base, curved, profile = branch.base, bool(self._anchors[1].any()), self.load.profile
         start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
         smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
         near = min(base, branch.opposite_singularity) or (
@@ -136,13 +138,13 @@ class Foundation:
                 found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
         if not self.sheared:
             return found
-        part, inverse = self._part[index], any(arc and arc.inverse for arc in self.load.arcs)
-        k = self._slope[part] + self._rate[part] * (0.5 / x if inverse else 2 * x)
-        return found * (1 + 1j * k)
+        slope, rate = self._anchors[:, self._part[index]]
+        inverse = any(arc and arc.inverse for arc in self.load.arcs)
+        return found * (1 + 1j * (slope + rate * (0.5 / x if inverse else 2 * x)))
 
     def moments(self, r: Array, z: Array) -> NDArray[Any]:
         """Return the moments of q + i q_x at points, z > 0, shape (7, m)."""
-        total = np.zeros((7, r.size), dtype=complex)
+        total = np.zeros((7, r.size), dtype=self._levels[0].mass.dtype)
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
         for level in reversed(self._levels):
             if level.low.size > 1:
@@ -163,7 +165,7 @@ class Foundation:
             point, block, low, high = (part[~far] for part in (point, block, low, high))
         if point.size:
             self._add_near(total, point, block, z[point], np.array([low, high]))
-        return total
+        return total + 0j
 
     def _add_near(
         self, total: NDArray[Any], point: Indices, index: Indices, z: Array, above: NDArray[Any]
@@ -231,8 +233,3 @@ def _add(
         kernels += [second * second, mixed * second]
     for row, kernel in zip(total, kernels, strict=False):
         np.add.at(row, point, np.einsum("nm,nm->m", mass, kernel.imag))
-
-
-_AT: Final = gauss_legendre(_JOINED)[0]
-# From the values of Legendre polynomials to those of Lagrange's at the nodes.
-_TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, _JOINED - 1))

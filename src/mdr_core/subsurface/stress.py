@@ -19,8 +19,6 @@ from mdr_core.validation import require_not_negative
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
 # radius, by which a point is moved off the surface, where the kernels are singular.
 _SURFACE: Final = 1e-18
-# Relative accuracy of the tractions at the origin.
-_AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
 
@@ -137,8 +135,8 @@ def on_rings(under: Foundation, r: Array, z: Array, e: NDArray[Any], nu: float) 
     if origin.any():
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         edge, axis = Annulus(load.coordinate[-1]), np.zeros(1)
-        pressure = traction(load.profile, edge, load.radius[-1], axis, _AXIS_RTOL)
-        shear = under.share * load.stress(axis, _AXIS_RTOL)
+        pressure = traction(load.profile, edge, load.radius[-1], axis, _ROUNDING)
+        shear = under.share * load.stress(axis, _ROUNDING)
         moments[:, origin], moments[0, origin] = 0.0, -np.pi * (pressure + 1j * shear)
         moments[4, origin] = moments[0, origin] / 2
     found = load.e_star / np.pi * of_moments(moments, r, depth, e, nu)

@@ -49,6 +49,9 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     tensor = subsurface.stress(loaded, *place, **body)
     shape = query.loads, z.size, x.size
     values: Result = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
+    at_singular = np.isinf(tensor.zz).reshape(shape)
+    checked(query, values, dict.fromkeys(values, at_singular))
+    infinite = bool(at_singular.any())
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = notices(query, source)
@@ -56,28 +59,25 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         warnings.append(not_reached(query.rtol))
     searched: Result = {}
     if query.largest:
+        peaks = {name: subsurface.largest(loaded, name, **body) for name in subsurface.MEASURES}
         searched["largest"] = {
-            measure: _by_load(subsurface.largest(loaded, measure, **body)._asdict())
-            for measure in subsurface.MEASURES
+            name: dict(zip(peak._fields, map(np.ravel, peak), strict=True))
+            for name, peak in peaks.items()
         }
+        infinite |= any(np.isinf(peak.value).any() for peak in peaks.values())
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
         strength = query.material.yield_strength
-        searched["yield_onset_force"] = _by_load(
-            {
-                criterion: subsurface.yield_onset_force(source, strength, measure, **body)
-                for criterion, measure in _CRITERIA.items()
-            }
-        )
+        searched["yield_onset_force"] = {
+            criterion: np.ravel(subsurface.yield_onset_force(source, strength, measure, **body))
+            for criterion, measure in _CRITERIA.items()
+        }
     if searched:
         searched["search_error_estimate"] = _OF_SEARCH
-    peaks = [peak["value"] for peak in searched.get("largest", {}).values()]
-    if any(np.isinf(each).any() for each in (tensor.zz, *peaks)):
+    if infinite:
         message = "stresses are infinite on the surface, where the pressure is"
         warnings.append(Notice("singular", message))
-    infinite = dict.fromkeys(values, np.isinf(tensor.zz).reshape(shape))
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
-    found = {"x": x, "z": z} | checked(query, values, infinite) | searched
-    return found | response_metadata(method, error, warnings)
+    return {"x": x, "z": z} | values | searched | response_metadata(method, error, warnings)
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
@@ -101,7 +101,3 @@ def _by_name(tensor: StressTensor, name: str) -> Array:
     if name.startswith("principal_"):
         return np.asarray(tensor.principal[..., 3 - int(name[-1])])
     return np.asarray(getattr(tensor, name.removeprefix("stress_")))
-
-
-def _by_load(values: dict[str, Array]) -> dict[str, Array]:
-    return {name: np.atleast_1d(value) for name, value in values.items()}
