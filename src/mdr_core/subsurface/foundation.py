@@ -11,11 +11,10 @@ tangential load. The kernels are singular at x^2 = w = (r + i z)^2. Source: note
 
 from collections.abc import Iterator
 from math import ceil, inf, log2, prod
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.polynomial import legendre, polynomial
-from numpy.typing import NDArray
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
@@ -25,12 +24,11 @@ from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid
 from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Chosen, Indices
+from mdr_core.typing import Array, Chosen, Indices, Numbers
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
-# Longest panel in t, and its nodes: the nearest singularity lies pi/2 beside the axis, or log(2)
-# beyond an end.
+# Longest panel in t, whose singularities lie pi/2 beside the axis or log(2) beyond an end; nodes.
 _PANEL, _NODES = 2.0, 14
 # Nodes of a block in x^2, and the least distance of a far singularity from its middle over its
 # length: interpolation errs by 5^-n.
@@ -58,7 +56,7 @@ class _Blocks(NamedTuple):
     past: Array
     """x^2 - low^2 of the nodes, shape (nodes, n)."""
     x: Array
-    mass: NDArray[Any]
+    mass: Numbers
 
 
 class Foundation:
@@ -126,7 +124,7 @@ class Foundation:
         )
         return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
 
-    def _slopes(self, x: Array, s: Array, index: Chosen) -> NDArray[Any]:
+    def _slopes(self, x: Array, s: Array, index: Chosen) -> Numbers:
         """(1 + i k) dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,)."""
         owner, profile, found = self._owner[index], self.load.profile, np.empty_like(x)
         if profile.panels is not None:
@@ -142,7 +140,7 @@ class Foundation:
         inverse = any(arc and arc.inverse for arc in self.load.arcs)
         return found * (1 + 1j * (slope + rate * (0.5 / x if inverse else 2 * x)))
 
-    def moments(self, r: Array, z: Array) -> NDArray[Any]:
+    def moments(self, r: Array, z: Array) -> Numbers:
         """Return the moments of q + i q_x at points, z > 0, shape (7, m)."""
         total = np.zeros((7, r.size), dtype=self._levels[0].mass.dtype)
         point, block = np.arange(r.size), np.zeros(r.size, dtype=int)
@@ -168,13 +166,11 @@ class Foundation:
         return total + 0j
 
     def _add_near(
-        self, total: NDArray[Any], point: Indices, index: Indices, z: Array, above: NDArray[Any]
+        self, total: Numbers, point: Indices, index: Indices, z: Array, above: Numbers
     ) -> None:
-        """Add the moments of pieces at points near them, in s = p + q sinh(t).
-
-        `above` is w less the squares of both ends of the pieces, shape (2, m).
-        """
+        """Add moments of pieces near points, from w less the squares of their ends (2, m)."""
         base, (s_low, s_high) = self._base[index], self._ends[:, index]
+        # s = p + q sinh(t), with the singularity p + i q.
         root = np.sqrt(above[0] + s_low * s_low)
         p, q = root.real, root.imag
         bottom, top = np.arcsinh(-(above / (root + self._ends[:, index])).real / q)
@@ -219,9 +215,7 @@ def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
     return (index[start : start + step] for start in range(0, index.size, step))
 
 
-def _add(
-    total: NDArray[Any], point: Indices, square: Array, x: Array, z: Array, mass: NDArray[Any]
-) -> None:
+def _add(total: Numbers, point: Indices, square: Array, x: Array, z: Array, mass: Numbers) -> None:
     """Add sums of mass Im K over nodes, from Re w - x^2 there (nodes, m), at points (m,)."""
     zeta = z + 1j * x
     # Its imaginary part is positive: the root never changes its sheet.

@@ -1,10 +1,10 @@
 """Stress tensor of a contact at any points of either body. Source: notes, §14."""
 
 from math import inf
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mdr_core import fields
 from mdr_core.abel import Annulus
@@ -13,7 +13,7 @@ from mdr_core.fields.normal import stress as traction
 from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Numbers
 from mdr_core.validation import require_not_negative
 
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
@@ -118,7 +118,7 @@ def stress(
     return StressTensor(*found.reshape(6, *shape, *depth.shape))
 
 
-def on_rings(under: Foundation, r: Array, z: Array, e: NDArray[Any], nu: float) -> StressTensor:
+def on_rings(under: Foundation, r: Array, z: Array, e: Numbers, nu: float) -> StressTensor:
     """Return the stress tensor under a load at points that share radii and depths, (..., m).
 
     Parameters: see `of_moments`.
@@ -144,7 +144,7 @@ def on_rings(under: Foundation, r: Array, z: Array, e: NDArray[Any], nu: float) 
     return StressTensor(*found)
 
 
-def of_moments(moments: NDArray[Any], r: Array, z: Array, e: NDArray[Any], nu: float) -> Array:
+def of_moments(moments: Numbers, r: Array, z: Array, e: Numbers, nu: float) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
 
     Sum and difference of the in-plane stresses have few harmonics of the direction.

@@ -32,17 +32,15 @@ from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
 # Peaks of the grid that are climbed if they reach this part of the highest one that is known.
 _PEAKS, _ALMOST = 3, 0.9
-# Points across a box around a peak, the factor by which it shrinks, and its last size over the
-# first: a smooth peak is missed by the square of it.
-_ACROSS, _SHRINK, _SMALLEST = np.linspace(-1, 1, 5), 0.3, 1e-3
-# Relative difference of equal stresses.
-_EQUAL: Final = 1e-12
-# Half of the directions in the first box: under weak friction a peak may leave the plane.
-_TURN: Final = np.pi / 6
-# Decimals of the logarithm of the stress at the onset, and accuracy of the contact coordinate's.
-_DIGITS, _XTOL = 5, 1e-5
-# Largest distance of that logarithm from the prescribed load.
-_REACH: Final = 60.0
+# Points across a box around a peak, and half of the directions in the first one: under weak
+# friction a peak may leave the plane.
+_ACROSS, _TURN = np.linspace(-1, 1, 5), np.pi / 6
+# Factor by which a box shrinks, and its last size over the first: a smooth peak is missed by the
+# square of it. Stresses that differ by less than the last number are equal.
+_SHRINK, _SMALLEST, _EQUAL = 0.3, 1e-3, 1e-12
+# Decimals of the logarithm of the stress at the onset, accuracy of that of the force, and the
+# largest distance of the latter from the prescribed one.
+_DIGITS, _XTOL, _REACH = 5, 1e-5, 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
 
@@ -143,9 +141,9 @@ def yielding(
 ) -> Finding:
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
 
-    `yield_strength` is that of the softer body, in uniaxial tension [pressure]. Poisson's ratio 0.3
-    is assumed if none are known. Along a load history the forces of every sample count as applied
-    once; at its end the traction is that of the path.
+    `yield_strength` is that of the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
+    are known. Along a load history the forces of every sample count as applied once; at its end
+    the traction is that of the path.
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     profile, (columns, shape) = pressed.profile, _columns(contact)
@@ -156,11 +154,9 @@ def yielding(
 
     reaches = cache(lambda *case: yields(_under(profile, *case)))
 
+    # The largest stress grows with the load, and with the ratio of the forces: a box of both is
+    # cut in two unless a corner decides about all of it.
     def decide(box: Indices) -> None:
-        """Find the loads of a box that yield, which is cut in two unless a corner decides.
-
-        The largest stress grows with the load, and with the ratio of the forces.
-        """
         low, high = columns[:, box].min(axis=1), columns[:, box].max(axis=1)
         if not reaches(*high.tolist()):
             return
@@ -221,13 +217,10 @@ def _onset(
     profile: Profile, case: list[float], excess_of: Callable[[_Loaded], float], nu: float
 ) -> float:
     """Normal force at which an excess is zero, in the ratio of the forces of a case."""
-    force, ratio, *rest = case
-
-    def at(place: float) -> _Loaded:
-        return _under(profile, exp(place), ratio, *rest)
-
+    force, ratio, _, e_star, *_ = case
+    at = cache(lambda place: _under(profile, exp(place), *case[1:]))
     excess = cache(lambda place: excess_of(at(place)))
-    one, e_star, slips_from = at(log(force)).normal.profile, rest[1], 0.0 if ratio >= 1 else inf
+    one, slips_from = at(log(force)).normal.profile, 0.0 if ratio >= 1 else inf
     # The stress becomes infinite when the contact reaches one of these radii.
     radii = [b for b in one.infinite_pressure_radii if one.first_radius < b < inf]
     radii = [b for b in radii if infinite_deviator(one, b, (nu,), slips_from)]
