@@ -190,7 +190,7 @@ def yielding(
 
 def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     """F_N, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of the loads."""
-    pressed, ratio, friction = contact.normal, np.zeros(()), np.zeros(())
+    pressed, ratio, friction = contact.normal, np.zeros(()), np.ones(())
     if not isinstance(contact, NormalContact):
         start = contact.path.start if isinstance(contact, LoadHistory) else contact
         friction = np.asarray(start.friction_coefficient)
@@ -203,12 +203,10 @@ def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
 
 def _under(
     profile: Profile, force: float, ratio: float, friction: float, e_star: float, *swept: float
-) -> _Loaded:
+) -> TangentialContact:
     """Contact under one load; parameters: see `_columns`."""
     one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
     pressed = normal.solve(one, e_star, normal_force=force)
-    if ratio == 0:
-        return pressed
     # The stresses depend on the ratio of the forces alone, not on G*.
     return tangential.solve(pressed, e_star, friction, tangential_force=ratio * friction * force)
 
@@ -266,13 +264,14 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
 
     r, z = _grid(under)
     (values,) = on(np.zeros(1), r, z)
-    tops = np.argwhere(values == maximum_filter(values, 3))
-    best = 0.0, np.zeros(3)
-    for i, j in tops[np.argsort(-values[tuple(tops.T)])[:_PEAKS]]:
-        if values[i, j] >= _ALMOST * best[0]:
-            box = np.array([_TURN * under.sheared, np.gradient(r)[i], np.gradient(z)[j]])
-            best = max(best, _climbed(on, np.array([0.0, r[i], z[j]]), box), key=itemgetter(0))
-    value, (angle, radius, depth) = best
+    high = (values == maximum_filter(values, 3)) & (values >= _ALMOST * values.max())
+    tops = sorted(np.argwhere(high), key=lambda top: -values[*top])[:_PEAKS]
+    turn, across, down = _TURN * under.sheared, np.gradient(r), np.gradient(z)
+    peaks = [
+        _climbed(on, np.array([0.0, r[i], z[j]]), np.array([turn, across[i], down[j]]))
+        for i, j in tops
+    ]
+    value, (angle, radius, depth) = max(peaks, key=itemgetter(0))
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
 
