@@ -155,6 +155,19 @@ def test_invalid_normal_query_is_rejected_with_a_pointer(client: Client, name: s
     assert pointers(response) == [pointer]
 
 
+@pytest.mark.parametrize("load", ["{}", '{"normal_force": 1, "contact_radius": 1}'])
+def test_missing_control_is_named(client: Client, load: str) -> None:
+    (error,) = client.post_text("/v1/normal", query(load=load)).json()["errors"]
+    controls = "indentation_depth, normal_force, contact_radius"
+    assert error["detail"] == f"exactly one of {controls} is needed"
+
+
+def test_amplitude_is_no_control(client: Client) -> None:
+    body = history_query(cycles_(normal='{"amplitude": 1}'))
+    (error,) = client.post_text("/v1/tangential/history", body).json()["errors"]
+    assert error["detail"] == "exactly one of indentation_depth, normal_force is needed"
+
+
 SHEARED = '{"e_star": 1e9, "g_star": 8e8}'
 TANGENTIAL_FORCE = '{"tangential_force": 0.1}'
 
