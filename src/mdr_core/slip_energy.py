@@ -28,14 +28,8 @@ def slip_moment(
     difference, it is D^2/4 int 2t(1-t) 2 dx, where D = g(a) - g(c), and t from 0 to 1 is the part
     of it up to x: a moment of the springs.
 
-    Source: notes, §6.
-
-    Parameters
-    ----------
-    profile : parameters broadcast with the annuli.
-    coordinate : a as a contact coordinate.
-    width, stick : a - c and c in the contact coordinate, each accurate by itself.
-    energy : elastic energy over E* at a [length^3].
+    Source: notes, §6. Parameters: see `depth_step`; `energy` is the elastic energy over E* at a
+    [length^3].
     """
     closed = profile.slip_moment(coordinate, width, stick)
     if closed is not None:

@@ -43,8 +43,7 @@ def solve(
     name, given : one of `CONTROLS`, and its value.
     """
     if name == "stick_radius":
-        _, size = _sign_and_size(name, given)
-        return _by_radius(contact, size)
+        return _by_radius(contact, _sign_and_size(name, given)[1])
     ratio = friction if name == "tangential_force" else friction * contact.e_star / g_star
     columns = contact.coordinate, ratio, getattr(contact, CONTROLS[name]), given
     return solve_in_blocks(partial(_by_load, name), contact.profile, *columns)
