@@ -41,9 +41,8 @@ _STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
 # error beyond 1e16 times this distance.
 _NEAREST: Final = 1e-32
-# Nodes times points evaluated at once: larger complex arrays leave the cache, and those above
-# 128 kB are allocated anew.
-_BLOCK: Final = 4_096
+# Nodes times points evaluated at once: complex arrays above 128 kB are allocated anew.
+_BLOCK: Final = 8_192
 
 
 class _Blocks(NamedTuple):
@@ -85,10 +84,7 @@ class Foundation:
                 self._levels.append(_merged(self._levels[-1]))
 
     def _pieces(self) -> _Blocks:
-        """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), ascending.
-
-        Empty ones at the end make their number a power of two.
-        """
+        """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), and empty ones: 2^n in all."""
         load, a = self.load, self.load.radius[-1]
         inner, outer = load.radius[:-1], load.radius[1:]
         branches = load.profile.branches

@@ -7,9 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import fields
-from mdr_core.abel import Annulus
 from mdr_core.errors import InputError
-from mdr_core.fields.normal import stress as traction
 from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
@@ -132,12 +130,11 @@ def on_rings(under: Foundation, r: Array, z: Array, e: Numbers, nu: float) -> St
     moments = under.moments(r, depth)
     infinite = (z == 0) & np.isin(r, under.infinite_radii)
     origin = (z == 0) & (r == 0) & ~infinite
-    if origin.any():
+    if origin.any() and not load.profile.has_no_partial_slip:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
-        edge, axis = Annulus(load.coordinate[-1]), np.zeros(1)
-        pressure = traction(load.profile, edge, load.radius[-1], axis, _ROUNDING)
-        shear = under.share * load.stress(axis, _ROUNDING)
-        moments[:, origin], moments[0, origin] = 0.0, -np.pi * (pressure + 1j * shear)
+        whole = load._replace(slope=np.ones_like(load.slope), arcs=())
+        p, tau = (each.stress(np.zeros(1), _ROUNDING) for each in (whole, load))
+        moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.share * tau)
         moments[4, origin] = moments[0, origin] / 2
     found = load.e_star / np.pi * of_moments(moments, r, depth, e, nu)
     found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
@@ -146,8 +143,6 @@ def on_rings(under: Foundation, r: Array, z: Array, e: Numbers, nu: float) -> St
 
 def of_moments(moments: Numbers, r: Array, z: Array, e: Numbers, nu: float) -> Array:
     """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
-
-    Sum and difference of the in-plane stresses have few harmonics of the direction.
 
     Parameters
     ----------
@@ -164,7 +159,7 @@ def of_moments(moments: Numbers, r: Array, z: Array, e: Numbers, nu: float) -> A
     first = (2 - nu) * t_r - t_rz / 2
     third = nu * (2 * r * ring - t_r) + r * (2 * z * z_ring) - t_rz / 2
     total = (1 + 2 * nu) * v_z - zz + ((2 + 2 * nu) * t_r - t_rz) * e.real
-    # sigma_xx - sigma_yy + 2i tau_xy and tau_xz + i tau_yz.
+    # sigma_xx - sigma_yy + 2i tau_xy and tau_xz + i tau_yz have few harmonics of the direction.
     difference = e * (first + e * (second + e * third))
     along = shear - t_zz / 2 + e * (rz + e * (z * t_mixed - t_zz / 2))
     vertical = v_z + zz + t_rz * e.real

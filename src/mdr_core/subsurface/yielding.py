@@ -50,8 +50,7 @@ _Loaded: TypeAlias = NormalContact | TangentialContact
 class Peak(NamedTuple):
     """Largest stress under each load [pressure], and its place [length]; shape of the loads.
 
-    The field is symmetric, so that y >= 0. Where the stress is infinite, the place is a radius of
-    infinite pressure on the surface.
+    y >= 0, as the field is symmetric. An infinite stress lies at a radius of infinite pressure.
     """
 
     value: Array
