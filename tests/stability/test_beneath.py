@@ -78,7 +78,7 @@ def exact_stress(profile: Profile, c: float | None, place: list[float]) -> Array
         pressed = closed_moments(profile, 0.0, r, z)
         sheared = mpf(0) if c is None else mpf(FRICTION) * closed_moments(profile, c, r, z)
         first, second = ((part / mp.pi).astype(float) for part in (pressed, sheared + 0 * pressed))
-        return np.asarray(of_moments(first + 1j * second, *where, NU)[:, 0])
+        return np.asarray(of_moments(first + 1j * second, where, NU)[:, 0])
 
 
 def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) -> Array:
@@ -100,7 +100,7 @@ def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) 
 
     pressed = moments(first)
     along = FRICTION * moments(float(contact.stick_radius)) if sheared else 0 * pressed
-    total = of_moments(pressed + 1j * along, *where, NU)
+    total = of_moments(pressed + 1j * along, where, NU)
     return np.asarray(total[:, 0] / np.pi)
 
 

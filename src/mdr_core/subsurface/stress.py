@@ -1,7 +1,7 @@
 """Stress tensor of a contact at any points of either body. Source: notes, §14."""
 
 from math import inf
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,9 @@ from mdr_core.validation import require_not_negative
 _SURFACE: Final = 1e-18
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
+
+# Radii and depths [length], shape (m,), and directions e^(i phi), shape (..., m).
+Rings: TypeAlias = tuple[Array, Array, Numbers]
 
 
 class StressTensor(NamedTuple):
@@ -112,16 +115,13 @@ def stress(
     e = np.where(r > 0, across + 1j * aside, 1.0) / np.where(r > 0, r, 1.0)
     under, shape = foundations(contact, body)
     place = r.ravel(), depth.ravel(), e.ravel()
-    found = np.stack([on_rings(each, *place, poissons_ratio) for each in under], axis=1)
+    found = np.stack([on_rings(each, place, poissons_ratio) for each in under], axis=1)
     return StressTensor(*found.reshape(6, *shape, *depth.shape))
 
 
-def on_rings(under: Foundation, r: Array, z: Array, e: Numbers, nu: float) -> StressTensor:
-    """Return the stress tensor under a load at points that share radii and depths, (..., m).
-
-    Parameters: see `of_moments`.
-    """
-    load = under.load
+def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
+    """Return the stress tensor under a load, of the shape of the directions [pressure]."""
+    load, (r, z, e) = under.load, place
     if not under.loaded:
         return StressTensor(*np.zeros((6, *e.shape)))
     edges = [0.0, *load.radius, *map(float, load.profile.breaks)]
@@ -136,21 +136,17 @@ def on_rings(under: Foundation, r: Array, z: Array, e: Numbers, nu: float) -> St
         p, tau = (each.stress(np.zeros(1), _ROUNDING) for each in (whole, load))
         moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.share * tau)
         moments[4, origin] = moments[0, origin] / 2
-    found = load.e_star / np.pi * of_moments(moments, r, depth, e, nu)
+    found = load.e_star / np.pi * of_moments(moments, (r, depth, e), nu)
     found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf
     return StressTensor(*found)
 
 
-def of_moments(moments: Numbers, r: Array, z: Array, e: Numbers, nu: float) -> Array:
-    """Return the stresses over E*/pi, in the order of `StressTensor`; shape (6, ..., m).
+def of_moments(moments: Numbers, place: Rings, nu: float) -> Array:
+    """Return the stresses over E*/pi of moments (7, m), see `Foundation.moments`.
 
-    Parameters
-    ----------
-    moments : of the normal load, and times i of the tangential load, shape (7, m).
-    r, z : radii and depths [length], shape (m,).
-    e : directions e^(i phi), shape (..., m).
-    nu : Poisson's ratio of this body [1].
+    They have the order of `StressTensor` and the shape of the directions, (6, ..., m).
     """
+    r, z, e = place
     v_z, zz, mixed, rz, om, _, _ = moments.real
     zz, mixed, rz = z * zz, z * mixed, z * r * rz
     second = (1 - 2 * nu) * (v_z - 2 * om) + 2 * mixed - zz

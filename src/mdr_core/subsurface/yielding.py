@@ -200,10 +200,9 @@ def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     return np.array([np.ravel(each) for each in columns]), columns[0].shape
 
 
-def _under(
-    profile: Profile, force: float, ratio: float, friction: float, e_star: float, *swept: float
-) -> TangentialContact:
+def _under(profile: Profile, *case: float) -> TangentialContact:
     """Contact under one load; parameters: see `_columns`."""
+    force, ratio, friction, e_star, *swept = case
     one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
     pressed = normal.solve(one, e_star, normal_force=force)
     # The stresses depend on the ratio of the forces alone, not on G*.
@@ -258,7 +257,7 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
         """The measure by direction, r of either sign, and z; zero where it is infinite."""
         x, depth = (part.ravel() for part in np.meshgrid(r, z, indexing="ij"))
         e = np.exp(1j * angle[:, None]) * np.where(x < 0, -1, 1)
-        values = getattr(on_rings(under, np.abs(x), depth, e, nu), measure)
+        values = getattr(on_rings(under, (np.abs(x), depth, e), nu), measure)
         return np.nan_to_num(values, posinf=0.0).reshape(angle.size, r.size, z.size)
 
     r, z = _grid(under)
@@ -287,9 +286,7 @@ def _grid(under: Foundation) -> tuple[Array, Array]:
     return r, np.append(0.0, depths)
 
 
-def _climbed(
-    on: Callable[[Array, Array, Array], Array], place: Array, box: Array
-) -> tuple[float, Array]:
+def _climbed(on: Callable[..., Array], place: Array, box: Array) -> tuple[float, Array]:
     """Return the peak next to a place, and its own place, by boxes of points around it.
 
     A box moves to its highest point, and shrinks unless that is a higher one on its boundary.
