@@ -9,7 +9,6 @@ k the slope of q_x over q: the real part belongs to the normal load, the imagina
 tangential load. The kernels are singular at x^2 = w = (r + i z)^2. Source: notes, §14.
 """
 
-from collections.abc import Iterator
 from math import ceil, inf, log2, prod
 from typing import Final, NamedTuple, TypeAlias
 
@@ -97,9 +96,10 @@ class Foundation:
         self._part = part = np.searchsorted(outer, high)
         self._base = base = np.array([branch.base for branch in branches])[self._owner]
         # An annulus may be too narrow for its radii to resolve it.
-        narrow = load.profile.radius_width(load.coordinate[1:], load.width)[part]
-        whole = (inner[part] == low) & (outer[part] == high)
-        width = np.where(whole, narrow, high - low) * (high + low)
+        gap = load.profile.radius_width(load.coordinate[1:], load.width)[part]
+        width = np.where((inner[part] == low) & (outer[part] == high), gap, high - low) * (
+            high + low
+        )
         s_low = np.sqrt((low - base) * (low + base))
         s_high = np.sqrt(s_low * s_low + width)
         self._ends = np.array([s_low, s_high])
@@ -206,9 +206,9 @@ def _merged(blocks: _Blocks) -> _Blocks:
     return _Blocks(low.low, high.high, width, past, x, mass)
 
 
-def _in_cache(index: Indices, nodes: int) -> Iterator[Indices]:
+def _in_cache(index: Indices, nodes: int) -> list[Indices]:
     step = max(_BLOCK // nodes, 1)
-    return (index[start : start + step] for start in range(0, index.size, step))
+    return [index[start : start + step] for start in range(0, index.size, step)]
 
 
 def _add(total: Numbers, point: Indices, square: Array, x: Array, z: Array, mass: Numbers) -> None:

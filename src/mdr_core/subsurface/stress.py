@@ -83,8 +83,7 @@ def stress(
 
     Parameters
     ----------
-    contact : a normal contact, or one that is loaded tangentially as well, under any loads; or
-        the state at the end of a load history.
+    contact : normal or tangential contact under any loads, or state at the end of a history.
     x, y : coordinates on the surface from the axis, x along the tangential force [length].
     z : depth in the body, >= 0 [length]. The three broadcast to the shape of the points.
     poissons_ratio : of this body, -1 to 1/2 [1].
@@ -142,10 +141,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
 
 
 def of_moments(moments: Numbers, place: Rings, nu: float) -> Array:
-    """Return the stresses over E*/pi of moments (7, m), see `Foundation.moments`.
-
-    They have the order of `StressTensor` and the shape of the directions, (6, ..., m).
-    """
+    """Return the stresses over E*/pi of moments (7, m), as in `StressTensor`; shape (6, ..., m)."""
     r, z, e = place
     v_z, zz, mixed, rz, om, _, _ = moments.real
     zz, mixed, rz = z * zz, z * mixed, z * r * rz
@@ -170,8 +166,7 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
     a load, near which stresses change like a root. That of a load history itself is left out.
     Parameters: see `stress`.
     """
-    across, aside, depth = np.broadcast_arrays(x, y, z)
-    r, z = np.hypot(across, aside).ravel(), np.ravel(depth)
+    r, z = map(np.ravel, np.broadcast_arrays(np.hypot(x, y), z))
     known, near = fields.edges(contact), 0.0
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))

@@ -6,7 +6,6 @@ Source: notes, §14; johnson, section 4.2.
 from collections.abc import Callable
 from functools import cache, lru_cache
 from math import ceil, cos, exp, inf, log, sin
-from operator import itemgetter
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -18,11 +17,9 @@ from mdr_core.broadcasting import with_parameters
 from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
-from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import on_rings
-from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
@@ -38,13 +35,12 @@ _ACROSS, _TURN = np.linspace(-1, 1, 5), np.pi / 6
 # Factor by which a box shrinks, and its last size over the first: a smooth peak is missed by the
 # square of it. Stresses that differ by less than the last number are equal.
 _SHRINK, _SMALLEST, _EQUAL = 0.3, 1e-3, 1e-12
-# Decimals of the logarithm of the stress at the onset, accuracy of that of the force, and the
-# largest distance of the latter from the prescribed one.
+# Decimals of the logarithm of the stress at the onset; accuracy and range of that of the force.
 _DIGITS, _XTOL, _REACH = 5, 1e-5, 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
 
-_Loaded: TypeAlias = NormalContact | TangentialContact
+_Loaded: TypeAlias = normal.NormalContact | tangential.TangentialContact
 
 
 class Peak(NamedTuple):
@@ -74,17 +70,6 @@ def largest(
     Raises
     ------
     InputError : another measure.
-
-    Examples
-    --------
-    Hertz' contact, nu = 0.3: 0.31 p_0 at the depth 0.481 a, Johnson's section 4.2.
-
-    >>> from mdr_core.normal import solve
-    >>> from mdr_core.profiles import Paraboloid
-    >>> contact = solve(Paraboloid(2.0), 3.0, contact_radius=0.1)
-    >>> peak = largest(contact, "maximum_shear", poissons_ratio=0.3)
-    >>> [round(float(one), 3) for one in (peak.value / contact.maximum_pressure, peak.z / 0.1)]
-    [0.31, 0.481]
     """
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
@@ -166,13 +151,13 @@ def yielding(
             for half in np.array_split(box[order], 2):
                 decide(half)
 
+    where = np.zeros(shape, dtype=bool)
     if isinstance(profile, Cone | Paraboloid | Power) and not columns[1].any():
         # Under a power the stresses are similar at all loads.
         factors = [np.vectorize(_factor, otypes=[float])(profile.exponent, nu) for nu in ratios]
         peaks = 2 * np.max(factors, axis=0) * pressed.mean_pressure
-        where = np.broadcast_to(pressed.loaded & (peaks >= yield_strength), shape).copy()
+        where |= pressed.loaded & (peaks >= yield_strength)
     else:
-        where = np.zeros(shape, dtype=bool)
         loaded = np.flatnonzero(np.broadcast_to(pressed.loaded, shape))
         _, group = np.unique(columns[2:, loaded], axis=1, return_inverse=True)
         for number in np.unique(group):
@@ -190,7 +175,7 @@ def yielding(
 def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     """F_N, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of the loads."""
     pressed, ratio, friction = contact.normal, np.zeros(()), np.ones(())
-    if not isinstance(contact, NormalContact):
+    if not isinstance(contact, normal.NormalContact):
         start = contact.path.start if isinstance(contact, LoadHistory) else contact
         friction = np.asarray(start.friction_coefficient)
         limit = friction * pressed.normal_force
@@ -200,7 +185,7 @@ def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     return np.array([np.ravel(each) for each in columns]), columns[0].shape
 
 
-def _under(profile: Profile, *case: float) -> TangentialContact:
+def _under(profile: Profile, *case: float) -> tangential.TangentialContact:
     """Contact under one load; parameters: see `_columns`."""
     force, ratio, friction, e_star, *swept = case
     one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
@@ -249,8 +234,9 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     """Value and place of the largest stress in one case; parameters: see `largest`."""
     if not under.loaded:
         return 0.0, 0.0, 0.0, 0.0
+    profile, edges = under.load.profile, under.load.radius
     for b in under.infinite_radii:
-        if infinite_deviator(under.load.profile, b, (nu,), under.slips_from):
+        if infinite_deviator(profile, b, (nu,), under.slips_from):
             return inf, b, 0.0, 0.0
 
     def on(angle: Array, r: Array, z: Array) -> Array:
@@ -260,7 +246,14 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
         values = getattr(on_rings(under, (np.abs(x), depth, e), nu), measure)
         return np.nan_to_num(values, posinf=0.0).reshape(angle.size, r.size, z.size)
 
-    r, z = _grid(under)
+    # Radii, of either sign if there is a tangential load, and depths.
+    a = float(edges[-1])
+    stops = np.unique([0.0, *edges, *(float(b) for b in profile.breaks if b < a)])
+    r = graded(np.append(stops, 1.5 * a), max(_RADII, 4 * stops.size))
+    if under.sheared:
+        r = np.append(-r[:0:-1], r)
+    shallow, deep = min(_SHALLOWEST * a, 0.1 * float(np.diff(stops).min())), _DEEPEST * a
+    z = np.append(0.0, np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow))))
     (values,) = on(np.zeros(1), r, z)
     high = (values == maximum_filter(values, 3)) & (values >= _ALMOST * values.max())
     tops = sorted(np.argwhere(high), key=lambda top: -values[*top])[:_PEAKS]
@@ -269,21 +262,8 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
         _climbed(on, np.array([0.0, r[i], z[j]]), np.array([turn, across[i], down[j]]))
         for i, j in tops
     ]
-    value, (angle, radius, depth) = max(peaks, key=itemgetter(0))
+    value, (angle, radius, depth) = max(peaks, key=lambda peak: peak[0])
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
-
-
-def _grid(under: Foundation) -> tuple[Array, Array]:
-    """Radii, of either sign if there is a tangential load, and depths."""
-    edges = under.load.radius
-    a = float(edges[-1])
-    stops = np.unique([0.0, *edges, *(float(b) for b in under.load.profile.breaks if b < a)])
-    r = graded(np.append(stops, 1.5 * a), max(_RADII, 4 * stops.size))
-    if under.sheared:
-        r = np.append(-r[:0:-1], r)
-    shallow, deep = min(_SHALLOWEST * a, 0.1 * float(np.diff(stops).min())), _DEEPEST * a
-    depths = np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow)))
-    return r, np.append(0.0, depths)
 
 
 def _climbed(on: Callable[..., Array], place: Array, box: Array) -> tuple[float, Array]:

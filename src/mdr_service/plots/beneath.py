@@ -30,5 +30,5 @@ def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> M
     if "largest" in result and query.y == 0:
         found = result["largest"]["von_mises"]
         peak = float(found["x"][0]), float(found["z"][0])
-    loads = subset_note(1, query.loads, "loads")
-    return Map(x, z, first, "von Mises stress", a, stick, peak, loads)
+    note = subset_note(1, query.loads, "loads")
+    return Map(x, z, first, "von Mises stress", a, stick, peak, note)

@@ -8,8 +8,7 @@ from mdr_core import subsurface
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.normal import not_reached
-from mdr_core.subsurface import StressTensor
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
 from mdr_service.results import Contact, Result, checked, notices, response_metadata
 from mdr_service.schemas.contacts import Bodies
@@ -49,9 +48,8 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     tensor = subsurface.stress(loaded, *place, **body)
     shape = query.loads, z.size, x.size
     values: Result = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
-    at_singular = np.isinf(tensor.zz).reshape(shape)
-    checked(query, values, dict.fromkeys(values, at_singular))
-    infinite = bool(at_singular.any())
+    infinite: Flags = np.isinf(tensor.zz).reshape(shape)
+    checked(query, values, dict.fromkeys(values, infinite))
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = notices(query, source)
@@ -64,7 +62,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
             name: dict(zip(peak._fields, map(np.ravel, peak), strict=True))
             for name, peak in peaks.items()
         }
-        infinite |= any(np.isinf(peak.value).any() for peak in peaks.values())
+        infinite = np.append(infinite, [np.isinf(peak.value) for peak in peaks.values()])
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
         strength = query.material.yield_strength
         searched["yield_onset_force"] = {
@@ -73,7 +71,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         }
     if searched:
         searched["search_error_estimate"] = _OF_SEARCH
-    if infinite:
+    if infinite.any():
         message = "stresses are infinite on the surface, where the pressure is"
         warnings.append(Notice("singular", message))
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
@@ -96,7 +94,7 @@ def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
     return {"poissons_ratio": known.poissons_ratio, "body": query.body}
 
 
-def _by_name(tensor: StressTensor, name: str) -> Array:
+def _by_name(tensor: subsurface.StressTensor, name: str) -> Array:
     """Return a stress by the name of its quantity [pressure]."""
     if name.startswith("principal_"):
         return np.asarray(tensor.principal[..., 3 - int(name[-1])])

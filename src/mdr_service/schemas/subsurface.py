@@ -42,8 +42,7 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
     z: list[Size] = places("Depths in the body, 0 on its surface")
     points: int = quantity(
         "1",
-        "Number of each that the service chooses in place of lists, up to 1.5 times the largest "
-        "contact radius",
+        "Number of each in place of lists, up to 1.5 times the largest contact radius",
         default=None,
         ge=2,
         le=1000,
