@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from mdr_core import history
-from mdr_core.profiles import Cone, Paraboloid, Tabulated
+from mdr_core import history, normal
+from mdr_core.profiles import Cone, Paraboloid, RoundedPunch, Sphere, Tabulated, TruncatedCone
 
 if TYPE_CHECKING:
     from mdr_core.profiles import Profile
@@ -26,7 +26,7 @@ def by_straight_steps(
     Their points lie on the same path and cluster at the ends of each step.
     """
     share = np.sin(np.linspace(0.0, np.pi / 2, number + 1)[1:]) ** 2
-    edges = [0.0, *profile.coordinate_from_reduced_force(force)]
+    edges = [0.0, *normal.solve(profile, 1.0, normal_force=force).coordinate]
     place = np.concatenate([a + (b - a) * share for a, b in pairwise(edges)])
     begin = np.repeat([0.0, *force[:-1]], number)
     rise = np.repeat(np.diff([0.0, *force]), number)
@@ -76,4 +76,28 @@ def test_nonlinear_steps_are_extrapolated(profile: Profile, seed: int) -> None:
     assert found.error_estimate < 1e-7
     for name, expected in by_straight_steps(profile, force, displacement, 16_384).items():
         bound = 1e-8 * np.max(np.abs(expected))
+        assert getattr(found, name) == pytest.approx(expected, rel=0, abs=bound)
+
+
+@pytest.mark.parametrize(
+    ("profile", "force", "displacement"),
+    [
+        (RoundedPunch(0.1612653, 3.0808771), (0.07528385, 0.02148123), -0.11708062),
+        (Sphere(1.74840936), (0.01861400606, 0.00629701709), -0.04838392),
+        (TruncatedCone(0.43572878, 0.44140809), (0.0382279085, 0.1244092), 0.3194804),
+    ],
+)
+def test_estimate_of_a_nonlinear_step_into_full_slip(
+    profile: Profile, force: tuple[float, float], displacement: float
+) -> None:
+    """Full slip begins anywhere on a chord, with an irregular error."""
+    moved = np.array([0.0, MU * displacement])
+    found = history.solve(
+        profile, 1.0, 1.0, MU, normal_force=force, tangential_displacement=moved, rtol=1e-5
+    )
+    assert found.regime[-1] == "full_slip"
+    assert found.error_estimate < 1e-4
+    for name, expected in by_straight_steps(profile, np.array(force), moved, 8_192).items():
+        # The straight steps leave an error below 1e-8.
+        bound = (found.error_estimate + 1e-8) * np.max(np.abs(expected))
         assert getattr(found, name) == pytest.approx(expected, rel=0, abs=bound)

@@ -19,7 +19,7 @@ from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments, widths
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.slip_memory import LoadPoints, Polyline
-from mdr_core.history.step_results import StepResults
+from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
@@ -271,18 +271,40 @@ class ExtrapolatedResults:
             coarse, fine = self._extrapolated(name)
             largest = float(np.max(np.abs(fine)))
             if largest > 0:
-                worst = max(worst, safety * float(np.max(np.abs(fine - coarse))) / largest)
+                change = float(np.max(np.abs(fine - coarse)))
+                if name == "dissipation":
+                    change = max(change, self._change_at_full_slip)
+                worst = max(worst, safety * change / largest)
         return worst
 
-    def _extrapolated(self, name: str) -> tuple[Array, Array]:
-        """Richardson's extrapolation of the coarser and of the finer two sets of chords."""
+    @property
+    def _change_at_full_slip(self) -> float:
+        """Error of the dissipation on load steps along which full slip begins or ends.
+
+        It does so anywhere on a chord. This error is irregular, and one order below the error that
+        the extrapolation removes; the change by the last halving may vanish by chance.
+        """
+        results, samples = self.sets[-1]
+        full = results.regime == REGIMES.index("full_slip")
+        sample = np.searchsorted(samples, np.flatnonzero(full[1:] != full[:-1]) + 1)
+        chords = np.diff(np.append(-1, samples))
+        _, coarse, fine = self._at_samples("dissipation")
+        change = np.where(chords > 1, np.abs(fine - coarse) / (3 * chords), 0.0)
+        return float(change[sample].max(initial=0.0))
+
+    def _at_samples(self, name: str) -> list[Array]:
+        """Results of each set at the samples, those of `dissipation` since the sample before."""
         values = []
         for results, samples in self.sets:
             row = getattr(results, name)
             begin = np.append(0, samples[:-1] + 1)
             values.append(np.add.reduceat(row, begin) if name == "dissipation" else row[samples])
+        return values
+
+    def _extrapolated(self, name: str) -> tuple[Array, Array]:
+        """Richardson's extrapolation of the coarser and of the finer two sets of chords."""
         found = []
-        for coarse, fine in pairwise(values):
+        for coarse, fine in pairwise(self._at_samples(name)):
             change = (fine - coarse) / 3
             if name in {"energy", "dissipation"}:
                 # Below their own error these may not become negative.
