@@ -29,12 +29,11 @@ from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
 # Peaks of the grid that are climbed if they reach this part of the highest one that is known.
 _PEAKS, _ALMOST = 3, 0.9
-# Points across a box around a peak, and half of the directions in the first one: under weak
-# friction a peak may leave the plane.
-_ACROSS, _TURN = np.linspace(-1, 1, 5), np.pi / 6
-# Factor by which a box shrinks, and its last size over the first: a smooth peak is missed by the
-# square of it. Stresses that differ by less than the last number are equal.
-_SHRINK, _SMALLEST, _EQUAL = 0.3, 1e-3, 1e-12
+# Points across a box around a peak, and half of the first one in steps of the grid and in its
+# directions: under weak friction a peak may leave the plane.
+_ACROSS, _STEPS, _TURN = np.linspace(-1, 1, 5), 1.5, np.pi / 6
+# Factor by which a box shrinks, and its last size: a smooth peak is missed by the square of it.
+_SHRINK, _SMALLEST = 0.3, 1e-3
 # Decimals of the logarithm of the stress at the onset; accuracy and range of that of the force.
 _DIGITS, _XTOL, _REACH = 5, 1e-5, 60.0
 
@@ -257,7 +256,7 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
     (values,) = on(np.zeros(1), r, z)
     high = (values == maximum_filter(values, 3)) & (values >= _ALMOST * values.max())
     tops = sorted(np.argwhere(high), key=lambda top: -values[*top])[:_PEAKS]
-    turn, across, down = _TURN * under.sheared, np.gradient(r), np.gradient(z)
+    turn, across, down = _TURN * under.sheared, _STEPS * np.gradient(r), _STEPS * np.gradient(z)
     peaks = [
         _climbed(on, np.array([0.0, r[i], z[j]]), np.array([turn, across[i], down[j]]))
         for i, j in tops
@@ -269,7 +268,7 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
 def _climbed(on: Callable[..., Array], place: Array, box: Array) -> tuple[float, Array]:
     """Return the peak next to a place, and its own place, by boxes of points around it.
 
-    A box moves to its highest point, and shrinks unless that is a higher one on its boundary.
+    A box moves to its highest point, and grows if that is a higher one on its boundary.
     """
     value, size = 0.0, 1.0
     while size > _SMALLEST:
@@ -277,8 +276,8 @@ def _climbed(on: Callable[..., Array], place: Array, box: Array) -> tuple[float,
         axes[2] = np.abs(axes[2])
         values = on(*axes)
         spot = np.unravel_index(values.argmax(), values.shape)
-        outward = (np.abs(_ACROSS[list(spot)]) == 1) & (box > 0)
-        if values[spot] <= value * (1 + _EQUAL) or not outward.any():
-            size *= _SHRINK
+        outward = ((np.abs(_ACROSS[list(spot)]) == 1) & (box > 0)).any()
+        rises = outward and values[spot] > value
+        size = min(size / _SHRINK, 1.0) if rises else size * _SHRINK
         value, place = float(values[spot]), axes[range(3), spot]
     return value, place
