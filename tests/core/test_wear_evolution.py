@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from mdr_core import fields, normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
+    CappedParaboloid,
     Cone,
     FlatPunch,
     Paraboloid,
@@ -270,6 +271,22 @@ def test_small_force_amplitude_at_constant_depth_reaches_the_limit(part: float) 
     angle, root = np.arccos(c / a), np.sqrt(a * a - c * c)
     volume = 2 * (a * a * angle - c * root) - (a**4 * angle + c * (a * a - 2 * c * c) * root) / 2
     assert result.worn_volume[0] == pytest.approx(volume, rel=1e-6, abs=0)
+
+
+def test_estimate_where_the_contact_grows_over_a_break() -> None:
+    """Both runs of the estimate err alike there; reference: F_N = F_N(c) + 2 E* c (d - g(c))."""
+    d, moved = 0.07816829, 0.97 * 1.25 * 0.3 * 0.07816829
+    contact = normal.solve(
+        CappedParaboloid(0.69389344, 3.9115115, 1.02886893), 1.0, indentation_depth=d
+    )
+    result = evolution.solve(
+        contact, 0.8, 0.3, wear_coefficient=10.0, cycles=[1e9], tangential_displacement=moved
+    )
+    # The stick zone is inside the cap, where g = x^2/R.
+    c = np.sqrt(0.03 * d * 3.9115115)
+    force = 4 * c**3 / (3 * 3.9115115) + 2 * c * 0.97 * d
+    assert result.contact_radius[0] > 0.69389344
+    assert result.normal_force[0] == pytest.approx(force, rel=result.error_estimate, abs=0)
 
 
 def test_zero_cycles_is_the_initial_state() -> None:

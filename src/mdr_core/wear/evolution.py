@@ -15,6 +15,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import first_index, require_not_negative
+from mdr_core.wear import limit
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.integrator import integrate
@@ -71,14 +72,32 @@ class WearEvolution(validity.ContactResults, WornSurface):
     def error_estimate(self) -> float:
         """Bound on the relative error of every scalar [1].
 
-        Twice the difference to a run on two thirds of the nodes with a looser integrator, and the
-        rounding error of the contact before wear.
+        Twice the difference to a run on two thirds of the nodes with a looser integrator, or that
+        to the limiting state once wear has stopped, and the rounding error of the contact before
+        wear. At breaks of the profile in the worn annulus both runs may err alike.
         """
-        worst = 0.0
+        worst = self._distance_from_limit / _SAFETY
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
         return _SAFETY * worst + self.tangential_contact.error_estimate
+
+    @property
+    def _distance_from_limit(self) -> float:
+        """Largest relative difference from the limiting state, 0 before wear stops [1]."""
+        if self.initial.stick_grows or self.cycles[-1] < self.settled_at:
+            return 0.0
+        start = self.initial.tangential_contact
+        end = limit.solve(
+            self.normal,
+            start.g_star,
+            start.friction_coefficient,
+            **{start.control: getattr(start, start.control)},
+        )
+        names = ("worn_volume", "normal_force", "indentation_depth", "stick_radius")
+        pairs = [(getattr(self, name), getattr(end, name)) for name in names]
+        pairs.append((self.contact_radius, end.wear_radius))
+        return max(abs(float(value[-1] / exact) - 1) for value, exact in pairs)
 
     def field_error_estimate(self, radius: ArrayLike, names: Sequence[str] = FIELDS) -> float:
         """Return a bound on the error of the fields at some radii [1].
