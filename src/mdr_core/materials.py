@@ -36,6 +36,11 @@ class Material:
     poissons_ratios: tuple[float, ...] = ()
     """Poisson's ratios of the elastic bodies [1], empty where they are unknown."""
 
+    def __post_init__(self) -> None:
+        for name, value in (("e_star", self.e_star), ("g_star", self.g_star)):
+            if value is not None and not 0 < value < inf:
+                raise InputError(("material", name), "must be positive and finite")
+
 
 def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     """Return the effective moduli and the similarity mismatch of two bodies in contact.

@@ -8,7 +8,7 @@ import pytest
 
 from mdr_core import fields, history, normal, tangential
 from mdr_core.errors import InputError
-from mdr_core.materials import RIGID, Body, from_bodies
+from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
     Cone,
     Ellipsoid,
@@ -59,6 +59,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         "does not agree",
     ),
     (lambda: normal.solve(Cone(1.0), 0.0, normal_force=1.0), ("material", "e_star"), "positive"),
+    (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
     (lambda: history.unloaded(Cone(1.0), 1.0, 0.0, 0.3), ("material", "g_star"), "positive"),
     (tangential_contact(), ("tangential",), "exactly one of"),
     (tangential_contact(tangential_force=0.0, stick_radius=0.1), ("tangential",), "exactly one of"),
