@@ -66,6 +66,7 @@ class Foundation:
         """k where the springs slip, as it acts on the body [1]."""
         rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
         self._anchors = self.share * np.array([load.slope, rate])
+        self._inverse = any(arc and arc.inverse for arc in load.arcs)
         # Least radius at which q_x has a slope, infinite if it has none.
         self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
@@ -133,8 +134,7 @@ class Foundation:
         if not self.sheared:
             return found
         slope, rate = self._anchors[:, self._part[index]]
-        inverse = any(arc and arc.inverse for arc in self.load.arcs)
-        return found * (1 + 1j * (slope + rate * (0.5 / x if inverse else 2 * x)))
+        return found * (1 + 1j * (slope + rate * (0.5 / x if self._inverse else 2 * x)))
 
     def moments(self, r: Array, z: Array) -> Numbers:
         """Return the moments of q + i q_x at points, z > 0, shape (7, m)."""

@@ -17,6 +17,8 @@ from mdr_core.validation import require_not_negative
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
 # radius, by which a point is moved off the surface, where the kernels are singular.
 _SURFACE: Final = 1e-18
+# Relative accuracy of the tractions at the origin.
+_AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
 
@@ -76,10 +78,10 @@ def stress(
     poissons_ratio: float,
     body: int = 1,
 ) -> StressTensor:
-    """Return the stress tensor of one body at any points.
+    """Return the stress tensor of one body at points, of the shape of loads and points [pressure].
 
-    The tangential force acts on body 1, the profile's, which passes it on: the shear stress on
-    the surface of body 2 is that of `fields.shear_stress`, and on body 1 its opposite.
+    The tangential force acts on body 1, the profile's, which passes it on: the shear stress on the
+    surface of body 2 is that of `fields.shear_stress`, on body 1 its opposite. Source: notes, §14.
 
     Parameters
     ----------
@@ -132,7 +134,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
     if origin.any() and not load.profile.has_no_partial_slip:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         whole = load._replace(slope=np.ones_like(load.slope), arcs=())
-        p, tau = (each.stress(np.zeros(1), _ROUNDING) for each in (whole, load))
+        p, tau = (each.stress(np.zeros(1), _AXIS_RTOL) for each in (whole, load))
         moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.share * tau)
         moments[4, origin] = moments[0, origin] / 2
     found = load.e_star / np.pi * of_moments(moments, (r, depth, e), nu)

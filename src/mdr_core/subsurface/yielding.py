@@ -59,7 +59,7 @@ def largest(
 ) -> Peak:
     """Return the largest von Mises or shear stress in a body under each load, and its place.
 
-    Its relative accuracy is about 1e-5.
+    Its relative accuracy is about 1e-5. Source: notes, §14.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def yield_onset_force(
 
     Yield begins where the von Mises stress reaches the yield strength, or the largest shear stress
     half of it (Tresca). The force is 0 where the stress is infinite under any load, and inf where
-    no load up to the end of the profile reaches it.
+    no load up to the end of the profile reaches it. Source: johnson, section 4.2; notes, §14.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def yielding(
 
     `yield_strength` is that of the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
     are known. Along a load history the forces of every sample count as applied once; at its end
-    the traction is that of the path.
+    the traction is that of the path. Source: johnson, section 4.2; notes, §14.
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     profile, (columns, shape) = pressed.profile, _columns(contact)
