@@ -76,18 +76,19 @@ class WearEvolution(validity.ContactResults, WornSurface):
         to the limiting state once wear has stopped, and the rounding error of the contact before
         wear. At breaks of the profile in the worn annulus both runs may err alike.
         """
-        worst = self._distance_from_limit / _SAFETY
+        worst = 0.0
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
-        return _SAFETY * worst + self.tangential_contact.error_estimate
+        numerical = max(_SAFETY * worst, self._distance_from_limit)
+        return numerical + self.tangential_contact.error_estimate
 
     @property
     def _distance_from_limit(self) -> float:
         """Largest relative difference from the limiting state, 0 before wear stops [1]."""
         if self.initial.stick_grows or self.cycles[-1] < self.settled_at:
             return 0.0
-        start = self.initial.tangential_contact
+        start = self.tangential_contact
         end = limit.solve(
             self.normal,
             start.g_star,
