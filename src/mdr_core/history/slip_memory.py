@@ -147,8 +147,8 @@ class SlipSegments(NamedTuple):
 def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontPath, Polyline]:
     """Return the vertices of the polylines after a sequence of straight load steps.
 
-    And the path of the slip front, and the last polyline. A normal coordinate <= 0 of a load point
-    means separation and erases the memory.
+    The path of the slip front and the last polyline come with them. A load point with a normal
+    coordinate <= 0 separates the bodies and erases the memory.
     """
     count = points.normal.size
     held = len(start.forward) if start.in_contact else 0

@@ -85,8 +85,8 @@ class QueryRoute(APIRoute):
 
     def get_route_handler(self) -> Callable[[Request], Any]:
         """Return the handler of a request."""
-        query, respond = signature(self.endpoint).parameters.values()
-        model, responder_type = get_args(query.annotation)[0], get_args(respond.annotation)[0]
+        parameters = signature(self.endpoint).parameters.values()
+        model, responder_type = (get_args(each.annotation)[0] for each in parameters)
         name = str(self.operation_id)
 
         async def handle(request: Request) -> Response:
