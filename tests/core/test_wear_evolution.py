@@ -477,6 +477,20 @@ def test_contact_beyond_the_profile_is_rejected_with_its_cycle() -> None:
     assert caught.value.path == ("cycles", 2)
 
 
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+@pytest.mark.parametrize("amplitude", ["tangential_displacement", "tangential_force"])
+def test_contact_that_ends_with_its_profile_cannot_wear(control: str, amplitude: str) -> None:
+    table = Tabulated((0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.03125, 0.125, 0.28125, 0.5))
+    whole = normal.solve(table, E_STAR, contact_radius=1.0)
+    load = {control: (1 - 1e-12) * float(getattr(whole, control))}
+    contact = normal.solve(table, E_STAR, **load)
+    with pytest.raises(InputError) as caught:
+        evolution.solve(
+            contact, G_STAR, MU, wear_coefficient=WEAR, cycles=[1e3], **{amplitude: 0.1 * MU}
+        )
+    assert caught.value.path == ("cycles", 0)
+
+
 def test_radius_beyond_the_profile_is_rejected() -> None:
     result = worn("sphere", CONTROLS[0])
     for field in (*map(partial(getattr, result), evolution.FIELDS), result.field_error_estimate):

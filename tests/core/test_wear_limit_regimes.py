@@ -188,6 +188,14 @@ def test_worn_annulus_beyond_the_profile_is_rejected(profile: Profile, depth: fl
     assert "profile ends" in failure.value.detail
 
 
+def test_stick_zone_at_the_equator_leaves_no_room_for_wear() -> None:
+    """R - a = 2R/(exp(2v) + 1) is 2e-15 R, v tanh(v) = d/R = 17."""
+    with pytest.raises(InputError) as failure:
+        worn(Sphere(1.0), {"indentation_depth": 17.0}, {"tangential_displacement": 0.01})
+    assert failure.value.path == ("load", "indentation_depth")
+    assert "profile ends" in failure.value.detail
+
+
 @pytest.mark.parametrize(
     ("load", "amplitude", "path"),
     [

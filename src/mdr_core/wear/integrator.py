@@ -47,6 +47,9 @@ def integrate(
     start, last = initial.vector, float(scaled[-1])
     if last == 0:
         return (AnnulusState(initial, start),) * cycles.size, inf
+    if initial.growth_to_end <= 0:
+        # An event is a change of sign, which comes too late here.
+        _require_all_cycles(initial, cycles, 0.0, inf)
     first = float(scaled[scaled > 0][0])
     if first < _FIRST:
         detail = "the wear in so few cycles is too small to be resolved: request more cycles"

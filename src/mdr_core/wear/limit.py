@@ -322,13 +322,16 @@ def _require_room(wear: LimitingWear) -> None:
         return
     stick_zone, annulus = wear.stick_zone, wear.stick_zone.annulus
     wearing = (stick_zone.step > 0) & ~stick_zone.unbounded
+    largest = annulus.largest_width
+    # Next to a pole of g' there is no room.
+    beyond = wearing & (largest <= 0).reshape(wearing.shape)
     # Without a root the search for the width ends there.
-    if not (
-        np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * annulus.largest_width
-    ).any():
-        return
-    step = np.ravel(np.where(wearing, stick_zone.step, 0.0))
-    beyond = (annulus.mean_rise(annulus.largest_width) < step).reshape(wearing.shape)
+    if (
+        not beyond.any()
+        and (np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * largest).any()
+    ):
+        step = np.ravel(np.where(wearing, stick_zone.step, 0.0))
+        beyond = (annulus.mean_rise(largest) < step).reshape(wearing.shape)
     if beyond.any():
         raise InputError(
             ("load", wear.tangential_contact.normal.control, *first_index(beyond)),
