@@ -30,7 +30,8 @@ _WEAR: Final = members(WearAnswer, ("radius", *get_args(WearField)))
 _EVOLUTION: Final = members(
     EvolutionAnswer, ("radius", "field_error_estimate", *get_args(EvolutionField))
 )
-_PROFILES: Final = frozenset({"initial_profile", "limiting_profile", "profile"})
+# A set would order the warnings by chance, and differently in each process.
+_PROFILES: Final = ("initial_profile", "limiting_profile", "profile")
 # Infinite under unbounded wear.
 _UNBOUNDED: Final = frozenset(
     {"wear_radius", "indentation_depth", "worn_volume", "limiting_profile", "worn_depth"}
