@@ -72,13 +72,18 @@ COMMANDS: Final = {
 def main(given: Sequence[str] | None = None) -> int:
     """Run a command line and return the exit status."""
     try:
-        return _run(sys.argv[1:] if given is None else given)
+        status = _run(sys.argv[1:] if given is None else given)
+        sys.stdout.flush()
     except KeyboardInterrupt:
         return ExitStatus.INTERRUPTED
-    except BrokenPipeError:
+    except OSError as error:
         # Python would try once more to write the rest on exit, and print a traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return ExitStatus.PIPE_CLOSED
+        if isinstance(error, BrokenPipeError):
+            return ExitStatus.PIPE_CLOSED
+        sys.stderr.write(f"mdr: {error}\n")
+        return ExitStatus.OUTPUT_FAILED
+    return status
 
 
 def _run(given: Sequence[str]) -> int:

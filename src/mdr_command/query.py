@@ -6,7 +6,7 @@ parameters of the service, with hyphens in place of underscores.
 
 import argparse
 import logging
-import os
+import re
 import sys
 from pathlib import Path
 from typing import Final
@@ -55,6 +55,8 @@ def declare(parser: argparse.ArgumentParser) -> None:
     )
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
+        # By default -1e-3 counts as an option.
+        parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
             group.add_argument(
                 f"--{name.replace('_', '-')}",
@@ -82,14 +84,10 @@ def run(arguments: argparse.Namespace) -> int:
         return _report(problems.INTERNAL_ERROR)
     try:
         _write(content, arguments.output)
-    except BrokenPipeError:
-        raise
     except OSError as error:
-        if arguments.output:
-            return _fail(f"{arguments.output}: {error.strerror}", ExitStatus.OUTPUT_FAILED)
-        # Python would try once more to write the rest on exit, and print a traceback.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _fail(f"standard output: {error.strerror}", ExitStatus.OUTPUT_FAILED)
+        if not arguments.output:
+            raise
+        return _fail(f"{arguments.output}: {error.strerror}", ExitStatus.OUTPUT_FAILED)
     return ExitStatus.OK
 
 

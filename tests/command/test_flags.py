@@ -40,6 +40,8 @@ def test_the_suffix_of_the_file_gives_the_format(tmp_path: Path) -> None:
     ("given", "pointer"),
     [
         (["--normal-force", "-1"], "/normal_force"),
+        (["--normal-force", "-1e-3"], "/normal_force"),
+        (["--normal-force", "-.5E+2"], "/normal_force"),
         (["--normal-force", "ten"], "/normal_force"),
         (["--normal-force", "1", "--slope", "1"], "/slope"),
         ([], "/indentation_depth"),

@@ -198,3 +198,18 @@ def test_closed_output_pipe_ends_silently() -> None:
     process.stdout = None
     _, err = process.communicate(json.dumps(many).encode(), timeout=PATIENCE)
     assert (process.returncode, err) == (141, b"")
+
+
+@pytest.mark.parametrize("command", ["profiles", "normal"])
+def test_output_on_a_full_device_is_reported(command: str) -> None:
+    with Path("/dev/full").open("wb") as device:
+        process = subprocess.run(
+            [*MDR, command],
+            input=BODY,
+            stdout=device,
+            stderr=subprocess.PIPE,
+            timeout=PATIENCE,
+            check=False,
+        )
+    assert process.returncode == 4
+    assert process.stderr == b"mdr: [Errno 28] No space left on device\n"
