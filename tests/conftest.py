@@ -18,9 +18,10 @@ JSON = {"content-type": "application/json"}
 # Slow machines must not fail tests that do not measure time.
 PATIENT = SETTINGS.model_copy(update={"budget_seconds": 300.0, "queue_seconds": 300.0})
 
-# Background processes of a shell ignore SIGINT and pass this on to their children, so restore the
-# default for the processes that tests start and interrupt.
+# Background processes of a shell ignore SIGINT, those of `nohup` SIGHUP, and pass this on to their
+# children, so restore the default for the processes that tests start and interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 @pytest.hookimpl(tryfirst=True)
