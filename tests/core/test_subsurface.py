@@ -13,11 +13,14 @@ from mdr_core import fields, normal, tangential
 from mdr_core import history as load_history
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
+    CappedParaboloid,
     Cone,
     FlatPunch,
+    Hyperboloid,
     Paraboloid,
     Power,
     Profile,
+    RoundedCone,
     RoundedPunch,
     Tabulated,
 )
@@ -404,6 +407,43 @@ def test_stresses_are_infinite_at_the_tip_of_a_cone(end: str, body: int) -> None
     assert (shears == np.inf).all()
     assert np.ravel(at.von_mises) == np.ravel(at.maximum_shear) == np.inf
     assert (at.principal == -np.inf).all()
+
+
+@pytest.mark.parametrize("index", [1, 2, 3, 4])
+def test_contact_that_ends_at_a_point_of_its_table(index: int) -> None:
+    """Johnson, Eq. (3.45): a spline takes the parabola exactly."""
+    r = np.linspace(0.0, 1.0, 5)
+    a = float(r[index])
+    contact = normal.solve(Tabulated(tuple(r), tuple(r * r / 2)), E_STAR, contact_radius=a)
+    z = np.array([0.0, 1e-3, 0.3, 2.0])
+    peak = 2 * E_STAR * a / pi
+    result = stress(contact, 0.0, 0.0, z, poissons_ratio=0.3).zz
+    assert result == pytest.approx(-peak / (1 + np.square(z / a)), rel=1e-12, abs=0)
+    below = stress(contact, 0.5 * a, 0.0, 0.0, poissons_ratio=0.3).zz
+    assert float(below) == pytest.approx(-peak * 0.75**0.5, rel=1e-11, abs=0)
+
+
+@pytest.mark.parametrize("part", [0.5, 0.25])
+@pytest.mark.parametrize(
+    ("profile", "a"),
+    [
+        (RoundedCone(0.25, 1.0), 0.25),
+        (Hyperboloid(0.1, 1.0), 0.5),
+        (CappedParaboloid(0.3, 2.0, 1.0), 0.25),
+    ],
+)
+def test_stick_radius_that_is_a_binary_part_of_the_contact(
+    profile: Profile, a: float, part: float
+) -> None:
+    """On the axis of the surface sigma_xx = -(1 + 2 nu) p/2, and the traction is tau."""
+    contact = normal.solve(profile, E_STAR, contact_radius=a)
+    partial = tangential.solve(contact, 2.6, FRICTION, stick_radius=part * a)
+    pressure = float(fields.pressure(contact, [0.0])[0])
+    result = stress(partial, 0.0, 0.0, [0.0, 1e-20], poissons_ratio=0.3, body=2)
+    assert result.zz == pytest.approx(-pressure, rel=1e-11, abs=0)
+    assert result.xx == pytest.approx(-0.8 * pressure, rel=1e-11, abs=0)
+    tau = float(fields.shear_stress(partial, [0.0])[0])
+    assert np.abs(result.xz) == pytest.approx(abs(tau), rel=1e-11, abs=0)
 
 
 def test_shapes_of_loads_and_points() -> None:

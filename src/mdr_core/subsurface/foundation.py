@@ -40,6 +40,8 @@ _STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
 # error beyond 1e16 times this distance.
 _NEAREST: Final = 1e-32
+# Part of s whose square is less than a rounding error of s^2.
+_SMALL: Final = 1e-9
 # Nodes times points evaluated at once: complex arrays above 128 kB are allocated anew.
 _BLOCK: Final = 8_192
 
@@ -87,7 +89,8 @@ class Foundation:
         """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), and empty ones: 2^n in all."""
         load, a = self.load, self.load.radius[-1]
         inner, outer = load.radius[:-1], load.radius[1:]
-        branches = load.profile.branches
+        # None that starts at the edge itself, where s = 0 is all of it.
+        branches = [b for b in load.profile.branches if max(b.base, b.start) < a]
         starts = np.array([max(branch.base, branch.start) for branch in branches])
         cuts = [self._cuts(branch) for branch in branches]
         low = np.unique(np.concatenate([starts[:1], inner[inner > starts[0]], *cuts]))
@@ -168,7 +171,9 @@ class Foundation:
         base, (s_low, s_high) = self._base[index], self._ends[:, index]
         # s = p + q sinh(t), with the singularity p + i q.
         root = np.sqrt(above[0] + s_low * s_low)
-        p, q = root.real, root.imag
+        # Rounding may put a singularity that is far nearer to the axis than the piece on the line:
+        # then any q serves that is small beside s.
+        p, q = root.real, np.where(root.imag == 0, _SMALL * s_low, root.imag)
         bottom, top = np.arcsinh(-(above / (root + self._ends[:, index])).real / q)
         count = np.maximum(np.ceil((top - bottom) / _PANEL), 1).astype(int)
         for panels in np.unique(count):
