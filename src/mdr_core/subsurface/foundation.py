@@ -89,8 +89,9 @@ class Foundation:
         """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), and empty ones: 2^n in all."""
         load, a = self.load, self.load.radius[-1]
         inner, outer = load.radius[:-1], load.radius[1:]
-        # None that starts at the edge itself, where s = 0 is all of it.
-        branches = [b for b in load.profile.branches if max(b.base, b.start) < a]
+        # Of one that starts at the edge, s = 0 is all, unless the flat ends there.
+        every = load.profile.branches
+        branches = [b for b in every if max(b.base, b.start) < a] or every[:1]
         starts = np.array([max(branch.base, branch.start) for branch in branches])
         cuts = [self._cuts(branch) for branch in branches]
         low = np.unique(np.concatenate([starts[:1], inner[inner > starts[0]], *cuts]))
