@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
 from typing import Final, Literal
 
 from mdr_core.errors import InputError
+from mdr_core.validation import require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
 
@@ -38,17 +38,17 @@ class Material:
 
     def __post_init__(self) -> None:
         for name, value in (("e_star", self.e_star), ("g_star", self.g_star)):
-            if value is not None and not 0 < value < inf:
-                raise InputError(("material", name), "must be positive and finite")
+            if value is not None:
+                require_positive(("material", name), value)
 
 
 def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
-    """Return the effective moduli and the similarity mismatch of two bodies in contact.
+    """Return the effective moduli and Dundurs' beta of two bodies in contact.
 
     1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2);
-    a rigid body's terms are dropped. The mismatch is Dundurs'
-    beta = (m1 - m2) / (2 [(1 - nu1)/G1 + (1 - nu2)/G2]), m = (1 - 2 nu)/G, which is zero
-    exactly where the bodies are elastically similar, Eq. (5.3).
+    a rigid body's terms are dropped. Dundurs'
+    beta = (m1 - m2) / (2 [(1 - nu1)/G1 + (1 - nu2)/G2]), m = (1 - 2 nu)/G, is zero exactly
+    where the bodies are elastically similar, Eq. (5.3).
 
     Source: mdr-5, Eqs. (5.2), (5.3); dundurs.
 
@@ -68,16 +68,16 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     """
     if len(bodies) != 2:
         raise InputError(("material", "bodies"), "exactly two bodies are needed")
-    elastic = [(i, body) for i, body in enumerate(bodies) if isinstance(body, Body)]
-    if not elastic:
-        raise InputError(("material", "bodies"), "at least one body must be elastic")
-    for i, body in elastic:
+    for i, body in enumerate(bodies):
         path = ("material", "bodies", i)
-        if not 0 < body.youngs_modulus < inf:
-            raise InputError((*path, "youngs_modulus"), "must be positive and finite")
-        if not -1 < body.poissons_ratio <= 0.5:
-            raise InputError((*path, "poissons_ratio"), "must lie in -1 < nu <= 1/2")
-    parts = [body for _, body in elastic]
+        if isinstance(body, Body):
+            require_positive((*path, "youngs_modulus"), body.youngs_modulus)
+            require_poissons_ratio((*path, "poissons_ratio"), body.poissons_ratio)
+        elif body != RIGID:
+            raise InputError(path, 'must be a Body or "rigid"')
+    parts = [body for body in bodies if isinstance(body, Body)]
+    if not parts:
+        raise InputError(("material", "bodies"), "at least one body must be elastic")
     # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
     normal = sum(
         (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus

@@ -27,6 +27,7 @@ from mdr_core.validation import (
     require_not_negative,
     require_positive,
     require_representable,
+    require_tolerance,
 )
 
 _COORDINATE_FROM: Final = {
@@ -172,12 +173,14 @@ def solve(
     e_star : effective modulus [pressure], > 0.
     indentation_depth, normal_force, contact_radius : exactly one, >= 0
         [length], [force], [length]; a number or an array.
-    rtol : relative accuracy, 1e-13 to 1e-3.
+    rtol : accuracy required of the results, 1e-13 to 1e-3. They are computed to rounding error
+        whatever it is; `warnings` has `accuracy` where that is not enough.
 
     Raises
     ------
     InputError : not exactly one load, a load that is negative or not finite, shapes that do not
-        agree, a contact beyond the end of the profile, or a contact radius of a flat punch.
+        agree, a contact beyond the end of the profile, a contact radius of a flat punch, or an
+        `rtol` out of range.
 
     Examples
     --------
@@ -188,6 +191,7 @@ def solve(
     >>> [float(f"{a:.6g}") for a in contact.contact_radius]
     [9.0856e-05, 0.000181712]
     """
+    require_tolerance(rtol)
     loads = (indentation_depth, normal_force, contact_radius)
     name, load = only_one(("load",), dict(zip(_COORDINATE_FROM, loads, strict=True)))
     if load.size == 0:

@@ -1,6 +1,6 @@
 """Bounds of inputs and of results, cheap enough for a sweep over millions of cases."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf
 from typing import Final
 
@@ -14,6 +14,8 @@ from mdr_core.typing import Array, Flags
 _SMALLEST: Final = 1e-290
 # Largest such result.
 _LARGEST: Final = 1e290
+TIGHTEST, LOOSEST = 1e-13, 1e-3
+"""Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
 
 
 def extremes(values: float | ArrayLike) -> tuple[float, float]:
@@ -70,6 +72,24 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
     if bad.any():
         detail = "the contact under this load leaves the range of double precision"
         raise InputError((*path, *first_index(bad)), detail, bad)
+
+
+def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:
+    """Raise InputError at the path unless -1 < nu <= 1/2."""
+    if not -1 < value <= 0.5:
+        raise InputError(path, "must lie in -1 < nu <= 1/2")
+
+
+def require_tolerance(rtol: float) -> None:
+    """Raise InputError unless the relative accuracy lies from 1e-13 to 1e-3."""
+    if not TIGHTEST <= rtol <= LOOSEST:
+        raise InputError(("rtol",), f"must lie from {TIGHTEST} to {LOOSEST}")
+
+
+def require_single_profile(swept: Sequence[str]) -> None:
+    """Raise InputError if parameters of a profile are arrays over the cases of a sweep."""
+    if swept:
+        raise InputError(("profile", swept[0]), "must be a single number: solve each case alone")
 
 
 def checked_radii(radius: ArrayLike, end: float = inf) -> Array:

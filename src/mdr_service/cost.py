@@ -141,7 +141,7 @@ def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
     limit = SETTINGS.budget_seconds
     if expected > _LONGEST:
         part = limit / expected
-        detail = f"estimated time of {expected:.2g} s exceeds the limit of {limit:.2g} s"
+        detail = f"estimated time of {expected:.2g} s far exceeds the limit of {limit:.2g} s"
         fits = [
             (f"/{name}", f"{detail}; about {int(part * count)} would fit")
             for name, count in _sizes(query).items()

@@ -142,7 +142,7 @@ class Parameters(BaseModel):
                 raise InputError((end,), "must be greater than 0 on a logarithmic scale")
         for part in (start, stop, "n"):
             if part not in self.model_fields_set:
-                raise InputError((part,), "is required for a range")
+                raise InputError((part,), f"{part} is required for a range")
         # Between ends out of bounds numbers can overflow; the ends are then rejected.
         with np.errstate(all="ignore"):
             spaced = _SPACINGS[self.scale or "linear"](given.pop(start), given.pop(stop), self.n)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import fields, history, normal, tangential
+from mdr_core import fields, history, normal, subsurface, tangential, wear
 from mdr_core.errors import InputError
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
@@ -24,6 +24,8 @@ from mdr_core.profiles import (
 
 STEEL = Body(2.1e11, 0.3)
 HERTZ = normal.solve(Paraboloid(1.0), 1.0, contact_radius=[0.1, 0.2])
+PUSHED = tangential.solve(HERTZ, 1.0, 0.5, stick_radius=[0.05, 0.1])
+SWEPT = normal.solve(Paraboloid(np.array([1.0, 2.0])), 1.0, normal_force=1.0)
 
 
 def normal_contact(profile: Any, **load: Any) -> Callable[[], Any]:
@@ -102,6 +104,8 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (lambda: from_bodies([]), ("material", "bodies"), "exactly two bodies"),
     (lambda: from_bodies([STEEL]), ("material", "bodies"), "exactly two bodies"),
     (lambda: from_bodies([STEEL, RIGID, STEEL]), ("material", "bodies"), "exactly two bodies"),
+    (lambda: from_bodies([STEEL, "steel"]), ("material", "bodies", 1), 'must be a Body or "rigid"'),
+    (lambda: from_bodies([None, STEEL]), ("material", "bodies", 0), 'must be a Body or "rigid"'),
     (lambda: from_bodies([RIGID, RIGID]), ("material", "bodies"), "at least one body"),
     (
         lambda: from_bodies([STEEL, Body(0.0, 0.3)]),
@@ -118,6 +122,37 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         ("material", "bodies", 0, "poissons_ratio"),
         "1/2",
     ),
+    (normal_contact(Cone(1.0), normal_force=1.0, rtol=np.nan), ("rtol",), "must lie from"),
+    (normal_contact(Cone(1.0), normal_force=1.0, rtol=9e-14), ("rtol",), "must lie from"),
+    (lambda: fields.pressure(HERTZ, [0.1], rtol=2e-3), ("rtol",), "must lie from"),
+    (lambda: fields.normal_displacement(HERTZ, [0.1], rtol=-1.0), ("rtol",), "must lie from"),
+    (lambda: fields.shear_stress(PUSHED, [0.1], rtol=-1.0), ("rtol",), "must lie from"),
+    (lambda: fields.slip(PUSHED, [0.1], rtol=-1.0), ("rtol",), "must lie from"),
+    (lambda: fields.pressure(SWEPT, [0.1]), ("profile", "radius"), "single number"),
+    (lambda: fields.normal_displacement(SWEPT, [0.1]), ("profile", "radius"), "single number"),
+    (lambda: fields.foundation_load(SWEPT, [0.1]), ("profile", "radius"), "single number"),
+    (
+        lambda: fields.shear_stress(tangential.solve(SWEPT, 1.0, 0.5, tangential_force=0.0), [0.1]),
+        ("profile", "radius"),
+        "single number",
+    ),
+    (
+        lambda: history.unloaded(Paraboloid(np.array([1.0, 2.0])), 1.0, 1.0, 0.5),
+        ("profile", "radius"),
+        "single number",
+    ),
+    (
+        lambda: wear.limit.solve(SWEPT, 1.0, 0.5, tangential_force=0.0),
+        ("profile", "radius"),
+        "single number",
+    ),
+    (
+        lambda: subsurface.stress(HERTZ, 0.0, 0.0, 1.0, poissons_ratio=0.9),
+        ("poissons_ratio",),
+        "1/2",
+    ),
+    (lambda: subsurface.largest(HERTZ, poissons_ratio=-1.0), ("poissons_ratio",), "1/2"),
+    (lambda: subsurface.largest(HERTZ, poissons_ratio=0.3, body=3), ("body",), "1 or 2"),
     (lambda: fields.pressure(HERTZ, []), ("radius",), "at least one radius"),
     (lambda: fields.pressure(HERTZ, [0.1, 0.2, -0.1]), ("radius", 2), "not negative"),
     (lambda: fields.pressure(HERTZ, [0.1, np.nan]), ("radius", 1), "finite"),

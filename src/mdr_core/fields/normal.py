@@ -16,7 +16,7 @@ from mdr_core.elementwise import every, number
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import checked_radii
+from mdr_core.validation import checked_radii, require_single_profile, require_tolerance
 
 # Values of a field under the load of this index, at some radii.
 Field = Callable[[int, Array], Array]
@@ -46,7 +46,8 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
 
     Raises
     ------
-    InputError : a radius that is negative or not finite.
+    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
+        parameter of the profile.
 
     Examples
     --------
@@ -58,6 +59,8 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
+    require_tolerance(rtol)
+    require_single_profile(contact.profile.swept)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
 
@@ -76,6 +79,8 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
 
     Source: mdr-5, Eq. (5.75). Parameters, returns and errors as of `pressure`.
     """
+    require_tolerance(rtol)
+    require_single_profile(contact.profile.swept)
     profile, shape = contact.profile, contact.contact_radius.shape
     columns = contact.contact_radius, contact.coordinate, contact.indentation_depth
     a, coordinate, depth = by_load(shape, *columns)
@@ -99,6 +104,7 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
     Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23). Parameters, returns and errors
     as of `pressure`.
     """
+    require_single_profile(contact.profile.swept)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
 

@@ -22,6 +22,7 @@ from mdr_core.history import ContactState
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
+from mdr_core.validation import require_single_profile, require_tolerance
 
 # An edge that differs from the contact radius by rounding belongs to the contact.
 _EDGE: Final = 1 + 4 * float(np.finfo(float).eps)
@@ -108,7 +109,8 @@ def shear_stress(
 
     Raises
     ------
-    InputError : a radius that is negative or not finite.
+    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
+        parameter of the profile.
 
     Examples
     --------
@@ -122,6 +124,7 @@ def shear_stress(
     >>> bool(abs(shear_stress(history.state, [0.0])[0] / (0.05 * np.log(1 / c)) - 1) < 1e-13)
     True
     """
+    require_tolerance(rtol)
     return _fill(contact, lambda load, r: load.modulus * load.stress(r, rtol), radius)
 
 
@@ -138,6 +141,7 @@ def slip(
     Source: mdr-5, Eqs. (5.39)-(5.45); notes, §10. Parameters, returns and errors as of
     `shear_stress`.
     """
+    require_tolerance(rtol)
 
     def values(load: Traction, r: Array) -> Array:
         result = np.zeros(r.shape)
@@ -245,6 +249,7 @@ def _at_end(state: ContactState) -> Traction:
 def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
     """Traction under the load of an index."""
     normal, profile = contact.normal, contact.normal.profile
+    require_single_profile(profile.swept)
     first = profile.first_coordinate
     flat = float(profile.contact_radius(number(first)))
     modulus = contact.friction_coefficient * normal.e_star

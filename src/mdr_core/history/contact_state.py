@@ -14,7 +14,7 @@ from mdr_core.history.traction_branches import SHORT, TractionBranches
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
 from mdr_core.typing import Array
-from mdr_core.validation import require_positive
+from mdr_core.validation import require_positive, require_single_profile
 
 
 class TractionSegments(NamedTuple):
@@ -213,8 +213,10 @@ def unloaded(
 
     Raises
     ------
-    InputError : a modulus or a friction coefficient that is not positive and finite.
+    InputError : a modulus or a friction coefficient that is not positive and finite, or an array as
+        a parameter of the profile.
     """
+    require_single_profile(profile.swept)
     require_positive(("material", "e_star"), e_star)
     require_positive(("material", "g_star"), g_star)
     require_positive(("friction_coefficient",), friction_coefficient)

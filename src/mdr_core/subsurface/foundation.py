@@ -17,6 +17,7 @@ from numpy.polynomial import legendre, polynomial
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
+from mdr_core.errors import InputError
 from mdr_core.fields.tangential import Traction, tractions
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
@@ -192,6 +193,8 @@ class Foundation:
 
 def foundations(contact: Contact, body: int) -> tuple[list[Foundation], tuple[int, ...]]:
     """Return the foundation under each load, as it acts on body 1 or 2, and the loads' shape."""
+    if body not in (1, 2):
+        raise InputError(("body",), "must be 1 or 2")
     if isinstance(contact, NormalContact):
         # It sticks under no tangential force.
         contact = tangential.solve(contact, contact.e_star, 1.0, tangential_force=0.0)

@@ -12,7 +12,7 @@ from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array, Numbers
-from mdr_core.validation import require_not_negative
+from mdr_core.validation import require_not_negative, require_poissons_ratio
 
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
 # radius, by which a point is moved off the surface, where the kernels are singular.
@@ -93,7 +93,8 @@ def stress(
 
     Raises
     ------
-    InputError : a coordinate that is not finite, or a negative depth.
+    InputError : a coordinate that is not finite, a negative depth, another body, or a Poisson's
+        ratio out of range.
 
     Examples
     --------
@@ -111,6 +112,7 @@ def stress(
         if not np.isfinite(given).all():
             raise InputError((name,), "must be finite")
     require_not_negative(("z",), where[2])
+    require_poissons_ratio(("poissons_ratio",), poissons_ratio)
     across, aside, depth = np.broadcast_arrays(*where)
     r = np.hypot(across, aside)
     e = np.where(r > 0, across + 1j * aside, 1.0) / np.where(r > 0, r, 1.0)

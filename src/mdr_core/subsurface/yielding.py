@@ -21,7 +21,7 @@ from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import on_rings
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import require_positive
+from mdr_core.validation import require_poissons_ratio, require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
 # Radii, and depths per e-fold, of a grid in the plane y = 0. The radii cluster at the axis, the
@@ -68,10 +68,11 @@ def largest(
 
     Raises
     ------
-    InputError : another measure.
+    InputError : another measure or body, or a Poisson's ratio out of range.
     """
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
+    require_poissons_ratio(("poissons_ratio",), poissons_ratio)
     under, shape = foundations(contact, body)
     found = [_peak(each, measure, poissons_ratio) for each in under]
     return Peak(*np.array(found).T.reshape(4, *shape))
@@ -166,7 +167,8 @@ def yielding(
 
     def message() -> str:
         least = float(np.min(np.broadcast_to(pressed.normal_force, shape)[where]))
-        return f"the stresses meet Tresca's criterion under a normal force of {least:.4g}"
+        assumed = "" if poissons_ratios else f" for an assumed Poisson's ratio of {ASSUMED_RATIO}"
+        return f"the stresses meet Tresca's criterion under a normal force of {least:.4g}{assumed}"
 
     return Finding("yield", where, message)
 

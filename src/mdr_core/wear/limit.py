@@ -14,7 +14,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
-from mdr_core.validation import checked_radii, first_index
+from mdr_core.validation import checked_radii, first_index, require_single_profile
 from mdr_core.wear import limit_fields, limiting_stick
 from mdr_core.wear.arguments import grid, one_amplitude
 
@@ -300,8 +300,7 @@ def solve(
             ("load", "contact_radius"),
             "the contact radius changes during wear: prescribe the depth or the normal force",
         )
-    if any(isinstance(part, np.ndarray) for part in contact.profile.parameters.values()):
-        raise InputError(("profile",), "a single profile is needed: no arrays of parameters")
+    require_single_profile(contact.profile.swept)
     name, size = one_amplitude(tangential_displacement, tangential_force)
     unworn = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
     result = LimitingWear(unworn, limiting_stick.find(unworn, size))

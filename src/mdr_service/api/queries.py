@@ -142,9 +142,10 @@ def _declare(
     )
     async def post(
         query: Annotated[model, Body(openapi_examples=EXAMPLES[name])],
-        respond: Annotated[responder, Depends()],
+        send: Annotated[responder, Depends()],
     ) -> Response:
-        return await respond(name, query)
+        # `QueryRoute` reads the signature and does the same, faster.
+        return await send(name, query)
 
 
 for _name, (_path, _model, _answer, _tag) in SCHEMAS.items():

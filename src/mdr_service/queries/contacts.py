@@ -72,7 +72,8 @@ def friction(query: Any) -> Arguments:
     """Return shear modulus and coefficient of friction, as arguments of the core."""
     g_star = query.material.effective.g_star
     if g_star is None:
-        raise InputError(("material", "g_star"), "is needed where there is friction")
+        detail = "g_star is needed where there is friction: give it, or bodies"
+        raise InputError(("material", "g_star"), detail)
     return {"g_star": g_star, "friction_coefficient": query.friction_coefficient}
 
 

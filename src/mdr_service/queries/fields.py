@@ -139,7 +139,8 @@ def _require_consistent(query: StressQuery) -> None:
     with_friction = query.has("tangential") or query.has("history")
     for index, name in enumerate(query.quantities):
         if name in SHEAR_FIELDS and not with_friction:
-            raise InputError(("quantities", index), f"{name} needs tangential or history")
+            detail = f"{name} needs friction: give friction_coefficient and tangential, or history"
+            raise InputError(("quantities", index), detail)
     require_one_of(query, "radius", "points")
     require_few_numbers(query)
 
