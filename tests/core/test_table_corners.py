@@ -175,6 +175,33 @@ def test_traction_on_the_axis_of_a_sticking_tip(c: float) -> None:
     assert result[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT, abs=0)
 
 
+@pytest.mark.parametrize("force", [1e-14, 1e-10, 1e-6, 1e-2])
+@pytest.mark.parametrize("part", [0.5, 0.999, 0.999999])
+def test_stresses_next_to_a_flat(force: float, part: float) -> None:
+    """Truncated paraboloid, R = 1: g' dx = (2s^2 + b^2)/x ds, F/E* = 2s (2s^2 + 3b^2)/3."""
+    b, r, radii = 0.25, np.array([0.0, 0.25, 0.5, 0.75, 1.0]), [0.0, 0.1, 0.2, 0.2499]
+    table = Tabulated(r, np.maximum(r * r - b * b, 0) / 2, "cubic", (b,))
+    contact = solve(table, 1.0, normal_force=force)
+    partial = tangential.solve(contact, 1.0, 1.0, tangential_force=part * force)
+    found = fields.pressure(contact, radii), fields.shear_stress(partial, radii)
+
+    def root(load: mpf) -> mpf:
+        return mp.findroot(lambda s: 2 * s * (2 * s * s + 3 * b * b) / 3 - load, load / (2 * b * b))
+
+    with mp.workdps(40):
+        outer, inner = root(mpf(force)), root(mpf(force) - mpf(part * force))
+        for low, values in zip((mpf(0), inner), found, strict=True):
+            for x, value in zip(radii, values, strict=True):
+                square = mpf(b) ** 2 - mpf(x) ** 2
+                true = mp.quad(
+                    lambda s, k=square: (
+                        (2 * s * s + b * b) / mp.sqrt((s * s + b * b) * (s * s + k))
+                    ),
+                    [low, (low + outer) / 2, outer],
+                )
+                assert value == pytest.approx(float(true / mp.pi), rel=1e-11, abs=0)
+
+
 @pytest.mark.every(5)
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
 @pytest.mark.parametrize("place", [-1e-3, -1e-13, 0, 1e-13, 1e-6, 1e-3])

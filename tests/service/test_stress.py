@@ -132,3 +132,18 @@ def test_warning_lists_five_singular_radii(radii: int, end: str) -> None:
     infinite = np.full((1, radii), np.inf)
     (notice,) = results.singular(radius, {"pressure": infinite}, {"pressure": True})
     assert notice.message == f"pressure is infinite at radius 0.1, 0.2, 0.3, 0.4, {end}"
+
+
+def test_pressure_is_infinite_at_a_point_of_a_linear_table(client: Client) -> None:
+    r = [0.0, 0.25, 0.5, 1.0]
+    body = {
+        "profile": {"kind": "tabulated", "r": r, "f": [0, 0, 0.1, 0.4], "interpolation": "linear"},
+        "material": {"e_star": 1},
+        "load": {"contact_radius": 0.7},
+        "radius": r,
+        "quantities": ["pressure"],
+    }
+    document = client.post("/v1/stress", body).json()
+    assert [p is None for p in document["pressure"][0]] == [False, True, True, False]
+    messages = [each["message"] for each in document["warnings"]]
+    assert "pressure is infinite at radius 0.25, 0.5" in messages

@@ -105,14 +105,21 @@ class StressPanels:
         masses = (self.weight @ powers * (weights / 2)).T * self.length
         return multipoles(self.edges, at_nodes(np.square(u)[:, None], masses, _NODES), above=False)
 
-    def kernel(self, annulus: Annulus, r: Array) -> Array:
-        """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx, r of shape (m,), r < a.
+    def kernel(self, annulus: Annulus, roots: tuple[Array, Array], r: Array) -> Array:
+        """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx.
 
-        The coordinate of the annulus is the radius. Source: mdr-5, Eqs. (5.68), (5.70).
+        Source: mdr-5, Eqs. (5.68), (5.70).
+
+        Parameters
+        ----------
+        annulus : its coordinate is the radius.
+        roots : sqrt(x^2 - flat^2) at a and at c, 0 inside the flat, as accurate as the load
+            however near they are to it [length].
+        r : radii r < a [length], shape (m,).
         """
         a, inner, _ = annulus
         width, c = (a, np.zeros(1)) if inner is None else inner
-        annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width)])
+        annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width, *roots)])
         if annuli.shape[1] == 1:
             return self._over(annuli[:, 0].tolist(), r)
         different, number = np.unique(annuli, axis=1, return_inverse=True)
@@ -123,17 +130,17 @@ class StressPanels:
         return result
 
     def _over(self, ends: list[float], radius: Array) -> Array:
-        """Kernel of the annulus of a, c and width, over whole panels and those at its ends."""
-        a, c, width = ends
+        """Kernel of an annulus, over whole panels and those at its ends. `ends`: see `_cut`."""
+        a, c, _, _, root_c = ends
         order = np.argsort(radius, kind="stable")
         r = radius[order]
         if self.smooth_tip and self.edges[0] == c == 0:
             r = np.maximum(r, _AXIS * min(self.length[0], a))
-        last = min(int(np.searchsorted(self.edges, a)), self.length.size) - 1
-        first = int(np.searchsorted(self.edges, c))
+        last = min(int(np.searchsorted(self.edges[1:], a)), self.length.size - 1)
+        first = max(int(np.searchsorted(self.edges, c)), int(root_c > 0))
         total = self._whole(first, last, r) if first < last else np.zeros_like(r)
         for panel in {last, first - 1} - {-1}:
-            total += self._cut(panel, a, c, width, r)
+            total += self._cut(panel, ends, r)
         result = np.empty_like(r)
         result[order] = total
         return result
@@ -151,36 +158,44 @@ class StressPanels:
             add(total, point, near(rows, self.length[panel], above, to_right))
         return total
 
-    def _cut(self, panel: int, a: float, c: float, width: float, r: Array) -> Array:
-        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii."""
+    def _cut(self, panel: int, ends: list[float], r: Array) -> Array:
+        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii.
+
+        `ends` are a, c, the width, and the roots of a and c, see `kernel`.
+        """
+        a, c, width, root_a, root_c = ends
         b, right = float(self.edges[panel]), min(float(self.edges[panel + 1]), a)
         total = np.zeros_like(r)
         # For radii above c the integral starts at the radius and does not depend on c.
-        beyond = int(np.searchsorted(r, c)) if c > b else 0
+        beyond = int(np.searchsorted(r, c)) if c > b or (panel == 0 and root_c > 0) else 0
         at = r[beyond : int(np.searchsorted(r, right))]
-        length = sqrt((right - b) * (right + b))
+        # Next to the flat only the root tells a from it.
+        length = root_a if panel == 0 and right == a else sqrt((right - b) * (right + b))
         rows = self._rows[:, panel] * (length / self.length[panel]) ** np.arange(len(self._rows))
         above, to_right = (b - at) * (b + at), (right - at) * (right + at)
         total[beyond : beyond + at.size] = _panel_integral(rows, length, above, to_right)
         if beyond:
             # The width is accurate however narrow the annulus.
             whole = (width if right == a else right - c) * (right + c)
-            total[:beyond] = self._from_inner(panel, c, whole, r[:beyond])
+            # The rounding error of root_c is that of root_a.
+            by_root = panel == 0 and (c == b or root_a * root_c < b * b)
+            past = root_c * root_c if by_root else (c - b) * (c + b)
+            below = (c - r[:beyond]) * (c + r[:beyond])
+            total[:beyond] = self._from_inner(panel, past, whole, below)
         return total
 
-    def _from_inner(self, panel: int, c: float, whole: float, r: Array) -> Array:
-        """Part of one panel from c on, `whole` long in x^2, at ascending radii below c.
+    def _from_inner(self, panel: int, past: float, whole: float, below: Array) -> Array:
+        """Part of one panel from c on, `whole` long in x^2, at radii below c, c^2 - r^2 = `below`.
 
-        W is expanded about c, on pieces that are short next to its root at the panel's left edge.
+        W is expanded about c, on pieces that are short next to its root at the panel's left edge,
+        where x^2 is less by `past`.
         """
-        b = float(self.edges[panel])
-        past, below = (c - b) * (c + b), (c - r) * (c + r)
         ends = [0.0]
         while ends[-1] < whole:
             ends.append(min(ends[-1] + LONGEST * (past + ends[-1]), whole))
         points, _, _ = fit_points(_POINTS)
         degrees = np.arange(self.weight.shape[1])[:, None]
-        total = np.zeros_like(r)
+        total = np.zeros_like(below)
         for low, high in pairwise(ends):
             length = sqrt(high - low)
             own = length * points

@@ -241,7 +241,9 @@ class Tabulated(FlatEnded):
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
         del rtol
-        return self.resolved.stress.kernel(self.radial(annulus), radius) / np.pi
+        outer, inner, _ = annulus
+        roots = outer, outer - (outer if inner is None else inner.width)
+        return self.resolved.stress.kernel(self.radial(annulus), roots, radius) / np.pi
 
 
 def _located(edges: Array, place: Array) -> tuple[Indices, Array]:

@@ -73,7 +73,8 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     infinite: dict[str, Flags] = {}
     if not all(every(np.isfinite(rows)) for rows in values.values()):
         edges = np.ravel(contact.contact_radius)
-        at_singular = np.isin(radius, [0.0, *map(float, contact.profile.breaks), *edges])
+        radii = map(float, contact.profile.infinite_pressure_radii)
+        at_singular = np.isin(radius, [0.0, *radii, *edges])
         infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
         checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
