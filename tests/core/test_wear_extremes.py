@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mdr_core import normal
+from mdr_core import normal, tangential
 from mdr_core.errors import AccuracyError, InputError
 from mdr_core.profiles import (
     Paraboloid,
@@ -15,6 +15,7 @@ from mdr_core.profiles import (
     TruncatedParaboloid,
 )
 from mdr_core.wear import evolution, integrator, limit
+from mdr_core.wear.initial_state import InitialState
 
 
 @pytest.mark.parametrize("cycles", [2e-309, 1e-250])
@@ -84,6 +85,43 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(
     assert worn.contact_radius[-1] > 1.003
     volume = 2e-4 * worn.dissipated_energy
     assert worn.worn_volume == pytest.approx(volume, rel=2 * worn.error_estimate, abs=0)
+
+
+@pytest.mark.parametrize("held", ["indentation_depth", "normal_force"])
+def test_edge_of_the_contact_leaves_a_break_that_it_rests_on(held: str) -> None:
+    """The slope of g is infinite at the edge; reference: the limit once wear has stopped."""
+    body = kinked()
+    contact = normal.solve(body, 1.0, contact_radius=1.5)
+    moved = {"tangential_displacement": 0.1 * float(contact.indentation_depth)}
+    contact = normal.solve(body, 1.0, **{held: float(getattr(contact, held))})
+    if held == "normal_force":
+        start = tangential.solve(contact, 0.8, 0.3, **moved)
+        moved = {"tangential_force": float(start.tangential_force)}
+    worn = evolution.solve(contact, 0.8, 0.3, wear_coefficient=10.0, cycles=[1e6], **moved)
+    exact = limit.solve(contact, 0.8, 0.3, **moved)
+    assert worn.error_estimate < 0.02
+    for value, true in (
+        (worn.contact_radius[0], float(exact.wear_radius)),
+        (worn.worn_volume[0], float(exact.worn_volume)),
+    ):
+        assert value == pytest.approx(true, rel=worn.error_estimate, abs=0)
+
+
+def test_stick_edge_that_moves_inwards_past_a_break_is_an_error() -> None:
+    """More nodes do not resolve it: the error names the radius."""
+    body = kinked()
+    contact = normal.solve(body, 1.0, contact_radius=0.9)
+    contact = normal.solve(body, 1.0, indentation_depth=float(contact.indentation_depth))
+    moved = {"tangential_displacement": 0.7 * 0.3 / 0.8 * float(contact.indentation_depth)}
+    start = tangential.solve(contact, 0.8, 0.3, **moved)
+    force = {"tangential_force": float(start.tangential_force)}
+    cycles = InitialState(start, 10.0, 40).cycle_unit * np.array([0.1, 1.0])
+    assert 0.5 < float(start.stick_radius) < 0.51
+    with pytest.raises(AccuracyError, match=r"the stick edge moves past radius 0\.5,") as caught:
+        evolution.solve(contact, 0.8, 0.3, wear_coefficient=10.0, cycles=cycles, **force)
+    assert caught.value.path == ("cycles",)
+    early = evolution.solve(contact, 0.8, 0.3, wear_coefficient=10.0, cycles=cycles[:1], **force)
+    assert early.stick_radius[0] > 0.5
 
 
 @pytest.mark.parametrize("place", [0.1, 0.5, 0.9])

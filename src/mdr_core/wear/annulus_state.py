@@ -146,6 +146,11 @@ class AnnulusState:
         """int_c^a (gamma - gamma_0) dx."""
         return float(self.end**2 * (self.initial.maps.mean @ self.worn_omega))
 
+    def spring_wear(self, x: Array) -> Array:
+        """Return gamma - gamma_0 at radii x of the annulus."""
+        squares = (x - self.stick) * (x + self.stick) / self.end**2
+        return x * self.initial.maps.at(self.worn_omega, np.clip(squares, 0.0, 1.0))
+
     @cached_property
     def power(self) -> float:
         """int_c^a (D - gamma) gamma dx, the friction work of a cycle. Source: notes, §6."""

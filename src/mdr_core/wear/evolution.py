@@ -13,13 +13,13 @@ from mdr_core import tangential, validity
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import first_index, require_not_negative
 from mdr_core.wear import limit
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.integrator import integrate
-from mdr_core.wear.worn_surface import WornSurface
+from mdr_core.wear.worn_surface import WornSurface, absolute_difference
 
 # Default of `resolution`, ...
 DEFAULT_RESOLUTION: Final = 24
@@ -74,27 +74,54 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
         Twice the difference to a run on two thirds of the nodes with a looser integrator, or that
         to the limiting state once wear has stopped, and the rounding error of the contact before
-        wear. At breaks of the profile in the worn annulus both runs may err alike.
+        wear. With a break of the profile in the worn annulus, twice an integral of the absolute
+        differences of the two runs.
         """
-        worst = 0.0
+        worst = self._difference_at_breaks
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
         numerical = max(_SAFETY * worst, self._distance_from_limit)
         return numerical + self.tangential_contact.error_estimate
 
+    @cached_property
+    def _has_break(self) -> Flags:
+        """True while a break of the profile is in the worn annulus, (cycles,)."""
+        profile = self.normal.profile
+        breaks = np.array([*profile.breaks, *profile.infinite_pressure_radii])
+        c, a = self.stick_radius[:, None], self.contact_radius[:, None]
+        return ((breaks > c) & (breaks < a)).any(axis=1) & (self.worn_volume > 0)
+
     @property
-    def _distance_from_limit(self) -> float:
-        """Largest relative difference from the limiting state, 0 before wear stops [1]."""
+    def _difference_at_breaks(self) -> float:
+        """Relative difference of the two runs while a break is in the worn annulus [1].
+
+        There the error of a scalar depends on the place of the break between two nodes, so that
+        both runs may err alike. Their wear differs nevertheless: the absolute difference counts.
+        """
+        indices = _some(self._has_break)
+        pairs = [(self.at(index), self.coarse.at(index)) for index in indices]
+        return max((absolute_difference(run, other) for run, other in pairs), default=0.0)
+
+    @cached_property
+    def _limit(self) -> limit.LimitingWear | None:
+        """Limiting state once wear has stopped, unless it depends on the load path."""
         if self.initial.stick_grows or self.cycles[-1] < self.settled_at:
-            return 0.0
+            return None
         start = self.tangential_contact
-        end = limit.solve(
+        return limit.solve(
             self.normal,
             start.g_star,
             start.friction_coefficient,
             **{start.control: getattr(start, start.control)},
         )
+
+    @property
+    def _distance_from_limit(self) -> float:
+        """Largest relative difference from the limiting state, 0 before wear stops [1]."""
+        end = self._limit
+        if end is None:
+            return 0.0
         names = ("worn_volume", "normal_force", "indentation_depth", "stick_radius")
         pairs = [(getattr(self, name), getattr(end, name)) for name in names]
         pairs.append((self.contact_radius, end.wear_radius))
@@ -132,10 +159,14 @@ class WearEvolution(validity.ContactResults, WornSurface):
                 # The pressure is singular at an edge whose position is inexact.
                 shifted = np.minimum(r * (1 + self.error_estimate), self.normal.profile.domain)
                 difference = max(difference, _largest(values, self.pressure(shifted)))
+            if self._limit:
+                end = getattr(self._limit, "limiting_profile" if name == "profile" else name)(r)
+                difference = max(difference, _largest(values[-1], end))
             largest = max(_largest(values), float(np.max(least.get(name, 0.0))))
             if largest > 0:
                 worst = max(worst, difference / largest)
-        safety = _SAFETY_OF_PEAK if self.initial.stick_shrinks else _SAFETY
+        peak = self.initial.stick_shrinks or self._has_break.any()
+        safety = _SAFETY_OF_PEAK if peak else _SAFETY
         return safety * worst + self.tangential_contact.error_estimate
 
     def grid(self, points: int) -> Array:
@@ -155,15 +186,20 @@ class WearEvolution(validity.ContactResults, WornSurface):
         At single radii the difference may vanish.
         """
         worst = 0.0
-        for index in np.unique(np.linspace(0, self.cycles.size - 1, _CYCLES).astype(int)):
+        for index in _some(self.cycles >= 0):
             c, a = self.stick_radius[index], self.contact_radius[index]
-            at = c + (a - c) * _SAMPLES
+            at, growth = c + (a - c) * _SAMPLES, 1.0
+            if self._has_break[index]:
+                at = np.sqrt(c**2 + (a - c) * (a + c) * self.initial.maps.points)
+                # The pressure at a break is infinite before wear, and then falls like ln(1/cycles):
+                # the nodes resolve little of it.
+                growth += float(np.log1p(self.initial.cycle_unit / self.cycles[index]))
             margin = _NEAR * (a - c)
             at = at[(at > radius.min() - margin) & (at < radius.max() + margin)]
             if at.size:
                 runs = (run.at(int(index)) for run in (self, self.coarse))
                 values, others = (getattr(run, name)(at) for run in runs)
-                worst = max(worst, _largest(values, others))
+                worst = max(worst, growth * _largest(values, others))
         return worst
 
     @property
@@ -283,6 +319,13 @@ def solve(
         detail = "the worn annulus is not resolved: more nodes may resolve it"
         raise AccuracyError(detail, ("resolution",))
     return found
+
+
+def _some(chosen: Flags) -> Indices:
+    """Return at most `_CYCLES` of the chosen indices, the first and the last among them."""
+    indices = np.flatnonzero(chosen)
+    count = min(indices.size, _CYCLES)
+    return indices[np.linspace(0, indices.size - 1, count).astype(int)]
 
 
 def _largest(values: Array, others: Array | float = 0.0) -> float:

@@ -27,6 +27,9 @@ _ALMOST: Final = 1 - 1e-9
 _NARROW: Final = 0.05
 # Points of this rule.
 _POINTS: Final = 8
+# Largest slope of g_0 [D_0/b_0]: it is infinite at a jump of f', and no edge would pass it. Larger
+# ones are those within 1e-10 of the jump.
+_STEEPEST: Final = 1e5
 
 
 @dataclass(frozen=True)
@@ -147,7 +150,7 @@ class InitialState:
         return np.concatenate([np.zeros(self.first_edge), (1.0, 0.0, 0.0, 0.0), tilt])
 
     @cached_property
-    def _singular(self) -> Array:
+    def singular(self) -> Array:
         """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
         profile = self.normal.profile
         inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
@@ -159,7 +162,7 @@ class InitialState:
         stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
         by = unit * offset
         # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
-        near = np.abs(self._singular - stick) < 2 * by[-1]
+        near = np.abs(self.singular - stick) < 2 * by[-1]
         if by[-1] > _NARROW * stick or near.any():
             g = profile.g(np.minimum(np.append(stick, stick + by), self.domain))
             return np.asarray((g[1:] - g[0]) / self.depth_unit)
@@ -168,6 +171,6 @@ class InitialState:
         return np.asarray(by / 2 * (profile.dg(at) @ weights) / self.depth_unit)
 
     def slope(self, x: Array) -> Array:
-        """Return g_0'(x) [D_0/b_0], x in b_0."""
+        """Return g_0'(x) [D_0/b_0], x in b_0, with a bound at a jump of f'."""
         slope = self.normal.profile.dg(np.minimum(x * self.length_unit, self.domain))
-        return np.asarray(slope * (self.length_unit / self.depth_unit))
+        return np.minimum(slope * (self.length_unit / self.depth_unit), _STEEPEST)

@@ -25,6 +25,8 @@ _MIN_SLIP: Final = 0.01
 _VANISHED: Final = 1e-3
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
+# Distance from a break, as a part of the stick radius, at which the stick edge is there.
+_AT_BREAK: Final = 1e-3
 # About 5 times as many as 96 nodes take at a tolerance of 1e-10.
 _MAX_CALLS: Final = 40_000
 
@@ -60,10 +62,8 @@ def integrate(
         nonlocal calls
         calls += 1
         if calls > _MAX_CALLS:
-            detail = (
-                "the wear over the cycles takes too many steps: a lower resolution may take fewer"
-            )
-            raise AccuracyError(detail, ("resolution",))
+            detail = "the wear takes too many steps: request fewer cycles or a larger rtol"
+            raise AccuracyError(detail, ("cycles",))
         return rates(initial, vector)
 
     # A failure of LSODA is reported by an error below, not by a warning.
@@ -80,8 +80,8 @@ def integrate(
             events=_events(initial, rtol),
         )
     if run.status < 0 or not np.isfinite(run.y).all():
-        detail = "the wear over the cycles is not resolved: more nodes may resolve it"
-        raise AccuracyError(detail, ("resolution",))
+        resolved = np.isfinite(run.y).all(axis=0)
+        raise _unresolved(AnnulusState(initial, run.y[:, resolved][:, -1]), run.t[resolved][-1])
     ends = (float(times[0]) * unit if times.size else inf for times in run.t_events or ())
     profile_end_at, settled_at, full_slip_at = ends
     _require_all_cycles(initial, cycles, profile_end_at, full_slip_at)
@@ -95,6 +95,22 @@ def integrate(
             for state, n in zip(states, numbers, strict=True)
         ]
     return tuple(states), settled_at
+
+
+def _unresolved(state: AnnulusState, scaled: float) -> AccuracyError:
+    """Return the error for the last state that is resolved, at a scaled number of cycles."""
+    initial = state.initial
+    stick = initial.length_unit * state.stick
+    passed = initial.singular[np.abs(initial.singular - stick) < _AT_BREAK * stick]
+    if initial.stick_moves and passed.size:
+        detail = (
+            f"after {scaled * initial.cycle_unit:.3g} cycles the stick edge moves past radius "
+            f"{passed[0]:.6g}, where a jump of the profile's slope is not resolved: request fewer "
+            "cycles, or round the profile there"
+        )
+        return AccuracyError(detail, ("cycles",))
+    detail = "the wear over the cycles is not resolved: more nodes may resolve it"
+    return AccuracyError(detail, ("resolution",))
 
 
 def _trail(states: Sequence[AnnulusState]) -> Array:

@@ -153,6 +153,25 @@ class WornSurface:
         return np.array([value(state) for state in self.states])
 
 
+def absolute_difference(run: WornSurface, other: WornSurface) -> float:
+    """Return the relative difference of two runs at one number of cycles [1].
+
+    The larger of those of force (or depth) and worn volume, as integrals of the absolute
+    differences of the springs' wear g - g_0 and of the worn depth.
+    """
+    initial, state = run.initial, run.states[0]
+    x = np.sqrt(state.stick**2 + state.end**2 * initial.maps.points)
+    springs = np.abs(state.spring_wear(x) - other.states[0].spring_wear(x))
+    integral = initial.depth_unit * initial.length_unit * np.trapezoid(springs, x)
+    whole = run.normal_force / (2 * initial.normal.e_star)
+    if initial.constant_force:
+        whole = run.contact_radius * run.indentation_depth
+    r = initial.length_unit * x
+    depth = np.abs(run.worn_depth(r) - other.worn_depth(r))[0]
+    volume = 2 * np.pi * np.trapezoid(depth * r, r)
+    return max(float(integral / whole[0]), float(volume / run.worn_volume[0]))
+
+
 def _field_in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
     """Return a field, in blocks of radii that bound the memory."""
     blocks = np.split(radius, range(_BLOCK, radius.size, _BLOCK))
