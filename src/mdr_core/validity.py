@@ -93,6 +93,11 @@ def findings(contact: SolvedContact, material: Material) -> list[Finding]:
     """Return the findings that depend on the bodies in contact, without `yield`.
 
     Poisson's ratio 0.3 is assumed where they are unknown.
+
+    Parameters
+    ----------
+    contact : contact with or without friction, or load history; for wear the one before wear.
+    material : effective moduli, as of `from_bodies`.
     """
     found = of_normal_contact(contact.normal, material, contact.slips_from)
     if contact.g_star is not None:

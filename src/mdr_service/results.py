@@ -98,7 +98,7 @@ def findings(query: Query, contact: Contact) -> list[validity.Finding]:
     found = validity.findings(contact, material)
     if query.material.has("yield_strength"):
         ratios = material.poissons_ratios
-        found.append(subsurface.yielding(contact, ratios, query.material.yield_strength))
+        found.append(subsurface.yield_finding(contact, ratios, query.material.yield_strength))
     return found
 
 

@@ -22,7 +22,7 @@ from mdr_core.profiles import (
     Tabulated,
     TruncatedCone,
 )
-from mdr_core.subsurface import MEASURES, largest, stress, yield_onset_force, yielding
+from mdr_core.subsurface import MEASURES, largest, stress, yield_finding, yield_onset_force
 from tests.oracles.subsurface_generate import shape_of, tensor
 
 STRENGTH = 0.01
@@ -197,8 +197,8 @@ def test_incompressible_cone() -> None:
     assert np.isinf(yield_onset_force(contact, 0.3, poissons_ratio=0.5))
     for factor, expected in ((0.999, True), (1.001, False)):
         strength = factor * 0.75 * 3.0 * 0.1
-        assert bool(yielding(contact, (0.5,), strength).where) == expected
-    assert bool(yielding(contact, (0.3,), 1e9).where)
+        assert bool(yield_finding(contact, (0.5,), strength).where) == expected
+    assert bool(yield_finding(contact, (0.3,), 1e9).where)
 
 
 # Of the reference alone.
@@ -236,9 +236,9 @@ def test_yielding_under_a_ball(profile: Profile, nu: float, onset: float) -> Non
     # p_0 = 2 E* a/(pi R).
     radii = onset * STRENGTH * np.pi * 2.0 / (2 * 3.0) * np.array([0.5, 0.997, 1.003, 2.0])
     contact = normal.solve(profile, 3.0, contact_radius=radii)
-    assert yielding(contact, (nu,), STRENGTH).where.tolist() == [False, False, True, True]
+    assert yield_finding(contact, (nu,), STRENGTH).where.tolist() == [False, False, True, True]
     # It is unknown which body is softer, so the one with the larger stress counts.
-    assert yielding(contact, (nu, 0.0), STRENGTH).where[1] == (nu > 0)
+    assert yield_finding(contact, (nu, 0.0), STRENGTH).where[1] == (nu > 0)
 
 
 def test_friction_lowers_the_onset_of_yield() -> None:
@@ -248,7 +248,7 @@ def test_friction_lowers_the_onset_of_yield() -> None:
     limit = 0.3 * contact.normal_force
     forces = limit * [0.999, 0.0, 0.2, 0.999]
     pushed = tangential.solve(contact, 2.5, 0.3, tangential_force=forces)
-    assert yielding(pushed, (0.3,), STRENGTH).where.tolist() == [False, False, False, True]
+    assert yield_finding(pushed, (0.3,), STRENGTH).where.tolist() == [False, False, False, True]
     peaks = 2 * largest(pushed, "maximum_shear", poissons_ratio=0.3).value
     assert (peaks >= STRENGTH).tolist() == [False, False, False, True]
     history = load_history.solve(
@@ -260,7 +260,7 @@ def test_friction_lowers_the_onset_of_yield() -> None:
         tangential_force=[0.0, forces[3], 0.0],
     )
     # The residual tractions of the cycle are as severe as its extreme.
-    assert yielding(history, (0.3,), STRENGTH).where.tolist() == [False, True, True]
+    assert yield_finding(history, (0.3,), STRENGTH).where.tolist() == [False, True, True]
 
 
 def test_yielding_of_many_loads_equals_single_loads() -> None:
@@ -272,7 +272,7 @@ def test_yielding_of_many_loads_equals_single_loads() -> None:
     )
     peaks = 2 * largest(pushed, "maximum_shear", poissons_ratio=0.3).value
     strength = float(np.median(peaks))
-    assert np.array_equal(yielding(pushed, (0.3,), strength).where, peaks >= strength)
+    assert np.array_equal(yield_finding(pushed, (0.3,), strength).where, peaks >= strength)
 
 
 def test_yielding_with_arrays_of_profiles() -> None:
@@ -285,7 +285,7 @@ def test_yielding_with_arrays_of_profiles() -> None:
     peaks = [2 * float(largest(one, "maximum_shear", poissons_ratio=0.3).value) for one in each]
     strength = float(np.mean(peaks))
     expected = [peak >= strength for peak in peaks]
-    assert yielding(contact, (0.3,), strength).where.tolist() == expected
+    assert yield_finding(contact, (0.3,), strength).where.tolist() == expected
 
 
 def test_onset_in_full_slip_next_to_a_cone() -> None:

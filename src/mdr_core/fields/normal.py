@@ -77,7 +77,22 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
 
     d - f(r) in the contact, (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx outside it.
 
-    Source: mdr-5, Eq. (5.75). Parameters, returns and errors as of `pressure`.
+    Source: mdr-5, Eq. (5.75).
+
+    Parameters
+    ----------
+    contact : normal contact of one profile, under any number of loads.
+    radius : radii [length], >= 0, shape (m,).
+    rtol : relative accuracy, 1e-13 to 1e-3.
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
+        parameter of the profile.
     """
     require_tolerance(rtol)
     require_single_profile(contact.profile.swept)
@@ -101,8 +116,20 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
 def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
     """Return q(x) = E* (d - g(x)) of the one-dimensional foundation [force/length].
 
-    Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23). Parameters, returns and errors
-    as of `pressure`.
+    Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23).
+
+    Parameters
+    ----------
+    contact : normal contact of one profile, under any number of loads.
+    radius : radii [length], >= 0, shape (m,).
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
     require_single_profile(contact.profile.swept)
     shape = contact.contact_radius.shape

@@ -113,6 +113,11 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     Prescribed edges are radii of the grid; of edges that follow from a load the grid takes a radius
     just inside, where their rounding error is insignificant.
 
+    Parameters
+    ----------
+    contact : contact under any number of loads, or end of a load history.
+    points : number of radii.
+
     Raises
     ------
     InputError : fewer points than such radii.
@@ -136,9 +141,20 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
 
 
 def graded(stops: Array, points: int) -> Array:
-    """Return radii from the first of ascending stops to the last, clustered at each of them.
+    """Return radii from the first of the stops to the last, clustered at each of them [length].
 
-    Raises InputError if there are fewer points than stops.
+    Parameters
+    ----------
+    stops : radii of the grid [length], ascending, shape (k,).
+    points : number of radii, m.
+
+    Returns
+    -------
+    Array of shape (m,).
+
+    Raises
+    ------
+    InputError : fewer points than stops.
     """
     end = stops[-1]
     if points < stops.size:

@@ -138,8 +138,22 @@ def slip(
     beyond full slip is subtracted throughout the contact. Where the bodies came into contact under
     a tangential displacement, part of it is not slip but the initial mismatch.
 
-    Source: mdr-5, Eqs. (5.39)-(5.45); notes, §10. Parameters, returns and errors as of
-    `shear_stress`.
+    Source: mdr-5, Eqs. (5.39)-(5.45); notes, §10.
+
+    Parameters
+    ----------
+    contact : tangential contact under any number of loads, or end of a load history.
+    radius : radii [length], >= 0, shape (m,).
+    rtol : relative accuracy, 1e-13 to 1e-3.
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
+        parameter of the profile.
     """
     require_tolerance(rtol)
 
@@ -170,7 +184,20 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
     It is linear in g(x) between the slip fronts, except on an arc; G* u_x in the stick zone and
     mu q(x) outside it under a monotonic load.
 
-    Source: mdr-5, Eq. (5.23); notes, §10. Parameters, returns and errors as of `shear_stress`.
+    Source: mdr-5, Eq. (5.23); notes, §10.
+
+    Parameters
+    ----------
+    contact : tangential contact under any number of loads, or end of a load history.
+    radius : radii [length], >= 0, shape (m,).
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
 
     def values(load: Traction, r: Array) -> Array:

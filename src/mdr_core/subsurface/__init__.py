@@ -1,7 +1,7 @@
 """Stresses beneath the surface of a contact."""
 
 from mdr_core.subsurface.stress import StressTensor, error_estimate, stress
-from mdr_core.subsurface.yielding import MEASURES, Peak, largest, yield_onset_force, yielding
+from mdr_core.subsurface.yielding import MEASURES, Peak, largest, yield_finding, yield_onset_force
 
 __all__ = [
     "MEASURES",
@@ -10,6 +10,6 @@ __all__ = [
     "error_estimate",
     "largest",
     "stress",
+    "yield_finding",
     "yield_onset_force",
-    "yielding",
 ]

@@ -168,7 +168,10 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
 
     It contains rounding errors, and the error of a contact radius or slip front that follows from
     a load, near which stresses change like a root. That of a load history itself is left out.
-    Parameters: see `stress`.
+
+    Parameters
+    ----------
+    contact, x, y, z : see `stress`.
     """
     r, z = map(np.ravel, np.broadcast_arrays(np.hypot(x, y), z))
     known, near = fields.edges(contact), 0.0

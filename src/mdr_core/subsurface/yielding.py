@@ -120,7 +120,7 @@ def yield_onset_force(
     return np.array(onset)[which].reshape(shape)
 
 
-def yielding(
+def yield_finding(
     contact: _Loaded | LoadHistory, poissons_ratios: tuple[float, ...], yield_strength: float
 ) -> Finding:
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
