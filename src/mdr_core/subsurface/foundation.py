@@ -103,9 +103,8 @@ class Foundation:
         self._base = base = np.array([branch.base for branch in branches])[self._owner]
         # An annulus may be too narrow for its radii to resolve it.
         gap = load.profile.radius_width(load.coordinate[1:], load.width)[part]
-        width = np.where((inner[part] == low) & (outer[part] == high), gap, high - low) * (
-            high + low
-        )
+        whole = (inner[part] == low) & (outer[part] == high)
+        width = np.where(whole, gap, high - low) * (high + low)
         s_low = np.sqrt((low - base) * (low + base))
         s_high = np.sqrt(s_low * s_low + width)
         self._ends = np.array([s_low, s_high])
@@ -121,9 +120,8 @@ class Foundation:
         base, curved, profile = branch.base, bool(self._anchors[1].any()), self.load.profile
         start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
         smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
-        near = min(base, branch.opposite_singularity) or (
-            inf if smooth and not curved else _NEAREST * stop
-        )
+        first = inf if smooth and not curved else _NEAREST * stop
+        near = min(base, branch.opposite_singularity) or first
         return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Numbers:
@@ -156,11 +154,9 @@ class Foundation:
             low, high = np.where(nearer, (low, low - width), (high + width, high))
             far = np.abs(low - width / 2) >= _FAR * width
             for part in _in_cache(np.flatnonzero(far), len(level.x)):
-                own = block[part]
+                own, place = block[part], point[part]
                 square = low.real[part] - level.past[:, own]
-                _add(
-                    total, point[part], square, level.x[:, own], z[point[part]], level.mass[:, own]
-                )
+                _add(total, place, square, level.x[:, own], z[place], level.mass[:, own])
             point, block, low, high = (part[~far] for part in (point, block, low, high))
         if point.size:
             self._add_near(total, point, block, z[point], np.array([low, high]))

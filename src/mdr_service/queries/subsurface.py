@@ -81,9 +81,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
     """Return the requested body and its Poisson's ratio, as arguments of the core.
 
-    Raises
-    ------
-    InputError : the body is rigid, or its Poisson's ratio is not given.
+    Raises InputError if the body is rigid or its Poisson's ratio is not given.
     """
     material = query.material
     known = material.bodies[query.body - 1] if isinstance(material, Bodies) else material
