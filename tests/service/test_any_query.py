@@ -14,6 +14,7 @@ from mdr_service.schemas.answers import (
     NormalAnswer,
     SolvedAnswer,
     StressAnswer,
+    SubsurfaceAnswer,
     TangentialAnswer,
     WearAnswer,
 )
@@ -123,6 +124,32 @@ STRESSES = st.builds(
         ORDINARY_CONTACTS | FRICTION | {"quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS)}
     ),
     PLACES,
+)
+
+# Contacts without and with friction, in either body and at any depth.
+BENEATH = {
+    "quantities": quantities(["stress_xx", "stress_xz", "von_mises", "principal_3"]),
+    "y": st.just(0.0) | SIGNED,
+    "body": st.sampled_from([1, 2]),
+    "largest": st.booleans(),
+}
+MATERIAL = {"e_star": LENGTHS, "poissons_ratio": st.floats(-0.99, 0.5)}
+SUBSURFACE = st.builds(
+    lambda query, places: query | places,
+    st.fixed_dictionaries(NORMAL_LOADS | BENEATH | {"material": st.fixed_dictionaries(MATERIAL)})
+    | st.fixed_dictionaries(
+        NORMAL_LOADS
+        | FRICTION
+        | BENEATH
+        | {"material": st.fixed_dictionaries(MATERIAL | {"g_star": LENGTHS})}
+    ),
+    st.integers(2, 4).map(lambda points: {"points": points})
+    | st.fixed_dictionaries(
+        {
+            "x": st.lists(SIGNED, min_size=1, max_size=3),
+            "z": st.lists(LOADS, min_size=1, max_size=3),
+        }
+    ),
 )
 
 
@@ -261,9 +288,9 @@ def check(client: Client, path: str, query: object, model: type[SolvedAnswer]) -
     document = strict_json.loads(answer.content)
     assert isinstance(document, dict)
     if answer.status_code == 200:
-        told = model.model_validate_json(answer.content)
+        valid = model.model_validate_json(answer.content)
         infinite = {"singular", "endless_wear"}
-        singular = any(warning.code in infinite for warning in told.warnings)
+        singular = any(warning.code in infinite for warning in valid.warnings)
         assert singular == (b"null" in answer.content)
     else:
         # The time limit is the guarantee; the slowest evolutions exceed it.
@@ -298,6 +325,12 @@ def test_tangential_query(client: Client, query: dict[str, object]) -> None:
 @given(query=STRESSES)
 def test_stress_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/stress", query, StressAnswer)
+
+
+@with_examples
+@given(query=SUBSURFACE)
+def test_subsurface_query(client: Client, query: dict[str, object]) -> None:
+    check(client, "/v1/subsurface", query, SubsurfaceAnswer)
 
 
 @with_examples
