@@ -76,7 +76,9 @@ class HistoryAnswer(SolvedAnswer):
     regime: list[Literal["no_contact", "stick", "partial_slip", "full_slip"]] = Field(
         description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
     )
-    slip_fronts: list[float] = _length("Radii of the slip fronts at the end, ascending")
+    slip_fronts: list[float] = _length(
+        "Radii of the slip fronts at the end, ascending; `error_estimate` does not cover them"
+    )
     energy_per_cycle: list[float] = _energy(
         "Energy dissipated in each cycle, the area of its loop", default=None
     )
@@ -138,8 +140,8 @@ class LargestStress(Answer):
 class LargestStresses(Answer):
     """Largest stresses; their places are accurate to about a thousandth of the contact radius."""
 
-    von_mises: LargestStress
-    maximum_shear: LargestStress
+    von_mises: LargestStress = Field(description="Von Mises' equivalent stress.")
+    maximum_shear: LargestStress = Field(description="Maximum shear stress ½(σ₁ − σ₃).")
 
 
 class YieldOnsetForce(Answer):
@@ -164,14 +166,14 @@ class SubsurfaceAnswer(SolvedAnswer):
     stress_xz: _Map = _pressure(f"Shear stress τ_xz; {_NULL}", default=None)
     stress_yz: _Map = _pressure(f"Shear stress τ_yz; {_NULL}", default=None)
     von_mises: _Map = _pressure(f"Von Mises' equivalent stress; {_NULL}", default=None)
-    maximum_shear: _Map = _pressure(f"Largest shear stress; {_NULL}", default=None)
+    maximum_shear: _Map = _pressure(f"Maximum shear stress ½(σ₁ − σ₃); {_NULL}", default=None)
     principal_1: _Map = _pressure(f"Largest principal stress; {_NULL}", default=None)
     principal_2: _Map = _pressure(f"Middle principal stress; {_NULL}", default=None)
     principal_3: _Map = _pressure(f"Smallest principal stress; {_NULL}", default=None)
     mean_stress: _Map = _pressure(f"Mean stress; {_NULL}", default=None)
     largest: LargestStresses = left_out("Largest stresses of the whole body, if requested.")
     yield_onset_force: YieldOnsetForce = left_out(
-        "Normal force at the onset of yield, with `yield_strength`."
+        "Normal force at the onset of yield [force], with `yield_strength`."
     )
     search_error_estimate: float = _number(
         "Relative error of `largest` and `yield_onset_force`, which `error_estimate` leaves out",
@@ -222,7 +224,10 @@ class EvolutionAnswer(SolvedAnswer):
     indentation_depth: list[float] = _length("Indentation depth d; it grows if F_N is constant")
     normal_force: list[float] = _force("Normal force F_N; it falls if d is constant")
     stick_radius: list[float] = _length("Stick radius c")
-    contact_radius: list[float] = _length("Contact radius a")
+    contact_radius: list[float] = _length(
+        "Contact radius a, the outer radius of the worn annulus; it tends to `wear_radius` of "
+        "`/v1/wear`, unless that response has the warning `path_dependent`"
+    )
     dissipated_energy: list[float] = _energy("Energy dissipated by slip in all cycles")
     field_error_estimate: float = _number(
         "Upper bound of the error of each field, relative to its largest value or the mean in the "
@@ -231,7 +236,9 @@ class EvolutionAnswer(SolvedAnswer):
     )
     radius: list[float] = _length("Radii r, requested or chosen", default=None)
     profile: _Field = _length(
-        f"Worn profile f(r), by number of cycles and radius; {_NULL}, outside a flat punch",
+        "Worn profile f(r), by number of cycles and radius; it tends to `limiting_profile` of "
+        "`/v1/wear`, unless that response has the warning `path_dependent`; "
+        f"{_NULL}, outside a flat punch",
         default=None,
     )
     worn_depth: list[list[float]] = _length(

@@ -120,7 +120,8 @@ class Elastic(Strict):
     # Optional, but not null: hence a plain float with the default None.
     yield_strength: float = positive(
         "pressure",
-        "Yield strength Y; the response then warns where Tresca's criterion is met",
+        "Yield strength Y of the softer body, in uniaxial tension; the response carries the "
+        "warning `yield` where Tresca's criterion is met",
         default=None,
     )
 
@@ -153,13 +154,16 @@ def _of_bodies(*constants: _Constants) -> materials.Material:
 class Moduli(Elastic):
     """Material given by the effective moduli of the contact."""
 
-    e_star: float = positive("pressure", "Effective modulus E* = 1/Σ(1 − νᵢ²)/Eᵢ")
+    e_star: float = positive("pressure", "Effective modulus E*, 1/E* = Σ (1 − νᵢ²)/Eᵢ")
     g_star: float = positive(
-        "pressure", "Effective shear modulus G*, needed with friction only", default=None
+        "pressure",
+        "Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed with friction only",
+        default=None,
     )
     poissons_ratio: float = quantity(
         "1",
-        "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface only",
+        "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere "
+        "only the warnings `plastic` and `yield` depend on it (0.3 is assumed for `yield`)",
         default=None,
         gt=-1,
         le=0.5,

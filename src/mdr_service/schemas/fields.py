@@ -26,8 +26,9 @@ class FieldQuery(Query):
     """Query of fields at radii that are given, or that the service chooses."""
 
     radius: list[Size] = places(
-        "Radii r of the fields, in any order. Within four units in the last place of a contact "
-        "radius or slip front a stress has a root, and its rounding is not in `error_estimate`"
+        "Radii r of the fields, in any order. `error_estimate` does not apply at radii within four "
+        "units in the last place of a contact radius or slip front, where a stress varies like a "
+        "square root"
     )
     points: int = quantity(
         "1",

@@ -29,7 +29,11 @@ class ParaboloidProfile(Strict):
     """A paraboloid, the shape of Hertz: r²/(2·radius)."""
 
     kind: Literal["paraboloid"]
-    radius: float = positive("length", "Radius of curvature at the tip")
+    radius: float = positive(
+        "length",
+        "Radius of curvature at the tip. For two spheres or a sphere in a socket, "
+        "1/radius = 1/R₁ + 1/R₂, with R < 0 for a concave surface",
+    )
 
 
 class SphereProfile(Strict):
@@ -127,8 +131,8 @@ class CappedParaboloidProfile(Strict):
 
     kind: Literal["capped_paraboloid"]
     cap_radius: float = positive("length", "Radius b of the cap")
-    tip_radius: float = positive("length", "Radius of curvature R₁ of the cap")
-    radius: float = positive("length", "Radius of curvature R₂ ≤ R₁ outside the cap")
+    tip_radius: float = positive("length", "Radius of curvature R₁ of the cap, at least `radius`")
+    radius: float = positive("length", "Radius of curvature R₂ outside the cap")
 
 
 class TabulatedProfile(Strict):

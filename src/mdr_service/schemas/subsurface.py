@@ -42,7 +42,8 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
     z: list[Size] = places("Depths in the body, 0 on its surface")
     points: int = quantity(
         "1",
-        "Number of each in place of lists, up to 1.5 times the largest contact radius",
+        "Number of x values and of z values that the service chooses in place of lists, up to 1.5 "
+        "times the largest contact radius",
         default=None,
         ge=2,
         le=1000,
@@ -51,8 +52,7 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
         "tension is positive, and principal_1 ≥ principal_2 ≥ principal_3", default=["von_mises"]
     )
     largest: bool = Field(
-        default=False,
-        description="Search the largest von Mises and shear stress of the whole body.",
+        default=False, description="Search the largest von Mises and shear stress."
     )
 
     @property
