@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 from mdr_core import fields, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact, solve
-from mdr_core.profiles import Tabulated
+from mdr_core.profiles import Tabulated, TruncatedParaboloid
 from mdr_core.profiles.table_interpolation import interpolate
 from tests.oracles.tables import TABLE_DIGITS, Table
 
@@ -175,13 +175,15 @@ def test_traction_on_the_axis_of_a_sticking_tip(c: float) -> None:
     assert result[0] == pytest.approx(-np.log(c) / 2, rel=INTERPOLANT, abs=0)
 
 
+@pytest.mark.parametrize("tabulated", [True, False])
 @pytest.mark.parametrize("force", [1e-14, 1e-10, 1e-6, 1e-2])
 @pytest.mark.parametrize("part", [0.5, 0.999, 0.999999])
-def test_stresses_next_to_a_flat(force: float, part: float) -> None:
+def test_stresses_next_to_a_flat(*, force: float, part: float, tabulated: bool) -> None:
     """Truncated paraboloid, R = 1: g' dx = (2s^2 + b^2)/x ds, F/E* = 2s (2s^2 + 3b^2)/3."""
     b, r, radii = 0.25, np.array([0.0, 0.25, 0.5, 0.75, 1.0]), [0.0, 0.1, 0.2, 0.2499]
     table = Tabulated(r, np.maximum(r * r - b * b, 0) / 2, "cubic", (b,))
-    contact = solve(table, 1.0, normal_force=force)
+    body = table if tabulated else TruncatedParaboloid(b, 1.0)
+    contact = solve(body, 1.0, normal_force=force)
     partial = tangential.solve(contact, 1.0, 1.0, tangential_force=part * force)
     found = fields.pressure(contact, radii), fields.shear_stress(partial, radii)
 

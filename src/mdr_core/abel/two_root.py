@@ -28,6 +28,8 @@ Weight = Callable[[Array, Array, Chosen], Array]
 _Rule = Callable[..., Array]
 
 _TINY: Final = float(np.finfo(float).tiny)
+# Rounding error of a difference of contact coordinates.
+_ROUNDING: Final = 4 * float(np.finfo(float).eps)
 
 
 def inverse_hypot(x: Array, b: Parameter) -> Array:
@@ -136,8 +138,11 @@ def _two_roots(
     else:
         width, c = inner.width, np.maximum(inner.radius, b)
         inner2 = (c - r) * (c + r)
-        # Next to the break the radii are accurate, in a narrow annulus its width is.
-        lower = where(width > upper / 2, inverse_hypot(c, b), upper - width)
+        # Next to the break a given radius is accurate, but one from a load no more than b^2/lower:
+        # the difference is as accurate as upper. In a narrow annulus its width is.
+        lower, error = upper - width, _ROUNDING * upper
+        by_radii = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
+        lower = where(width > upper / 2, by_radii, lower)
         root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
         gap2 = np.minimum(edge2, width * (upper + lower))
