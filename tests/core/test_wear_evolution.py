@@ -441,8 +441,11 @@ def test_no_wear_without_slip() -> None:
         ({"cycles": []}, ("cycles",)),
         ({"cycles": [0.0, float("nan")]}, ("cycles", 1)),
         ({"wear_coefficient": 0.0}, ("wear_coefficient",)),
-        ({"resolution": 4}, ("resolution",)),
-        ({"rtol": 0.0}, ("rtol",)),
+        ({"wear_coefficient": float("inf")}, ("wear_coefficient",)),
+        ({"resolution": 7}, ("resolution",)),
+        ({"resolution": 97}, ("resolution",)),
+        ({"rtol": 9e-11}, ("rtol",)),
+        ({"rtol": 2e-3}, ("rtol",)),
         ({"g_star": [1.0, 2.0]}, ("g_star",)),
     ],
 )

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import inf, isfinite
+from math import isfinite
 from typing import ClassVar, Final
 
 import numpy as np
@@ -14,7 +14,12 @@ from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import first_index, require_not_negative
+from mdr_core.validation import (
+    first_index,
+    require_not_negative,
+    require_positive,
+    require_tolerance,
+)
 from mdr_core.wear import limit
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
@@ -27,6 +32,8 @@ DEFAULT_RESOLUTION: Final = 24
 COARSEST: Final = 8
 # ... and its largest.
 FINEST: Final = 96
+# Smallest tolerance of the integration over the cycles.
+TIGHTEST: Final = 1e-10
 FIELDS: Final = ("profile", "worn_depth", "pressure")
 SCALARS: Final = (
     "worn_volume",
@@ -288,13 +295,10 @@ def solve(
     [3.667e-07, 0.7593]
     """
     name, size = one_amplitude(tangential_displacement, tangential_force)
-    for path, value, low, high in (
-        (("wear_coefficient",), wear_coefficient, 0.0, inf),
-        (("resolution",), resolution, COARSEST - 1, FINEST + 1),
-        (("rtol",), rtol, 0.0, 1.0),
-    ):
-        if not low < value < high:
-            raise InputError(path, f"must lie between {low} and {high}")
+    require_positive(("wear_coefficient",), wear_coefficient)
+    require_tolerance(rtol, TIGHTEST)
+    if not COARSEST <= resolution <= FINEST:
+        raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
     for place, number in (
         ("load", contact.contact_radius),
         ("g_star", g_star),
