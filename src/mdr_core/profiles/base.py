@@ -4,6 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final
 
@@ -67,7 +68,7 @@ class Profile(ABC):
         names: tuple[str, ...] = getattr(self, "__match_args__", ())
         return {name: getattr(self, name) for name in names}
 
-    @property
+    @cached_property
     def swept(self) -> tuple[str, ...]:
         """Names of the parameters that are arrays over the cases of a sweep."""
         return tuple(
