@@ -182,9 +182,9 @@ def test_interrupt_ends_the_command_without_a_traceback() -> None:
     process.stdin = None
     time.sleep(0.3)
     process.send_signal(signal.SIGINT)
-    out, told = process.communicate(timeout=PATIENCE)
+    out, errors = process.communicate(timeout=PATIENCE)
     assert (process.returncode, out) == (130, b"")
-    assert b"Traceback" not in told
+    assert b"Traceback" not in errors
 
 
 @pytest.mark.long

@@ -24,8 +24,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build the manual as `make docs`; a broken link is an error."""
     folder = tmp_path_factory.mktemp("manual")
     build = [Path(sys.executable).parent / "mkdocs", "build", "--site-dir", folder]
-    told = subprocess.run(build, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert told.returncode == 0, told.stderr
+    done = subprocess.run(build, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
     return folder
 
 

@@ -152,9 +152,9 @@ def test_every_member_states_its_dimension() -> None:
     loads = ("Load", "Tangential", "NormalPoints", "TangentialPoints")
     oscillations = ("OscillatingNormalLoad", "TangentialAmplitude", "Oscillation")
     constant = ("ConstantNormalLoads", "ConstantNormalLoad")
-    told = ("NormalAnswer", "TangentialAnswer", "HistoryAnswer", "StressAnswer")
-    told += ("WearAnswer", "EvolutionAnswer")
-    for query in (*loads, *oscillations, *constant, *told):
+    answers = ("NormalAnswer", "TangentialAnswer", "HistoryAnswer", "StressAnswer")
+    answers += ("WearAnswer", "EvolutionAnswer")
+    for query in (*loads, *oscillations, *constant, *answers):
         schema = DOCUMENT["components"]["schemas"][query]
         parts = schema.get("oneOf", [schema])
         for name, field in chain(*(part["properties"].items() for part in parts)):

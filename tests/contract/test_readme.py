@@ -96,10 +96,10 @@ def output_of(client: Client, command: str) -> str:
 def shell(command: str, folder: Path | None = None) -> str:
     """Return the output of a command line in which `mdr` is that of this environment."""
     path = {"PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
-    told = subprocess.run(
+    done = subprocess.run(
         ["sh", "-c", command], cwd=folder, env=os.environ | path, capture_output=True, check=True
     )
-    return told.stdout.decode()
+    return done.stdout.decode()
 
 
 def test_shell_examples_use_the_command_line() -> None:

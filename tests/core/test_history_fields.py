@@ -106,13 +106,15 @@ def test_slip_is_the_transform_of_the_foundation_slip(profile: Profile) -> None:
 def test_single_load_equals_the_tangential_query(profile: Profile, ratio: float) -> None:
     contact = normal.solve(profile, E, normal_force=1.0)
     once = tangential.solve(contact, G, MU, tangential_force=ratio * MU)
-    way = history.solve(profile, E, G, MU, normal_force=1.0, tangential_force=[0.0, ratio * MU])
+    load_path = history.solve(
+        profile, E, G, MU, normal_force=1.0, tangential_force=[0.0, ratio * MU]
+    )
     a = float(contact.contact_radius)
     r = np.array([0.0, 0.2, 0.5, 0.77, 0.9]) * a
     for field in (fields.shear_stress, fields.foundation_shear):
-        np.testing.assert_allclose(field(way.state, r), field(once, r), rtol=1e-11)
+        np.testing.assert_allclose(field(load_path.state, r), field(once, r), rtol=1e-11)
     slip = fields.slip(once, r)
-    np.testing.assert_allclose(fields.slip(way.state, r), slip, rtol=1e-10, atol=1e-300)
+    np.testing.assert_allclose(fields.slip(load_path.state, r), slip, rtol=1e-10, atol=1e-300)
 
 
 def test_traction_of_a_flat_punch() -> None:

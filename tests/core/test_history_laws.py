@@ -15,13 +15,13 @@ from numpy.polynomial.legendre import Legendre
 from mdr_core import history, normal
 from tests.core.comparison import profile_from
 from tests.core.test_history_paths import PROFILES
-from tests.core.test_laws import E_STAR, at_radius, rescaled, scenes
+from tests.core.test_laws import E_STAR, at_radius, cases, rescaled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    Scene = tuple[dict[str, Any], float]
+    Case = tuple[dict[str, Any], float]
 
 G_STAR = 2.9
 MU = 0.37
@@ -47,16 +47,16 @@ def near(value: Any, absolute: float = 0.0, rel: float = 1e-12) -> Any:
     return pytest.approx(value, rel=rel, abs=absolute)
 
 
-def controls(scene: Scene, path: list[tuple[float, float]]) -> tuple[Array, Array, float]:
+def controls(case: Case, path: list[tuple[float, float]]) -> tuple[Array, Array, float]:
     """Depths, displacements, and the depth that both are fractions of."""
-    depth = float(at_radius(*scene).indentation_depth)
+    depth = float(at_radius(*case).indentation_depth)
     d, u = np.array(path).T
     return d * depth, u * SHIFT * depth, depth
 
 
-def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.LoadHistory:
+def solve(case: Case, d: Array, u: Array, **options: Any) -> history.LoadHistory:
     return history.solve(
-        profile_from(scene[0]),
+        profile_from(case[0]),
         E_STAR,
         G_STAR,
         MU,
@@ -67,10 +67,10 @@ def solve(scene: Scene, d: Array, u: Array, **options: Any) -> history.LoadHisto
 
 
 @repeatable
-@given(scenes(), paths)
-def test_friction_limit_and_slip_regime(scene: Scene, path: list[tuple[float, float]]) -> None:
-    d, u, _ = controls(scene, path)
-    result = solve(scene, d, u, samples_per_step=5)
+@given(cases(), paths)
+def test_friction_limit_and_slip_regime(case: Case, path: list[tuple[float, float]]) -> None:
+    d, u, _ = controls(case, path)
+    result = solve(case, d, u, samples_per_step=5)
     limit = MU * result.normal_force
     size = np.max(limit, initial=0.0)
     assert np.all(np.abs(result.tangential_force) <= limit + 1e-13 * size)
@@ -82,22 +82,22 @@ def test_friction_limit_and_slip_regime(scene: Scene, path: list[tuple[float, fl
 
 
 @repeatable
-@given(scenes(), paths)
+@given(cases(), paths)
 def test_normal_problem_is_independent_of_tangential_loading(
-    scene: Scene, path: list[tuple[float, float]]
+    case: Case, path: list[tuple[float, float]]
 ) -> None:
-    d, u, _ = controls(scene, path)
-    result = solve(scene, d, u)
-    alone = normal.solve(profile_from(scene[0]), E_STAR, indentation_depth=np.maximum(d, 0.0))
+    d, u, _ = controls(case, path)
+    result = solve(case, d, u)
+    alone = normal.solve(profile_from(case[0]), E_STAR, indentation_depth=np.maximum(d, 0.0))
     touching = d > 0
     for name in ("normal_force", "contact_radius", "elastic_energy"):
         assert getattr(result, name)[touching] == near(getattr(alone, name)[touching]), name
 
 
 @repeatable
-@given(scenes(), paths)
-def test_dissipated_energy_never_decreases(scene: Scene, path: list[tuple[float, float]]) -> None:
-    result = solve(scene, *controls(scene, path)[:2], samples_per_step=5)
+@given(cases(), paths)
+def test_dissipated_energy_never_decreases(case: Case, path: list[tuple[float, float]]) -> None:
+    result = solve(case, *controls(case, path)[:2], samples_per_step=5)
     assert np.all(result.dissipation >= 0)
     assert np.all(np.diff(result.dissipated_energy) >= 0)
     assert np.all(result.tangential_energy >= 0)
@@ -106,11 +106,11 @@ def test_dissipated_energy_never_decreases(scene: Scene, path: list[tuple[float,
 
 
 @repeatable
-@given(scenes(), loops)
-def test_repeated_loop_closes_and_dissipates(scene: Scene, loop: list[tuple[float, float]]) -> None:
+@given(cases(), loops)
+def test_repeated_loop_closes_and_dissipates(case: Case, loop: list[tuple[float, float]]) -> None:
     """Each load step clips the springs' loads. Clipping is idempotent: the second round repeats."""
-    d, u, depth = controls(scene, loop * 3)
-    result = solve(scene, d, u)
+    d, u, depth = controls(case, loop * 3)
+    result = solve(case, d, u)
     count = len(loop)
     size = MU * np.max(result.normal_force)
     force, stored = result.tangential_force, result.tangential_energy
@@ -123,7 +123,7 @@ def test_repeated_loop_closes_and_dissipates(scene: Scene, loop: list[tuple[floa
     assert np.sum(dissipated[count : 2 * count]) >= 0
 
 
-def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
+def work(case: Case, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
     """int F_x du up to each point, by Gauss-Lobatto on panels that cluster at kinks of F_x.
 
     Additional points on a straight load step change nothing, so the rule's nodes are path points.
@@ -136,7 +136,7 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
         low, width = edges[:-1], np.diff(edges)
         at = (low[:, None] + width[:, None] * (NODES + 1) / 2).ravel()
         times = np.unique(np.concatenate([at, knots[1:]]))
-        result = solve(scene, np.interp(times, knots, all_d), np.interp(times, knots, all_u))
+        result = solve(case, np.interp(times, knots, all_d), np.interp(times, knots, all_u))
         force = result.tangential_force[np.searchsorted(times, at)].reshape(-1, NODES.size)
         step = np.minimum(low.astype(int), len(d) - 1)
         part = force @ WEIGHTS / 2 * width * (all_u[step + 1] - all_u[step])
@@ -152,22 +152,22 @@ def work(scene: Scene, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
 
 
 @few
-@given(scenes(), st.lists(point, min_size=2, max_size=4))
-def test_work_is_stored_or_dissipated(scene: Scene, path: list[tuple[float, float]]) -> None:
-    d, u, _ = controls(scene, path)
-    done, _ = work(scene, d, u)
-    result = solve(scene, d, u)
+@given(cases(), st.lists(point, min_size=2, max_size=4))
+def test_work_is_stored_or_dissipated(case: Case, path: list[tuple[float, float]]) -> None:
+    d, u, _ = controls(case, path)
+    done, _ = work(case, d, u)
+    result = solve(case, d, u)
     balance = result.tangential_energy + result.dissipated_energy
     assert balance == near(done, 1e-10 * np.max(np.abs(balance)), rel=0)
 
 
 @repeatable
-@given(scenes(), paths, st.integers(2, 9))
+@given(cases(), paths, st.integers(2, 9))
 def test_samples_do_not_change_the_points(
-    scene: Scene, path: list[tuple[float, float]], count: int
+    case: Case, path: list[tuple[float, float]], count: int
 ) -> None:
-    d, u, depth = controls(scene, path)
-    one, many = (solve(scene, d, u, samples_per_step=number) for number in (1, count))
+    d, u, depth = controls(case, path)
+    one, many = (solve(case, d, u, samples_per_step=number) for number in (1, count))
     assert many.step.tolist() == np.repeat(np.arange(len(d)), count).tolist()
     size = MU * np.max(one.normal_force, initial=0.0)
     for name, scale in (
@@ -187,15 +187,15 @@ def test_samples_do_not_change_the_points(
 
 
 @repeatable
-@given(scenes(), paths)
-def test_states_are_resumable_and_immutable(scene: Scene, path: list[tuple[float, float]]) -> None:
-    d, u, depth = controls(scene, path)
-    states = [history.unloaded(profile_from(scene[0]), E_STAR, G_STAR, MU)]
+@given(cases(), paths)
+def test_states_are_resumable_and_immutable(case: Case, path: list[tuple[float, float]]) -> None:
+    d, u, depth = controls(case, path)
+    states = [history.unloaded(profile_from(case[0]), E_STAR, G_STAR, MU)]
     kept = []
     for end in zip(d.tolist(), u.tolist(), strict=True):
         states.append(history.advance(states[-1], *end))
         kept.append((states[-1].depth.copy(), states[-1].load.copy()))
-    whole = solve(scene, d, u).state
+    whole = solve(case, d, u).state
     assert states[-1].depth == near(whole.depth, 1e-14 * depth)
     assert states[-1].load == near(whole.load, 1e-13 * MU * E_STAR * depth)
     # A second continuation from an earlier state does not affect the first one.
@@ -227,14 +227,14 @@ def require_unchangeable(state: history.ContactState) -> None:
 
 
 @repeatable
-@given(scenes(), paths, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
+@given(cases(), paths, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
 def test_results_scale_with_units(
-    scene: Scene, path: list[tuple[float, float]], length_power: float, modulus_power: float
+    case: Case, path: list[tuple[float, float]], length_power: float, modulus_power: float
 ) -> None:
-    fields, radius = scene
+    fields, radius = case
     unit, modulus = 10.0**length_power, 10.0**modulus_power
-    d, u, depth = controls(scene, path)
-    old = solve(scene, d, u)
+    d, u, depth = controls(case, path)
+    old = solve(case, d, u)
     new = history.solve(
         profile_from(rescaled(fields, unit)),
         E_STAR * modulus,
@@ -259,12 +259,12 @@ def test_results_scale_with_units(
 
 
 @repeatable
-@given(scenes(), paths)
+@given(cases(), paths)
 def test_reversed_direction_is_the_mirror_image(
-    scene: Scene, path: list[tuple[float, float]]
+    case: Case, path: list[tuple[float, float]]
 ) -> None:
-    d, u, _ = controls(scene, path)
-    right, left = solve(scene, d, u), solve(scene, d, -u)
+    d, u, _ = controls(case, path)
+    right, left = solve(case, d, u), solve(case, d, -u)
     assert np.array_equal(left.tangential_force, -right.tangential_force)
     assert np.array_equal(left.state.load, -right.state.load)
     for name in ("normal_force", "dissipated_energy", "tangential_energy"):

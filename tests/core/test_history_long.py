@@ -75,20 +75,20 @@ def test_results_after_an_erasing_step_are_independent_of_the_past(name: str) ->
         assert result.dissipation[part] == dissipated
 
 
-def anchors(d: Array, u: Array, first_contact_depth: Array) -> Array:
+def spring_shear(d: Array, u: Array, first_contact_depth: Array) -> Array:
     """q_x of springs stored by zero-force displacement, without accumulation and without drift."""
     compliance = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star
-    hung = np.zeros_like(first_contact_depth)
+    zero_force = np.zeros_like(first_contact_depth)
     last_d = last_u = 0.0
     for new_d, new_u in zip(d.tolist(), u.tolist(), strict=True):
         if new_d > last_d:
             entering = (first_contact_depth >= last_d) & (first_contact_depth < new_d)
             share = (first_contact_depth - last_d) / (new_d - last_d)
-            hung = np.where(entering, last_u + share * (new_u - last_u), hung)
+            zero_force = np.where(entering, last_u + share * (new_u - last_u), zero_force)
         reach = compliance * np.maximum(new_d - first_contact_depth, 0.0)
-        hung = np.clip(hung, new_u - reach, new_u + reach)
+        zero_force = np.clip(zero_force, new_u - reach, new_u + reach)
         last_d, last_u = new_d, new_u
-    return np.where(first_contact_depth < last_d, MATERIAL.g_star * (last_u - hung), 0.0)
+    return np.where(first_contact_depth < last_d, MATERIAL.g_star * (last_u - zero_force), 0.0)
 
 
 @pytest.mark.parametrize("name", ["paraboloid", "flat-punch"])
@@ -103,7 +103,7 @@ def test_final_state_equals_that_of_drift_free_springs(name: str) -> None:
         np.linspace(0.0, 0.999 * d[-1], 97) if name != "flat-punch" else np.zeros(1)
     )
     result = np.interp(first_contact_depth, state.depth, state.load)
-    assert result == pytest.approx(anchors(d, u, first_contact_depth), rel=0, abs=1e-12 * SIZE)
+    assert result == pytest.approx(spring_shear(d, u, first_contact_depth), rel=0, abs=1e-12 * SIZE)
     assert state.depth.size <= 64
 
 

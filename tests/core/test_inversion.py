@@ -11,14 +11,14 @@ from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
 # Value, derivative and closed-form inverse. The first step from 1 leaves the bracket, or the slope
-# on one side of a kink misleads on the other.
+# on one side of a slope discontinuity misleads on the other.
 CASES: dict[str, tuple[Function, Function, Function]] = {
-    "steep beyond a kink": (
+    "steep beyond a slope discontinuity": (
         lambda s: s + 1e6 * np.maximum(s - 2.0, 0.0),
         lambda s: np.where(s > 2.0, 1e6 + 1, 1.0),
         lambda y: np.where(y > 2.0, 2.0 + (y - 2.0) / (1e6 + 1), y),
     ),
-    "flat beyond a kink": (
+    "flat beyond a slope discontinuity": (
         lambda s: np.minimum(s, 2.0) + 1e-6 * np.maximum(s - 2.0, 0.0),
         lambda s: np.where(s > 2.0, 1e-6, 1.0),
         lambda y: np.where(y > 2.0, 2.0 + (y - 2.0) / 1e-6, y),

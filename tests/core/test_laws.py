@@ -78,7 +78,7 @@ def edge(fields_: dict[str, Any], ratio: float) -> float:
 
 
 @st.composite
-def scenes(draw: st.DrawFn) -> tuple[dict[str, Any], float]:
+def cases(draw: st.DrawFn) -> tuple[dict[str, Any], float]:
     kind = draw(st.sampled_from(sorted(PROFILES)))
     chosen = {"kind": kind, **draw(st.fixed_dictionaries(PROFILES[kind]))}
     return chosen, edge(chosen, draw(st.floats(0.05, 3.0)))
@@ -112,9 +112,9 @@ def integral(fn: Callable[[Array], Array], knots: list[float]) -> float:
 
 
 @repeatable
-@given(scenes())
-def test_stiffness_is_the_derivative_of_the_force(scene: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = scene
+@given(cases())
+def test_stiffness_is_the_derivative_of_the_force(case: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = case
     depth = float(at_radius(fields_, radius).indentation_depth)
     profile = profile_from(fields_)
 
@@ -132,9 +132,9 @@ def test_stiffness_is_the_derivative_of_the_force(scene: tuple[dict[str, Any], f
 
 
 @repeatable
-@given(scenes())
-def test_energy_is_the_work_of_the_force(scene: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = scene
+@given(cases())
+def test_energy_is_the_work_of_the_force(case: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = case
     contact = at_radius(fields_, radius)
     profile = profile_from(fields_)
 
@@ -150,9 +150,9 @@ def test_energy_is_the_work_of_the_force(scene: tuple[dict[str, Any], float]) ->
 
 
 @repeatable
-@given(scenes())
-def test_pressure_integrates_to_the_force(scene: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = scene
+@given(cases())
+def test_pressure_integrates_to_the_force(case: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = case
     contact = at_radius(fields_, radius)
 
     def ring(r: Array) -> Array:
@@ -164,9 +164,9 @@ def test_pressure_integrates_to_the_force(scene: tuple[dict[str, Any], float]) -
 
 
 @repeatable
-@given(scenes())
-def test_inverse_transform_returns_the_shape(scene: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = scene
+@given(cases())
+def test_inverse_transform_returns_the_shape(case: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = case
     profile = profile_from(fields_)
     b = break_radius(fields_)
     knots = [0.0, asin(b / radius), pi / 2] if 0 < b < radius else [0.0, pi / 2]
@@ -175,11 +175,11 @@ def test_inverse_transform_returns_the_shape(scene: tuple[dict[str, Any], float]
 
 
 @repeatable
-@given(scenes())
+@given(cases())
 def test_shape_and_equivalent_profile_match_their_slopes(
-    scene: tuple[dict[str, Any], float],
+    case: tuple[dict[str, Any], float],
 ) -> None:
-    fields_, radius = scene
+    fields_, radius = case
     profile = profile_from(fields_)
     b = break_radius(fields_)
     start = radius / 7
@@ -191,9 +191,9 @@ def test_shape_and_equivalent_profile_match_their_slopes(
 
 
 @repeatable
-@given(scenes())
-def test_each_result_as_load_reproduces_the_others(scene: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = scene
+@given(cases())
+def test_each_result_as_load_reproduces_the_others(case: tuple[dict[str, Any], float]) -> None:
+    fields_, radius = case
     first = at_radius(fields_, radius)
     profile = profile_from(fields_)
     for name in LOADS:
@@ -217,11 +217,11 @@ def rescaled(fields_: dict[str, Any], unit: float) -> dict[str, Any]:
 
 
 @repeatable
-@given(scenes(), st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
+@given(cases(), st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
 def test_results_scale_with_units(
-    scene: tuple[dict[str, Any], float], length_power: float, modulus_power: float
+    case: tuple[dict[str, Any], float], length_power: float, modulus_power: float
 ) -> None:
-    fields_, radius = scene
+    fields_, radius = case
     unit, modulus = 10.0**length_power, 10.0**modulus_power
     old = at_radius(fields_, radius)
     force = float(old.normal_force) * modulus * unit**2

@@ -115,9 +115,9 @@ def test_decreasing_spline_is_rejected_with_its_radius() -> None:
     with pytest.raises(InputError, match="f falls at radius") as refused:
         Tabulated(r, f, "cubic")
     assert refused.value.path == ("profile",)
-    (told,) = Tabulated(r, f).notices
-    assert told.code == "interpolation"
-    for text in (str(refused.value), told.message):
+    (notice,) = Tabulated(r, f).notices
+    assert notice.code == "interpolation"
+    for text in (str(refused.value), notice.message):
         (radius,) = re.findall(r"falls at radius (\S+)", text)
         assert float(radius) == pytest.approx(lowest, rel=1e-10, abs=0)
 

@@ -18,10 +18,10 @@ from tests.core.test_laws import (
     E_STAR,
     at_radius,
     break_radius,
+    cases,
     integral,
     repeatable,
     rescaled,
-    scenes,
 )
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from mdr_core.tangential import TangentialContact
 
     Array = NDArray[np.float64]
-    Scene = tuple[dict[str, Any], float]
+    Case = tuple[dict[str, Any], float]
 
 G_STAR = 2.9
 MU = 0.37
@@ -71,34 +71,34 @@ def values(result: TangentialContact) -> list[float]:
 
 
 @repeatable
-@given(scenes(), ratio)
-def test_traction_integrates_to_the_force(scene: Scene, rho: float) -> None:
-    result = at_ratio(*scene, rho)
+@given(cases(), ratio)
+def test_traction_integrates_to_the_force(case: Case, rho: float) -> None:
+    result = at_ratio(*case, rho)
 
     def ring(r: Array) -> Array:
         return 2 * pi * r * fields.shear_stress(result, r, rtol=1e-12)
 
     c = float(result.stick_radius)
-    carried = integral(ring, knots(0.0, scene[1], break_radius(scene[0]), c))
+    carried = integral(ring, knots(0.0, case[1], break_radius(case[0]), c))
     assert carried == near(float(result.tangential_force), rel=1e-7)
 
 
 @repeatable
-@given(scenes(), ratio)
-def test_foundation_integrates_to_the_force(scene: Scene, rho: float) -> None:
-    result = at_ratio(*scene, rho)
+@given(cases(), ratio)
+def test_foundation_integrates_to_the_force(case: Case, rho: float) -> None:
+    result = at_ratio(*case, rho)
     c = float(result.stick_radius)
     carried = 2 * integral(
         lambda x: fields.foundation_shear(result, x),
-        knots(0.0, scene[1], break_radius(scene[0]), c),
+        knots(0.0, case[1], break_radius(case[0]), c),
     )
     assert carried == near(float(result.tangential_force), rel=1e-8)
 
 
 @repeatable
-@given(scenes(), st.lists(st.floats(1e-30, 1.0), min_size=3, max_size=6, unique=True))
-def test_slip_grows_with_the_force(scene: Scene, ratios: list[float]) -> None:
-    contact = at_radius(*scene)
+@given(cases(), st.lists(st.floats(1e-30, 1.0), min_size=3, max_size=6, unique=True))
+def test_slip_grows_with_the_force(case: Case, ratios: list[float]) -> None:
+    contact = at_radius(*case)
     force = np.sort(ratios) * (MU * contact.normal_force)
     result = solve_tangential(contact, tangential_force=force)
     assert np.all(result.stick_radius >= 0)
@@ -113,29 +113,29 @@ def test_slip_grows_with_the_force(scene: Scene, ratios: list[float]) -> None:
 
 @pytest.mark.parametrize("rho", [1e-100, 1e-200, 1e-300])
 @repeatable
-@given(scenes())
-def test_smallest_tangential_loads(rho: float, scene: Scene) -> None:
+@given(cases())
+def test_smallest_tangential_loads(rho: float, case: Case) -> None:
     """The product of two lengths underflows at such loads."""
-    result = at_ratio(*scene, rho)
+    result = at_ratio(*case, rho)
     assert str(result.regime) == "partial_slip"
-    slope = float(result.normal.profile.dg(np.array([scene[1]]))[0])
+    slope = float(result.normal.profile.dg(np.array([case[1]]))[0])
     # At a kink g' has two limits, of which `dg` returns the upper one.
     assume(np.isfinite(slope))
-    width = float(result.tangential_force) / (2 * MU * E_STAR * scene[1] * slope)
+    width = float(result.tangential_force) / (2 * MU * E_STAR * case[1] * slope)
     assert float(result.slip_width) == near(width, rel=1e-11)
-    shift = float(result.tangential_force) / (2 * G_STAR * scene[1])
+    shift = float(result.tangential_force) / (2 * G_STAR * case[1])
     assert float(result.tangential_displacement) == near(shift, rel=1e-12)
     assert float(result.dissipated_energy) >= 0
-    stress = fields.shear_stress(result, [0.0, 0.5 * scene[1]], rtol=1e-12)
+    stress = fields.shear_stress(result, [0.0, 0.5 * case[1]], rtol=1e-12)
     # A ring of force F_x at the edge.
-    assert stress[0] == near(float(result.tangential_force) / (2 * pi * scene[1] ** 2))
+    assert stress[0] == near(float(result.tangential_force) / (2 * pi * case[1] ** 2))
 
 
 @repeatable
-@given(scenes(), st.floats(0.2, 0.95), st.just(0.0) | st.floats(1e-50, 0.999))
-def test_traction_is_a_superposition_of_pressures(scene: Scene, stick: float, place: float) -> None:
+@given(cases(), st.floats(0.2, 0.95), st.just(0.0) | st.floats(1e-50, 0.999))
+def test_traction_is_a_superposition_of_pressures(case: Case, stick: float, place: float) -> None:
     """Ciavarella-Jaeger: tau = mu [p(a) - p(c)], where the difference is well-conditioned."""
-    fields_, a = scene
+    fields_, a = case
     b = break_radius(fields_)
     blunt = fields_["kind"] in {"rounded_punch", "truncated_cone", "truncated_paraboloid"}
     c = b + (a - b) * stick if blunt else a * stick
@@ -150,9 +150,9 @@ def test_traction_is_a_superposition_of_pressures(scene: Scene, stick: float, pl
 
 
 @repeatable
-@given(scenes(), st.floats(0.05, 0.8))
-def test_stiffness_is_the_derivative_of_the_force(scene: Scene, rho: float) -> None:
-    result = at_ratio(*scene, rho)
+@given(cases(), st.floats(0.05, 0.8))
+def test_stiffness_is_the_derivative_of_the_force(case: Case, rho: float) -> None:
+    result = at_ratio(*case, rho)
     u = float(result.tangential_displacement)
 
     def stiffness(at: Array) -> Array:
@@ -165,9 +165,9 @@ def test_stiffness_is_the_derivative_of_the_force(scene: Scene, rho: float) -> N
 
 
 @repeatable
-@given(scenes(), ratio)
-def test_controls_are_equivalent(scene: Scene, rho: float) -> None:
-    first = at_ratio(*scene, rho)
+@given(cases(), ratio)
+def test_controls_are_equivalent(case: Case, rho: float) -> None:
+    first = at_ratio(*case, rho)
     for name in ANSWERS[:3]:
         again = solve_tangential(first.normal, **{name: getattr(first, name)})
         for other, value in zip(ANSWERS, values(first), strict=True):
@@ -177,14 +177,14 @@ def test_controls_are_equivalent(scene: Scene, rho: float) -> None:
 
 
 @repeatable
-@given(scenes(), ratio)
-def test_reversed_direction_is_the_mirror_image(scene: Scene, rho: float) -> None:
-    right = at_ratio(*scene, rho)
-    left = at_ratio(*scene, -rho)
+@given(cases(), ratio)
+def test_reversed_direction_is_the_mirror_image(case: Case, rho: float) -> None:
+    right = at_ratio(*case, rho)
+    left = at_ratio(*case, -rho)
     for name, there, here in zip(ANSWERS, values(left), values(right), strict=True):
         odd = name in {"tangential_force", "tangential_displacement"}
         assert there == (-here if odd else here), name
-    r = np.array([0.0, 0.3, 0.77, 0.999, 1.5]) * scene[1]
+    r = np.array([0.0, 0.3, 0.77, 0.999, 1.5]) * case[1]
     for name in ("shear_stress", "slip", "foundation_shear"):
         field = getattr(fields, name)
         assert np.array_equal(field(left, r), -field(right, r)), name
@@ -204,9 +204,9 @@ def stored(result: TangentialContact, b: float) -> float:
 
 
 @repeatable
-@given(scenes(), st.floats(0.2, 0.97))
-def test_dissipated_energy_is_work_minus_stored_energy(scene: Scene, rho: float) -> None:
-    fields_, radius = scene
+@given(cases(), st.floats(0.2, 0.97))
+def test_dissipated_energy_is_work_minus_stored_energy(case: Case, rho: float) -> None:
+    fields_, radius = case
     result = at_ratio(fields_, radius, rho)
     u = float(result.tangential_displacement)
 
@@ -223,11 +223,11 @@ def test_dissipated_energy_is_work_minus_stored_energy(scene: Scene, rho: float)
 
 
 @repeatable
-@given(scenes(), ratio, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
+@given(cases(), ratio, st.floats(-9.0, 3.0), st.floats(-6.0, 6.0))
 def test_results_scale_with_units(
-    scene: Scene, rho: float, length_power: float, modulus_power: float
+    case: Case, rho: float, length_power: float, modulus_power: float
 ) -> None:
-    fields_, radius = scene
+    fields_, radius = case
     unit, modulus = 10.0**length_power, 10.0**modulus_power
     old = at_ratio(fields_, radius, rho)
     force = modulus * unit**2
@@ -246,24 +246,24 @@ def test_results_scale_with_units(
 
 
 @repeatable
-@given(scenes())
-def test_zero_force_gives_full_stick(scene: Scene) -> None:
-    contact = at_radius(*scene)
+@given(cases())
+def test_zero_force_gives_full_stick(case: Case) -> None:
+    contact = at_radius(*case)
     for name in ANSWERS[:2]:
         result = solve_tangential(contact, **{name: 0.0})
         assert str(result.regime) == "stick"
-        assert values(result) == [0.0, 0.0, scene[1], 0.0, 2 * G_STAR * scene[1], 0.0]
-    result = solve_tangential(contact, stick_radius=scene[1])
+        assert values(result) == [0.0, 0.0, case[1], 0.0, 2 * G_STAR * case[1], 0.0]
+    result = solve_tangential(contact, stick_radius=case[1])
     assert str(result.regime) == "stick"
-    assert values(result)[:4] == [0.0, 0.0, scene[1], 0.0]
-    assert not fields.shear_stress(result, [0.0, scene[1] / 2]).any()
-    assert not fields.slip(result, [0.0, scene[1] / 2, scene[1]]).any()
+    assert values(result)[:4] == [0.0, 0.0, case[1], 0.0]
+    assert not fields.shear_stress(result, [0.0, case[1] / 2]).any()
+    assert not fields.slip(result, [0.0, case[1] / 2, case[1]]).any()
 
 
 @repeatable
-@given(scenes())
-def test_limiting_force_gives_full_slip(scene: Scene) -> None:
-    contact = at_radius(*scene)
+@given(cases())
+def test_limiting_force_gives_full_slip(case: Case) -> None:
+    contact = at_radius(*case)
     bound = MU * contact.normal_force
     most = MU * E_STAR / G_STAR * float(contact.indentation_depth)
     result = solve_tangential(contact, tangential_force=bound)
@@ -273,31 +273,31 @@ def test_limiting_force_gives_full_slip(scene: Scene) -> None:
         assert float(one.tangential_force) == near(float(bound), rel=1e-15)
         assert float(one.tangential_displacement) == near(u, rel=1e-14)
         assert float(one.stick_radius) == 0
-        assert float(one.slip_width) == scene[1]
+        assert float(one.slip_width) == case[1]
         assert float(one.tangential_stiffness) == 0
     extra = float(sliding.dissipated_energy) - float(result.dissipated_energy)
     assert extra == near(1.5 * most * float(bound), rel=1e-11)
-    r = np.array([0.1, 0.6, 0.97]) * scene[1]
+    r = np.array([0.1, 0.6, 0.97]) * case[1]
     pressure = fields.pressure(contact, r, rtol=1e-12)
     assert fields.shear_stress(result, r, rtol=1e-12) == near(MU * pressure, rel=1e-11)
 
 
 @repeatable
-@given(scenes())
-def test_slip_with_zero_stick_radius_is_the_shape(scene: Scene) -> None:
+@given(cases())
+def test_slip_with_zero_stick_radius_is_the_shape(case: Case) -> None:
     """With c = 0, Eq. (5.40) transforms g back to f."""
-    contact = at_radius(*scene)
+    contact = at_radius(*case)
     result = solve_tangential(contact, tangential_force=MU * contact.normal_force)
-    r = np.array([0.2, 0.7, 0.98]) * scene[1]
+    r = np.array([0.2, 0.7, 0.98]) * case[1]
     shape = contact.profile.f(r)
     moved = fields.slip(result, r, rtol=1e-12)
     assert moved == near(-MU * E_STAR / G_STAR * shape, rel=1e-11)
 
 
 @repeatable
-@given(scenes())
-def test_displacement_at_the_edge_and_in_the_far_field(scene: Scene) -> None:
-    contact, a = at_radius(*scene), scene[1]
+@given(cases())
+def test_displacement_at_the_edge_and_in_the_far_field(case: Case) -> None:
+    contact, a = at_radius(*case), case[1]
     r = np.array([a, np.nextafter(a, np.inf), 1e7 * a])
     up = fields.normal_displacement(contact, r, rtol=1e-12)
     assert up[1] == near(up[0], rel=1e-6)

@@ -176,8 +176,8 @@ async def schema(port: int, _server: psutil.Process) -> list[Row]:
     process = await asyncio.create_subprocess_exec(
         *command, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT
     )
-    told, _ = await process.communicate()
-    text = told.decode()
+    output, _ = await process.communicate()
+    text = output.decode()
     cases = re.search(r"(\d+) generated", text)
     failures = [line.strip() for line in text.splitlines() if line.strip().startswith("❌ ST")]
     if failures:

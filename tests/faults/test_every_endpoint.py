@@ -89,7 +89,7 @@ def test_curl_with_http2(port: int, method: str, path: str) -> None:
     ]
     if body:
         command += ["--header", "Content-Type: application/json", "--data", body.decode()]
-    told = subprocess.run(
+    done = subprocess.run(
         [*command, f"http://127.0.0.1:{port}{target}"], capture_output=True, check=True
     )
-    assert told.stdout == b"200"
+    assert done.stdout == b"200"

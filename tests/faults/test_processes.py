@@ -113,11 +113,11 @@ def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time()
             busy(process.pid)
             time.sleep(0.2)
             process.send_signal(signal.SIGTERM)
-            told = time.monotonic()
+            terminated = time.monotonic()
             wait_for(lambda: not is_served(port))
             computed = [each.result() for each in answers]
         process.communicate(timeout=60)
-        assert time.monotonic() - told < 41 + PATIENCE
+        assert time.monotonic() - terminated < 41 + PATIENCE
     assert process.returncode == 0
     assert computed == [expected] * 8
     assert expected[0] == 200

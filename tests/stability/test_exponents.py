@@ -106,9 +106,9 @@ def pressure(name: str, exponents: Array) -> Curve:
 
     def exact(n: mpf) -> mpf:
         a, r = mpf(A), mpf(R)
-        leg2 = (a - r) * (a + r)
-        series = mp.hyp2f1(1, 1 - n / 2, mpf(3) / 2, leg2 / a**2)
-        return n * kappa(n) * mpf(C) / mp.pi * a ** (n - 2) * mp.sqrt(leg2) * series
+        root_squared = (a - r) * (a + r)
+        series = mp.hyp2f1(1, 1 - n / 2, mpf(3) / 2, root_squared / a**2)
+        return n * kappa(n) * mpf(C) / mp.pi * a ** (n - 2) * mp.sqrt(root_squared) * series
 
     nodes, weights = np.polynomial.legendre.leggauss(40)
 

@@ -79,9 +79,15 @@ def power_pressure(exponent: float) -> Curve:
     def exact(x: mpf) -> mpf:
         # For arguments close to 1, the radius enters through the last digits only.
         with mp.workdps(3 * DIGITS):
-            n, leg2 = mpf(exponent), (1 - x) * (1 + x)
+            n, root_squared = mpf(exponent), (1 - x) * (1 + x)
             kappa = mp.sqrt(mp.pi) * mp.gamma(n / 2 + 1) / mp.gamma((n + 1) / 2)
-            return n * kappa / mp.pi * mp.sqrt(leg2) * mp.hyp2f1(1, 1 - n / 2, mpf(3) / 2, leg2)
+            return (
+                n
+                * kappa
+                / mp.pi
+                * mp.sqrt(root_squared)
+                * mp.hyp2f1(1, 1 - n / 2, mpf(3) / 2, root_squared)
+            )
 
     factor = float(references(lambda n: mp.gamma(n / 2 + 1) / mp.gamma((n + 1) / 2), [exponent])[0])
     return curve(
