@@ -150,7 +150,7 @@ class InitialState:
         return np.concatenate([np.zeros(self.first_edge), (1.0, 0.0, 0.0, 0.0), tilt])
 
     @cached_property
-    def singular(self) -> Array:
+    def _singular(self) -> Array:
         """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
         profile = self.normal.profile
         inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
@@ -162,7 +162,7 @@ class InitialState:
         stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
         by = unit * offset
         # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
-        near = np.abs(self.singular - stick) < 2 * by[-1]
+        near = np.abs(self._singular - stick) < 2 * by[-1]
         if by[-1] > _NARROW * stick or near.any():
             g = profile.g(np.minimum(np.append(stick, stick + by), self.domain))
             return np.asarray((g[1:] - g[0]) / self.depth_unit)

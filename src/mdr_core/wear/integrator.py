@@ -25,7 +25,7 @@ _MIN_SLIP: Final = 0.01
 _VANISHED: Final = 1e-3
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
-# Distance from a break, as a part of the stick radius, at which the stick edge is there.
+# Distance from a slope jump, as a part of the stick radius, at which the stick edge passes it.
 _AT_BREAK: Final = 1e-3
 # About 5 times as many as 96 nodes take at a tolerance of 1e-10.
 _MAX_CALLS: Final = 40_000
@@ -101,7 +101,8 @@ def _unresolved(state: AnnulusState, scaled: float) -> AccuracyError:
     """Return the error for the last state that is resolved, at a scaled number of cycles."""
     initial = state.initial
     stick = initial.length_unit * state.stick
-    passed = initial.singular[np.abs(initial.singular - stick) < _AT_BREAK * stick]
+    jumps = np.array(initial.normal.profile.infinite_pressure_radii)
+    passed = jumps[np.abs(jumps - stick) < _AT_BREAK * stick]
     if initial.stick_moves and passed.size:
         detail = (
             f"after {scaled * initial.cycle_unit:.3g} cycles the stick edge moves past radius "
