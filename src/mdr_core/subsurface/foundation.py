@@ -43,6 +43,8 @@ _STEEP: Final = 8.0
 _NEAREST: Final = 1e-32
 # Part of s whose square is less than a rounding error of s^2.
 _SMALL: Final = 1e-9
+# Largest contact radius, and inverse of the smallest one: 1/rho^3 is a double.
+_LARGEST: Final = 1e95
 # Nodes times points evaluated at once: complex arrays above 128 kB are allocated anew.
 _BLOCK: Final = 8_192
 
@@ -74,6 +76,10 @@ class Foundation:
         self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
+        if self.loaded and not 1 / _LARGEST < load.radius[-1] < _LARGEST:
+            raise InputError(
+                ("profile",), "the contact radius leaves the range of double precision"
+            )
         radii = map(float, profile.infinite_pressure_radii)
         self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]
         if profile.has_no_partial_slip:

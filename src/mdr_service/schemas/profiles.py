@@ -26,14 +26,14 @@ class ConeProfile(Strict):
 
 
 class ParaboloidProfile(Strict):
-    """A paraboloid, the shape of Hertz: r²/(2·radius)."""
+    """A paraboloid, the shape of Hertz: r²/(2·radius).
+
+    Two spheres, or a sphere in a socket, are one with 1/radius = 1/R₁ + 1/R₂, where R < 0 for a
+    concave surface.
+    """
 
     kind: Literal["paraboloid"]
-    radius: float = positive(
-        "length",
-        "Radius of curvature at the tip. For two spheres or a sphere in a socket, "
-        "1/radius = 1/R₁ + 1/R₂, with R < 0 for a concave surface",
-    )
+    radius: float = positive("length", "Radius of curvature at the tip")
 
 
 class SphereProfile(Strict):
@@ -131,7 +131,7 @@ class CappedParaboloidProfile(Strict):
 
     kind: Literal["capped_paraboloid"]
     cap_radius: float = positive("length", "Radius b of the cap")
-    tip_radius: float = positive("length", "Radius of curvature R₁ of the cap, at least `radius`")
+    tip_radius: float = positive("length", "Radius of curvature R₁ ≥ R₂ of the cap")
     radius: float = positive("length", "Radius of curvature R₂ outside the cap")
 
 
