@@ -327,7 +327,7 @@ def test_stress_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/stress", query, StressAnswer)
 
 
-@with_examples
+@partial(with_examples, examples=150)
 @given(query=SUBSURFACE)
 def test_subsurface_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/subsurface", query, SubsurfaceAnswer)
