@@ -300,7 +300,7 @@ def check(client: Client, path: str, query: object, model: type[SolvedAnswer]) -
         assert all(error["pointer"] for error in document["errors"])
 
 
-def with_examples(test: Callable[..., None], examples: int = 400) -> Callable[..., None]:
+def with_examples(test: Callable[..., None], examples: int = 250) -> Callable[..., None]:
     return settings(
         max_examples=examples,
         deadline=None,

@@ -93,7 +93,6 @@ def test_pressure_does_not_ripple(kind: str, name: str) -> None:
         ("paraboloid", "depth, displacement"),
         pytest.param("rounded_punch", "forces", marks=pytest.mark.long),
         pytest.param("power", "force, displacement", marks=pytest.mark.long),
-        pytest.param("sphere", "depth, force", marks=pytest.mark.long),
     ],
 )
 def test_stored_reference_is_reproduced(kind: str, name: str) -> None:
