@@ -36,6 +36,11 @@ def tangential_contact(contact: normal.NormalContact = HERTZ, **load: Any) -> Ca
     return lambda: tangential.solve(contact, 1.0, 0.5, **load)
 
 
+def beneath(radius: float) -> Callable[[], Any]:
+    contact = normal.solve(Cone(1.0), 1.0, contact_radius=radius)
+    return lambda: subsurface.stress(contact, 0.0, 0.0, radius, poissons_ratio=0.3)
+
+
 REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (normal_contact(Cone(1.0)), ("load",), "exactly one of"),
     (
@@ -153,6 +158,8 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     ),
     (lambda: subsurface.largest(HERTZ, poissons_ratio=-1.0), ("poissons_ratio",), "1/2"),
     (lambda: subsurface.largest(HERTZ, poissons_ratio=0.3, body=3), ("body",), "1 or 2"),
+    (beneath(1e-96), ("profile",), "range of double precision"),
+    (beneath(1e96), ("profile",), "range of double precision"),
     (lambda: fields.pressure(HERTZ, []), ("radius",), "at least one radius"),
     (lambda: fields.pressure(HERTZ, [0.1, 0.2, -0.1]), ("radius", 2), "not negative"),
     (lambda: fields.pressure(HERTZ, [0.1, np.nan]), ("radius", 1), "finite"),

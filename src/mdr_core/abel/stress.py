@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import sqrt
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -30,6 +30,16 @@ _POINTS: Final = 24
 # Distance from the axis, over the first panel or the contact, within which a smooth stress is
 # constant.
 _AXIS: Final = 1e-8
+
+
+class _RadialEnds(NamedTuple):
+    """Ends of an annulus [length]; the roots are those of `StressPanels.kernel`."""
+
+    outer: float
+    inner: float
+    width: float
+    outer_root: float
+    inner_root: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,23 +131,23 @@ class StressPanels:
         width, c = (a, np.zeros(1)) if inner is None else inner
         annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width, *roots)])
         if annuli.shape[1] == 1:
-            return self._over(annuli[:, 0].tolist(), r)
+            return self._over(_RadialEnds(*annuli[:, 0].tolist()), r)
         different, number = np.unique(annuli, axis=1, return_inverse=True)
         result = np.empty_like(r)
         for i, ends in enumerate(different.T.tolist()):
             points = np.flatnonzero(number == i)
-            result[points] = self._over(ends, r[points])
+            result[points] = self._over(_RadialEnds(*ends), r[points])
         return result
 
-    def _over(self, ends: list[float], radius: Array) -> Array:
-        """Kernel of an annulus, over whole panels and those at its ends. `ends`: see `_cut`."""
-        a, c, _, _, root_c = ends
+    def _over(self, ends: _RadialEnds, radius: Array) -> Array:
+        """Kernel of an annulus, over whole panels and those at its ends."""
+        a, c = ends.outer, ends.inner
         order = np.argsort(radius, kind="stable")
         r = radius[order]
         if self.smooth_tip and self.edges[0] == c == 0:
             r = np.maximum(r, _AXIS * min(self.length[0], a))
         last = min(int(np.searchsorted(self.edges[1:], a)), self.length.size - 1)
-        first = max(int(np.searchsorted(self.edges, c)), int(root_c > 0))
+        first = max(int(np.searchsorted(self.edges, c)), int(ends.inner_root > 0))
         total = self._whole(first, last, r) if first < last else np.zeros_like(r)
         for panel in {last, first - 1} - {-1}:
             total += self._cut(panel, ends, r)
@@ -158,11 +168,8 @@ class StressPanels:
             add(total, point, near(rows, self.length[panel], above, to_right))
         return total
 
-    def _cut(self, panel: int, ends: list[float], r: Array) -> Array:
-        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii.
-
-        `ends` are a, c, the width, and the roots of a and c, see `kernel`.
-        """
+    def _cut(self, panel: int, ends: _RadialEnds, r: Array) -> Array:
+        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii."""
         a, c, width, root_a, root_c = ends
         b, right = float(self.edges[panel]), min(float(self.edges[panel + 1]), a)
         total = np.zeros_like(r)

@@ -60,9 +60,8 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     [0.095493, 0.0763944, 0.0]
     """
     require_tolerance(rtol)
-    require_single_profile(contact.profile.swept)
     shape = contact.contact_radius.shape
-    a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
+    a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
 
     def values(load: int, r: Array) -> Array:
         edge = number(a[load]) if contact.control == "contact_radius" else None
@@ -95,10 +94,9 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
         parameter of the profile.
     """
     require_tolerance(rtol)
-    require_single_profile(contact.profile.swept)
     profile, shape = contact.profile, contact.contact_radius.shape
     columns = contact.contact_radius, contact.coordinate, contact.indentation_depth
-    a, coordinate, depth = by_load(shape, *columns)
+    a, coordinate, depth = by_load(profile, shape, *columns)
 
     def values(load: int, r: Array) -> Array:
         inside = r <= a[load]
@@ -131,9 +129,8 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
     ------
     InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
-    require_single_profile(contact.profile.swept)
     shape = contact.contact_radius.shape
-    a, coordinate = by_load(shape, contact.contact_radius, contact.coordinate)
+    a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
 
     def values(load: int, r: Array) -> Array:
         return contact.e_star * _depth_left(contact.profile, a[load], coordinate[load], r)
@@ -179,8 +176,12 @@ def stress(profile: Profile, annulus: Annulus, a: float, r: Array, rtol: float) 
     return result
 
 
-def by_load(shape: tuple[int, ...], *columns: Any) -> list[list[float]]:
-    """Return the values of each column under every load."""
+def by_load(profile: Profile, shape: tuple[int, ...], *columns: Any) -> list[list[float]]:
+    """Return the values of each column under every load.
+
+    Raises InputError if a parameter of the profile is an array.
+    """
+    require_single_profile(profile.swept)
     if not shape:
         return [[float(column)] for column in columns]
     return [np.broadcast_to(column, shape).ravel().tolist() for column in columns]

@@ -22,7 +22,7 @@ from mdr_core.history import ContactState
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import require_single_profile, require_tolerance
+from mdr_core.validation import require_tolerance
 
 # An edge that differs from the contact radius by rounding belongs to the contact.
 _EDGE: Final = 1 + 4 * float(np.finfo(float).eps)
@@ -276,17 +276,17 @@ def _at_end(state: ContactState) -> Traction:
 def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
     """Traction under the load of an index."""
     normal, profile = contact.normal, contact.normal.profile
-    require_single_profile(profile.swept)
     first = profile.first_coordinate
-    flat = float(profile.contact_radius(number(first)))
     modulus = contact.friction_coefficient * normal.e_star
     columns = by_load(
+        profile,
         contact.width.shape,
         *(normal.e_star, modulus, contact.displacement_ratio),
         *(normal.coordinate, normal.contact_radius),
         *(contact.stick_coordinate, contact.stick_radius, contact.width),
         *(contact.sign, contact.full_slip, contact.sign * contact.excess),
     )
+    flat = float(profile.contact_radius(number(first)))
     exact = normal.control == "contact_radius"
 
     def traction(load: int) -> Traction:
