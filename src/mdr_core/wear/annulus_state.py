@@ -88,6 +88,11 @@ class AnnulusState:
         return np.sqrt(self.stick**2 + self.end**2 * self.initial.maps.squares)
 
     @cached_property
+    def points(self) -> Array:
+        """Radii of Gauss's points between the nodes."""
+        return np.sqrt(self.stick**2 + self.end**2 * self.initial.maps.points)
+
+    @cached_property
     def offset(self) -> Array:
         """x - c."""
         return np.asarray(self.end**2 * self.initial.maps.squares / (self.x + self.stick))

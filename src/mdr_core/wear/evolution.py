@@ -33,7 +33,7 @@ COARSEST: Final = 8
 # ... and its largest.
 FINEST: Final = 96
 # Smallest tolerance of the integration over the cycles.
-TIGHTEST: Final = 1e-10
+TIGHTEST_INTEGRATION: Final = 1e-10
 FIELDS: Final = ("profile", "worn_depth", "pressure")
 SCALARS: Final = (
     "worn_volume",
@@ -106,7 +106,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         There the error of a scalar depends on the place of the break between two nodes, so that
         both runs may err alike. Their wear differs nevertheless: the absolute difference counts.
         """
-        indices = _some(self._has_break)
+        indices = _some(np.flatnonzero(self._has_break))
         pairs = [(self.at(index), self.coarse.at(index)) for index in indices]
         return max((absolute_difference(run, other) for run, other in pairs), default=0.0)
 
@@ -193,11 +193,11 @@ class WearEvolution(validity.ContactResults, WornSurface):
         At single radii the difference may vanish.
         """
         worst = 0.0
-        for index in _some(self.cycles >= 0):
+        for index in _some(np.arange(self.cycles.size)):
             c, a = self.stick_radius[index], self.contact_radius[index]
             at, growth = c + (a - c) * _SAMPLES, 1.0
             if self._has_break[index]:
-                at = np.sqrt(c**2 + (a - c) * (a + c) * self.initial.maps.points)
+                at = self.initial.length_unit * self.states[index].points
                 # The pressure at a break is infinite before wear, and then falls like ln(1/cycles):
                 # the nodes resolve little of it.
                 growth += float(np.log1p(self.initial.cycle_unit / self.cycles[index]))
@@ -296,7 +296,7 @@ def solve(
     """
     name, size = one_amplitude(tangential_displacement, tangential_force)
     require_positive(("wear_coefficient",), wear_coefficient)
-    require_tolerance(rtol, TIGHTEST)
+    require_tolerance(rtol, TIGHTEST_INTEGRATION)
     if not COARSEST <= resolution <= FINEST:
         raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
     for place, number in (
@@ -325,9 +325,8 @@ def solve(
     return found
 
 
-def _some(chosen: Flags) -> Indices:
-    """Return at most `_CYCLES` of the chosen indices, the first and the last among them."""
-    indices = np.flatnonzero(chosen)
+def _some(indices: Indices) -> Indices:
+    """Return at most `_CYCLES` of the indices, the first and the last among them."""
     count = min(indices.size, _CYCLES)
     return indices[np.linspace(0, indices.size - 1, count).astype(int)]
 

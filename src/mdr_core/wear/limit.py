@@ -324,13 +324,12 @@ def _require_room(wear: LimitingWear) -> None:
     largest = annulus.largest_width
     # Next to a pole of g' there is no room.
     beyond = wearing & (largest <= 0).reshape(wearing.shape)
-    # Without a root the search for the width ends there.
-    if (
-        not beyond.any()
-        and (np.ravel(np.where(wearing, wear.wear_width, 0.0)) > _AT_END * largest).any()
-    ):
+    if not beyond.any():
+        width = np.ravel(np.where(wearing, wear.wear_width, 0.0))
         step = np.ravel(np.where(wearing, stick_zone.step, 0.0))
-        beyond = (annulus.mean_rise(largest) < step).reshape(wearing.shape)
+        # Without a root the search for the width ends there.
+        if (width > _AT_END * largest).any():
+            beyond = (annulus.mean_rise(largest) < step).reshape(wearing.shape)
     if beyond.any():
         raise InputError(
             ("load", wear.tangential_contact.normal.control, *first_index(beyond)),

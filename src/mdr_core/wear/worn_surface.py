@@ -160,7 +160,7 @@ def absolute_difference(run: WornSurface, other: WornSurface) -> float:
     differences of the springs' wear g - g_0 and of the worn depth.
     """
     initial, state = run.initial, run.states[0]
-    x = np.sqrt(state.stick**2 + state.end**2 * initial.maps.points)
+    x = state.points
     springs = np.abs(state.spring_wear(x) - other.states[0].spring_wear(x))
     integral = initial.depth_unit * initial.length_unit * np.trapezoid(springs, x)
     whole = run.normal_force / (2 * initial.normal.e_star)

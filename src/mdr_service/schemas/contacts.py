@@ -7,6 +7,7 @@ from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from mdr_core import materials
+from mdr_core.validation import LOOSEST, TIGHTEST
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
@@ -194,7 +195,9 @@ class Query(Strict):
 
     profile: Profile
     material: Material
-    rtol: float = quantity("1", "Required relative accuracy", default=1e-10, ge=1e-13, le=1e-3)
+    rtol: float = quantity(
+        "1", "Required relative accuracy", default=1e-10, ge=TIGHTEST, le=LOOSEST
+    )
 
     @property
     def controls(self) -> dict[str, Choice]:

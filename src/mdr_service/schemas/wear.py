@@ -4,6 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from mdr_core.validation import LOOSEST
+from mdr_core.wear.evolution import COARSEST, DEFAULT_RESOLUTION, FINEST, TIGHTEST_INTEGRATION
 from mdr_service.schemas.contacts import Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 from mdr_service.schemas.load_paths import TangentialAmplitude
@@ -81,16 +83,16 @@ class EvolutionQuery(_FrettingQuery):
     resolution: int = quantity(
         "1",
         "Number of nodes over the worn annulus, in addition to 16",
-        default=24,
-        ge=8,
-        le=96,
+        default=DEFAULT_RESOLUTION,
+        ge=COARSEST,
+        le=FINEST,
     )
     rtol: float = quantity(
         "1",
         "Tolerance of the integration over the cycles; the accuracy depends on `resolution` too",
         default=1e-6,
-        ge=1e-10,
-        le=1e-3,
+        ge=TIGHTEST_INTEGRATION,
+        le=LOOSEST,
     )
     quantities: Annotated[list[EvolutionField], OnceEach] = quantities(
         _WITH_RADII, default=["profile", "pressure"]
