@@ -55,7 +55,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
     )
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
-        # By default -1e-3 counts as an option.
+        # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
             group.add_argument(
