@@ -1,23 +1,13 @@
 // The five analyses and the fields that they add to the form.
 
+import { QUANTITIES } from "./quantities.js";
 import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
-const CONTROLS = {
-  normal_force: ["Normal force", "force"],
-  indentation_depth: ["Indentation depth", "displacement"],
-  contact_radius: ["Contact radius", "length"],
-};
-const PUSHES = {
-  ratio: ["Share of µF_N", "1"],
-  tangential_force: ["Tangential force", "force"],
-  tangential_displacement: ["Tangential displacement", "displacement"],
-};
-const OSCILLATIONS = {
-  tangential_displacement: ["Displacement amplitude", "displacement"],
-  tangential_force: ["Force amplitude", "force"],
-};
+const NORMAL = ["normal_force", "indentation_depth", "contact_radius"];
+const TANGENTIAL = ["tangential_force", "tangential_displacement"];
+const SHARE = ["Share of µF_N", "1"];
 
-const names = (table) => Object.entries(table).map(([value, [label]]) => ({ value, label }));
+const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);
 const FRICTION = { key: "mu", label: "Friction coefficient µ", dimension: "1", range: [0.01, 1] };
 
 /** Return the fields of the materials of the inputs. */
@@ -30,8 +20,8 @@ export function bodyFields(inputs) {
 /** Return the fields of the load of the inputs. */
 export function loadFields(inputs) {
   if (inputs.tab === "cycle") return [];
-  const choices = inputs.tab === "wear" ? names(CONTROLS).slice(0, 2) : names(CONTROLS);
-  const [label, dimension] = CONTROLS[inputs.control];
+  const choices = choicesOf(inputs.tab === "wear" ? NORMAL.slice(0, 2) : NORMAL);
+  const [label, dimension] = QUANTITIES[inputs.control];
   return [
     { key: "control", label: "Prescribed", choices },
     { key: "load", label, dimension },
@@ -39,11 +29,11 @@ export function loadFields(inputs) {
 }
 
 function pushFields(inputs) {
-  const [label, dimension] = PUSHES[inputs.push];
+  const [label, dimension] = inputs.push === "ratio" ? SHARE : QUANTITIES[inputs.push];
   const range = inputs.push === "ratio" ? [0, 1] : undefined;
   return [
     FRICTION,
-    { key: "push", label: "Tangential load", choices: names(PUSHES) },
+    { key: "push", label: "Tangential load", choices: [["ratio", SHARE[0]], ...choicesOf(TANGENTIAL)] },
     { key: "amount", label, dimension, range },
   ];
 }
@@ -66,8 +56,8 @@ export const ANALYSES = {
     lead: "The load follows a path: how much energy is dissipated, and which shear stress remains?",
     fields: (inputs) => [
       FRICTION,
-      { key: "normal", label: "Normal control", choices: names(CONTROLS).slice(0, 2) },
-      { key: "tangential", label: "Tangential control", choices: names(PUSHES).slice(1) },
+      { key: "normal", label: "Normal control", choices: choicesOf(NORMAL.slice(0, 2)) },
+      { key: "tangential", label: "Tangential control", choices: choicesOf(TANGENTIAL) },
     ],
     solve: solveCycle,
   },
@@ -76,7 +66,7 @@ export const ANALYSES = {
     lead: "What stresses act at the surface and beneath it, and at which load does the material yield?",
     fields: (inputs) => [
       ...pushFields(inputs),
-      { key: "body", label: "Stress in", choices: [{ value: 1, label: "body 1" }, { value: 2, label: "body 2" }] },
+      { key: "body", label: "Stress in", choices: [[1, "body 1"], [2, "body 2"]] },
       { key: "yield", label: "Yield strength", dimension: "pressure" },
     ],
     solve: solveStress,
@@ -84,26 +74,13 @@ export const ANALYSES = {
   wear: {
     title: "Wear",
     lead: "The contact oscillates with a small amplitude: what shape does fretting leave, and how fast?",
-    fields: (inputs) => {
-      const [label, dimension] = OSCILLATIONS[inputs.oscillation];
-      return [
-        FRICTION,
-        { key: "oscillation", label: "Oscillation", choices: names(OSCILLATIONS) },
-        { key: "amplitude", label, dimension },
-        { key: "wear", label: "Wear coefficient (volume per energy)", dimension: "1/pressure" },
-        { key: "cycles", label: "Cycles", dimension: "1", range: [1, 1e8], logarithmic: true },
-      ];
-    },
+    fields: (inputs) => [
+      FRICTION,
+      { key: "oscillation", label: "Oscillation", choices: choicesOf(TANGENTIAL) },
+      { key: "amplitude", label: "Amplitude", dimension: QUANTITIES[inputs.oscillation][1] },
+      { key: "wear", label: "Wear coefficient (volume per energy)", dimension: "1/pressure" },
+      { key: "cycles", label: "Cycles", dimension: "1", range: [1, 1e8], logarithmic: true },
+    ],
     solve: solveWear,
   },
 };
-
-/** Return the dimension of a control of the load path. */
-export function dimensionOf(control) {
-  return (CONTROLS[control] ?? PUSHES[control])[1];
-}
-
-/** Return the label of a control of the load path. */
-export function labelOf(control) {
-  return (CONTROLS[control] ?? PUSHES[control])[0];
-}

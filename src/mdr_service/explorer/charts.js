@@ -1,7 +1,8 @@
 // Charts from plain descriptions: curves over one axis, or a map with contours.
 
-import { download } from "./requests.js";
-import { format, unit } from "./units.js";
+import { make, makeButton, makeTable } from "./dom.js";
+import { download, fileName } from "./requests.js";
+import { format, scaled, unit, withUnit } from "./units.js";
 
 const figures = new Map();
 // Plotly runs after the first requests have been sent, and before this event.
@@ -17,20 +18,13 @@ function theme() {
   };
 }
 
-const scaled = (values, factor) => values.map((value) => (value === null ? null : value / factor));
-
-function axisTitle([label, dimension], inputs) {
-  const { name } = unit(dimension, inputs);
-  return name ? `${label} [${name}]` : label;
-}
-
 function curve(trace, spec, inputs, colours) {
   const role = trace.role ?? "line";
   const colour = colours[role];
   return {
     name: trace.name,
-    x: scaled(trace.x, unit(spec.x[1], inputs).factor),
-    y: scaled(trace.y, unit(spec.y[1], inputs).factor),
+    x: scaled(trace.x, spec.x[1], inputs),
+    y: scaled(trace.y, spec.y[1], inputs),
     mode: trace.mode ?? "lines",
     line: { color: colour, width: 2, simplify: false, dash: role === "limit" ? "dash" : "solid" },
     marker: { color: colour, size: 10 },
@@ -41,16 +35,15 @@ function curve(trace, spec, inputs, colours) {
 }
 
 function contours(trace, spec, inputs, colours) {
-  const factor = unit(spec.z[1], inputs).factor;
   return {
     type: "contour",
-    x: scaled(trace.x, unit(spec.x[1], inputs).factor),
-    y: scaled(trace.y, unit(spec.y[1], inputs).factor),
-    z: trace.z.map((row) => scaled(row, factor)),
+    x: scaled(trace.x, spec.x[1], inputs),
+    y: scaled(trace.y, spec.y[1], inputs),
+    z: trace.z.map((row) => scaled(row, spec.z[1], inputs)),
     colorscale: "Viridis",
     ncontours: 24,
     line: { width: 0.4 },
-    colorbar: { title: { text: axisTitle(spec.z, inputs), side: "right" }, tickfont: { color: colours.ink } },
+    colorbar: { title: { text: withUnit(spec.z, inputs), side: "right" }, tickfont: { color: colours.ink } },
     hovertemplate: "x %{x:.4~g}, z %{y:.4~g}: %{z:.4~g}<extra></extra>",
   };
 }
@@ -73,7 +66,7 @@ function verticals(spec, inputs, colours) {
 function layout(spec, inputs, colours) {
   const { lines, notes } = verticals(spec, inputs, colours);
   const axis = (title) => ({
-    title: { text: axisTitle(title, inputs), standoff: 8 }, automargin: true,
+    title: { text: withUnit(title, inputs), standoff: 8 }, automargin: true,
     gridcolor: colours.grid, zerolinecolor: colours.faint, linecolor: colours.faint,
     exponentformat: "power",
   });
@@ -94,83 +87,62 @@ function layout(spec, inputs, colours) {
   };
 }
 
-function columns(spec, inputs) {
-  const column = (title, values) => [title, scaled(values, unit(title[1], inputs).factor)];
-  const tables = [];
-  for (const trace of spec.traces) {
-    const known = tables.find((table) => table.x === trace.x);
-    const table = known ?? { x: trace.x, columns: [column(spec.x, trace.x)] };
-    if (!known) tables.push(table);
-    table.columns.push(column([trace.name, spec.y[1]], trace.y));
+/** Return the columns `[title, values]` of each data table: one for traces over the same values. */
+function columns(spec) {
+  const tables = new Map();
+  for (const { name, x, y } of spec.traces) {
+    if (!tables.has(x)) tables.set(x, [[spec.x, x]]);
+    tables.get(x).push([[name, spec.y[1]], y]);
   }
-  return tables;
-}
-
-function dataTable(spec, inputs) {
-  const parts = spec.map ? mapTable(spec, inputs) : columns(spec, inputs).map(({ columns }) => columns);
-  return parts.map((part) => {
-    const table = document.createElement("table");
-    const head = table.createTHead().insertRow();
-    for (const [title] of part) {
-      const cell = document.createElement("th");
-      cell.scope = "col";
-      cell.textContent = axisTitle(title, inputs);
-      head.append(cell);
-    }
-    const body = table.createTBody();
-    part[0][1].forEach((_, i) => {
-      const row = body.insertRow();
-      for (const [, values] of part) row.insertCell().textContent = format(values[i], 6);
-    });
-    return table;
-  });
+  return [...tables.values()];
 }
 
 /** Return the largest value of each depth: a map has too many values for a table to read. */
-function mapTable(spec, inputs) {
+function mapColumns(spec) {
   const { x, y, z } = spec.traces[0];
   const largest = z.map((row) => Math.max(...row.filter((value) => value !== null)));
   const where = z.map((row, i) => x[row.indexOf(largest[i])]);
-  const column = (title, values) => [title, scaled(values, unit(title[1], inputs).factor)];
-  return [[
-    column(spec.y, y), column(["largest value", spec.z[1]], largest), column(["at x", spec.x[1]], where),
-  ]];
+  return [[[spec.y, y], [["largest value", spec.z[1]], largest], [["at x", spec.x[1]], where]]];
+}
+
+function dataTables(spec, inputs) {
+  return (spec.map ? mapColumns : columns)(spec).map((table) => {
+    const titles = table.map(([title]) => withUnit(title, inputs));
+    const cells = table.map(([[, dimension], values]) => scaled(values, dimension, inputs));
+    return makeTable(titles, cells[0].map((_, i) => cells.map((column) => format(column[i], 6))));
+  });
 }
 
 async function picture(figure, type) {
   const svg = await Plotly.toImage(figure.plot, { format: "svg", width: 800, height: 500 });
   const text = decodeURIComponent(svg.slice(svg.indexOf(",") + 1));
-  if (type === "svg") return download(`${figure.spec.id}.svg`, text, "image/svg+xml");
+  if (type === "svg") return download(fileName(figure.spec.title, "svg"), text, "image/svg+xml");
   const image = new Image();
   image.src = svg;
   await image.decode();
   const canvas = Object.assign(document.createElement("canvas"), { width: 1600, height: 1000 });
   canvas.getContext("2d").drawImage(image, 0, 0, 1600, 1000);
-  canvas.toBlob((blob) => download(`${figure.spec.id}.png`, blob));
+  canvas.toBlob((blob) => download(fileName(figure.spec.title, "png"), blob));
 }
 
 function create(spec, actions) {
-  const element = document.createElement("figure");
-  element.innerHTML =
-    '<figcaption><h2></h2><span class="save"></span></figcaption>' +
-    '<div class="plot" role="img"></div><details><summary>Data table</summary><div class="data" tabindex="0"></div></details>';
-  const figure = { element, spec, plot: element.querySelector(".plot") };
-  const button = (label, act) => {
-    const made = Object.assign(document.createElement("button"), { type: "button", textContent: label });
-    made.addEventListener("click", act);
-    element.querySelector(".save").append(made);
-  };
-  button("Request", () => actions.showRequest(figure.spec.request));
-  button("CSV", () => actions.saveCsv(figure.spec.request));
-  button("PNG", () => picture(figure, "png"));
-  button("SVG", () => picture(figure, "svg"));
-  element.querySelector("details").addEventListener("toggle", () => fillTable(figure));
+  const figure = { plot: make("div", { className: "plot", role: "img" }) };
+  const button = (text, act) => makeButton(text, act, { "aria-label": `${text} of “${spec.title}”` });
+  const buttons = make("span", { className: "save" },
+    button("Request", () => actions.showRequest(figure.spec.request)),
+    button("CSV", () => actions.saveCsv(figure.spec.request)),
+    button("PNG", () => picture(figure, "png")),
+    button("SVG", () => picture(figure, "svg")));
+  const data = make("details", { ontoggle: () => fillTable(figure) },
+    make("summary", {}, "Data table"), make("div", { className: "data", tabIndex: 0 }));
+  const caption = make("figcaption", {}, make("h2", {}, spec.title), buttons);
+  figure.element = make("figure", {}, caption, figure.plot, data);
   return figure;
 }
 
 function fillTable(figure) {
   const details = figure.element.querySelector("details");
-  if (details.open) details.querySelector(".data").replaceChildren(...dataTable(figure.spec, figure.inputs));
+  if (details.open) details.querySelector(".data").replaceChildren(...dataTables(figure.spec, figure.inputs));
 }
 
 /** Show the radius under the cursor in every chart over the radius. */
@@ -203,32 +175,29 @@ export function redraw() {
 }
 
 /**
- * Draw the charts of a response, reusing those that are there.
+ * Draw the charts of a response, reusing those with the same title.
  *
  * `actions.showRequest` and `actions.saveCsv` are called with the name of a chart's request.
  */
 export async function draw(container, specs, inputs, actions) {
   await plotlyLoaded;
-  for (const [id, figure] of figures) {
-    if (specs.some((spec) => spec.id === id)) continue;
+  for (const [title, figure] of figures) {
+    if (specs.some((spec) => spec.title === title)) continue;
     Plotly.purge(figure.plot);
     figure.element.remove();
-    figures.delete(id);
+    figures.delete(title);
   }
   for (const spec of specs) {
-    const known = figures.get(spec.id);
+    const known = figures.get(spec.title);
     const figure = known ?? create(spec, actions);
     Object.assign(figure, { spec, inputs });
     figure.element.className = spec.size ?? "";
-    figure.element.querySelector("h2").textContent = spec.title;
-    figure.element.querySelectorAll("button").forEach((button) =>
-      button.setAttribute("aria-label", `${button.textContent} of “${spec.title}”`));
-    figure.plot.setAttribute("aria-label", `${spec.title}: ${axisTitle(spec.y, inputs)} over ${axisTitle(spec.x, inputs)}`);
+    figure.plot.setAttribute("aria-label", `${spec.title}: ${withUnit(spec.y, inputs)} over ${withUnit(spec.x, inputs)}`);
     // In the order of the description, whatever was there before.
     container.append(figure.element);
     await plot(figure, { autosize: true });
     if (!known) link(figure);
-    figures.set(spec.id, figure);
+    figures.set(spec.title, figure);
     fillTable(figure);
   }
 }

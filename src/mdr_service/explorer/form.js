@@ -1,5 +1,6 @@
 // Fields of the form: a number with its unit and a slider, or a choice.
 
+import { make } from "./dom.js";
 import { read, shown, unit } from "./units.js";
 
 const SPAN = 100;
@@ -13,40 +14,23 @@ function sliderOf(field, value, reference) {
   return { min: Math.log10(low), max: Math.log10(high), to: Math.log10, from: (x) => 10 ** x };
 }
 
+/** Return a row with `choices`, pairs of value and text; `choose(value)` is called with a new one. */
+export function choiceRow(id, label, choices, chosen, choose) {
+  const options = choices.map(([value, text]) => new Option(text, value, false, value === chosen));
+  const select = make("select", { id, onchange: () => choose(choices[select.selectedIndex][0]) }, ...options);
+  return make("label", { className: "row" }, make("span", {}, label), select);
+}
+
 /**
- * Return a row of the form for a field.
+ * Return a row with the number of a field and a slider.
  *
  * `change(key, value)` is called with the new SI value while the slider moves and when a text
  * is a number. `reference` is the value in whose neighbourhood the slider moves.
  */
-export function row(field, inputs, reference, change) {
-  return field.choices ? choiceRow(field, inputs, change) : numberRow(field, inputs, reference, change);
-}
-
-function choiceRow(field, inputs, change) {
-  const label = document.createElement("label");
-  label.className = "row";
-  const name = document.createElement("span");
-  name.textContent = field.label;
-  const select = document.createElement("select");
-  select.id = `field-${field.key}`;
-  for (const { value, label: text } of field.choices) {
-    select.add(new Option(text, value, false, String(inputs[field.key]) === String(value)));
-  }
-  select.addEventListener("change", () => {
-    const { value } = field.choices[select.selectedIndex];
-    change(field.key, value);
-  });
-  label.append(name, select);
-  return label;
-}
-
-function numberRow(field, inputs, reference, change) {
+export function numberRow(field, inputs, reference, change) {
   const { key, dimension } = field;
   const { name } = unit(dimension, inputs);
-  const element = document.createElement("div");
-  element.className = "field";
-  element.dataset.key = key;
+  const element = make("div", { className: "field", "data-key": key });
   element.innerHTML = `<label class="row"><span></span><input type="text" inputmode="decimal" id="field-${key}"><span class="unit"></span></label><input type="range" step="any"><p class="problem" role="alert"></p>`;
   const [text, slider] = element.querySelectorAll("input");
   element.querySelector("span").textContent = field.label;

@@ -1,8 +1,9 @@
 // Editor of a load path: points in the plane of tangential and normal load.
 
-import { dimensionOf, labelOf } from "./analyses.js";
+import { make, makeButton, makeTable } from "./dom.js";
 import { pathPoints } from "./inputs.js";
-import { format, read, shown, unit } from "./units.js";
+import { QUANTITIES } from "./quantities.js";
+import { format, read, shown, unit, withUnit } from "./units.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT, PAD] = [420, 240, 34];
@@ -26,26 +27,22 @@ function svgElement(name, attributes, parent) {
 export function showEditor(container, inputs, size, change) {
   const points = pathPoints(inputs);
   const focused = document.activeElement?.dataset?.point;
-  const commit = () => change(points.map((point) => point.join(",")).join(";"));
+  const commit = (path = points) => change(path.map((point) => point.join(",")).join(";"));
   container.replaceChildren(
-    heading(inputs, size, change), drawing(points, inputs, commit), table(points, inputs, commit),
+    heading(size, commit), drawing(points, inputs, commit), table(points, inputs, commit),
   );
   if (focused) container.querySelector(`[data-point="${focused}"]`)?.focus();
 }
 
-function heading(inputs, { normal, tangential }, change) {
-  const element = document.createElement("div");
-  element.className = "row";
-  element.innerHTML = '<h2>Load path</h2><label for="preset">Start from</label><select id="preset"><option value="">…</option></select>';
-  const select = element.querySelector("select");
-  for (const name of Object.keys(PRESETS)) select.add(new Option(name));
-  select.addEventListener("change", () => {
-    if (!select.value) return;
-    const rounded = (x) => Number(x.toPrecision(3));
-    const points = PRESETS[select.value].map(([n, t]) => [rounded(n * normal), rounded(t * tangential)]);
-    change(points.map((point) => point.join(",")).join(";"));
-  });
-  return element;
+function heading({ normal, tangential }, commit) {
+  const rounded = (x) => Number(x.toPrecision(3));
+  const start = ({ target }) =>
+    commit(PRESETS[target.value].map(([n, t]) => [rounded(n * normal), rounded(t * tangential)]));
+  const prompt = make("option", { hidden: true }, "…");
+  const names = Object.keys(PRESETS).map((name) => new Option(name));
+  return make("div", { className: "row" },
+    make("h2", {}, "Load path"), make("label", { htmlFor: "preset" }, "Start from"),
+    make("select", { id: "preset", onchange: start }, prompt, ...names));
 }
 
 function drawing(points, inputs, commit) {
@@ -64,7 +61,7 @@ function drawing(points, inputs, commit) {
   };
   svgElement("line", { x1: PAD, x2: WIDTH - PAD, y1: HEIGHT - PAD, y2: HEIGHT - PAD, class: "axis" }, svg);
   svgElement("line", { x1: WIDTH / 2, x2: WIDTH / 2, y1: PAD / 2, y2: HEIGHT - PAD, class: "axis" }, svg);
-  const title = (control) => `${labelOf(control)} [${unit(dimensionOf(control), inputs).name}]`;
+  const title = (control) => withUnit(QUANTITIES[control], inputs);
   svgElement("text", { x: WIDTH - PAD, y: HEIGHT - 8, "text-anchor": "end" }, svg).textContent = title(inputs.tangential);
   svgElement("text", { x: WIDTH / 2 + 6, y: PAD / 2 + 2 }, svg).textContent = title(inputs.normal);
   const line = svgElement("polyline", { class: "path" }, svg);
@@ -110,54 +107,37 @@ function drawing(points, inputs, commit) {
 
 function valueText([n, t], inputs) {
   const part = (value, control) => {
-    const { name, factor } = unit(dimensionOf(control), inputs);
-    return `${labelOf(control)} ${format(value / factor, 3)} ${name}`;
+    const [label, dimension] = QUANTITIES[control];
+    const { name, factor } = unit(dimension, inputs);
+    return `${label} ${format(value / factor, 3)} ${name}`;
   };
   return `${part(n, inputs.normal)}, ${part(t, inputs.tangential)}`;
 }
 
 function table(points, inputs, commit) {
-  const element = document.createElement("table");
-  element.className = "points";
-  const head = element.createTHead().insertRow();
-  for (const title of ["Point", labelOf(inputs.normal), labelOf(inputs.tangential), "Change"]) {
-    const cell = document.createElement("th");
-    cell.scope = "col";
-    cell.textContent = title;
-    head.append(cell);
-  }
-  const body = element.createTBody();
-  points.forEach((point, i) => {
-    const row = body.insertRow();
-    row.insertCell().textContent = i + 1;
-    [inputs.normal, inputs.tangential].forEach((control, j) => {
-      const input = document.createElement("input");
-      input.value = shown(point[j], dimensionOf(control), inputs);
-      input.inputMode = "decimal";
-      input.dataset.point = `${i}-${j}`;
-      input.setAttribute("aria-label", `Point ${i + 1}, ${labelOf(control)} [${unit(dimensionOf(control), inputs).name}]`);
-      input.addEventListener("change", () => {
-        const value = read(input.value, dimensionOf(control), inputs);
-        input.setAttribute("aria-invalid", String(Number.isNaN(value)));
-        if (Number.isNaN(value)) return;
-        points[i][j] = value;
-        commit();
-      });
-      row.insertCell().append(input);
-    });
-    const cell = row.insertCell();
-    const button = (text, name, act) => {
-      const each = Object.assign(document.createElement("button"), { type: "button", textContent: text });
-      each.setAttribute("aria-label", name);
-      each.addEventListener("click", () => {
-        act();
-        commit();
-      });
-      cell.append(each);
-      return each;
-    };
-    button("+", `Add a point after point ${i + 1}`, () => points.splice(i + 1, 0, [...point]));
-    button("−", `Remove point ${i + 1}`, () => points.splice(i, 1)).disabled = points.length === 1;
+  const number = (i, j, control) => make("input", {
+    value: shown(points[i][j], QUANTITIES[control][1], inputs),
+    inputMode: "decimal",
+    "data-point": `${i}-${j}`,
+    "aria-label": `Point ${i + 1}, ${withUnit(QUANTITIES[control], inputs)}`,
+    onchange: ({ target }) => {
+      const value = read(target.value, QUANTITIES[control][1], inputs);
+      target.setAttribute("aria-invalid", String(Number.isNaN(value)));
+      if (Number.isNaN(value)) return;
+      points[i][j] = value;
+      commit();
+    },
   });
+  const button = (text, name, act) => makeButton(text, () => { act(); commit(); }, { "aria-label": name });
+  const rows = points.map((point, i) => {
+    const add = button("+", `Add a point after point ${i + 1}`, () => points.splice(i + 1, 0, [...point]));
+    const remove = button("−", `Remove point ${i + 1}`, () => points.splice(i, 1));
+    remove.disabled = points.length === 1;
+    const change = make("span", {}, add, remove);
+    return [i + 1, number(i, 0, inputs.normal), number(i, 1, inputs.tangential), change];
+  });
+  const titles = [inputs.normal, inputs.tangential].map((control) => QUANTITIES[control][0]);
+  const element = makeTable(["Point", ...titles, "Change"], rows);
+  element.className = "points";
   return element;
 }

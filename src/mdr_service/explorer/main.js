@@ -1,12 +1,13 @@
 // The page: inputs -> form -> requests -> numbers and charts -> address.
 
 import { draw } from "./charts.js";
-import { readTable, row, tableText } from "./form.js";
+import { make, makeButton } from "./dom.js";
+import { choiceRow, numberRow, readTable, tableText } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS } from "./materials.js";
 import { showForPrint } from "./printing.js";
 import { bodyFields, loadFields, ANALYSES } from "./analyses.js";
-import { query, queryCsv, download, newestWins, Refusal, source } from "./requests.js";
+import { download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
 import { defaultInputs, fromAddress, pathPoints, TABS, toAddress, withKind } from "./inputs.js";
 import { DEFAULT_FIELDS, LABELS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
@@ -19,15 +20,25 @@ let requests = [];
 let last = null;
 let rowOfTable = [];
 
-function change(key, value) {
-  const structural = ["control", "push", "oscillation", "normal", "tangential"].includes(key);
-  const before = inputs[key];
-  inputs = { ...inputs, [key]: value };
-  if (structural && before !== value) {
-    keepLoad(key, value);
-    showForm();
-  }
+/** Show other inputs in the whole page. */
+function show(next) {
+  inputs = next;
+  const focused = document.activeElement?.id;
+  showForm();
+  showPath();
+  if (focused) document.getElementById(focused)?.focus();
   refresh();
+}
+
+function change(key, value) {
+  inputs = { ...inputs, [key]: value };
+  refresh();
+}
+
+function choose(key, value) {
+  inputs = { ...inputs, [key]: value };
+  keepLoad(key, value);
+  show(inputs);
 }
 
 /** Keep the state of the contact when another quantity is chosen to give it. */
@@ -41,8 +52,10 @@ function keepLoad(key, value) {
   if (key === "oscillation") {
     inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
   }
-  if (key === "normal") inputs.path = rescaled(0, value === "normal_force" ? 100 : 2e-6);
-  if (key === "tangential") inputs.path = rescaled(1, value === "tangential_force" ? 20 : 4e-7);
+  if (key === "normal") inputs.path = rescaled(0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
+  if (key === "tangential") {
+    inputs.path = rescaled(1, Math.abs(known[value]) || (value === "tangential_force" ? 20 : 4e-7));
+  }
 }
 
 function rescaled(column, largest) {
@@ -52,9 +65,15 @@ function rescaled(column, largest) {
   return points.map((point) => point.join(",")).join(";");
 }
 
+function row(field, reference) {
+  const { key, label, choices } = field;
+  if (!choices) return numberRow(field, inputs, reference, change);
+  return choiceRow(`field-${key}`, label, choices, inputs[key], (value) => choose(key, value));
+}
+
 function fill(container, fields, references = inputs) {
   container.querySelectorAll(":scope > :not(legend)").forEach((element) => element.remove());
-  container.append(...fields.map((field) => row(field, inputs, references[field.key] ?? inputs[field.key], change)));
+  container.append(...fields.map((field) => row(field, references[field.key] ?? inputs[field.key])));
   container.hidden = fields.length === 0;
 }
 
@@ -69,26 +88,17 @@ function profileFields() {
     }));
 }
 
-function materialSelect(i) {
-  const label = document.createElement("label");
-  label.className = "row";
-  label.innerHTML = `<span>Body ${i}</span><select id="material-${i}"></select>`;
-  const select = label.querySelector("select");
-  const current = Object.entries(MATERIALS).find(([, [e, nu]]) => e === inputs[`e${i}`] && nu === inputs[`nu${i}`]);
-  const chosen = inputs[`e${i}`] === "rigid" ? "Rigid" : current?.[0] ?? "Custom";
-  const offered = ["Custom", ...Object.keys(MATERIALS), ...(i === 2 ? ["Rigid"] : [])];
-  for (const name of offered) select.add(new Option(name, name, false, name === chosen));
-  select.addEventListener("change", () => {
-    if (select.value === "Rigid") inputs = { ...inputs, e2: "rigid" };
-    else {
-      const fallback = inputs[`e${i}`] === "rigid" ? MATERIALS.Steel : [inputs[`e${i}`], inputs[`nu${i}`]];
-      const [e, nu] = MATERIALS[select.value] ?? fallback;
-      inputs = { ...inputs, [`e${i}`]: e, [`nu${i}`]: nu };
-    }
-    showForm();
-    refresh();
+function materialRow(i) {
+  const [modulus, ratio] = [`e${i}`, `nu${i}`];
+  const current = [inputs[modulus], inputs[ratio]];
+  const known = { ...MATERIALS, ...(i === 2 && { Rigid: ["rigid", inputs[ratio]] }) };
+  const custom = current[0] === "rigid" ? MATERIALS.Steel : current;
+  const chosen = Object.keys(known).find((name) => String(known[name]) === String(current)) ?? "Custom";
+  const choices = ["Custom", ...Object.keys(known)].map((name) => [name, name]);
+  return choiceRow(`material-${i}`, `Body ${i}`, choices, chosen, (name) => {
+    const [e, nu] = known[name] ?? custom;
+    show({ ...inputs, [modulus]: e, [ratio]: nu });
   });
-  return label;
 }
 
 function showForm() {
@@ -103,15 +113,12 @@ function showForm() {
   }
   fill($("#profile-fields"), profileFields(), DEFAULT_FIELDS[inputs.kind]);
   fill($("#bodies"), bodyFields(inputs));
-  $("#bodies legend").after(materialSelect(1), materialSelect(2));
+  $("#bodies legend").after(materialRow(1), materialRow(2));
   fill($("#loading"), loadFields(inputs));
   fill($("#analysis"), analysis.fields(inputs));
   fill($("#units"), Object.values(BASE_UNITS).map(({ key, label, units }) => ({
-    key, label, choices: units.map((name) => ({ value: name, label: name })),
+    key, label, choices: units.map((name) => [name, name]),
   })));
-  for (const { key } of Object.values(BASE_UNITS)) {
-    $(`#field-${key}`).addEventListener("change", showForm);
-  }
   document.querySelectorAll("[role=tab]").forEach((tab) => {
     const selected = tab.id === `tab-${inputs.tab}`;
     tab.setAttribute("aria-selected", String(selected));
@@ -124,13 +131,9 @@ function showForm() {
 
 function showNumbers(numbers) {
   $("#numbers").replaceChildren(...numbers.map(([label, value, dimension]) => {
-    const entry = document.createElement("div");
     const shown = dimension ? unit(dimension, inputs) : { name: "", factor: 1 };
     const text = typeof value === "string" ? value : `${format(value && value / shown.factor)} ${shown.name}`;
-    entry.innerHTML = "<dt></dt><dd></dd>";
-    entry.querySelector("dt").textContent = label;
-    entry.querySelector("dd").textContent = text;
-    return entry;
+    return make("div", {}, make("dt", {}, label), make("dd", {}, text));
   }));
 }
 
@@ -142,13 +145,8 @@ function showAccuracy(responses) {
   $("#accuracy").textContent =
     `Computed by ${methods.join(" and ")}; relative error at most ${format(error, 2)}${ofFields}.`;
   const messages = new Map(responses.flatMap((response) => response.warnings.map((w) => [w.code, w.message])));
-  $("#warnings").replaceChildren(...[...messages].map(([code, message]) => {
-    const item = document.createElement("li");
-    item.innerHTML = "<strong></strong> ";
-    item.querySelector("strong").textContent = code.replaceAll("_", " ");
-    item.append(message);
-    return item;
-  }));
+  $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>
+    make("li", {}, make("strong", {}, code.replaceAll("_", " ")), ` ${message}`)));
 }
 
 // Member of a request -> keys of the inputs that set it.
@@ -205,7 +203,7 @@ function showRequest(name) {
 
 async function saveCsv(name) {
   const { path, body } = requests.find((request) => request.name === name);
-  download(`${name.toLowerCase().replaceAll(" ", "-")}.csv`, await queryCsv(path, body), "text/csv");
+  download(fileName(name, "csv"), await queryCsv(path, body), "text/csv");
 }
 
 function showPath() {
@@ -216,11 +214,7 @@ function showPath() {
   const normal = Math.max(...points.map(([n]) => n));
   const force = inputs.tangential === "tangential_force";
   const tangential = force && inputs.normal === "normal_force" ? inputs.mu * normal : Math.max(...points.map(([, t]) => Math.abs(t))) || 1e-7;
-  showEditor(editor, inputs, { normal, tangential }, (path) => {
-    inputs = { ...inputs, path };
-    showPath();
-    refresh();
-  });
+  showEditor(editor, inputs, { normal, tangential }, (path) => show({ ...inputs, path }));
 }
 
 const sketch = () => showSketch($("#sketch"), inputs, last?.known?.contact_radius);
@@ -266,22 +260,14 @@ function showTab(tab) {
   if (tab === "wear" && inputs.control === "contact_radius") {
     inputs = { ...inputs, control: "normal_force", load: last?.known?.normal_force ?? 100 };
   }
-  last = { ...last, numbers: [] };
-  showForm();
-  showPath();
-  refresh();
+  show(inputs);
 }
 
 function makeTabs() {
   const list = $("[role=tablist]");
   for (const tab of TABS) {
-    const button = Object.assign(document.createElement("button"), {
-      type: "button", id: `tab-${tab}`, textContent: ANALYSES[tab].title,
-    });
-    button.setAttribute("role", "tab");
-    button.setAttribute("aria-controls", "results");
-    button.addEventListener("click", () => showTab(tab));
-    list.append(button);
+    const attributes = { id: `tab-${tab}`, role: "tab", "aria-controls": "results" };
+    list.append(makeButton(ANALYSES[tab].title, () => showTab(tab), attributes));
   }
   list.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -305,22 +291,13 @@ function readTableField() {
 
 function connect() {
   for (const [kind, label] of Object.entries(LABELS)) $("#kind").add(new Option(label, kind));
-  $("#kind").addEventListener("change", () => {
-    inputs = withKind(inputs, $("#kind").value);
-    showForm();
-    refresh();
-  });
+  $("#kind").addEventListener("change", () => show(withKind(inputs, $("#kind").value)));
   $("#table").addEventListener("input", readTableField);
   $("#file").addEventListener("change", async () => {
     $("#table").value = await $("#file").files[0].text();
     readTableField();
   });
-  $("#reset").addEventListener("click", () => {
-    inputs = { ...defaultInputs(), tab: inputs.tab };
-    showForm();
-    showPath();
-    refresh();
-  });
+  $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
   $("#request").addEventListener("change", showSource);
   $("#language").addEventListener("change", showSource);
   $("#copy").addEventListener("click", () => navigator.clipboard.writeText($("#code").textContent));
@@ -329,12 +306,7 @@ function connect() {
   addEventListener("beforeprint", () => showForPrint(true));
   addEventListener("afterprint", () => showForPrint(false));
   addEventListener("afterprint", solve);
-  addEventListener("popstate", () => {
-    inputs = fromAddress(location.search, location.hash);
-    showForm();
-    showPath();
-    solve();
-  });
+  addEventListener("popstate", () => show(fromAddress(location.search, location.hash)));
 }
 
 makeTabs();

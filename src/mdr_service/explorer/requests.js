@@ -64,6 +64,11 @@ export function source(language, { path, body }) {
   return `curl -s ${url} \\\n  -H 'content-type: application/json' \\\n  -d '${JSON.stringify(body)}'\n`;
 }
 
+/** Return the name of a file about something. */
+export function fileName(title, suffix) {
+  return `${title.toLowerCase().replaceAll(" ", "-")}.${suffix}`;
+}
+
 /** Offer text or a blob as a download. */
 export function download(name, content, type) {
   const link = document.createElement("a");

@@ -1,8 +1,10 @@
 // The results of the analyses: requests, and the numbers and charts of their responses.
 
 import { basics, pathPoints } from "./inputs.js";
+import { QUANTITIES } from "./quantities.js";
 
 const POINTS = 400;
+const SAMPLES_PER_STEP = 40;
 
 /** Return the normal force of the load, by which all other requests give it. */
 async function normalForce(inputs, query) {
@@ -11,10 +13,12 @@ async function normalForce(inputs, query) {
   return (await query("Contact", "v1/normal", { ...basics(inputs), load })).normal_force[0];
 }
 
-/** Return the tangential load on the wire; a share of the limiting force needs the normal force. */
-function pushOf(inputs, force) {
-  if (inputs.push !== "ratio") return { [inputs.push]: inputs.amount };
-  return { tangential_force: inputs.amount * inputs.mu * force };
+/** Return the members of a request about a tangential load under a normal force. */
+function pushed(inputs, force) {
+  const tangential = inputs.push === "ratio"
+    ? { tangential_force: inputs.amount * inputs.mu * force }
+    : { [inputs.push]: inputs.amount };
+  return { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential };
 }
 
 /** Return a response with the value of one load in place of each array. */
@@ -23,7 +27,41 @@ function single(response, index = 0) {
   return Object.fromEntries(Object.entries(response).map(scalar));
 }
 
+function numbersOf(state, names) {
+  return names.map((name) => [QUANTITIES[name][0], state[name], QUANTITIES[name][1]]);
+}
+
 const marker = (name, x, y) => ({ name, x: [x], y: [y], mode: "markers", role: "marker" });
+
+/** Return the chart of a quantity over another one, with a mark at the state of the contact. */
+function relationChart(request, title, response, [x, y], state, { mark = "this load", ...options } = {}) {
+  const [xAxis, yAxis] = [QUANTITIES[x], QUANTITIES[y]];
+  const traces = [
+    { name: yAxis[0], x: response[x], y: response[y] }, marker(mark, state[x], state[y]),
+  ];
+  return { request, title, x: xAxis, y: yAxis, traces, ...options };
+}
+
+/** Return the chart of a quantity over the radius, with its curves and the edges of zones. */
+function fieldChart(request, title, quantity, edges, radius, traces, options) {
+  return {
+    request, title, edges, linked: true, x: QUANTITIES.radius, y: QUANTITIES[quantity],
+    traces: traces.map((trace) => ({ x: radius, ...trace })), ...options,
+  };
+}
+
+function pressureChart(request, { radius, pressure }, edges, options) {
+  const traces = [{ name: "pressure", y: pressure[0], fill: true }];
+  return fieldChart(request, "Pressure", "pressure", edges, radius, traces, options);
+}
+
+function shearStressChart(request, field, mu, edges) {
+  const envelope = field.pressure[0].map((p) => (p === null ? null : mu * p));
+  return fieldChart(request, "Shear stress", "shear_stress", edges, field.radius, [
+    { name: "shear stress", y: field.shear_stress[0], fill: true },
+    { name: "limit µp", y: envelope, role: "limit" },
+  ]);
+}
 
 export async function solvePress(inputs, query) {
   const force = await normalForce(inputs, query);
@@ -35,168 +73,100 @@ export async function solvePress(inputs, query) {
     }),
   ]);
   const now = single(curve, -1);
+  const { indentation_depth: depths, normal_force: reached } = curve;
+  const fromZero = { indentation_depth: [0, ...depths], normal_force: [0, ...reached] };
   return {
     responses: [curve, field],
     known: now,
-    numbers: [
-      ["Contact radius a", now.contact_radius, "length"],
-      ["Indentation depth d", now.indentation_depth, "displacement"],
-      ["Normal force", now.normal_force, "force"],
-      ["Mean pressure", now.mean_pressure, "pressure"],
-      ["Maximum pressure", now.maximum_pressure, "pressure"],
-      ["Normal stiffness", now.normal_stiffness, "stiffness"],
-      ["Elastic energy", now.elastic_energy, "energy"],
-    ],
+    numbers: numbersOf(now, [
+      "contact_radius", "indentation_depth", "normal_force", "mean_pressure", "maximum_pressure",
+      "normal_stiffness", "elastic_energy",
+    ]),
     charts: [
-      pressureChart("Pressure", field, [["a", now.contact_radius]], "wide"),
-      {
-        id: "force-depth", request: "Curve", title: "Force over depth",
-        x: ["Indentation depth", "displacement"], y: ["Normal force", "force"],
-        traces: [
-          { name: "force", x: [0, ...curve.indentation_depth], y: [0, ...curve.normal_force] },
-          marker("this load", now.indentation_depth, now.normal_force),
-        ],
-      },
-      {
-        id: "radius-force", request: "Curve", title: "Contact radius over force",
-        x: ["Normal force", "force"], y: ["Contact radius", "length"],
-        traces: [
-          { name: "contact radius", x: curve.normal_force, y: curve.contact_radius },
-          marker("this load", now.normal_force, now.contact_radius),
-        ],
-      },
+      pressureChart("Pressure", field, [["a", now.contact_radius]], { size: "wide" }),
+      relationChart("Curve", "Force over depth", fromZero, ["indentation_depth", "normal_force"], now),
+      relationChart("Curve", "Contact radius over force", curve, ["normal_force", "contact_radius"], now),
     ],
   };
-}
-
-function pressureChart(request, field, edges, size) {
-  return {
-    id: "pressure", request, title: "Pressure", size, linked: true, edges,
-    x: ["Radius", "length"], y: ["Pressure", "pressure"],
-    traces: [{ name: "pressure", x: field.radius, y: field.pressure[0], fill: true }],
-  };
-}
-
-function shearStressChart(request, field, mu, edges) {
-  const envelope = field.pressure[0].map((p) => (p === null ? null : mu * p));
-  return {
-    id: "shear-stress", request, title: "Shear stress", linked: true, edges,
-    x: ["Radius", "length"], y: ["Shear stress", "pressure"],
-    traces: [
-      { name: "shear stress", x: field.radius, y: field.shear_stress[0], fill: true },
-      { name: "limit µp", x: field.radius, y: envelope, role: "limit" },
-    ],
-  };
-}
-
-/** Return a field with gaps outside the contact, where it means nothing. */
-function within(field, contactRadius, quantity) {
-  return field[quantity][0].map((value, i) => (field.radius[i] > contactRadius ? null : value));
 }
 
 export async function solvePush(inputs, query) {
   const force = await normalForce(inputs, query);
+  const base = pushed(inputs, force);
   const limit = inputs.mu * force;
-  const base = { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu };
-  const shares = Array.from({ length: 61 }, (_, i) => 1 - (1 - i / 60) ** 2);
-  const tangential = pushOf(inputs, force);
+  const forces = Array.from({ length: 61 }, (_, i) => limit * (1 - (1 - i / 60) ** 2));
   const [state, curve, field] = await Promise.all([
-    query("State", "v1/tangential", { ...base, tangential }),
-    query("Curve", "v1/tangential", {
-      ...base, tangential: { tangential_force: shares.map((share) => share * limit) },
-    }),
+    query("State", "v1/tangential", base),
+    query("Curve", "v1/tangential", { ...base, tangential: { tangential_force: forces } }),
     query("Fields", "v1/stress", {
-      ...base, tangential, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
+      ...base, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
     }),
   ]);
   const now = single(state);
+  const size = { ...now, tangential_force: Math.abs(now.tangential_force) };
   const edges = [["c", now.stick_radius], ["a", now.contact_radius]];
+  // Outside the contact, slip has no meaning.
+  const slip = field.slip[0].map((value, i) => (field.radius[i] > now.contact_radius ? null : value));
   return {
     responses: [state, curve, field],
     known: now,
     numbers: [
       ["Regime", now.regime.replace("_", " ")],
-      ["Stick radius c", now.stick_radius, "length"],
-      ["Contact radius a", now.contact_radius, "length"],
-      ["Slip width a − c", now.slip_width, "length"],
-      ["Tangential force", now.tangential_force, "force"],
-      ["Tangential displacement", now.tangential_displacement, "displacement"],
-      ["Tangential stiffness", now.tangential_stiffness, "stiffness"],
-      ["Dissipated energy", now.dissipated_energy, "energy"],
+      ...numbersOf(now, [
+        "stick_radius", "contact_radius", "slip_width", "tangential_force", "tangential_displacement",
+        "tangential_stiffness", "dissipated_energy",
+      ]),
     ],
     charts: [
       shearStressChart("Fields", field, inputs.mu, edges),
-      {
-        id: "force-displacement", request: "Curve", title: "Tangential force over displacement",
-        x: ["Tangential displacement", "displacement"], y: ["Tangential force", "force"],
-        traces: [
-          { name: "force", x: curve.tangential_displacement, y: curve.tangential_force },
-          marker("this load", now.tangential_displacement, now.tangential_force),
-        ],
-      },
-      {
-        id: "stick-force", request: "Curve", title: "Stick radius over tangential force",
-        x: ["Tangential force", "force"], y: ["Stick radius", "length"],
-        traces: [
-          { name: "stick radius", x: curve.tangential_force, y: curve.stick_radius },
-          marker("this load", Math.abs(now.tangential_force), now.stick_radius),
-        ],
-      },
-      {
-        id: "slip", request: "Fields", title: "Slip", linked: true, edges,
-        x: ["Radius", "length"], y: ["Slip", "displacement"],
-        traces: [{ name: "slip", x: field.radius, y: within(field, now.contact_radius, "slip") }],
-      },
+      relationChart(
+        "Curve", "Tangential force over displacement", curve,
+        ["tangential_displacement", "tangential_force"], now,
+      ),
+      relationChart(
+        "Curve", "Stick radius over tangential force", curve, ["tangential_force", "stick_radius"], size,
+      ),
+      fieldChart("Fields", "Slip", "slip", edges, field.radius, [{ name: "slip", y: slip }]),
     ],
   };
 }
 
 export async function solveCycle(inputs, query) {
   const points = pathPoints(inputs);
-  const column = (i) => points.map((point) => point[i]);
-  const body = {
-    ...basics(inputs),
-    friction_coefficient: inputs.mu,
-    history: {
-      normal: { [inputs.normal]: column(0) },
-      tangential: { [inputs.tangential]: column(1) },
-    },
+  const history = {
+    normal: { [inputs.normal]: points.map(([normal]) => normal) },
+    tangential: { [inputs.tangential]: points.map(([, tangential]) => tangential) },
   };
-  const sampled = { ...body, history: { ...body.history, samples_per_step: 40 } };
-  const [history, field] = await Promise.all([
+  const body = { ...basics(inputs), friction_coefficient: inputs.mu, history };
+  const sampled = { ...body, history: { ...history, samples_per_step: SAMPLES_PER_STEP } };
+  const [path, field] = await Promise.all([
     query("History", "v1/tangential/history", sampled),
     query("Fields at the end", "v1/stress", {
       ...body, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
     }),
   ]);
-  const last = (values) => values[values.length - 1];
-  const edges = [...history.slip_fronts.map((r) => ["", r]), ["a", last(history.contact_radius)]];
-  const position = history.step.map((_, i) => (i + 1) / 40);
+  const end = single(path, -1);
+  const edges = [...path.slip_fronts.map((r) => ["", r]), ["a", end.contact_radius]];
+  const position = path.step.map((_, i) => (i + 1) / SAMPLES_PER_STEP);
   return {
-    responses: [history, field],
-    known: { contact_radius: last(history.contact_radius) },
+    responses: [path, field],
+    known: end,
     numbers: [
-      ["Regime at the end", last(history.regime).replace("_", " ")],
-      ["Contact radius a", last(history.contact_radius), "length"],
-      ["Normal force", last(history.normal_force), "force"],
-      ["Tangential force", last(history.tangential_force), "force"],
-      ["Tangential displacement", last(history.tangential_displacement), "displacement"],
-      ["Dissipated energy", last(history.dissipated_energy), "energy"],
+      ["Regime at the end", end.regime.replace("_", " ")],
+      ...numbersOf(end, [
+        "contact_radius", "normal_force", "tangential_force", "tangential_displacement", "dissipated_energy",
+      ]),
     ],
     charts: [
-      {
-        id: "loop", request: "History", title: "Hysteresis", size: "wide",
-        x: ["Tangential displacement", "displacement"], y: ["Tangential force", "force"],
-        traces: [
-          { name: "path", x: history.tangential_displacement, y: history.tangential_force },
-          marker("end", last(history.tangential_displacement), last(history.tangential_force)),
-        ],
-      },
+      relationChart(
+        "History", "Hysteresis", path, ["tangential_displacement", "tangential_force"], end,
+        { mark: "end", size: "wide" },
+      ),
       shearStressChart("Fields at the end", field, inputs.mu, edges),
       {
-        id: "dissipation", request: "History", title: "Dissipated energy along the path",
-        x: ["Point of the path", "1"], y: ["Dissipated energy", "energy"],
-        traces: [{ name: "dissipated energy", x: position, y: history.dissipated_energy }],
+        request: "History", title: "Dissipated energy along the path",
+        x: ["Point of the path", "1"], y: QUANTITIES.dissipated_energy,
+        traces: [{ name: "dissipated energy", x: position, y: path.dissipated_energy }],
       },
     ],
   };
@@ -204,10 +174,7 @@ export async function solveCycle(inputs, query) {
 
 export async function solveStress(inputs, query) {
   const force = await normalForce(inputs, query);
-  const tangential = pushOf(inputs, force);
-  const base = {
-    ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential,
-  };
+  const base = pushed(inputs, force);
   const material = { ...base.material, yield_strength: inputs.yield };
   const [contact, field, map] = await Promise.all([
     query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } }),
@@ -221,6 +188,7 @@ export async function solveStress(inputs, query) {
   const now = single(contact);
   const [mises, shear] = [single(map.largest.von_mises), single(map.largest.maximum_shear)];
   const edges = [["a", now.contact_radius]];
+  const displacement = [{ name: "displacement", y: field.normal_displacement[0] }];
   return {
     responses: [contact, field, map],
     known: now,
@@ -231,12 +199,11 @@ export async function solveStress(inputs, query) {
       ["Largest shear stress", shear.value, "pressure"],
       ["Yield begins at, von Mises", map.yield_onset_force.von_mises[0], "force"],
       ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
-      ["Maximum pressure", now.maximum_pressure, "pressure"],
-      ["Contact radius a", now.contact_radius, "length"],
+      ...numbersOf(now, ["maximum_pressure", "contact_radius"]),
     ],
     charts: [
       {
-        id: "map", request: "Beneath", title: "Von Mises stress beneath the surface", size: "wide", map: true, edges,
+        request: "Beneath", title: "Von Mises stress beneath the surface", size: "wide", map: true, edges,
         x: ["x, along the tangential force", "length"], y: ["Depth z", "length"],
         z: ["von Mises stress", "pressure"],
         traces: [
@@ -246,11 +213,10 @@ export async function solveStress(inputs, query) {
       },
       pressureChart("Surface", field, edges),
       shearStressChart("Surface", field, inputs.mu, edges),
-      {
-        id: "displacement", request: "Surface", title: "Normal displacement of the surface", linked: true, edges, size: "wide",
-        x: ["Radius", "length"], y: ["Displacement", "displacement"],
-        traces: [{ name: "displacement", x: field.radius, y: field.normal_displacement[0] }],
-      },
+      fieldChart(
+        "Surface", "Normal displacement of the surface", "normal_displacement", edges, field.radius,
+        displacement, { size: "wide" },
+      ),
     ],
   };
 }
@@ -264,62 +230,42 @@ export async function solveWear(inputs, query) {
   };
   const decades = Array.from({ length: 17 }, (_, i) => 10 ** (i / 2));
   const cycles = [...new Set([...decades, inputs.cycles])].sort((a, b) => a - b);
-  const at = cycles.indexOf(inputs.cycles);
   const course = await query("Evolution", "v1/wear/evolution", {
     ...body, wear_coefficient: inputs.wear, cycles, points: 200,
   });
-  const limit = await query("Limit", "v1/wear", { ...body, radius: course.radius });
+  const { radius } = course;
+  const limit = await query("Limit", "v1/wear", { ...body, radius });
+  const [now, final] = [single(course, cycles.indexOf(inputs.cycles)), single(limit)];
   const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
-  const now = single(limit);
-  const edges = [["c", now.stick_radius], ["ã", now.wear_radius]];
+  const edges = [["c", final.stick_radius], ["ã", final.wear_radius]];
   return {
     responses: [limit, course],
-    known: {
-      contact_radius: course.contact_radius[at],
-      normal_force: course.normal_force[at],
-      indentation_depth: course.indentation_depth[at],
-    },
+    known: now,
     numbers: [
-      ["Worn volume", course.worn_volume[at], "volume"],
-      ["Worn volume in the limit", now.worn_volume, "volume"],
-      ["Contact radius", course.contact_radius[at], "length"],
-      ["Wear radius ã in the limit", now.wear_radius, "length"],
-      ["Stick radius c", now.stick_radius, "length"],
-      ["Indentation depth", course.indentation_depth[at], "displacement"],
-      ["Normal force", course.normal_force[at], "force"],
-      ["Dissipated energy", course.dissipated_energy[at], "energy"],
+      ...numbersOf(now, ["worn_volume"]),
+      ["Worn volume in the limit", final.worn_volume, "volume"],
+      ...numbersOf(now, ["contact_radius"]),
+      ["Wear radius ã in the limit", final.wear_radius, "length"],
+      ...numbersOf(final, ["stick_radius"]),
+      ...numbersOf(now, ["indentation_depth", "normal_force", "dissipated_energy"]),
     ],
     charts: [
-      {
-        id: "worn-profile", request: "Evolution", title: "Profile", linked: true, edges,
-        x: ["Radius", "length"], y: ["Height", "displacement"],
-        traces: [
-          { name: "after these cycles", x: course.radius, y: course.profile[at] },
-          { name: "unworn", x: course.radius, y: limit.initial_profile, role: "limit" },
-          { name: "limit", x: course.radius, y: limit.limiting_profile[0], role: "second" },
-        ],
-      },
-      {
-        id: "worn-depth", request: "Evolution", title: "Worn depth", linked: true, edges,
-        x: ["Radius", "length"], y: ["Depth", "displacement"],
-        traces: [
-          { name: "after these cycles", x: course.radius, y: depth(course.profile[at]) },
-          { name: "limit", x: course.radius, y: depth(limit.limiting_profile[0]), role: "limit" },
-        ],
-      },
-      {
-        id: "pressure", request: "Evolution", title: "Pressure after these cycles", linked: true, edges,
-        x: ["Radius", "length"], y: ["Pressure", "pressure"],
-        traces: [{ name: "pressure", x: course.radius, y: course.pressure[at], fill: true }],
-      },
-      {
-        id: "worn-volume", request: "Evolution", title: "Worn volume over the cycles", logarithmic: true,
-        x: ["Cycles", "1"], y: ["Worn volume", "volume"],
-        traces: [
-          { name: "worn volume", x: course.cycles, y: course.worn_volume },
-          marker("these cycles", inputs.cycles, course.worn_volume[at]),
-        ],
-      },
+      fieldChart("Evolution", "Profile", "profile", edges, radius, [
+        { name: "after these cycles", y: now.profile },
+        { name: "unworn", y: limit.initial_profile, role: "limit" },
+        { name: "limit", y: final.limiting_profile, role: "second" },
+      ]),
+      fieldChart("Evolution", "Worn depth", "worn_depth", edges, radius, [
+        { name: "after these cycles", y: depth(now.profile) },
+        { name: "limit", y: depth(final.limiting_profile), role: "limit" },
+      ]),
+      fieldChart("Evolution", "Pressure after these cycles", "pressure", edges, radius, [
+        { name: "pressure", y: now.pressure, fill: true },
+      ]),
+      relationChart(
+        "Evolution", "Worn volume over the cycles", course, ["cycles", "worn_volume"], now,
+        { mark: "these cycles", logarithmic: true },
+      ),
     ],
   };
 }

@@ -43,6 +43,18 @@ export function unit(dimension, inputs) {
   return { name: above.join("·") + (below.length ? "/" + below.join("·") : ""), factor };
 }
 
+/** Return a label with the display unit of its dimension. */
+export function withUnit([label, dimension], inputs) {
+  const { name } = unit(dimension, inputs);
+  return name ? `${label} [${name}]` : label;
+}
+
+/** Return SI values, null where infinite, in the display unit of their dimension. */
+export function scaled(values, dimension, inputs) {
+  const { factor } = unit(dimension, inputs);
+  return values.map((value) => (value === null ? null : value / factor));
+}
+
 /** Return a number with `digits` significant digits, without trailing zeros. */
 export function format(value, digits = 5) {
   if (value === null || value === undefined) return "∞";

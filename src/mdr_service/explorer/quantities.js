@@ -1,0 +1,26 @@
+// Label and dimension of each quantity, by its name in requests and responses.
+
+export const QUANTITIES = {
+  radius: ["Radius", "length"],
+  indentation_depth: ["Indentation depth d", "displacement"],
+  normal_force: ["Normal force", "force"],
+  contact_radius: ["Contact radius a", "length"],
+  mean_pressure: ["Mean pressure", "pressure"],
+  maximum_pressure: ["Maximum pressure", "pressure"],
+  normal_stiffness: ["Normal stiffness", "stiffness"],
+  elastic_energy: ["Elastic energy", "energy"],
+  tangential_force: ["Tangential force", "force"],
+  tangential_displacement: ["Tangential displacement", "displacement"],
+  stick_radius: ["Stick radius c", "length"],
+  slip_width: ["Slip width a − c", "length"],
+  tangential_stiffness: ["Tangential stiffness", "stiffness"],
+  dissipated_energy: ["Dissipated energy", "energy"],
+  pressure: ["Pressure", "pressure"],
+  shear_stress: ["Shear stress", "pressure"],
+  slip: ["Slip", "displacement"],
+  normal_displacement: ["Displacement", "displacement"],
+  profile: ["Height", "displacement"],
+  worn_depth: ["Depth", "displacement"],
+  worn_volume: ["Worn volume", "volume"],
+  cycles: ["Cycles", "1"],
+};
