@@ -185,15 +185,12 @@ def problem_response(error: ServiceError, headers: Mapping[str, str] | None = No
 
 
 def header(scope: Scope, name: bytes, default: str = "") -> str:
-    """Return the first header of a lower-case name.
+    """Return the header of a lower-case name, several lines as one list (RFC 9110, 5.3).
 
     The framework's mapping of all headers takes longer to build than this search.
     """
-    for each, value in scope["headers"]:
-        if each == name:
-            found: str = value.decode("latin-1")
-            return found
-    return default
+    lines = [value for each, value in scope["headers"] if each == name]
+    return b", ".join(lines).decode("latin-1") if lines else default
 
 
 async def read_body(request: Request) -> bytes:

@@ -327,7 +327,7 @@ def test_agreement_with_the_explicit_scheme(control: str) -> None:
 
 
 @pytest.mark.every(4)
-@pytest.mark.parametrize("control", CONTROLS)
+@TWO_OF_THREE
 @pytest.mark.parametrize("kind", ["paraboloid", "cone"])
 def test_error_within_estimate(kind: str, control: str) -> None:
     cycles = (10.0, 100.0, 1000.0, 3000.0, 1e4, 1e5)

@@ -64,7 +64,9 @@ def kinked() -> Tabulated:
     return Tabulated(tuple(r), tuple(r**2 / 2 + 0.5 * np.maximum(r - 1, 0)), "linear")
 
 
-@pytest.mark.parametrize("width", [0.2, pytest.param(0.4, marks=pytest.mark.long), 0.6])
+@pytest.mark.parametrize(
+    "width", [0.2, *(pytest.param(width, marks=pytest.mark.long) for width in (0.4, 0.6))]
+)
 def test_edge_of_the_contact_passes_a_break_in_few_steps(
     width: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -87,7 +89,9 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(
     assert worn.worn_volume == pytest.approx(volume, rel=2 * worn.error_estimate, abs=0)
 
 
-@pytest.mark.parametrize("held", ["indentation_depth", "normal_force"])
+@pytest.mark.parametrize(
+    "held", [pytest.param("indentation_depth", marks=pytest.mark.long), "normal_force"]
+)
 def test_edge_of_the_contact_leaves_a_break_that_it_rests_on(held: str) -> None:
     """The slope of g is infinite at the edge; reference: the limit once wear has stopped."""
     body = kinked()

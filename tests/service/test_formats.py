@@ -150,6 +150,12 @@ def test_default_format_is_json(client: Client) -> None:
     assert client.send(request).headers["content-type"] == "application/json"
 
 
+def test_lines_of_the_accept_header_are_one_list(client: Client) -> None:
+    lines = [("accept", "text/html;q=0.9"), ("accept", "text/csv")]
+    response = client.request("POST", "/v1/normal", json=BALL, headers=lines)
+    assert response.headers["content-type"].startswith("text/csv")
+
+
 @pytest.mark.parametrize("accept", ["text/html", "application/xml", "image/gif", "rubbish", ";;,"])
 @pytest.mark.parametrize(
     "path",
