@@ -154,7 +154,7 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
     held = len(start.forward) if start.in_contact else 0
     places, made = _AXIS + held + _VERTICES * count, held + _VERTICES * count
     high, low = np.zeros((places, 2)), np.zeros((places, 2))
-    growth, constant = np.zeros((places, 2)), np.zeros(places, dtype=np.intp)
+    growth = np.zeros((places, 2))
     number, load_step = np.full(places, -1, dtype=np.intp), np.zeros(places, dtype=np.intp)
     parent, normal = np.empty(made, dtype=np.intp), np.empty(made)
     steps, moved = np.empty((made, 2)), np.zeros((count, 2))
@@ -165,13 +165,10 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
         for part, column in ((high, 0), (low, 1)):
             part[own, 0], part[own, 1] = start.forward[:, column], start.backward[:, column]
         growth[own], load_step[own], number[own] = start.growth, start.load_step, np.arange(held)
-        constant[own] = np.where(growth[own, 1] == 0, 1, np.where(growth[own, 0] == 0, 0, 2))
         tree = as_tree(start)
         parent[:held], normal[:held], steps[:held] = tree.parent, tree.normal, tree.growth
-    # Full slip starts a face of the cone on the axis.
-    constant[_AXIS] = 0
-    stack = kernel.PolylineStack(high, low, growth, constant, number, load_step, _AXIS - 1 + held)
-    stack.record(held, parent, normal, steps, moved, front_step, front)
+    filled = parent, normal, steps, held, moved, front_step, front
+    stack = kernel.PolylineStack(high, low, growth, number, load_step, _AXIS - 1 + held, *filled)
     tops = np.empty(count, dtype=np.intp)
     stack.run(
         np.ascontiguousarray(points.normal),

@@ -10,7 +10,6 @@ cdef class PolylineStack:
     cdef double[:, ::1] high
     cdef double[:, ::1] low
     cdef double[:, ::1] growth
-    cdef Py_ssize_t[::1] constant
     cdef Py_ssize_t[::1] number
     cdef Py_ssize_t[::1] load_step
     cdef public Py_ssize_t top
@@ -23,10 +22,6 @@ cdef class PolylineStack:
     cdef Py_ssize_t[::1] front_step
     cdef double[:, ::1] front
 
-    cpdef record(
-        self, Py_ssize_t made, Py_ssize_t[::1] parent, double[::1] normal, double[:, ::1] steps,
-        double[:, ::1] moved, Py_ssize_t[::1] front_step, double[:, ::1] front
-    )
     @cython.locals(at=Py_ssize_t, i=Py_ssize_t, straight=bint, contact=bint)
     cpdef run(
         self, double[::1] normal, double[::1] tangential, unsigned char[::1] continues,
@@ -41,7 +36,7 @@ cdef class PolylineStack:
     ) noexcept
     @cython.locals(
         lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
-        at=Py_ssize_t, full=bint
+        at=Py_ssize_t, full=bint, oblique=bint
     )
     cdef Py_ssize_t _slip(self, Py_ssize_t start, double x, Py_ssize_t step) noexcept
     @cython.locals(base=Py_ssize_t, near=bint)
@@ -58,6 +53,7 @@ cdef class PolylineStack:
         self, Py_ssize_t below, double forward_step, double backward_step, double x,
         Py_ssize_t load_step
     ) noexcept
+    cdef Py_ssize_t _constant(self, Py_ssize_t at) noexcept
     cdef void _settle(self, Py_ssize_t at, Py_ssize_t own) noexcept
     @cython.locals(new=Py_ssize_t)
     cdef void _make(self, Py_ssize_t at, double normal) noexcept

@@ -31,8 +31,18 @@ class PolylineStack:
     """Vertices of the polyline, and the arrays that the loop fills.
 
     Coordinate sums are unevaluated sums high + low of two doubles. `growth` is the growth of both
-    sums over the segment below a vertex, `constant` the sum that is constant on it, `number` the
-    index of the vertex among all that were made, `load_step` the load step that laid the segment.
+    sums over the segment below a vertex, `number` the index of the vertex among all that were made,
+    `load_step` the load step that laid the segment.
+
+    Parameters
+    ----------
+    high, low, growth, number, load_step : columns of the stack.
+    top : place of its last vertex.
+    parent, normal, steps : to be filled with parent, normal coordinate and growth of every vertex.
+    made : number of vertices that these three hold already.
+    moved : to be filled with the decrease of both sums of the load point over each step.
+    front_step, front : to be filled with the step of each visit of the slip front, and its row of
+        `_visit`.
     """
 
     def __init__(
@@ -40,42 +50,27 @@ class PolylineStack:
         high: Array,
         low: Array,
         growth: Array,
-        constant: Indices,
         number: Indices,
         load_step: Indices,
         top: int,
-    ) -> None:
-        self.high = high
-        self.low = low
-        self.growth = growth
-        self.constant = constant
-        self.number = number
-        self.load_step = load_step
-        self.top = top
-
-    def record(
-        self,
-        made: int,
         parent: Indices,
         normal: Array,
         steps: Array,
+        made: int,
         moved: Array,
         front_step: Indices,
         front: Array,
     ) -> None:
-        """Set the arrays to be filled.
-
-        Parameters
-        ----------
-        made : number of vertices that the next three arrays hold already.
-        parent, normal, steps : parent, normal coordinate and growth of every vertex.
-        moved : decrease of both sums of the load point over each step.
-        front_step, front : step of each visit of the slip front, and its row of `_visit`.
-        """
-        self.made = made
+        self.high = high
+        self.low = low
+        self.growth = growth
+        self.number = number
+        self.load_step = load_step
+        self.top = top
         self.parent = parent
         self.normal = normal
         self.steps = steps
+        self.made = made
         self.moved = moved
         self.front_step = front_step
         self.front = front
@@ -192,14 +187,15 @@ class PolylineStack:
             lower -= 1
         upper = lower + 1
         # The cut is in the sum `own`; on a face of an earlier cone the other one is constant.
-        other = self.constant[upper]
-        if upper == AXIS:
+        other = self._constant(upper)
+        full = upper == AXIS
+        oblique = other == NEITHER and not full
+        if full:
             other = BACKWARD if self._excess(AXIS, POINT, FORWARD) > 0 else FORWARD
-        elif other == NEITHER:
+        elif oblique:
             other = self._last_reached(lower, upper)
         own = 1 - other
         keep = self._excess(POINT, lower, own)
-        full = upper == AXIS
         if keep <= 0:
             if not full:
                 self._visit(start, lower, step)
@@ -209,7 +205,7 @@ class PolylineStack:
         # In full slip the corner is that of the mirror image, and both sums grow from the axis.
         source = upper - full
         rest = keep * full
-        if self.constant[upper] == NEITHER:
+        if oblique:
             self._cut(lower, upper, own, other, keep)
             source = CORNER
             rest = self.growth[CORNER, other]
@@ -230,7 +226,6 @@ class PolylineStack:
         at = upper + 1
         self._put(at, own, self.high[POINT, own], self.low[POINT, own], 0.0)
         self._put(at, other, self.high[POINT, other], self.low[POINT, other], reach)
-        self.constant[at] = own
         self._make(at, x)
         return at
 
@@ -251,8 +246,6 @@ class PolylineStack:
         total = high + move
         low = _rounding(high, move, total) + self.low[base, other]
         self._put(CORNER, other, total + low, _rounding(total, low, total + low), rest)
-        if rest <= 0:
-            self.constant[upper] = other
 
     def _cut_at_constant_anchor(self, lower: int, own: int, other: int, keep: float) -> None:
         """Find the corner on a segment of constant anchor, where both sums grow alike.
@@ -295,16 +288,17 @@ class PolylineStack:
             at = below + 1
             self.growth[at, FORWARD] = max(forward_step, 0.0)
             self.growth[at, BACKWARD] = max(backward_step, 0.0)
-            self.constant[at] = NEITHER
-            if backward_step <= 0:
-                self.constant[at] = BACKWARD
-            elif forward_step <= 0:
-                self.constant[at] = FORWARD
             self.load_step[at] = load_step
             self._make(at, x)
         self._settle(at, FORWARD)
         self._settle(at, BACKWARD)
         return at
+
+    def _constant(self, at: int) -> int:
+        """Sum that is constant on the segment below a vertex."""
+        if self.growth[at, BACKWARD] == 0:
+            return BACKWARD
+        return FORWARD if self.growth[at, FORWARD] == 0 else NEITHER
 
     def _settle(self, at: int, own: int) -> None:
         """Copy a sum of the load point to a vertex."""
