@@ -87,6 +87,11 @@ class IntervalMoments:
         """Normal coordinate of a contact coordinate."""
         return self.profile.reduced_force if self.over_forces else self.profile.depth
 
+    @property
+    def conjugate(self) -> Function:
+        """Conjugate of a contact coordinate."""
+        return self.profile.depth if self.over_forces else self.profile.reduced_force
+
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
         find = coordinate_from_force if self.over_forces else coordinate_from_depth

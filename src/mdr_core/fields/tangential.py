@@ -222,20 +222,6 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
     return _fill(contact, values, radius)
 
 
-def arcs(state: ContactState) -> tuple[Arc | None, ...]:
-    """Return the arc of each annulus at the end of a load history; none if all steps are linear."""
-    profile, segments = state.profile, state.segments
-    if not segments.rate.any():
-        return ()
-    ends = segments.coordinate
-    radius, width = profile.contact_radius(ends), profile.radius_width(ends[1:], segments.width)
-    columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], width))
-    return tuple(
-        Arc(profile, rate, segments.inverse, *interval) if rate else None
-        for rate, *interval in zip(*columns, strict=True)
-    )
-
-
 def _fill(
     contact: TangentialContact | ContactState,
     field: Callable[[Traction, Array], Array],
@@ -269,8 +255,15 @@ def _at_end(state: ContactState) -> Traction:
         ends = np.append(profile.first_coordinate, state.coordinate[-1])
         return Traction(*known, ends, profile.contact_radius(ends), np.abs(depth), np.sign(depth))
     radius = profile.contact_radius(segments.coordinate)
-    slope = np.where(segments.rate == 0, segments.slope, 0.0)
-    return Traction(*known, segments.coordinate, radius, segments.width, slope, arcs(state))
+    arcs: tuple[Arc | None, ...] = ()
+    if segments.rate.any():
+        width = profile.radius_width(segments.coordinate[1:], segments.width)
+        columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], width))
+        arcs = tuple(
+            Arc(profile, rate, segments.inverse, *interval) if rate else None
+            for rate, *interval in zip(*columns, strict=True)
+        )
+    return Traction(*known, segments.coordinate, radius, segments.width, segments.slope, arcs)
 
 
 def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:

@@ -6,11 +6,12 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from mdr_core.equivalent_1d import coordinate_from_depth, stick_from_depth, stick_from_force
+from mdr_core.equivalent_1d import coordinate_from_depth
 from mdr_core.errors import InputError
 from mdr_core.history import dissipation, slip_memory
-from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
-from mdr_core.history.traction_branches import SHORT, TractionBranches
+from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
+from mdr_core.history.traction_branches import TractionBranches, widths
+from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
 from mdr_core.typing import Array
@@ -83,9 +84,13 @@ class ContactState(Results):
         """True unless the bodies are separated."""
         return self.polyline.in_contact
 
+    @property
+    def _moments(self) -> IntervalMoments:
+        return interval_moments(self.profile, over_forces=False)
+
     @cached_property
     def _branches(self) -> TractionBranches:
-        return TractionBranches(self.profile, slip_memory.as_tree(self.polyline), over_forces=False)
+        return TractionBranches(self._moments, slip_memory.as_tree(self.polyline))
 
     @property
     def depth(self) -> Array:
@@ -117,7 +122,7 @@ class ContactState(Results):
         if self.curved_segments is not None:
             return self.curved_segments
         tree = self._branches.tree
-        width = widths(self.profile, tree, self.coordinate, over_forces=False)
+        width = widths(self._moments, tree, self.coordinate)
         straight = np.zeros(self.slope.shape)
         return TractionSegments(self.coordinate, width, self.slope, straight)
 
@@ -147,9 +152,7 @@ class ContactState(Results):
         if self.last_step is None:
             return 0.0
         segments = slip_memory.slip_segments(self.last_step)
-        return self.energy_unit * float(
-            dissipation.per_segment(self.profile, segments, over_forces=False).sum()
-        )
+        return self.energy_unit * float(dissipation.per_segment(self._moments, segments).sum())
 
     @property
     def energy_unit(self) -> float:
@@ -174,26 +177,6 @@ def read_only(values: Array) -> Array:
     """Return the array, marked read-only."""
     values.flags.writeable = False
     return values
-
-
-def widths(profile: Profile, tree: VertexTree, coordinate: Array, *, over_forces: bool) -> Array:
-    """Return the widths of a polyline's segments in the contact coordinate, shape (n - 1,).
-
-    Parameters
-    ----------
-    profile : profile of the contact.
-    tree : the polyline.
-    coordinate : contact coordinates of its vertices, shape (n,).
-    over_forces : True if its normal coordinates are reduced forces.
-    """
-    width = np.diff(coordinate)
-    short = np.flatnonzero(tree.span[1:] < SHORT * tree.normal[1:])
-    if short.size:
-        upper, span = tree.normal[1:][short], tree.span[1:][short]
-        find = stick_from_force if over_forces else stick_from_depth
-        share = span / upper, tree.normal[short] / upper
-        width[short] = find(profile, coordinate[1:][short], *share)[1]
-    return width
 
 
 def unloaded(

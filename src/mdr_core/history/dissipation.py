@@ -15,22 +15,20 @@ prescribed the identity holds with the reduced force in place of the depth and t
 import numpy as np
 
 from mdr_core.history.slip_memory import SlipSegments
-from mdr_core.interval_moments import interval_moments
-from mdr_core.profiles import Profile
+from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array
 
 
-def per_segment(profile: Profile, segments: SlipSegments, *, over_forces: bool) -> Array:
+def per_segment(moments: IntervalMoments, segments: SlipSegments) -> Array:
     """Return D/(mu E*) of every segment [length^3]."""
-    moments = interval_moments(profile, over_forces=over_forces)
     dissipated = np.zeros(segments.step.size)
     full = np.flatnonzero(segments.full)
-    if full.size and not over_forces:
+    if full.size and not moments.over_forces:
         # In full slip friction is mu F_N. Prescribed forces do not exceed it.
         ends = segments.upper_gap[full], segments.lower_gap[full]
         low, high = np.minimum(*ends), np.maximum(*ends)
         dissipated[full] = segments.slip[full] * moments.conjugate_mean(low, high - low)
-    if profile.has_no_partial_slip:
+    if moments.profile.has_no_partial_slip:
         return dissipated
     partial = np.flatnonzero(~segments.full & (segments.span > 0))
     given = segments.normal, segments.span, segments.upper_gap, segments.lower_gap

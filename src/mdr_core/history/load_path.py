@@ -14,6 +14,7 @@ from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_memory import LoadPoints
+from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
 
 # A force at the onset of full slip differs from mu F_N by the rounding of both.
@@ -56,6 +57,11 @@ class SampledPath:
         return self.normal_name == "indentation_depth"
 
     @property
+    def moments(self) -> IntervalMoments:
+        """Moments over intervals of the normal coordinate."""
+        return interval_moments(self.start.profile, over_forces=self.over_forces)
+
+    @property
     def nonlinear(self) -> Flags:
         """Samples whose step is straight neither over depths nor over forces."""
         if self.over_forces != self.depth_prescribed:
@@ -79,12 +85,11 @@ class SampledPath:
     @property
     def _normal_coordinate(self) -> Array:
         """Normal coordinate at each sample, <= 0 in separation."""
-        prescribed, profile = self.prescribed, self.start.profile
+        prescribed = self.prescribed
         if self.depth_prescribed != self.over_forces:
             return prescribed
         s, index = np.unique(self.contact_coordinate, return_inverse=True)
-        normal = (profile.reduced_force if self.over_forces else profile.depth)(s)[index]
-        return np.where(prescribed > 0, normal, np.minimum(prescribed, 0.0))
+        return np.where(prescribed > 0, self.moments.normal(s)[index], np.minimum(prescribed, 0.0))
 
     @cached_property
     def load_points(self) -> LoadPoints:

@@ -16,11 +16,11 @@ import numpy as np
 
 from mdr_core.breaks import has_many_breaks
 from mdr_core.history import slip_memory
-from mdr_core.history.contact_state import TractionSegments, widths
+from mdr_core.history.contact_state import TractionSegments
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
-from mdr_core.interval_moments import IntervalMoments, interval_moments
+from mdr_core.history.traction_branches import widths
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
@@ -77,15 +77,6 @@ class NonlinearSteps:
         rise, moved = np.diff(self.conjugate), np.diff(self.tangential)
         nonlinear = self.path.nonlinear
         return np.where(nonlinear, moved / np.where(rise == 0, 1.0, rise), 0.0)
-
-    @property
-    def moments(self) -> IntervalMoments:
-        """Normal coordinate, and the inverse, of the contact coordinate."""
-        return interval_moments(self.profile, over_forces=self.path.over_forces)
-
-    def along(self, s: Array) -> Array:
-        """Return the conjugate of a contact coordinate."""
-        return (self.profile.depth if self.path.over_forces else self.profile.reduced_force)(s)
 
     @cached_property
     def _parts(self) -> tuple[Indices, Array, Array]:
@@ -153,10 +144,10 @@ class NonlinearSteps:
         s[last] = place
         arc = owner[part]
         samples = np.flatnonzero(np.append(np.diff(arc) > 0, True))
-        rise = np.diff(self.conjugate)[arc]
-        climbed = (self.along(s) - self.conjugate[arc]) / np.where(rise == 0, 1.0, rise)
+        moments, rise = self.path.moments, np.diff(self.conjugate)[arc]
+        climbed = (moments.conjugate(s) - self.conjugate[arc]) / np.where(rise == 0, 1.0, rise)
         tangential = self.tangential[arc] + np.diff(self.tangential)[arc] * climbed
-        normal = self.moments.normal(s)
+        normal = moments.normal(s)
         normal[samples], tangential[samples], *_ = self.path.load_points
         step = self.path.step[arc]
         if self.path.over_forces:
@@ -180,7 +171,7 @@ class NonlinearSteps:
         rate[0] = 0.0
         if not rate.any():
             return None
-        coordinate = self.moments.contact_coordinate(tree.normal)
+        coordinate = self.path.moments.contact_coordinate(tree.normal)
         chord = rate[1:] != 0
         corners = np.flatnonzero(chord[:-1] & on_face[2:]) + 1
         if corners.size:
@@ -190,7 +181,7 @@ class NonlinearSteps:
             coordinate[corners] = self._on_arcs(
                 coordinate[corners], end[corners], sign * rate[corners], sign, sums
             )
-        width = widths(self.profile, tree, coordinate, over_forces=self.path.over_forces)
+        width = widths(self.path.moments, tree, coordinate)
         beside = np.concatenate([corners - 1, corners])
         width[beside] = np.diff(coordinate)[beside]
         joined = chord[:-1] & chord[1:] & (line.load_step[1:-1] == line.load_step[2:])
@@ -206,16 +197,13 @@ class NonlinearSteps:
 
     def _on_arcs(self, s: Array, end: Indices, rate: Array, sign: Array, sums: Array) -> Array:
         """Return the contact coordinates at which n +- tangential on arcs is equal to `sums`."""
-        profile, start, normal = self.profile, s, self.moments.normal
+        profile, start, moments = self.profile, s, self.path.moments
+        normal = moments.normal
         for _ in range(_NEWTON_STEPS):
             slope = profile.depth_slope(s)
-            twice = 2 * profile.contact_radius(s)
-            rise = (
-                slope * twice + rate * slope
-                if self.path.over_forces
-                else slope + rate * slope * twice
-            )
-            moved = self.along(s) - self.conjugate[end]
+            force = slope * 2 * profile.contact_radius(s)
+            rise = force + rate * slope if moments.over_forces else slope + rate * force
+            moved = moments.conjugate(s) - self.conjugate[end]
             miss = normal(s) + sign * self.tangential[end] + rate * moved - sums
             s = np.where(rise > 0, s - miss / np.where(rise > 0, rise, 1.0), np.nan)
         # Where the arc is all but parallel to the face, the corner of the chords is as good.
@@ -333,5 +321,5 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     for halvings in range(_HALVINGS + 1):
         points, last = nonlinear.chords(finest, halvings)
         start = path.start.polyline
-        sets.append((StepResults(nonlinear.profile, path.over_forces, points, start), last))
+        sets.append((StepResults(path.moments, points, start), last))
     return ExtrapolatedResults(nonlinear, tuple(sets))

@@ -264,7 +264,7 @@ def solve(
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if path.nonlinear.any() and not profile.has_no_partial_slip:
         return LoadHistory(path, contact, nonlinear_steps.results(path, rtol), rtol)
-    steps = StepResults(profile, path.over_forces, path.load_points, start.polyline)
+    steps = StepResults(path.moments, path.load_points, start.polyline)
     return LoadHistory(path, contact, steps, rtol)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
 from mdr_core.history.traction_branches import TractionBranches
-from mdr_core.profiles import Profile
+from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
 
 # Steps evaluated at once: bounds the memory, and keeps their arrays in the processor's cache.
@@ -27,9 +27,7 @@ _Block = tuple[slice, TractionBranches, FrontPath, Polyline]
 class StepResults:
     """Results after each straight load step, in reduced units; each is computed on first use."""
 
-    profile: Profile
-    over_forces: bool
-    """Normal coordinates are reduced forces."""
+    moments: IntervalMoments
     points: LoadPoints
     start: Polyline
     """Polyline before the first step."""
@@ -55,7 +53,7 @@ class StepResults:
 
         def dissipated(_part: TractionBranches, path: FrontPath) -> Array:
             segments = slip_memory.slip_segments(path)
-            each = dissipation.per_segment(self.profile, segments, over_forces=self.over_forces)
+            each = dissipation.per_segment(self.moments, segments)
             return np.asarray(np.bincount(segments.step, each, path.load.size), dtype=float)
 
         return self._per_step(dissipated)
@@ -66,7 +64,7 @@ class StepResults:
 
         Determined by the springs at their friction limit: none, the outermost, or all.
         """
-        slips = 1 if self.profile.has_no_partial_slip else 2
+        slips = 1 if self.moments.profile.has_no_partial_slip else 2
 
         def code(part: TractionBranches, _path: FrontPath) -> Indices:
             tree, top = part.tree, part.tree.top
@@ -106,7 +104,7 @@ class StepResults:
             chosen = slice(begin, begin + _BLOCK)
             points = LoadPoints._make(row[chosen] for row in self.points)
             tree, path, line = slip_memory.apply_steps(line, points)
-            yield chosen, TractionBranches(self.profile, tree, self.over_forces), path, line
+            yield chosen, TractionBranches(self.moments, tree), path, line
 
     def _per_step(self, result: Callable[[TractionBranches, FrontPath], Any]) -> Array:
         """Return a result of every step, zero in blocks without contact."""

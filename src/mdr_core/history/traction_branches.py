@@ -15,53 +15,48 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.equivalent_1d import stick_from_depth, stick_from_force
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
 # Up to this part of its normal coordinate a segment is so short that a difference over it would
 # lose more than three of sixteen digits.
-SHORT: Final = 2e-3
+_SHORT: Final = 2e-3
 
 
 @dataclass(frozen=True)
 class TractionBranches:
     """Vertices of the polyline, with the contact whose edge each of them is."""
 
-    profile: Profile
+    moments: IntervalMoments
     tree: VertexTree
-    over_forces: bool
-    """The normal coordinate is I = F_N/E* [length^2], not the depth [length]."""
-
-    @cached_property
-    def _moments(self) -> IntervalMoments:
-        return interval_moments(self.profile, over_forces=self.over_forces)
 
     @cached_property
     def coordinate(self) -> Array:
         """Contact coordinate of each vertex."""
-        return self._moments.contact_coordinate(self.tree.normal)
+        return self.moments.contact_coordinate(self.tree.normal)
 
     @cached_property
     def radius(self) -> Array:
         """Contact radius of each vertex [length]."""
-        return self.profile.contact_radius(self.coordinate)
+        return self.moments.profile.contact_radius(self.coordinate)
 
     @cached_property
     def depth(self) -> Array:
         """Depth w of each vertex [length]."""
-        return self.profile.depth(self.coordinate) if self.over_forces else self.tree.normal
+        moments = self.moments
+        return moments.conjugate(self.coordinate) if moments.over_forces else self.tree.normal
 
     @cached_property
     def depth_step(self) -> Array:
         """Depth of each vertex above that of its parent [length]."""
-        return self._conjugate_step if self.over_forces else self.tree.span
+        return self._conjugate_step if self.moments.over_forces else self.tree.span
 
     @cached_property
     def force_step(self) -> Array:
         """Reduced force I of each vertex above that of its parent [length^2]."""
-        return self.tree.span if self.over_forces else self._conjugate_step
+        return self.tree.span if self.moments.over_forces else self._conjugate_step
 
     @cached_property
     def shear(self) -> Array:
@@ -86,7 +81,7 @@ class TractionBranches:
         ends = self.coordinate[np.array([below, own])]
         # No depth lies between the ends of a plateau.
         some = np.flatnonzero((tree.parent >= 0) & ((self.depth_step > 0) | (ends[1] > ends[0])))
-        moments = interval_moments(self.profile, over_forces=False)
+        moments = interval_moments(self.moments.profile, over_forces=False)
         given = self.depth[below], np.maximum(self.depth_step, 0.0), ends
         # The measure of the moments is 2 dx.
         weights = np.zeros((3, tree.normal.size))
@@ -105,15 +100,30 @@ class TractionBranches:
     @cached_property
     def _conjugate_step(self) -> Array:
         """Conjugate of each vertex above that of its parent."""
-        profile, tree = self.profile, self.tree
-        conjugate = self.depth if self.over_forces else profile.reduced_force(self.coordinate)
-        if profile.has_no_partial_slip:
+        moments, tree = self.moments, self.tree
+        conjugate = self.depth if moments.over_forces else moments.conjugate(self.coordinate)
+        if moments.profile.has_no_partial_slip:
             # Depth and force are proportional.
             some = np.where(tree.normal > 0, tree.normal, 1.0)
             return np.asarray(conjugate / some * tree.span)
         step = conjugate - conjugate[tree.parent]
-        short = np.flatnonzero(tree.span < SHORT * tree.normal)
+        short = np.flatnonzero(tree.span < _SHORT * tree.normal)
         if short.size:
             lower = tree.normal[tree.parent[short]]
-            step[short] = self._moments.conjugate_step(lower, tree.span[short])
+            step[short] = moments.conjugate_step(lower, tree.span[short])
         return np.asarray(step)
+
+
+def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Array:
+    """Return the widths of a polyline's segments in the contact coordinate, shape (n - 1,).
+
+    `coordinate` has the contact coordinates of its vertices, shape (n,).
+    """
+    width = np.diff(coordinate)
+    short = np.flatnonzero(tree.span[1:] < _SHORT * tree.normal[1:])
+    if short.size:
+        upper, span = tree.normal[1:][short], tree.span[1:][short]
+        find = stick_from_force if moments.over_forces else stick_from_depth
+        share = span / upper, tree.normal[short] / upper
+        width[short] = find(moments.profile, coordinate[1:][short], *share)[1]
+    return width

@@ -9,11 +9,18 @@ divided by mu E*/G*. Source: notes, §11.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from mdr_core.typing import Array
-from mdr_core.wear.initial_state import InitialState
+from mdr_core.wear.initial_state import TILT_TERMS, InitialState
+
+# The tilt's points, the map from values there to its terms, and from terms to those of its slope.
+_POINTS: Final = chebyshev.chebpts1(TILT_TERMS)
+_TO_SERIES: Final = np.linalg.inv(chebyshev.chebvander(_POINTS, TILT_TERMS - 1))
+_DERIVATIVE: Final = np.pad(chebyshev.chebder(np.eye(TILT_TERMS)), ((0, 1), (0, 0)))
 
 
 @dataclass(frozen=True)
@@ -21,7 +28,9 @@ class AnnulusState:
     """The worn annulus at one number of cycles, from the vector of the integrator.
 
     The vector holds (sigma - S_0)/s at all nodes but the last, S_0 being sigma of the unworn
-    shape; b, c - c_0, d - d_0, the work so far; and the series of the tilt outside the contact.
+    shape; b, c - c_0, d - d_0, the work so far; and, where the stick zone grows, the tilt
+    C(r) = -(2/pi) int arccos(c/r) dw_c of the surface outside as a Chebyshev series in 1/r, from
+    a_0 to the largest contact radius.
     """
 
     initial: InitialState
@@ -109,12 +118,32 @@ class AnnulusState:
 
     @cached_property
     def tilt(self) -> tuple[float, float]:
-        """Tilt of the surface at the contact's edge, and its slope."""
-        if not self.initial.tilt:
+        """C at the contact's edge, and its slope."""
+        if not self.initial.stick_grows:
             return 0.0, 0.0
         series = self.vector[self.initial.first_edge + 4 :]
-        value, slope = (terms @ series for terms in self.initial.tilt.basis(self.growth))
+        value, slope = (terms @ series for terms in self.tilt_basis)
         return float(value), float(slope)
+
+    @cached_property
+    def tilt_basis(self) -> tuple[Array, Array]:
+        """Values of the terms of C at the contact's edge, and their slopes."""
+        most, growth = self.initial.largest_growth, self.growth
+        first = self.initial.stick + self.initial.width
+        radius, stop = first + growth, first + most
+        slope = 2 * first * stop / (radius**2 * most)
+        values = chebyshev.chebvander(2 * growth * stop / (radius * most) - 1, TILT_TERMS - 1)[0]
+        return np.asarray(values), np.asarray(slope * (values @ _DERIVATIVE))
+
+    @cached_property
+    def tilt_rates(self) -> Array:
+        """Terms of dC/dw_c."""
+        most, width = self.initial.largest_growth, self.initial.width
+        first = self.initial.stick + width
+        share = (1 + _POINTS) / 2 * most / (first + most)
+        offset = width + share * first / (1 - share) - self.stick_shift
+        values = -2 / np.pi * np.arctan2(np.sqrt(offset * (offset + 2 * self.stick)), self.stick)
+        return np.asarray(_TO_SERIES @ values)
 
     @cached_property
     def worn(self) -> Array:

@@ -15,7 +15,6 @@ from mdr_core.quadrature import gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps, annulus_maps
-from mdr_core.wear.surface_tilt import COUNT, SurfaceTilt
 
 # Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
 # contact of a paraboloid grows by half a width, that of a power 100 by less.
@@ -27,6 +26,9 @@ _ALMOST: Final = 1 - 1e-9
 _NARROW: Final = 0.05
 # Points of this rule.
 _POINTS: Final = 8
+# Chebyshev terms of the tilt: the branch point of its arccosine lies a quarter of the interval
+# before it, so that 16 terms resolve it to (3/2 + sqrt(5)/2)^-16 = 2e-7.
+TILT_TERMS: Final = 16
 # Largest slope of g_0 [D_0/b_0]: it is infinite at a jump of f', and no edge would pass it. Larger
 # ones are those within 1e-10 of the jump.
 _STEEPEST: Final = 1e5
@@ -132,13 +134,6 @@ class InitialState:
         return annulus_maps(self.nodes * 3 // 2 if self.stick_shrinks else self.nodes)
 
     @cached_property
-    def tilt(self) -> SurfaceTilt | None:
-        """Tilt of the surface outside the contact; only with a growing stick zone."""
-        return (
-            SurfaceTilt(self.stick, self.width, self.largest_growth) if self.stick_grows else None
-        )
-
-    @cached_property
     def first_edge(self) -> int:
         """Index of b in the vector of `AnnulusState`."""
         return self.maps.squares.size - 1
@@ -146,7 +141,7 @@ class InitialState:
     @property
     def vector(self) -> Array:
         """Vector before the first cycle."""
-        tilt = np.zeros(COUNT if self.tilt else 0)
+        tilt = np.zeros(TILT_TERMS if self.stick_grows else 0)
         return np.concatenate([np.zeros(self.first_edge), (1.0, 0.0, 0.0, 0.0), tilt])
 
     @cached_property

@@ -38,12 +38,10 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
     in_omega = state.end**2 * maps.mean * (state.reduced_amplitude - 2 * state.gamma)
     gradient = np.concatenate([in_worn[:-1], in_edges, (in_omega @ maps.from_slip)[None]])
     found = np.zeros((vector.size, vector.size))
-    if initial.tilt:
+    if initial.stick_grows:
         passing = in_edges[2] - state.stick_slope * in_edges[1]
-        rows = np.multiply.outer(initial.tilt.rates(state.stick_shift), passing)
-        gradient = np.concatenate([gradient, rows])
-        values, _ = initial.tilt.basis(state.growth)
-        found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], values / state.end)
+        gradient = np.concatenate([gradient, np.multiply.outer(state.tilt_rates, passing)])
+        found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], state.tilt_basis[0] / state.end)
     found[:, :n] = gradient[:, :-1]
     for edge in state.unknown:
         step = _STEP * (state.offset[-1] if edge == 1 else 1.0)
@@ -135,9 +133,8 @@ class _MovingAnnulus(AnnulusState):
         """Rates of the whole vector."""
         worn = self.worn_rates @ np.append(1.0, self.edges)
         found = [worn[:-1], self.edges, np.array([self.power])]
-        if self.initial.tilt:
-            passing = self.edges[2] - self.stick_slope * self.edges[1]
-            found.append(self.initial.tilt.rates(self.stick_shift) * passing)
+        if self.initial.stick_grows:
+            found.append(self.tilt_rates * (self.edges[2] - self.stick_slope * self.edges[1]))
         return np.concatenate(found)
 
     @property
