@@ -33,7 +33,7 @@ _START: Final[dict[type[Query], float]] = {
     StressQuery: 1e-4,
     HistoryQuery: 5e-4,
     WearQuery: 6e-4,
-    EvolutionQuery: 1e-3,
+    EvolutionQuery: 0.12,
     SubsurfaceQuery: 1e-3,
 }
 # Additional time of many loads, for which arrays take the place of single numbers.
@@ -42,15 +42,14 @@ _ARRAYS: Final = 2e-4
 _LOAD, _FRICTION, _WEAR, _CYCLE = 1.5e-7, 8e-7, 2e-6, 1e-3
 # Time of the energies per sample.
 _SAMPLE: Final = 3e-6
-# Time of the search for the largest pressure: per load of a table with a flat; of other profiles,
-# for the first load and per load.
-_SEARCH, _SEARCH_OF_ONE, _SEARCH_OF_EACH = 1e-5, 2e-4, 2e-5
+# Time of the search for the largest pressure off the axis, per load.
+_SEARCH: Final = 2e-5
 # Time per field and load, and per value of it at a radius.
 _FIELD, _VALUE = 3e-5, 1.5e-7
 # Time to draw a picture.
 _PICTURE: Final = 0.3
-# Time per nonlinear load step, and per node of an evolution, with its minimum number of nodes.
-_NONLINEAR_STEP, _NODE, _MIN_NODES = 2.5e-3, 7.5e-3, 16
+# Time per nonlinear load step, and per node of an evolution beyond the fewest.
+_NONLINEAR_STEP, _NODE = 2.5e-3, 7.5e-3
 # Factors by which times grow for profiles without closed inverses, per term of a series, and for
 # tables. Times of integrals grow with the fourth root.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
@@ -58,7 +57,7 @@ _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
 # Profiles whose largest pressure may lie off the axis.
 _SEARCHED_PROFILES: Final = frozenset({"rounded_punch", "series", "spherical_tip_cone"})
 # Time per point beneath the surface.
-_POINT, _POINT_OF_TABLE = 3e-6, 5e-6
+_POINT: Final = 4e-6
 # Number of points of a search for the peak, and of such searches for the onset of yield.
 _SEARCHED, _ONSETS = 2000, 10
 # Profiles whose peak is a multiple of the mean pressure: without friction, it is known.
@@ -95,12 +94,9 @@ def seconds(query: Query | BatchQuery) -> float:
         evaluated += (_FRICTION if with_friction else _LOAD) * loads
         evaluated += _ARRAYS if loads > 1 else 0.0
         if isinstance(query, NormalQuery) and query.profile.kind in _SEARCHED_PROFILES:
-            integrated += _SEARCH_OF_ONE + _SEARCH_OF_EACH * loads
-        flat = query.profile.kind == "tabulated" and query.profile.f[1:2] == [0.0]
-        if flat and isinstance(query, NormalQuery):
-            evaluated += _SEARCH * loads
+            integrated += _SEARCH * loads
     elif isinstance(query, EvolutionQuery):
-        integrated += _NODE * (_MIN_NODES + query.resolution) + _CYCLE * loads
+        integrated += _NODE * query.resolution + _CYCLE * loads
     else:
         evaluated += _WEAR * loads
     root: float = scale**0.25
@@ -109,12 +105,11 @@ def seconds(query: Query | BatchQuery) -> float:
 
 def _beneath(query: SubsurfaceQuery) -> float:
     """Return the expected time of stresses beneath the surface."""
-    searches_onset = query.material.has("yield_strength") and not query.has("history")
     points = query.loads * (query.positions + 2 * _SEARCHED * query.largest)
-    if searches_onset:
-        # Loads in one ratio of the forces share the onset. Under a power the first step is exact.
+    if query.material.has("yield_strength") and not query.has("history"):
+        # Loads in one ratio of the forces share the onset.
         onsets = query.loads if query.has("friction_coefficient") else 1
-        points += _SEARCHED * onsets * (4 if query.profile.kind in _SIMILAR else _ONSETS)
+        points += _SEARCHED * onsets * _ONSETS
     start = _START[SubsurfaceQuery] * query.loads
     return start + points * _point(query) + _yielding(query)
 
@@ -129,10 +124,9 @@ def _yielding(query: Query) -> float:
 
 def _point(query: Query) -> float:
     """Return the expected time of the stress at a point."""
-    each = _POINT_OF_TABLE if query.profile.kind == "tabulated" else _POINT
     # The traction has two segments, and more at the end of a load path.
     tractions = 2 if query.has("friction_coefficient") else 1
-    return each * tractions * (3 if query.has("history") else 1)
+    return _POINT * tractions * (3 if query.has("history") else 1)
 
 
 def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
