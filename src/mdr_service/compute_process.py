@@ -1,21 +1,22 @@
 """A compute process: its handle in the server, and the loop that it runs.
 
-Calls and outcomes are pickled and preceded by their length. The process sets an alarm for the
-time limit of a call, whose default action terminates it during any computation. A process that
-still exists after the limit is stopped or hung, and is killed.
+Calls and outcomes are preceded by their length, and pickled unless they are bytes. The process sets
+an alarm for the time limit of a call, whose default action terminates it during any computation. A
+process that still exists after the limit is stopped or hung, and is killed.
 """
 
 import os
 import pickle
 import signal
+import struct
 import sys
 import threading
 import traceback
 from asyncio import StreamReader, StreamWriter, create_subprocess_exec, subprocess, timeout
 from collections.abc import Callable
-from contextlib import AbstractAsyncContextManager, suppress
+from contextlib import AbstractAsyncContextManager, nullcontext, suppress
 from time import sleep
-from typing import Any, Final, NamedTuple, Self, TypeVar, cast
+from typing import Any, Final, Self, TypeVar, cast
 
 from anyio import CancelScope
 
@@ -27,12 +28,10 @@ _Result = TypeVar("_Result")
 Room = Callable[[int], AbstractAsyncContextManager[None]]
 """Context in which a result of a given length is read; it raises ServiceError to reject that."""
 
-# Bytes of the length before each message.
-_HEAD: Final = 8
-# Length above which a result is read without unpickling, in the room that `Room` provides [bytes].
+# Before each message: whether it is bytes rather than a pickle, and its length.
+_HEAD: Final = struct.Struct("?Q")
+# Length above which a result is read in the room that `Room` provides [bytes].
 _LARGE: Final = 65_536
-# The server's replies to the length of a large result.
-_SEND, _DISCARD = b"+", b"-"
 # Time for the alarm to take effect, or for the outcome to be read, on a busy machine.
 _GRACE_SECONDS: Final = 1.0
 # Interval at which a process checks that its parent exists.
@@ -43,12 +42,6 @@ _NICENESS: Final = 5
 
 class ProcessLostError(Exception):
     """The process ended or did not respond."""
-
-
-class _Large(NamedTuple):
-    """In place of a large result, which is sent separately if there is room for it."""
-
-    length: int
 
 
 class ComputeProcess:
@@ -112,21 +105,18 @@ class ComputeProcess:
     async def _exchange(self, message: bytes) -> object:
         """Return the result of a call, or the exception to raise in place of it."""
         try:
-            self._calls.writelines((len(message).to_bytes(_HEAD), message))
+            self._calls.writelines((_HEAD.pack(0, len(message)), message))
             await self._calls.drain()
-            length = int.from_bytes(await self._outcomes.readexactly(_HEAD))
+            is_bytes, length = _HEAD.unpack(await self._outcomes.readexactly(_HEAD.size))
+            try:
+                async with self._room(length) if length > _LARGE else nullcontext():
+                    outcome = await self._outcomes.readexactly(length)
+            except ServiceError as error:
+                for begin in range(0, length, _LARGE):
+                    await self._outcomes.readexactly(min(_LARGE, length - begin))
+                return error
             # The pipe's other end is the server's own code.
-            outcome: object = pickle.loads(  # noqa: S301
-                await self._outcomes.readexactly(length)
-            )
-            if not isinstance(outcome, _Large):
-                return outcome
-            async with self._room(outcome.length):
-                self._calls.write(_SEND)
-                return await self._outcomes.readexactly(outcome.length)
-        except ServiceError as error:
-            self._calls.write(_DISCARD)
-            return error
+            return outcome if is_bytes else pickle.loads(outcome)  # noqa: S301
         except (EOFError, OSError):
             # A signal to a process that is ending would compete with its exit status.
             await self._process.wait()
@@ -157,16 +147,13 @@ def serve() -> None:
     calls, outcomes = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     # The pipe is for outcomes alone: printed text goes to standard error.
     os.dup2(2, 1)
-    while head := calls.read(_HEAD):
-        outcome = _attempt(calls.read(int.from_bytes(head)))
-        is_large = isinstance(outcome, bytes) and len(outcome) > _LARGE
-        text = pickle.dumps(_Large(len(outcome)) if is_large else outcome)
+    while head := calls.read(_HEAD.size):
+        outcome = _attempt(calls.read(_HEAD.unpack(head)[1]))
+        is_bytes = isinstance(outcome, bytes)
+        content = outcome if is_bytes else pickle.dumps(outcome)
         signal.setitimer(signal.ITIMER_REAL, 0)
-        outcomes.write(len(text).to_bytes(_HEAD) + text)
+        outcomes.writelines((_HEAD.pack(is_bytes, len(content)), content))
         outcomes.flush()
-        if is_large and calls.read(1) == _SEND:
-            outcomes.write(outcome)
-            outcomes.flush()
 
 
 def _attempt(text: bytes) -> Any:

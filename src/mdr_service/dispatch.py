@@ -4,7 +4,7 @@ Endpoints, compute processes and the command line call these functions, and get 
 """
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -60,16 +60,12 @@ def respond(
         if media_type in PICTURES:
             return WRITE[media_type](PLOTS[name](query, source, result), size=size)
         if members:
-            result = _chosen(result, members)
+            for member in members:
+                if member not in result:
+                    detail = f"no member {member!r}; there are {', '.join(result)}"
+                    raise InputError(("answers",), detail)
+            result = {member: result[member] for member in members}
     return WRITE[media_type](result)
-
-
-def _chosen(result: Mapping[str, Any], members: Sequence[str]) -> Mapping[str, Any]:
-    """Return some members of a result. Raises InputError if it has no such member."""
-    for name in members:
-        if name not in result:
-            raise InputError(("answers",), f"no member {name!r}; there are {', '.join(result)}")
-    return {name: result[name] for name in members}
 
 
 def _require_few_numbers(batch: BatchQuery) -> None:

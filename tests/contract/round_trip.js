@@ -2,7 +2,7 @@
 // those that the inputs of their address make.
 async (count) => {
     const { defaultInputs, fromAddress, TABS, toAddress, withKind } = await import("./explorer/inputs.js");
-    const { DEFAULT_FIELDS } = await import("./explorer/shapes.js");
+    const { KINDS } = await import("./explorer/shapes.js");
     const { ANALYSES } = await import("./explorer/analyses.js");
     const { query } = await import("./explorer/requests.js");
     const responses = new Map();
@@ -18,7 +18,7 @@ async (count) => {
         await ANALYSES[inputs.tab].solve(inputs, recording).catch(() => { solved = false; });
         return { made, solved };
     };
-    const kinds = Object.keys(DEFAULT_FIELDS);
+    const kinds = Object.keys(KINDS);
     const results = [];
     for (let i = 0; i < count; i++) {
         const inputs = withKind({ ...defaultInputs(), tab: TABS[i % TABS.length] }, kinds[i % kinds.length]);

@@ -8,10 +8,11 @@ from mdr_service.serializers import FORMATS
 
 Responses = dict[int | str, dict[str, Any]]
 
-# The browser connects to no other host, whatever the page shows. Plotly sets styles of elements.
+# The browser connects to no other host, whatever the page shows. Plotly sets styles of elements,
+# and draws a downloaded picture from a blob.
 PAGE_HEADERS: Final = {
     "Content-Security-Policy": (
-        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
+        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:"
     )
 }
 _COMPUTATION: Final = (

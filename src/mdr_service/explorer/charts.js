@@ -1,7 +1,7 @@
 // Charts from plain descriptions: curves over one axis, or a map with contours.
 
 import { make, makeButton, makeTable } from "./dom.js";
-import { download, fileName } from "./requests.js";
+import { fileName } from "./requests.js";
 import { format, scaled, unit, withUnit } from "./units.js";
 
 const figures = new Map();
@@ -113,16 +113,9 @@ function dataTables(spec, inputs) {
   });
 }
 
-async function picture(figure, type) {
-  const svg = await Plotly.toImage(figure.plot, { format: "svg", width: 800, height: 500 });
-  const text = decodeURIComponent(svg.slice(svg.indexOf(",") + 1));
-  if (type === "svg") return download(fileName(figure.spec.title, "svg"), text, "image/svg+xml");
-  const image = new Image();
-  image.src = svg;
-  await image.decode();
-  const canvas = Object.assign(document.createElement("canvas"), { width: 1600, height: 1000 });
-  canvas.getContext("2d").drawImage(image, 0, 0, 1600, 1000);
-  canvas.toBlob((blob) => download(fileName(figure.spec.title, "png"), blob));
+function save(figure, format) {
+  const filename = fileName(figure.spec.title);
+  Plotly.downloadImage(figure.plot, { format, filename, width: 800, height: 500, scale: format === "png" ? 2 : 1 });
 }
 
 function create(spec, actions) {
@@ -131,8 +124,8 @@ function create(spec, actions) {
   const buttons = make("span", { className: "save" },
     button("Request", () => actions.showRequest(figure.spec.request)),
     button("CSV", () => actions.saveCsv(figure.spec.request)),
-    button("PNG", () => picture(figure, "png")),
-    button("SVG", () => picture(figure, "svg")));
+    button("PNG", () => save(figure, "png")),
+    button("SVG", () => save(figure, "svg")));
   const data = make("details", { ontoggle: () => fillTable(figure) },
     make("summary", {}, "Data table"), make("div", { className: "data", tabIndex: 0 }));
   const caption = make("figcaption", {}, make("h2", {}, spec.title), buttons);

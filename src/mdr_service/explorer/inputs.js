@@ -1,18 +1,8 @@
 // The inputs: one flat object of numbers and words in SI units, and its form in the address.
 
-import { DEFAULT_FIELDS, measuredBall, wireProfile } from "./shapes.js";
+import { KINDS, measuredBall, wireProfile } from "./shapes.js";
 
 export const TABS = ["press", "push", "cycle", "stress", "wear"];
-
-// Keys of the address besides those of the profile; the tabs that use them.
-const SHARED = ["e1", "nu1", "e2", "nu2", "ul", "ud", "uf", "up"];
-const KEYS_OF = {
-  press: ["control", "load"],
-  push: ["control", "load", "mu", "push", "amount"],
-  cycle: ["mu", "normal", "tangential", "path"],
-  stress: ["control", "load", "mu", "push", "amount", "body", "yield"],
-  wear: ["control", "load", "mu", "oscillation", "amplitude", "wear", "cycles"],
-};
 
 const DEFAULTS = {
   tab: "press",
@@ -29,15 +19,15 @@ const DEFAULTS = {
 
 /** Return the inputs of a first visit. */
 export function defaultInputs() {
-  return { ...DEFAULTS, ...DEFAULT_FIELDS[DEFAULTS.kind], table: measuredBall() };
+  return { ...DEFAULTS, ...KINDS[DEFAULTS.kind].fields, table: measuredBall() };
 }
 
 /** Return the inputs that the query string and the fragment of an address describe. */
 export function fromAddress(search, hash) {
   const inputs = defaultInputs();
   const given = new URLSearchParams(search);
-  if (given.get("kind") in DEFAULT_FIELDS) inputs.kind = given.get("kind");
-  Object.assign(inputs, DEFAULT_FIELDS[inputs.kind]);
+  if (given.get("kind") in KINDS) inputs.kind = given.get("kind");
+  Object.assign(inputs, KINDS[inputs.kind].fields);
   for (const [key, text] of given) {
     if (!(key in inputs) || key === "table" || key === "kind") continue;
     const number = Number(text);
@@ -54,17 +44,17 @@ export function fromAddress(search, hash) {
   return inputs;
 }
 
-/** Return the address of the inputs: everything that the tab and the profile use. */
+/** Return the address of the inputs, with the fields of the chosen profile. */
 export function toAddress(inputs) {
-  const keys = ["tab", "kind", ...Object.keys(DEFAULT_FIELDS[inputs.kind]), ...KEYS_OF[inputs.tab], ...SHARED];
-  const words = keys.map((key) => `${key}=${encodeURIComponent(inputs[key]).replace(/%2C/g, ",").replace(/%3B/g, ";")}`);
+  const keys = new Set([...Object.keys(DEFAULTS), ...Object.keys(KINDS[inputs.kind].fields)]);
+  const words = [...keys].map((key) => `${key}=${encodeURIComponent(inputs[key]).replace(/%2C/g, ",").replace(/%3B/g, ";")}`);
   const table = inputs.kind === "tabulated" ? `#r=${inputs.table.r}&f=${inputs.table.f}` : "";
   return `?${words.join("&")}${table}`;
 }
 
 /** Return the inputs with another profile kind and its default values. */
 export function withKind(inputs, kind) {
-  return { ...inputs, ...DEFAULT_FIELDS[kind], kind };
+  return { ...inputs, ...KINDS[kind].fields, kind };
 }
 
 /** Return the points of the load path, each `[normal, tangential]`. */

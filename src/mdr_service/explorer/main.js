@@ -1,21 +1,20 @@
 // The page: inputs -> form -> requests -> numbers and charts -> address.
 
-import { draw } from "./charts.js";
+import { draw, redraw } from "./charts.js";
 import { make, makeButton } from "./dom.js";
 import { choiceRow, numberRow, readTable, tableText } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS } from "./materials.js";
-import { showForPrint } from "./printing.js";
 import { bodyFields, loadFields, ANALYSES } from "./analyses.js";
 import { download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
 import { defaultInputs, fromAddress, pathPoints, TABS, toAddress, withKind } from "./inputs.js";
-import { DEFAULT_FIELDS, LABELS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
+import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
 import { BASE_UNITS, format, unit } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs = fromAddress(location.search, location.hash);
-let kinds = {};
+let catalogue = {};
 let requests = [];
 let last = null;
 let rowOfTable = [];
@@ -78,10 +77,9 @@ function fill(container, fields, references = inputs) {
 }
 
 function profileFields() {
-  const known = kinds[inputs.kind];
-  const fields = OWN_FIELDS[inputs.kind] ?? known?.fields ?? [];
+  const fields = OWN_FIELDS[inputs.kind] ?? catalogue[inputs.kind]?.fields ?? [];
   return fields
-    .filter(({ name }) => name in DEFAULT_FIELDS[inputs.kind] && name !== "interpolation")
+    .filter(({ name }) => name in KINDS[inputs.kind].fields && name !== "interpolation")
     .map(({ name, dimension, description }) => ({
       key: name, label: description, dimension,
       range: name.startsWith("exponent") ? [0.5, 10] : undefined,
@@ -104,20 +102,20 @@ function materialRow(i) {
 function showForm() {
   const analysis = ANALYSES[inputs.tab];
   $("#kind").value = inputs.kind;
-  $("#formula").textContent = `f(r) = ${OWN_FORMULAS[inputs.kind] ?? kinds[inputs.kind]?.formula ?? "…"}`;
+  $("#formula").textContent = `f(r) = ${OWN_FORMULAS[inputs.kind] ?? catalogue[inputs.kind]?.formula ?? "…"}`;
   const tabulated = inputs.kind === "tabulated";
   $("#table-fields").hidden = !tabulated;
   if (tabulated && document.activeElement !== $("#table")) {
     $("#table").value = tableText(inputs.table);
     rowOfTable = inputs.table.r.map((_, i) => i + 1);
   }
-  fill($("#profile-fields"), profileFields(), DEFAULT_FIELDS[inputs.kind]);
+  fill($("#profile-fields"), profileFields(), KINDS[inputs.kind].fields);
   fill($("#bodies"), bodyFields(inputs));
   $("#bodies legend").after(materialRow(1), materialRow(2));
   fill($("#loading"), loadFields(inputs));
   fill($("#analysis"), analysis.fields(inputs));
-  fill($("#units"), Object.values(BASE_UNITS).map(({ key, label, units }) => ({
-    key, label, choices: units.map((name) => [name, name]),
+  fill($("#units"), Object.values(BASE_UNITS).map(({ key, label, factors }) => ({
+    key, label, choices: Object.keys(factors).map((name) => [name, name]),
   })));
   document.querySelectorAll("[role=tab]").forEach((tab) => {
     const selected = tab.id === `tab-${inputs.tab}`;
@@ -203,7 +201,7 @@ function showRequest(name) {
 
 async function saveCsv(name) {
   const { path, body } = requests.find((request) => request.name === name);
-  download(fileName(name, "csv"), await queryCsv(path, body), "text/csv");
+  download(`${fileName(name)}.csv`, await queryCsv(path, body), "text/csv");
 }
 
 function showPath() {
@@ -242,6 +240,18 @@ const solve = newestWins(async (outdated) => {
     if (!(error instanceof Refusal) && !(error instanceof TypeError)) throw error;
   }
 });
+
+/** Lay out the page as a sheet of paper that states the inputs in words, or as a screen again. */
+function showForPrint(printing) {
+  document.documentElement.classList.toggle("printing", printing);
+  const rows = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) .row:not(.field .file)");
+  $("#given").textContent = [...rows].map((row) => {
+    const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
+    const value = control.selectedOptions?.[0].text ?? control.value;
+    return `${words[0].textContent}: ${value} ${words[1]?.textContent ?? ""}`.trim();
+  }).join("; ");
+  if (printing) redraw();
+}
 
 const showAddress = () => history.replaceState(null, "", toAddress(inputs));
 
@@ -290,7 +300,7 @@ function readTableField() {
 }
 
 function connect() {
-  for (const [kind, label] of Object.entries(LABELS)) $("#kind").add(new Option(label, kind));
+  for (const [kind, { label }] of Object.entries(KINDS)) $("#kind").add(new Option(label, kind));
   $("#kind").addEventListener("change", () => show(withKind(inputs, $("#kind").value)));
   $("#table").addEventListener("input", readTableField);
   $("#file").addEventListener("change", async () => {
@@ -316,6 +326,6 @@ showPath();
 showAddress();
 solve();
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
-  kinds = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
+  catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   showForm();
 });

@@ -64,15 +64,15 @@ export function source(language, { path, body }) {
   return `curl -s ${url} \\\n  -H 'content-type: application/json' \\\n  -d '${JSON.stringify(body)}'\n`;
 }
 
-/** Return the name of a file about something. */
-export function fileName(title, suffix) {
-  return `${title.toLowerCase().replaceAll(" ", "-")}.${suffix}`;
+/** Return the name of a file about something, without a suffix. */
+export function fileName(title) {
+  return title.toLowerCase().replaceAll(" ", "-");
 }
 
-/** Offer text or a blob as a download. */
+/** Offer a text as a download. */
 export function download(name, content, type) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
+  link.href = URL.createObjectURL(new Blob([content], { type }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);

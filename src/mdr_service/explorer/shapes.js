@@ -1,42 +1,52 @@
-// Default values and shapes f(r) of the profile kinds, for the form and the sketch.
-// What a kind is called on the wire, and which fields it has, comes from GET v1/profiles.
+// Label, default values and shape f(r) of each profile kind, for the form and the sketch.
+// The descriptions of the fields come from GET v1/profiles.
 
-export const LABELS = {
-  balls: "Two balls",
-  paraboloid: "Paraboloid (ball)",
-  sphere: "Sphere, exact",
-  ellipsoid: "Ellipsoid",
-  flat_punch: "Flat punch",
-  rounded_punch: "Rounded punch",
-  cone: "Cone",
-  rounded_cone: "Cone, parabolic tip",
-  spherical_tip_cone: "Cone, spherical tip",
-  truncated_cone: "Truncated cone",
-  truncated_paraboloid: "Truncated paraboloid (worn ball)",
-  hyperboloid: "Hyperboloid",
-  capped_paraboloid: "Paraboloid with a blunter cap",
-  power: "Power law",
-  series: "Sum of two powers",
-  tabulated: "Table of measured points",
-};
+const kind = (label, fields, f) => ({ label, fields, f });
+const cap = (r, radius) => radius - Math.sqrt(radius ** 2 - r * r);
 
-export const DEFAULT_FIELDS = {
-  balls: { radius_1: 0.01, radius_2: 0.02 },
-  paraboloid: { radius: 0.01 },
-  sphere: { radius: 0.01 },
-  ellipsoid: { radius: 0.01, height: 0.005 },
-  flat_punch: { radius: 0.001 },
-  rounded_punch: { flat_radius: 5e-4, rounding_radius: 0.005 },
-  cone: { slope: 0.02 },
-  rounded_cone: { slope: 0.05, tip_radius: 0.002 },
-  spherical_tip_cone: { slope: 0.05, tip_radius: 0.002 },
-  truncated_cone: { flat_radius: 2e-4, slope: 0.02 },
-  truncated_paraboloid: { flat_radius: 1e-4, radius: 0.01 },
-  hyperboloid: { slope: 0.05, tip_radius: 0.002 },
-  capped_paraboloid: { cap_radius: 1e-4, tip_radius: 0.05, radius: 0.01 },
-  power: { coefficient: 2e5, exponent: 3 },
-  series: { coefficient_1: 50, exponent_1: 2, coefficient_2: 2e8, exponent_2: 4 },
-  tabulated: { interpolation: "auto" },
+export const KINDS = {
+  balls: kind("Two balls", { radius_1: 0.01, radius_2: 0.02 }),
+  paraboloid: kind("Paraboloid (ball)", { radius: 0.01 }, (r, p) => (r * r) / (2 * p.radius)),
+  sphere: kind("Sphere, exact", { radius: 0.01 }, (r, p) => cap(r, p.radius)),
+  ellipsoid: kind(
+    "Ellipsoid", { radius: 0.01, height: 0.005 }, (r, p) => p.height * (1 - Math.sqrt(1 - (r / p.radius) ** 2)),
+  ),
+  flat_punch: kind("Flat punch", { radius: 0.001 }, (r, p) => (r <= p.radius ? 0 : Infinity)),
+  rounded_punch: kind(
+    "Rounded punch", { flat_radius: 5e-4, rounding_radius: 0.005 },
+    (r, p) => Math.max(0, r - p.flat_radius) ** 2 / (2 * p.rounding_radius),
+  ),
+  cone: kind("Cone", { slope: 0.02 }, (r, p) => p.slope * r),
+  rounded_cone: kind("Cone, parabolic tip", { slope: 0.05, tip_radius: 0.002 }, (r, p) => {
+    const tangent = p.tip_radius * p.slope;
+    return r < tangent ? (r * r) / (2 * p.tip_radius) : p.slope * (r - tangent / 2);
+  }),
+  spherical_tip_cone: kind("Cone, spherical tip", { slope: 0.05, tip_radius: 0.002 }, (r, p) => {
+    const tangent = (p.tip_radius * p.slope) / Math.hypot(1, p.slope);
+    return cap(Math.min(r, tangent), p.tip_radius) + p.slope * Math.max(0, r - tangent);
+  }),
+  truncated_cone: kind(
+    "Truncated cone", { flat_radius: 2e-4, slope: 0.02 }, (r, p) => p.slope * Math.max(0, r - p.flat_radius),
+  ),
+  truncated_paraboloid: kind(
+    "Truncated paraboloid (worn ball)", { flat_radius: 1e-4, radius: 0.01 },
+    (r, p) => Math.max(0, r * r - p.flat_radius ** 2) / (2 * p.radius),
+  ),
+  hyperboloid: kind(
+    "Hyperboloid", { slope: 0.05, tip_radius: 0.002 },
+    (r, p) => p.tip_radius * p.slope ** 2 * (Math.hypot(1, r / (p.tip_radius * p.slope)) - 1),
+  ),
+  capped_paraboloid: kind(
+    "Paraboloid with a blunter cap", { cap_radius: 1e-4, tip_radius: 0.05, radius: 0.01 },
+    (r, p) => (r * r) / (2 * p.tip_radius) +
+      (Math.max(0, r * r - p.cap_radius ** 2) / 2) * (1 / p.radius - 1 / p.tip_radius),
+  ),
+  power: kind("Power law", { coefficient: 2e5, exponent: 3 }, (r, p) => p.coefficient * r ** p.exponent),
+  series: kind(
+    "Sum of two powers", { coefficient_1: 50, exponent_1: 2, coefficient_2: 2e8, exponent_2: 4 },
+    (r, p) => p.terms.reduce((sum, t) => sum + t.coefficient * r ** t.exponent, 0),
+  ),
+  tabulated: kind("Table of measured points", { interpolation: "auto" }),
 };
 
 // Fields that the page adds to those of the wire.
@@ -77,35 +87,8 @@ export function wireProfile(inputs) {
   if (kind === "tabulated") {
     return { kind, r: inputs.table.r, f: inputs.table.f, interpolation: inputs.interpolation };
   }
-  return { kind, ...Object.fromEntries(Object.keys(DEFAULT_FIELDS[kind]).map((k) => [k, inputs[k]])) };
+  return { kind, ...Object.fromEntries(Object.keys(KINDS[kind].fields).map((k) => [k, inputs[k]])) };
 }
-
-const SHAPES = {
-  flat_punch: (r, p) => (r <= p.radius ? 0 : Infinity),
-  cone: (r, p) => p.slope * r,
-  paraboloid: (r, p) => (r * r) / (2 * p.radius),
-  sphere: (r, p) => p.radius - Math.sqrt(p.radius ** 2 - r * r),
-  ellipsoid: (r, p) => p.height * (1 - Math.sqrt(1 - (r / p.radius) ** 2)),
-  power: (r, p) => p.coefficient * r ** p.exponent,
-  series: (r, p) => p.terms.reduce((sum, t) => sum + t.coefficient * r ** t.exponent, 0),
-  rounded_punch: (r, p) => Math.max(0, r - p.flat_radius) ** 2 / (2 * p.rounding_radius),
-  truncated_cone: (r, p) => p.slope * Math.max(0, r - p.flat_radius),
-  truncated_paraboloid: (r, p) => Math.max(0, r * r - p.flat_radius ** 2) / (2 * p.radius),
-  rounded_cone: (r, p) => {
-    const tangent = p.tip_radius * p.slope;
-    return r < tangent ? (r * r) / (2 * p.tip_radius) : p.slope * (r - tangent / 2);
-  },
-  spherical_tip_cone: (r, p) => {
-    const tangent = (p.tip_radius * p.slope) / Math.hypot(1, p.slope);
-    const cap = (x) => p.tip_radius - Math.sqrt(p.tip_radius ** 2 - x * x);
-    return r < tangent ? cap(r) : cap(tangent) + p.slope * (r - tangent);
-  },
-  hyperboloid: (r, p) =>
-    p.tip_radius * p.slope ** 2 * (Math.hypot(1, r / (p.tip_radius * p.slope)) - 1),
-  capped_paraboloid: (r, p) =>
-    (r * r) / (2 * p.tip_radius) +
-    (Math.max(0, r * r - p.cap_radius ** 2) / 2) * (1 / p.radius - 1 / p.tip_radius),
-};
 
 /** Return the points `[r, f]` of the profile up to about `reach`. */
 export function outline(profile, reach) {
@@ -115,7 +98,7 @@ export function outline(profile, reach) {
   const points = [];
   for (let i = 0; i <= 120; i++) {
     const r = (reach * i) / 120;
-    const f = SHAPES[profile.kind](r, profile);
+    const f = KINDS[profile.kind].f(r, profile);
     if (!Number.isFinite(f)) break;
     points.push([r, f]);
   }

@@ -1,18 +1,13 @@
 // Display units. The inputs and the wire are in SI units throughout.
 
-const FACTORS = {
-  length: { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 },
-  displacement: { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 },
-  force: { kN: 1e3, N: 1, mN: 1e-3, "µN": 1e-6 },
-  pressure: { GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 },
-};
+const LENGTHS = { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
 
-// Dimension of a base unit -> its key in the inputs and its label in the form.
+// Dimension of a base unit -> its key in the inputs, its label in the form, and its choices.
 export const BASE_UNITS = {
-  length: { key: "ul", label: "Lengths", units: Object.keys(FACTORS.length) },
-  displacement: { key: "ud", label: "Depths", units: Object.keys(FACTORS.displacement) },
-  force: { key: "uf", label: "Forces", units: Object.keys(FACTORS.force) },
-  pressure: { key: "up", label: "Pressures", units: Object.keys(FACTORS.pressure) },
+  length: { key: "ul", label: "Lengths", factors: LENGTHS },
+  displacement: { key: "ud", label: "Depths", factors: LENGTHS },
+  force: { key: "uf", label: "Forces", factors: { kN: 1e3, N: 1, mN: 1e-3, "µN": 1e-6 } },
+  pressure: { key: "up", label: "Pressures", factors: { GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 } },
 };
 
 // Derived dimension -> powers of the base units.
@@ -30,7 +25,7 @@ const SUPERSCRIPTS = { 1: "", 2: "²", 3: "³" };
 /** Return the display unit `{name, factor}` of a dimension: SI value = shown value × factor. */
 export function unit(dimension, inputs) {
   const base = BASE_UNITS[dimension];
-  if (base) return { name: inputs[base.key], factor: FACTORS[dimension][inputs[base.key]] };
+  if (base) return { name: inputs[base.key], factor: base.factors[inputs[base.key]] };
   const derived = DERIVED[dimension];
   if (!derived) return { name: dimension.replace("length", "m"), factor: 1 };
   if (derived.fixed !== undefined) return { name: derived.fixed, factor: derived.factor };

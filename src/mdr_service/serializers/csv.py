@@ -1,4 +1,7 @@
-"""CSV: one column per quantity, one row per load (and radius), sample or number of cycles."""
+"""CSV: one column per quantity, one row per load (and radius), sample or number of cycles.
+
+Plain text has the same cells without the heading, so that one number is a number alone.
+"""
 
 from collections.abc import Mapping
 from itertools import zip_longest
@@ -9,6 +12,7 @@ import numpy as np
 import orjson
 
 MEDIA_TYPE: Final = "text/csv"
+PLAIN_TEXT: Final = "text/plain"
 # Members of a response, of its cycles or of the end of its history: these have no row.
 _NOT_IN_ROWS: Final = frozenset(
     {
@@ -43,6 +47,12 @@ def write(result: Mapping[str, Any]) -> bytes:
         columns = {name: _cells(value) for name, value in values.items()}
     rows = map(b",".join, zip_longest(*columns.values(), fillvalue=b""))
     return b"\r\n".join([",".join(columns).encode(), *rows, b""])
+
+
+def write_cells(result: Mapping[str, Any]) -> bytes:
+    """Return one line per row, its cells separated by commas, without a line end after the last."""
+    _, *rows, _ = write(result).split(b"\r\n")
+    return b"\n".join(rows)
 
 
 def _by_position(values: dict[str, Any], *axes: str) -> dict[str, list[bytes]]:
