@@ -21,6 +21,11 @@ function pushed(inputs, force) {
   return { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential };
 }
 
+/** Return the fields of a stress query over the radius. */
+function fieldsOf(query, name, body, quantities) {
+  return query(name, "v1/stress", { ...body, points: POINTS, quantities });
+}
+
 /** Return a response with the value of one load in place of each array. */
 function single(response, index = 0) {
   const scalar = ([key, value]) => [key, Array.isArray(value) ? value.at(index) : value];
@@ -68,9 +73,7 @@ export async function solvePress(inputs, query) {
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
   const [curve, field] = await Promise.all([
     query("Curve", "v1/normal", { ...basics(inputs), load: { normal_force: forces } }),
-    query("Pressure", "v1/stress", {
-      ...basics(inputs), load: { normal_force: force }, points: POINTS, quantities: ["pressure"],
-    }),
+    fieldsOf(query, "Pressure", { ...basics(inputs), load: { normal_force: force } }, ["pressure"]),
   ]);
   const now = single(curve, -1);
   const { indentation_depth: depths, normal_force: reached } = curve;
@@ -98,9 +101,7 @@ export async function solvePush(inputs, query) {
   const [state, curve, field] = await Promise.all([
     query("State", "v1/tangential", base),
     query("Curve", "v1/tangential", { ...base, tangential: { tangential_force: forces } }),
-    query("Fields", "v1/stress", {
-      ...base, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
-    }),
+    fieldsOf(query, "Fields", base, ["pressure", "shear_stress", "slip"]),
   ]);
   const now = single(state);
   const size = { ...now, tangential_force: Math.abs(now.tangential_force) };
@@ -141,9 +142,7 @@ export async function solveCycle(inputs, query) {
   const sampled = { ...body, history: { ...history, samples_per_step: SAMPLES_PER_STEP } };
   const [path, field] = await Promise.all([
     query("History", "v1/tangential/history", sampled),
-    query("Fields at the end", "v1/stress", {
-      ...body, points: POINTS, quantities: ["pressure", "shear_stress", "slip"],
-    }),
+    fieldsOf(query, "Fields at the end", body, ["pressure", "shear_stress", "slip"]),
   ]);
   const end = single(path, -1);
   const edges = [...path.slip_fronts.map((r) => ["", r]), ["a", end.contact_radius]];
@@ -178,9 +177,7 @@ export async function solveStress(inputs, query) {
   const material = { ...base.material, yield_strength: inputs.yield };
   const [contact, field, map] = await Promise.all([
     query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } }),
-    query("Surface", "v1/stress", {
-      ...base, points: POINTS, quantities: ["pressure", "shear_stress", "normal_displacement"],
-    }),
+    fieldsOf(query, "Surface", base, ["pressure", "shear_stress", "normal_displacement"]),
     query("Beneath", "v1/subsurface", {
       ...base, material, body: inputs.body, points: 61, quantities: ["von_mises"], largest: true,
     }),

@@ -1,6 +1,7 @@
 """Fields and worn profiles over the radius."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from math import inf
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -46,12 +47,10 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
     breaks = [float(b) for b in contact.profile.breaks]
     grid = fields.grid(partial or contact, POINTS + edges.size + fronts.size + len(breaks))
     requested = result["radius"]
-    window = (
-        (0.0, max(grid[-1], requested[0]))
-        if np.ptp(requested) == 0
-        else (requested.min(), requested.max())
-    )
-    radius = np.unique([*grid[(grid >= window[0]) & (grid <= window[1])], *_evenly(*window)])
+    window = requested.min(), requested.max()
+    if np.ptp(requested) == 0:
+        window = 0.0, max(grid[-1], requested[0])
+    radius = np.unique([*np.clip(grid, *window), *_evenly(*window)])
     loads = min(query.loads, MAX_CURVES)
     dense = {
         name: np.broadcast_to(field(name, end, radius, VISIBLE), (loads, radius.size))
@@ -64,7 +63,6 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
     else:
         marks += _edge_marks(fronts, "c")
     note = subset_note(loads, query.loads, "loads")
-    marks = [mark for mark in marks if mark.place > 0]
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
 
@@ -72,22 +70,16 @@ def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
     """Return the initial and the limiting profile over the radius, and other requested fields."""
     shown = limit if query.loads <= MAX_CURVES else solve_wear(_first_loads(query))
     loads = min(query.loads, MAX_CURVES)
-    breaks = len(shown.normal.profile.breaks)
-    radius = _to_last(shown.grid(POINTS + 3 * loads + breaks), result)
-    bounded = np.isfinite(np.ravel(shown.wear_radius))
+    ends = np.ravel(shown.wear_radius)
     names = [
-        (name or "limiting") + ("" if ends else ": unbounded")
-        for name, ends in zip(_load_names(query), bounded, strict=True)
+        (name or "limiting") + ("" if np.isfinite(end) else ": unbounded")
+        for name, end in zip(_load_names(query), ends, strict=True)
     ]
     drawn = ["limiting_profile", *(name for name in ("worn_depth", "pressure") if name in result)]
-    dense = {name: np.atleast_2d(getattr(shown, name)(radius)) for name in drawn}
-    panels = _panels(radius, dense, names, result, range(loads))
-    panels[0].curves.append(_initial(shown, radius))
-    marks = [
-        mark for index in np.flatnonzero(bounded).tolist() for mark in _wear_marks(shown, index)
-    ]
+    marks = _edge_marks(np.ravel(shown.stick_radius), "c") + _edge_marks(ends, "ã")
+    marks.sort(key=lambda mark: mark.curve or 0)
     note = subset_note(loads, query.loads, "loads")
-    return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
+    return _worn(shown, drawn, names, range(loads), result, marks, note)
 
 
 def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Plot:
@@ -95,21 +87,36 @@ def evolution(_query: EvolutionQuery, worn: WearEvolution, result: Result) -> Pl
     size = worn.cycles.size
     shown = np.unique(np.linspace(0, size - 1, min(size, MAX_CURVES)).round().astype(int))
     names = [f"N = {worn.cycles[index]:.4g}" for index in shown]
-    breaks = len(worn.normal.profile.breaks)
-    radius = _to_last(worn.grid(POINTS + breaks), result)
     drawn = ["profile", "pressure", *(["worn_depth"] if "worn_depth" in result else [])]
-    dense = {name: getattr(worn, name)(radius) for name in drawn}
-    panels = _panels(radius, dense, names, result, shown)
-    panels[0].curves.append(_initial(worn, radius))
     marks = [Mark(float(worn.stick_radius[-1]), "c"), Mark(float(worn.contact_radius[-1]), "a")]
     note = subset_note(shown.size, size, "numbers of cycles")
+    return _worn(worn, drawn, names, shown, result, marks, note)
+
+
+def _worn(
+    worn: Wear,
+    drawn: Iterable[str],
+    labels: Sequence[str],
+    rows: Iterable[int],
+    result: Result,
+    marks: Sequence[Mark],
+    note: str,
+) -> Plot:
+    """Return the `drawn` fields over all requested radii, the first with the initial profile."""
+    grid = worn.grid(POINTS + 3 * len(labels) + len(worn.normal.profile.breaks))
+    last = max(grid[-1], *result.get("radius", NOTHING), 0.0)
+    radius = np.unique([*grid, *_evenly(0.0, float(last))])
+    dense = {name: np.atleast_2d(getattr(worn, name)(radius)) for name in drawn}
+    panels = _panels(radius, dense, labels, result, rows)
+    initial = Curve(radius, worn.normal.profile.f(radius), "initial", style="--")
+    panels[0].curves.append(initial)
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
 
 
 def _panels(
     radius: Array,
     dense: Mapping[Any, Array],
-    labels: list[str],
+    labels: Sequence[str],
     result: Result,
     rows: Iterable[int],
 ) -> list[Panel]:
@@ -126,10 +133,6 @@ def _panels(
             curves.append(Curve(radius, values[row], label, *points))
         panels.append(Panel(LABELS[name], curves, _limits(curves) if name in _CUT else None))
     return panels
-
-
-def _initial(worn: Wear, radius: Array) -> Curve:
-    return Curve(radius, worn.normal.profile.f(radius), "initial", style="--")
 
 
 def _limits(curves: list[Curve]) -> tuple[float, float]:
@@ -151,12 +154,6 @@ def _evenly(start: float, stop: float) -> Array:
 
 def _ends(radius: Array) -> tuple[float, float]:
     return float(radius[0]), float(radius[-1])
-
-
-def _to_last(grid: Array, result: Result) -> Array:
-    """Return the grid, extended to the largest requested radius."""
-    requested = result.get("radius", NOTHING)
-    return np.unique([*grid, *_evenly(0.0, float(max(grid[-1], *requested, 0.0)))])
 
 
 def _first_loads(query: _Query) -> _Query:
@@ -189,13 +186,13 @@ def _slip_fronts(source: Contact) -> Array:
 
 
 def _edge_marks(radii: Array, symbol: str) -> list[Mark]:
-    """Return a mark for each load, in the colour of its curve if there are several."""
+    """Return a mark for each load, in the colour of its curve if there are several.
+
+    Zones that do not exist or are unbounded have no mark.
+    """
     several = radii.size > 1
-    return [Mark(r, symbol, index if several else None) for index, r in enumerate(radii.tolist())]
-
-
-def _wear_marks(limit: LimitingWear, index: int) -> list[Mark]:
-    """Return marks at the stick radius c and the wear radius of a load."""
-    c, end = (float(np.ravel(r)[index]) for r in (limit.stick_radius, limit.wear_radius))
-    curve = index if limit.wear_radius.size > 1 else None
-    return [Mark(c, "c", curve), Mark(end, "ã", curve)][: 1 + (end > c)]
+    return [
+        Mark(radius, symbol, index if several else None)
+        for index, radius in enumerate(radii.tolist())
+        if 0 < radius < inf
+    ]
