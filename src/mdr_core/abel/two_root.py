@@ -11,23 +11,23 @@ Source: notes, §5.
 """
 
 from collections.abc import Callable
-from functools import partial
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
-from mdr_core.elementwise import where
+from mdr_core.elementwise import some, where
 from mdr_core.quadrature import DEFAULT, Analytic, integrate
-from mdr_core.typing import Array, Chosen, Indices, Parameter
+from mdr_core.typing import Array, Chosen, Parameter
 
 # weight(x, s, index) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b. x and s have
 # shape (nodes, k); index (k,) selects their integrals.
 Weight = Callable[[Array, Array, Chosen], Array]
-# `integrate` with a tolerance and a strip.
-_Rule = Callable[..., Array]
 
 _TINY: Final = float(np.finfo(float).tiny)
+# Root of |r^2 - b^2| of a radius on the break, over b and the least s of the annulus: its square is
+# rounding error.
+_NEXT_TO_BREAK: Final = 1e-8
 # Rounding error of a difference of contact coordinates.
 _ROUNDING: Final = 4 * float(np.finfo(float).eps)
 
@@ -110,43 +110,31 @@ def two_root_integral(
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
-    rule = partial(integrate, rtol=rtol, analytic=analytic)
-    # Points on the break have a rule of their own; any other radius replaces them here.
-    index = np.flatnonzero((r == b) & (r > 0))
-    elsewhere = r.copy()
-    elsewhere[index] /= 2
-    result = _two_roots(rule, weight, b, elsewhere, annulus, odd=odd)
-    if index.size:
-        result[index] = _coincident_roots(rule, weight, annulus.at(index), r[index], index)
-    return result
-
-
-def _two_roots(
-    rule: _Rule, weight: Weight, b: float, r: Array, annulus: Annulus, *, odd: bool
-) -> Array:
-    """r != b: x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y."""
     upper, inner, edge = annulus
-    signed2 = (b - r) * (b + r)
-    above = signed2 < 0
-    epsilon = np.sqrt(np.abs(signed2))
-    upper2 = upper * upper
-    # a^2 - r^2, from the radius where that is exact.
-    edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
-    start = None
-    if inner is None:
-        length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
-    else:
+    upper2, least, start = upper * upper, upper, None
+    if inner is not None:
         width, c = inner.width, np.maximum(inner.radius, b)
-        inner2 = (c - r) * (c + r)
         # Next to the break a given radius is accurate, but one from a load no more than b^2/lower:
         # the difference is as accurate as upper. In a narrow annulus its width is.
         lower, error = upper - width, _ROUNDING * upper
         by_radii = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
         lower = where(width > upper / 2, by_radii, lower)
-        root = np.sqrt(np.maximum(inner2, 0.0, out=inner2))
+        least = where(lower > 0, lower, upper)
+    signed2, on_break = (b - r) * (b + r), r == b
+    if some(on_break):
+        # A radius on the break takes the rule of one just above it.
+        signed2 = np.where(on_break, -np.square(_NEXT_TO_BREAK * np.minimum(least, b)), signed2)
+    above = signed2 < 0
+    epsilon = np.sqrt(np.abs(signed2))
+    # a^2 - r^2, from the radius where that is exact.
+    edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
+    if inner is None:
+        length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
+    else:
+        root = where(on_break, lower, inverse_hypot(c, r))
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
         gap2 = np.minimum(edge2, width * (upper + lower))
-        roots = np.sqrt(edge2) * np.where(above & (inner2 == 0), epsilon, lower) + root * upper
+        roots = np.sqrt(edge2) * np.where(above & (root == 0), epsilon, lower) + root * upper
         length = np.arcsinh(gap2 / np.maximum(roots, _TINY))
         start = np.arcsinh(np.minimum(root, lower) / epsilon)
     shift, base2 = np.where(above, -signed2, 0.0), b * b
@@ -160,47 +148,11 @@ def _two_roots(
         x = s + base2
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
-    return rule(h, length, lower=start, even=odd or above)
-
-
-def _coincident_roots(
-    rule: _Rule, weight: Weight, annulus: Annulus, r: Array, index: Indices
-) -> Array:
-    """r = b: F dx/s = weight ds/s, in log(s) over an annulus, in arcsinh(s/b) from the break.
-
-    `index` selects these points for the weight. Infinite where F ~ 1/s and the annulus begins at b.
-    """
-    upper = np.full(r.shape, annulus.outer)
-    width = upper if annulus.inner is None else np.full(r.shape, annulus.inner.width)
-    result = np.empty_like(r)
-    here = np.flatnonzero(width < upper)
-    if here.size:
-        place, at = index[here], r[here]
-
-        def over_annulus(t: Array, chosen: Chosen) -> Array:
-            s = np.exp(t)
-            return weight(np.hypot(at[chosen], s), s, place[chosen])
-
-        low = (upper - width)[here]
-        result[here] = rule(
-            over_annulus, np.log1p(width[here] / low), lower=np.log(low), even=False
-        )
-    here = np.flatnonzero(width >= upper)
-    if here.size:
-        result[here] = _from_break(rule, weight, upper[here], r[here], index[here])
-    return result
-
-
-def _from_break(rule: _Rule, weight: Weight, upper: Array, r: Array, index: Indices) -> Array:
-    """r = b <= x, in arcsinh(s/b)."""
-
-    def integrand(y: Array, chosen: Chosen) -> Array:
-        at = r[chosen]
-        x, s = at * np.cosh(y), at * np.sinh(y)
-        return weight(x, s, index[chosen]) * x / s
-
-    pole = weight(r[None], np.zeros((1, r.size)), index)[0] != 0
-    result = np.full(r.shape, np.inf)
-    if not pole.all():
-        result[~pole] = rule(integrand, np.arcsinh(upper / r), even=False)[~pole]
+    result = integrate(h, length, rtol, start, even=odd or above, analytic=analytic)
+    if some(on_break):
+        # Infinite where F ~ 1/s and the annulus begins at the break.
+        begins = True if inner is None else (width >= upper) | (lower <= 0)
+        index = np.flatnonzero(on_break & begins)
+        pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)), index)[0] != 0
+        result[index[pole]] = np.inf
     return result
