@@ -6,30 +6,17 @@ Source: notes, §4.
 from typing import Any, Final
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from mdr_core.elementwise import is_number, piecewise
 from mdr_core.typing import Array, Parameter
 
 # Below it a series replaces the difference, which loses more than three bits there.
 _THRESHOLD: Final = 0.5
-# Terms of the series in Chebyshev's form that leave 1e-17 below the threshold.
-_TERMS: Final = 15
-
-
-def _economised(sign: float) -> tuple[float, ...]:
-    """Coefficients in u of sum_k (sign u)^k / (2k + 3), economised on 0 <= u <= 1/4."""
-    k = np.arange(60)
-    points = chebyshev.chebpts1(_TERMS)
-    u = (points + 1) / 8
-    values = ((sign * u[:, None]) ** k / (2 * k + 3)).sum(axis=1)
-    fitted = np.linalg.solve(chebyshev.chebvander(points, _TERMS - 1), values)
-    cheb = chebyshev.Chebyshev(fitted, domain=[0, 0.25])
-    return tuple(cheb.convert(kind=np.polynomial.Polynomial, domain=[-1, 1], window=[-1, 1]).coef)
-
-
-_ATAN: Final = _economised(-1.0)
-_ATANH: Final = _economised(1.0)
+# Terms of the series in u that leave 1e-17 below the threshold, u = 1/4.
+_TERMS: Final = 26
+# Coefficients of u^k in arctan and artanh, from the power of 3 on.
+_ATANH: Final = tuple(1 / (2 * k + 3) for k in range(_TERMS))
+_ATAN: Final = tuple((-1) ** k * c for k, c in enumerate(_ATANH))
 
 
 def _horner(coefficients: tuple[float, ...], u: Any) -> Any:
