@@ -8,7 +8,6 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from mdr_core.abel import Annulus, InnerEnd
-from mdr_core.broadcasting import with_parameters
 from mdr_core.elementwise import full, some, where
 from mdr_core.profiles import Paraboloid, Profile
 from mdr_core.typing import Array, Flags, Indices
@@ -85,7 +84,7 @@ def largest_stress(
         return result.reshape(shape)[()]
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
     for place in zip(*np.nonzero(finite), strict=True):
-        one = with_parameters(profile, {name: float(value[place]) for name, value in named.items()})
+        one = profile.with_parameters({name: float(value[place]) for name, value in named.items()})
         result[place] = _largest(one, *(part[place][None] for part in parts))[0]
     return result
 

@@ -18,7 +18,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks, next_breaks
-from mdr_core.broadcasting import with_parameters
 from mdr_core.elementwise import every, number, some
 from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
 from mdr_core.inversion import Function
@@ -246,7 +245,7 @@ class IntervalMoments:
         if not profile.swept:
             return self
         part = {name: profile.parameters[name][chosen] for name in profile.swept}
-        return IntervalMoments(with_parameters(profile, part), self.over_forces)
+        return IntervalMoments(profile.with_parameters(part), self.over_forces)
 
     def over_wide(self, span: Array, ends: Array, base: Array) -> Array:
         """Return the moments over wide intervals, by parts, in closed form.

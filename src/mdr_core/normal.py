@@ -1,7 +1,7 @@
 """Normal contact under a prescribed depth, force or contact radius."""
 
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from math import inf, isfinite
 from typing import ClassVar, Final, Self
 
@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.broadcasting import BLOCK, solve_in_blocks
 from mdr_core.elementwise import some, where
 from mdr_core.equivalent_1d import (
     coordinate_from_depth,
@@ -197,19 +196,14 @@ def solve(
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
-    coordinate_of = partial(_coordinate, name)
-    if spread.size > BLOCK:
-        (coordinate,) = solve_in_blocks(coordinate_of, profile, e_star, spread)
-    else:
-        # The shortest way from a small query to its closed form.
-        (coordinate,) = coordinate_of(profile, e_star, spread)
+    coordinate = _coordinate(name, profile, e_star, spread)
     contact = NormalContact(profile, e_star, coordinate, rtol, name)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread
     return contact
 
 
-def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> tuple[Array]:
+def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> Array:
     """Contact coordinate of the edge under a load, with input and results checked."""
     require_positive(("material", "e_star"), e_star)
     with np.errstate(all="ignore"):
@@ -228,7 +222,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         # A prescribed radius may be that of a flat, which is in contact without a load.
         loaded = coordinate > profile.first_coordinate if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)
-    return (coordinate,)
+    return coordinate
 
 
 def _over_cases(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:

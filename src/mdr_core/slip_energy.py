@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.broadcasting import with_parameters
 from mdr_core.elementwise import is_number, some, where
 from mdr_core.equivalent_1d import depth_step
 from mdr_core.interval_moments import interval_moments
@@ -48,7 +47,7 @@ def slip_moment(
         return _by_springs(profile, *map(np.atleast_1d, ends))[0]
     cases = [np.broadcast_to(end, area.shape)[narrow] for end in ends]
     swept = {name: np.broadcast_to(profile.parameters[name], area.shape) for name in profile.swept}
-    part = with_parameters(profile, {name: column[narrow] for name, column in swept.items()})
+    part = profile.with_parameters({name: column[narrow] for name, column in swept.items()})
     area[narrow] = _by_springs(part, *cases)
     return area
 

@@ -1,13 +1,11 @@
 """Stick zone and slip annulus under one monotonic tangential load."""
 
-from functools import partial
 from math import inf
 from typing import Final
 
 import numpy as np
 
 from mdr_core import equivalent_1d
-from mdr_core.broadcasting import solve_in_blocks
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
@@ -45,8 +43,8 @@ def solve(
     if name == "stick_radius":
         return _by_radius(contact, _sign_and_size(name, given)[1])
     ratio = friction if name == "tangential_force" else friction * contact.e_star / g_star
-    columns = contact.coordinate, ratio, getattr(contact, CONTROLS[name]), given
-    return solve_in_blocks(partial(_by_load, name), contact.profile, *columns)
+    normal = getattr(contact, CONTROLS[name])
+    return _by_load(name, contact.profile, contact.coordinate, ratio, normal, given)
 
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
@@ -63,7 +61,7 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
 
 
 def _by_load(
-    name: str, profile: Profile, coordinate: Array, ratio: Array, normal: Array, given: Array
+    name: str, profile: Profile, coordinate: Array, ratio: Parameter, normal: Array, given: Array
 ) -> StickZone:
     """Results of `solve`; full slip at the limit and beyond, which a force cannot exceed.
 

@@ -4,9 +4,10 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from functools import cached_property
 from math import inf
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -76,6 +77,14 @@ class Profile(ABC):
             for name, value in self.parameters.items()
             if isinstance(value, np.ndarray) and value.ndim
         )
+
+    def with_parameters(self, parameters: Mapping[str, Any]) -> Self:
+        """Return the profile with some parameters replaced, without a check."""
+        if not parameters:
+            return self
+        part = object.__new__(type(self))
+        vars(part).update({**self.parameters, **parameters})
+        return part
 
     @property
     def notices(self) -> tuple[Notice, ...]:

@@ -13,7 +13,6 @@ from scipy.ndimage import maximum_filter
 from scipy.optimize import brentq
 
 from mdr_core import normal, tangential
-from mdr_core.broadcasting import with_parameters
 from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
@@ -189,7 +188,7 @@ def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
 def _under(profile: Profile, *case: float) -> tangential.TangentialContact:
     """Contact under one load; parameters: see `_columns`."""
     force, ratio, friction, e_star, *swept = case
-    one = with_parameters(profile, dict(zip(profile.swept, swept, strict=True)))
+    one = profile.with_parameters(dict(zip(profile.swept, swept, strict=True)))
     pressed = normal.solve(one, e_star, normal_force=force)
     # The stresses depend on the ratio of the forces alone, not on G*.
     return tangential.solve(pressed, e_star, friction, tangential_force=ratio * friction * force)
