@@ -10,8 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.elementwise import full, some, where
-from mdr_core.equivalent_1d import force_slope, stick_from_force
-from mdr_core.inversion import Function
+from mdr_core.equivalent_1d import load_functions, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
@@ -57,8 +56,8 @@ def near_full_slip(
     if profile.has_no_partial_slip or not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
-    load, slope = _load(profile, of_force=force_prescribed)
-    other, other_slope = _load(profile, of_force=not force_prescribed)
+    load, slope = load_functions(profile, of_force=force_prescribed)
+    other, other_slope = load_functions(profile, of_force=not force_prescribed)
     with np.errstate(all="ignore"):
         moved = load(low) / (slope(low) * np.maximum(1 - ratio, _EPS / 2))
         condition = _CUBE * moved * other_slope(low) / (other(high) - other(low))
@@ -81,7 +80,7 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     if contact.profile.has_no_partial_slip or not ratio[worst] > _LATE:
         return 0.0
     coordinate, part = contact.coordinate[worst], ratio[worst]
-    edge, _ = stick_from_force(contact.profile, coordinate, part, 1 - part)
+    edge, _ = stick_edge(contact.profile, coordinate, part, 1 - part, of_force=True)
     ends = coordinate, edge
     return float(
         near_full_slip(contact.profile, ends, part, part > 0, force_prescribed=True, edges=False)
@@ -128,7 +127,7 @@ def beyond_break(contact: NormalContact) -> Array:
     profile = contact.profile
     if not profile.coordinate_breaks.size:
         return full(0.0, contact.coordinate)
-    load, slope = _load(profile, of_force=contact.control == "normal_force")
+    load, slope = load_functions(profile, of_force=contact.control == "normal_force")
     if contact.control == "contact_radius":
         load, slope = profile.contact_radius, profile.radius_slope
     at = where(contact.coordinate > 0, contact.coordinate, np.nan)
@@ -143,10 +142,3 @@ def beyond_break(contact: NormalContact) -> Array:
 def _radial_slope(profile: Profile, coordinate: Array) -> Array:
     """g'(a) [1]."""
     return profile.depth_slope(coordinate) / profile.radius_slope(coordinate)
-
-
-def _load(profile: Profile, *, of_force: bool) -> tuple[Function, Function]:
-    """F_N/E* or d as a function of the contact coordinate, and its derivative."""
-    if of_force:
-        return profile.reduced_force, force_slope(profile)
-    return profile.depth, profile.depth_slope

@@ -41,29 +41,39 @@ _CURVED, _SPACING, _MAX_LOG = 14.0, 0.02, 150.0
 _Slope = Callable[[Array, Array, Array], Array]
 
 
-def coordinate_from_depth(profile: Profile, indentation_depth: Array) -> Array:
-    """Return the contact coordinate at which g(a) is the indentation depth.
+def load_functions(profile: Profile, *, of_force: bool) -> tuple[Function, Function]:
+    """Return the load as a function of the contact coordinate s, and its derivative.
 
-    Source: mdr-5, Eqs. (5.7), (5.59); notes, §1. Raises InputError beyond the end of the profile.
+    The load is F_N/E* [length^2], of slope 2 a d'(s), or the depth [length]. Source: notes, §1.
     """
-    closed = profile.coordinate_from_depth(indentation_depth)
+    radius, slope = profile.contact_radius, profile.depth_slope
+    if of_force:
+        return profile.reduced_force, lambda s: 2 * radius(s) * slope(s)
+    return profile.depth, slope
+
+
+def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Array:
+    """Return the contact coordinate at which F_N/E* or the depth g(a) has the given value.
+
+    Source: mdr-5, Eqs. (5.7), (5.14), (5.59), (5.61); notes, §1.
+
+    Raises InputError beyond the end of the profile.
+    """
+    closed = _closed_inverse(profile, load, of_force=of_force)
     if closed is not None:
         return closed
-    name = "indentation_depth"
-    return _inverse(profile, profile.depth, profile.depth_slope, indentation_depth, name)
+    end = profile.last_coordinate
+    if end is not None:
+        function, _ = load_functions(profile, of_force=of_force)
+        outside = load > function(number(end))
+        _reject(outside, profile, "normal_force" if of_force else "indentation_depth")
+    return _root(profile, load, of_force=of_force)
 
 
-def coordinate_from_force(profile: Profile, reduced_force: Array) -> Array:
-    """Return the contact coordinate at which F_N/E* has the given value [length^2].
-
-    Source: mdr-5, Eqs. (5.14), (5.61); notes, §1: dF_N/da = 2 E* a g'(a). Raises InputError beyond
-    the end of the profile.
-    """
-    closed = profile.coordinate_from_reduced_force(reduced_force)
-    if closed is not None:
-        return closed
-    slope = force_slope(profile)
-    return _inverse(profile, profile.reduced_force, slope, reduced_force, "normal_force")
+def _closed_inverse(profile: Profile, load: Array, *, of_force: bool) -> Array | None:
+    if of_force:
+        return profile.coordinate_from_reduced_force(load)
+    return profile.coordinate_from_depth(load)
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
@@ -81,14 +91,6 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     below = np.maximum(np.searchsorted(plateaus[:, 0], coordinate) - 1, 0)
     low, high = plateaus[below, 0], plateaus[below, 1]
     return where((low < coordinate) & (coordinate <= high), low, coordinate)
-
-
-def force_slope(profile: Profile) -> Function:
-    """Return d(F_N/E*)/ds = 2 a d'(s) as a function of the contact coordinate s.
-
-    Source: notes, §1.
-    """
-    return lambda s: 2 * profile.contact_radius(s) * profile.depth_slope(s)
 
 
 def depth_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
@@ -123,128 +125,30 @@ def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) 
     return _step(profile, profile.reduced_force, slope, (coordinate, width, stick))
 
 
-def stick_from_force(
-    profile: Profile, coordinate: Array, ratio: Array, rest: Array
+def stick_edge(
+    profile: Profile, coordinate: Array, ratio: Array, rest: Array, *, of_force: bool
 ) -> tuple[Array, Array]:
-    """Return the stick radius and the width of the slip annulus under a tangential force.
+    """Return the stick radius and the width of the slip annulus under a tangential load.
 
-    Source: mdr-5, Eq. (5.19).
+    At small ratios the width is the unknown of a step of the load, at large ones c, by the closed
+    inverse if there is one. Source: mdr-5, Eqs. (5.19), (5.20).
 
     Parameters
     ----------
     profile : parameters broadcast with the loads.
     coordinate : contact radii as contact coordinates.
-    ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), each accurate by itself.
+    ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), each accurate by itself; of displacements if
+        not `of_force`.
 
     Returns
     -------
     c and a - c in the contact coordinate.
     """
     if closed := profile.stick_ratios:
-        inner, annulus = closed[1](ratio, rest)
+        inner, annulus = closed[of_force](ratio, rest)
         return coordinate * inner, coordinate * annulus
-    functions = profile.reduced_force, force_slope(profile)
-    inverse = type(profile).coordinate_from_reduced_force
-    load = coordinate, ratio, rest
-    return _stick(profile, load, "normal_force", functions, force_step, inverse)
-
-
-def stick_from_depth(
-    profile: Profile, coordinate: Array, ratio: Array, rest: Array
-) -> tuple[Array, Array]:
-    """Return the stick radius and the width of the slip annulus under a displacement.
-
-    Source: mdr-5, Eq. (5.20). Parameters and returns: see `stick_from_force`, for the ratio
-    u_x/u_x,max.
-    """
-    if closed := profile.stick_ratios:
-        inner, annulus = closed[0](ratio, rest)
-        return coordinate * inner, coordinate * annulus
-    functions = profile.depth, profile.depth_slope
-    inverse = type(profile).coordinate_from_depth
-    load = coordinate, ratio, rest
-    return _stick(profile, load, "indentation_depth", functions, depth_step, inverse)
-
-
-def _reject(outside: Flags, profile: Profile, name: str) -> None:
-    if some(outside):
-        domain = np.broadcast_to(profile.domain, outside.shape)[outside].flat[0]
-        raise InputError(
-            ("load", name, *first_index(outside)),
-            f"the contact would extend beyond radius {domain}, where the profile ends "
-            "or ceases to be admissible",
-            outside,
-        )
-
-
-def _inverse(
-    profile: Profile, function: Function, slope: Function, target: Array, name: str
-) -> Array:
-    """Solve function(s) = target for a contact coordinate s."""
-    end = profile.last_coordinate
-    if end is not None:
-        _reject(target > function(number(end)), profile, name)
-    return _root(profile, (function, slope), target, _start(profile, name, function, target))
-
-
-def _root(
-    profile: Profile, functions: tuple[Function, Function], target: Array, start: Array
-) -> Array:
-    """Solve function(s) = target within the domain, from a first approximation."""
-    (function, slope), end = functions, profile.last_coordinate
-    low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
-
-    def sloped(s: Array) -> tuple[Array, Array]:
-        value = function(s)
-        return value, s * slope(s) / value
-
-    start = where(high < start, high, start)
-    return invert(sloped, target, start, low, high, profile.kind, smooth=_smooth(profile))
-
-
-def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
-    """Return True, or a test of it, if depth and force are smooth near a contact coordinate."""
-    breaks = profile.coordinate_breaks
-    if has_many_breaks(profile) or not breaks.size:
-        return not breaks.size
-    own = breaks if profile.swept else breaks[0]
-    return lambda s: abs(s - own) > _NEAR_BREAK * own
-
-
-def _start(profile: Profile, name: str, function: Function, target: Array) -> Array:
-    """First approximation of the contact coordinate: good to 2e-5 where one curve serves a kind."""
-    scale = profile.scale
-    if not profile.similar:
-        return broadcast(scale, np.broadcast_shapes(target.shape, np.shape(scale)))
-    with np.errstate(divide="ignore"):
-        height = np.log(target / function(number(1.0) * scale))
-    return scale * np.exp(np.interp(height, *_curve(type(profile), name)))
-
-
-@lru_cache(maxsize=32)
-def _curve(kind: type[Profile], name: str) -> tuple[Array, Array]:
-    """Logarithms of depth or force and of the contact coordinate, over those at the scale."""
-    unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
-    function = unit.depth if name == "indentation_depth" else unit.reduced_force
-    places = np.concatenate([[-_MAX_LOG], np.arange(-_CURVED, _CURVED, _SPACING), [_MAX_LOG]])
-    return np.log(function(np.exp(places)) / function(number(1.0))), places
-
-
-def _stick(
-    profile: Profile,
-    load: tuple[Array, Array, Array],
-    name: str,
-    functions: tuple[Function, Function],
-    step: Callable[[Profile, Array, Array, Array], Array],
-    inverse: Callable[[Profile, Array], Array | None],
-) -> tuple[Array, Array]:
-    """Solve function(a) - function(c) = ratio function(a) for c; `load` is a, ratio, 1 - ratio.
-
-    At small ratios the width is the unknown of the `step`, at large ones c, by the closed `inverse`
-    if there is one.
-    """
-    coordinate, ratio, rest = load
-    function, slope = functions
+    step = force_step if of_force else depth_step
+    function, slope = load_functions(profile, of_force=of_force)
     total = function(coordinate)
     if not is_number(ratio * total):
         coordinate, total, ratio, rest = np.broadcast_arrays(coordinate, total, ratio, rest)
@@ -254,15 +158,16 @@ def _stick(
         late = coordinate
         if not every(early):
             goal = where(early, 0.0, rest * total)
-            closed = inverse(profile, goal)
-            if closed is not None:
-                late = closed
+            inverse = _closed_inverse(profile, goal, of_force=of_force)
+            if inverse is not None:
+                late = inverse
             elif profile.similar:
-                late = _root(profile, functions, goal, _start(profile, name, function, goal))
+                late = _root(profile, goal, of_force=of_force)
             else:
-                # From the power that rises as the function does at the edge.
+                # From the power that rises as the load does at the edge.
                 start = coordinate * raised(rest, total / (coordinate * first))
-                late = _root(profile, functions, goal, where(start > 0, start, coordinate))
+                start = where(start > 0, start, coordinate)
+                late = _root(profile, goal, start, of_force=of_force)
         if not some(early):
             return late, coordinate - late
         target = where(early, ratio * total, 0.0)
@@ -286,6 +191,62 @@ def _stick(
         f"{profile.kind}'s slip annulus",
     )
     return where(early, coordinate - width, late), where(early, width, coordinate - late)
+
+
+def _reject(outside: Flags, profile: Profile, name: str) -> None:
+    if some(outside):
+        domain = np.broadcast_to(profile.domain, outside.shape)[outside].flat[0]
+        raise InputError(
+            ("load", name, *first_index(outside)),
+            f"the contact would extend beyond radius {domain}, where the profile ends "
+            "or ceases to be admissible",
+            outside,
+        )
+
+
+def _root(profile: Profile, target: Array, start: Array | None = None, *, of_force: bool) -> Array:
+    """Contact coordinate of a load within the domain, from a first approximation."""
+    if start is None:
+        start = _start(profile, target, of_force=of_force)
+    function, slope = load_functions(profile, of_force=of_force)
+    end = profile.last_coordinate
+    low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
+
+    def sloped(s: Array) -> tuple[Array, Array]:
+        value = function(s)
+        return value, s * slope(s) / value
+
+    start = where(high < start, high, start)
+    return invert(sloped, target, start, low, high, profile.kind, smooth=_smooth(profile))
+
+
+def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
+    """Return True, or a test of it, if depth and force are smooth near a contact coordinate."""
+    breaks = profile.coordinate_breaks
+    if has_many_breaks(profile) or not breaks.size:
+        return not breaks.size
+    own = breaks if profile.swept else breaks[0]
+    return lambda s: abs(s - own) > _NEAR_BREAK * own
+
+
+def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
+    """First approximation of the contact coordinate: good to 2e-5 where one curve serves a kind."""
+    scale = profile.scale
+    if not profile.similar:
+        return broadcast(scale, np.broadcast_shapes(target.shape, np.shape(scale)))
+    with np.errstate(divide="ignore"):
+        function, _ = load_functions(profile, of_force=of_force)
+        height = np.log(target / function(number(1.0) * scale))
+    return scale * np.exp(np.interp(height, *_curve(type(profile), of_force=of_force)))
+
+
+@lru_cache(maxsize=32)
+def _curve(kind: type[Profile], *, of_force: bool) -> tuple[Array, Array]:
+    """Logarithms of the load and of the contact coordinate, over those at the scale."""
+    unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
+    function, _ = load_functions(unit, of_force=of_force)
+    places = np.concatenate([[-_MAX_LOG], np.arange(-_CURVED, _CURVED, _SPACING), [_MAX_LOG]])
+    return np.log(function(np.exp(places)) / function(number(1.0))), places
 
 
 def _step(

@@ -19,7 +19,7 @@ import numpy as np
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks, next_breaks
 from mdr_core.elementwise import every, number, some
-from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
+from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
@@ -93,11 +93,10 @@ class IntervalMoments:
 
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
-        find = coordinate_from_force if self.over_forces else coordinate_from_depth
         end = self.profile.last_coordinate
         if end is not None:
             normal = np.minimum(normal, self.normal(number(end)))
-        return find(self.profile, normal)
+        return coordinate_from_load(self.profile, normal, of_force=self.over_forces)
 
     def over(self, low: Array, span: Array, ends: Array | None = None) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).

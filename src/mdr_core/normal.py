@@ -10,11 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import validity
 from mdr_core.elementwise import some, where
-from mdr_core.equivalent_1d import (
-    coordinate_from_depth,
-    coordinate_from_force,
-    coordinate_from_radius,
-)
+from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.profiles import Profile
@@ -29,11 +25,7 @@ from mdr_core.validation import (
     require_tolerance,
 )
 
-_COORDINATE_FROM: Final = {
-    "indentation_depth": coordinate_from_depth,
-    "normal_force": coordinate_from_force,
-    "contact_radius": coordinate_from_radius,
-}
+_CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
 # Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
 # representable beside factors of the accepted magnitudes.
 _DECADES: Final = 150.0
@@ -192,7 +184,7 @@ def solve(
     """
     require_tolerance(rtol)
     loads = (indentation_depth, normal_force, contact_radius)
-    name, load = only_one(("load",), dict(zip(_COORDINATE_FROM, loads, strict=True)))
+    name, load = only_one(("load",), dict(zip(_CONTROLS, loads, strict=True)))
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
@@ -207,8 +199,12 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
     """Contact coordinate of the edge under a load, with input and results checked."""
     require_positive(("material", "e_star"), e_star)
     with np.errstate(all="ignore"):
-        amount = load / e_star if name == "normal_force" else load
-        coordinate = _COORDINATE_FROM[name](profile, amount)
+        if name == "contact_radius":
+            coordinate = coordinate_from_radius(profile, load)
+        else:
+            of_force = name == "normal_force"
+            amount = load / e_star if of_force else load
+            coordinate = coordinate_from_load(profile, amount, of_force=of_force)
     low, high = extremes(coordinate)
     reach = 10 ** (_DECADES / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:
@@ -216,7 +212,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         require_not_negative(("load", name), load)
         contact = NormalContact(profile, e_star, coordinate)
         with np.errstate(all="ignore"):
-            depth, force, a = (getattr(contact, result) for result in _COORDINATE_FROM)
+            depth, force, a = (getattr(contact, result) for result in _CONTROLS)
             # An energy may underflow, but not overflow.
             results = a, a * a, depth, force, np.maximum(depth * force, 1.0)
         # A prescribed radius may be that of a flat, which is in contact without a load.

@@ -5,8 +5,8 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core import equivalent_1d
 from mdr_core.elementwise import full, number, some, where
+from mdr_core.equivalent_1d import stick_edge
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -85,8 +85,8 @@ def _by_load(
         left, limit = where(loaded, np.maximum(left, 0.0), 1.0), where(loaded, limit, 1.0)
     if profile.has_no_partial_slip:
         return coordinate, size / limit, sign, full_slip, excess
-    find = equivalent_1d.stick_from_force if force_prescribed else equivalent_1d.stick_from_depth
-    edge, width = find(profile, coordinate, size / limit, left / limit)
+    ratios = size / limit, left / limit
+    edge, width = stick_edge(profile, coordinate, *ratios, of_force=force_prescribed)
     return edge, width, sign, full_slip, excess
 
 

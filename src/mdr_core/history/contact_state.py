@@ -6,7 +6,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from mdr_core.equivalent_1d import coordinate_from_depth
+from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
@@ -248,7 +248,7 @@ def advance(
     depth, displacement = np.array([indentation_depth]), np.array([tangential_displacement])
     if not (np.isfinite(depth[0]) and np.isfinite(displacement[0])):
         raise InputError(("history",), "must be finite")
-    coordinate_from_depth(state.profile, np.maximum(depth, 0.0))
+    coordinate_from_load(state.profile, np.maximum(depth, 0.0), of_force=False)
     once = np.zeros(1, dtype=bool), np.zeros(1, dtype=np.intp)
     points = LoadPoints(depth, displacement / state.displacement_ratio, *once)
     _, path, polyline = slip_memory.apply_steps(state.polyline, points)

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.equivalent_1d import coordinate_from_depth, coordinate_from_force
+from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_memory import LoadPoints
@@ -79,8 +79,9 @@ class SampledPath:
         """Contact coordinate at each sample, that of zero load in separation."""
         # Equal loads get equal coordinates: the last bit may depend on an element's position.
         load, index = np.unique(np.maximum(self.prescribed, 0.0), return_inverse=True)
-        find = coordinate_from_depth if self.depth_prescribed else coordinate_from_force
-        return np.asarray(find(self.start.profile, load)[index])
+        of_force = not self.depth_prescribed
+        found = coordinate_from_load(self.start.profile, load, of_force=of_force)
+        return np.asarray(found[index])
 
     @property
     def _normal_coordinate(self) -> Array:

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.equivalent_1d import stick_from_depth, stick_from_force
+from mdr_core.equivalent_1d import stick_edge
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array
@@ -123,7 +123,6 @@ def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Arr
     short = np.flatnonzero(tree.span[1:] < _SHORT * tree.normal[1:])
     if short.size:
         upper, span = tree.normal[1:][short], tree.span[1:][short]
-        find = stick_from_force if moments.over_forces else stick_from_depth
-        share = span / upper, tree.normal[short] / upper
-        width[short] = find(moments.profile, coordinate[1:][short], *share)[1]
+        edges = coordinate[1:][short], span / upper, tree.normal[short] / upper
+        _, width[short] = stick_edge(moments.profile, *edges, of_force=moments.over_forces)
     return width
