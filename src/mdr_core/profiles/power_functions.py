@@ -123,19 +123,3 @@ def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, 
         exact = where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
     e = exact / exponent
     return np.exp(e), -np.expm1(e)
-
-
-def power_step(a: Array, width: Array, c: Array, exponent: Parameter) -> Array:
-    """Return 1 - (c/a)^m [1].
-
-    Parameters
-    ----------
-    a, width, c : outer radius, a - c and inner radius [length].
-    exponent : m > 0 [1].
-    """
-    safe = where(a > 0, a, 1.0)
-    # From the width while the annulus is narrow.
-    part = np.minimum(width / safe, 0.5)
-    with np.errstate(divide="ignore"):
-        wide = np.log(np.maximum(c, 0.0) / safe)
-    return -np.expm1(exponent * where(width < safe / 2, np.log1p(-part), wide))

@@ -20,7 +20,6 @@ from mdr_core.profiles.power_functions import (
     power,
     power_root,
     power_slope,
-    power_step,
     power_stick,
     square_stick,
 )
@@ -292,15 +291,6 @@ class Power(Profile):
     def stick_ratios(self) -> StickRatios:  # type: ignore[override]  # a constant of other kinds
         """Source: mdr-5, Eqs. (5.29), (5.31)."""
         return partial(power_stick, self.exponent), partial(power_stick, self.exponent + 1)
-
-    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Source: mdr-5, Eq. (5.30). Parameters: see `Profile`."""
-        step = power_step(coordinate, width, stick, self.exponent + 1)
-        return self.reduced_force(coordinate) * step
-
-    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Source: mdr-5, Eq. (5.29). Parameters: see `Profile`."""
-        return self.g(coordinate) * power_step(coordinate, width, stick, self.exponent)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return (coordinate >= 0) & (self.exponent <= 2)

@@ -13,7 +13,7 @@ from mdr_core.abel.power_moments import power_moment
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
-from mdr_core.profiles.power_functions import kappa, power, power_slope, power_step
+from mdr_core.profiles.power_functions import kappa, power, power_slope
 from mdr_core.profiles.power_sums import cancellation, first_negative_radius, log_terms
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -180,20 +180,6 @@ class Series(Profile):
                 for e, m in depths
             )
             return _total(pairs) * coordinate
-
-    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Source: mdr-5, Eq. (5.30), superposed. Parameters: see `Profile`."""
-        parts = (
-            2 * n / (n + 1) * depth * power_step(coordinate, width, stick, (n + 1))
-            for depth, n in self._depths(coordinate)
-        )
-        return _total(parts) * coordinate
-
-    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Source: mdr-5, Eq. (5.29), superposed. Parameters: see `Profile`."""
-        return _total(
-            depth * power_step(coordinate, width, stick, n) for depth, n in self._depths(coordinate)
-        )
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         if not self._positive or any(2 < n < 4 for _, n in self._powers):
