@@ -295,4 +295,5 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
         s = low + np.multiply.outer(1 + nodes, outer / 2)
         values = np.where(outer > 0, slope(s, s, np.zeros_like(s)), 0.0)
         total = total + outer / 2 * in_order(weights, values)
-    return total
+    # At the tip the slope may be infinite.
+    return where(width > 0, total, 0.0)
