@@ -18,7 +18,7 @@ from mdr_core.errors import InputError
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
-from mdr_service.query_parameters import PARAMETERS, Parameters
+from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS, json
 
@@ -98,12 +98,13 @@ def _content(arguments: argparse.Namespace) -> bytes:
     format_ = arguments.format or (suffix if suffix in FORMATS else "json")
     media_type = content_negotiation.media_type(format_, "*/*")
     size = None if size is None else content_negotiation.picture_size(size, media_type)
-    parameters = _parameters(arguments)
-    if parameters is None:
+    given = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
+    if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, size=size)
     if arguments.file:
         raise InputError(("file",), "does not go with options: give one of them")
+    parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
         return respond(name, parameters.query(), media_type, parameters.members, size)
 
@@ -112,13 +113,6 @@ def _options(command: str) -> dict[str, FieldInfo]:
     """Return the parameters that are options; every command has options for a picture."""
     fields = PARAMETERS[command].model_fields if command in PARAMETERS else {}
     return {name: field for name, field in fields.items() if name not in {"format", "size"}}
-
-
-def _parameters(arguments: argparse.Namespace) -> Parameters | None:
-    """Return the parameters that are given as options, None if there are none."""
-    command, options = arguments.command, vars(arguments)
-    given = {name: options[name] for name in _options(command) if name in options}
-    return PARAMETERS[command].model_validate(given) if given else None
 
 
 def _read(file: str) -> bytes:

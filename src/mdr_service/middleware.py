@@ -207,19 +207,13 @@ async def read_body(request: Request) -> bytes:
         raise _too_large()
     chunks: list[bytes] = []
     size = 0
-    more = True
-    while more:
-        message = await request.receive()
-        if message["type"] == "http.disconnect":
-            raise ClientDisconnect
-        chunk = message.get("body", b"")
+    async for chunk in request.stream():
         size += len(chunk)
         if size > SETTINGS.max_body_bytes:
             raise _too_large()
         if size > LONG:
             request.app.state.transfers.add_received(observability.CURRENT.get(), len(chunk))
         chunks.append(chunk)
-        more = message.get("more_body", False)
     return b"".join(chunks)
 
 

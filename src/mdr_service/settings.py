@@ -97,13 +97,10 @@ def from_environment(environment: Mapping[str, str]) -> Settings:
     try:
         return Settings.model_validate(given)
     except ValidationError as error:
-        raise SystemExit(_error_lines(error)) from None
-
-
-def _error_lines(error: ValidationError) -> str:
-    # An error of the model as a whole is about `shutdown_seconds`, which depends on two others.
-    faults = [((*fault["loc"], "shutdown_seconds")[0], fault["msg"]) for fault in error.errors()]
-    return "\n".join(f"{PREFIX}{str(name).upper()}: {message}" for name, message in faults)
+        # An error of the model as a whole is about `shutdown_seconds`, which depends on two others.
+        faults = [((*each["loc"], "shutdown_seconds")[0], each["msg"]) for each in error.errors()]
+        lines = [f"{PREFIX}{str(name).upper()}: {message}" for name, message in faults]
+        raise SystemExit("\n".join(lines)) from None
 
 
 SETTINGS: Final = from_environment(os.environ)
