@@ -73,7 +73,7 @@ def seconds(query: Query | BatchQuery) -> float:
         # A query that is rejected alone takes no time.
         return sum(time for time in times if time <= _LONGEST)
     if isinstance(query, SubsurfaceQuery):
-        return _beneath(query)
+        return _START[SubsurfaceQuery] * query.loads + _beneath(query)
     scale, path, loads = _complexity(query.profile), query.path, query.loads
     # Times that grow with the factor of the profile, and with its fourth root. A table is resolved
     # once for many queries.
@@ -100,33 +100,26 @@ def seconds(query: Query | BatchQuery) -> float:
     else:
         evaluated += _WEAR * loads
     root: float = scale**0.25
-    return scale * evaluated + root * integrated + _yielding(query)
+    return scale * evaluated + root * integrated + _beneath(query)
 
 
-def _beneath(query: SubsurfaceQuery) -> float:
-    """Return the expected time of stresses beneath the surface."""
-    points = query.loads * (query.positions + 2 * _SEARCHED * query.largest)
-    if query.material.has("yield_strength") and not query.has("history"):
-        # Loads in one ratio of the forces share the onset.
-        onsets = query.loads if query.has("friction_coefficient") else 1
-        points += _SEARCHED * onsets * _ONSETS
-    start = _START[SubsurfaceQuery] * query.loads
-    return start + points * _point(query) + _yielding(query)
-
-
-def _yielding(query: Query) -> float:
-    """Return the expected time of the warning `yield`, which bisects the loads."""
-    known = query.profile.kind in _SIMILAR and not query.has("friction_coefficient")
-    if known or not query.material.has("yield_strength"):
-        return 0.0
-    return _SEARCHED * _point(query) * (1 + log2(max(query.loads, 1)))
-
-
-def _point(query: Query) -> float:
-    """Return the expected time of the stress at a point."""
-    # The traction has two segments, and more at the end of a load path.
-    tractions = 2 if query.has("friction_coefficient") else 1
-    return _POINT * tractions * (3 if query.has("history") else 1)
+def _beneath(query: Query) -> float:
+    """Return the expected time of stresses beneath the surface, and of searches among them."""
+    with_friction = query.has("friction_coefficient")
+    with_yield = query.material.has("yield_strength")
+    points, searches = 0, 0.0
+    if with_yield and (with_friction or query.profile.kind not in _SIMILAR):
+        # The warning `yield` bisects the loads.
+        searches += 1 + log2(max(query.loads, 1))
+    if isinstance(query, SubsurfaceQuery):
+        points = query.loads * query.positions
+        searches += 2 * query.loads * query.largest
+        if with_yield and not query.has("history"):
+            # Loads in one ratio of the forces share the onset.
+            searches += _ONSETS * (query.loads if with_friction else 1)
+    # The traction has two segments with friction, and more at the end of a load path.
+    segments = (2 if with_friction else 1) * (3 if query.has("history") else 1)
+    return _POINT * segments * (points + _SEARCHED * searches)
 
 
 def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
