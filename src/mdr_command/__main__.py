@@ -8,7 +8,7 @@ from importlib import import_module
 from importlib.metadata import version
 from typing import Final, NamedTuple
 
-from mdr_command.exit_status import ExitStatus
+from mdr_command import ExitStatus
 
 
 class Command(NamedTuple):

@@ -13,7 +13,7 @@ from typing import Final
 
 from pydantic.fields import FieldInfo
 
-from mdr_command.exit_status import ExitStatus
+from mdr_command import ExitStatus
 from mdr_core.errors import InputError
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond

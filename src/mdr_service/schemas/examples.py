@@ -4,13 +4,8 @@ import json
 from importlib.resources import files
 from typing import Any, Final
 
-
-def _read(name: str) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads(files(__package__).joinpath(name).read_text("utf-8"))
-    return content
-
-
-EXAMPLES: Final = _read("examples.json")
+_FOLDER: Final = files(__package__)
+EXAMPLES: Final[dict[str, Any]] = json.loads(_FOLDER.joinpath("examples.json").read_text("utf-8"))
 """Examples by the name of the query; those of `parameters` are GET requests."""
-ANSWERS: Final = _read("answers.json")
+ANSWERS: Final[dict[str, Any]] = json.loads(_FOLDER.joinpath("answers.json").read_text("utf-8"))
 """Responses to the first example of each operation, by its name, rounded to six digits."""
