@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pv
 import pyarrow.parquet as pq
+from pyarrow.lib import concat_batches
 
 from mdr_sweep.request_columns import Values
 from mdr_sweep.spec import UsageError
@@ -124,7 +125,7 @@ def sample(source: Source) -> pa.RecordBatch:
     rows = ROW_GROUP // _PARTS
     count = -(-source.rows // rows)
     places = sorted({count * part // _PARTS for part in range(_PARTS)})
-    return _merged(list(source.batches(rows, places)))
+    return concat_batches(list(source.batches(rows, places)))
 
 
 def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
@@ -135,12 +136,12 @@ def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.Recor
         held.append(batch)
         size += batch.num_rows
         if size >= rows:
-            whole = _merged(held)
+            whole = concat_batches(held)
             end = size // rows * rows
             yield from (whole.slice(start, rows) for start in range(0, end, rows))
             held, size = [whole.slice(end)], size - end
     if size:
-        yield _merged(held)
+        yield concat_batches(held)
 
 
 def write(
@@ -170,8 +171,3 @@ def write(
             writer.write_batch(batch)
         if suffix != ".csv":
             writer.add_key_value_metadata({"mdr": json.dumps(dict(provenance), sort_keys=True)})
-
-
-def _merged(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
-    (whole,) = pa.Table.from_batches(batches).combine_chunks().to_batches()
-    return whole

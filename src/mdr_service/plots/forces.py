@@ -14,13 +14,13 @@ from mdr_service.plots.plot import (
     LABELS,
     MAX_CURVES,
     POINTS,
-    SYMBOLS,
     VISIBLE,
     Curve,
     Mark,
     Panel,
     Plot,
     subset_note,
+    symbol,
 )
 from mdr_service.queries.load_paths import solve_path
 from mdr_service.results import Result
@@ -64,7 +64,7 @@ def tangential(_query: TangentialQuery, contact: TangentialContact, result: Resu
     for index, (force, at) in enumerate(zip(forces[:MAX_CURVES], first, strict=False)):
         own = normal_force == force
         dense = _into_full_slip(contact, float(coordinates[at]), x[own])
-        label = f"{SYMBOLS['normal_force']} = {force:.4g}"
+        label = f"{symbol('normal_force')} = {force:.4g}"
         curve = Curve(dense.tangential_displacement, dense.tangential_force, label, x[own], y[own])
         curves.append(curve)
         marks += _friction_limits(float(np.max(dense.limiting_force)), curve.y, index)

@@ -17,8 +17,10 @@ MAX_CURVES: Final = 6
 LABELS: Final = {
     "indentation_depth": "indentation depth d",
     "normal_force": "normal force F_N",
+    "contact_radius": "contact radius a",
     "tangential_displacement": "tangential displacement u_x",
     "tangential_force": "tangential force F_x",
+    "stick_radius": "stick radius c",
     "radius": "radius r",
     "pressure": "pressure p",
     "shear_stress": "shear stress τ",
@@ -29,14 +31,6 @@ LABELS: Final = {
     "profile": "profile f",
     "limiting_profile": "profile f",
     "worn_depth": "worn depth f − f₀",
-}
-SYMBOLS: Final = {
-    "indentation_depth": "d",
-    "normal_force": "F_N",
-    "contact_radius": "a",
-    "tangential_force": "F_x",
-    "tangential_displacement": "u_x",
-    "stick_radius": "c",
 }
 NOTHING: Final = np.zeros(0)
 
@@ -97,6 +91,11 @@ class Map(NamedTuple):
     stick: float | None
     peak: tuple[float, float] | None
     note: str = ""
+
+
+def symbol(name: str) -> str:
+    """Return the symbol of a quantity, the last word of its label."""
+    return LABELS[name].rpartition(" ")[2]
 
 
 def subset_note(shown: int, total: int, what: str) -> str:

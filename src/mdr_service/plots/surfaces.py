@@ -17,13 +17,13 @@ from mdr_service.plots.plot import (
     MAX_CURVES,
     NOTHING,
     POINTS,
-    SYMBOLS,
     VISIBLE,
     Curve,
     Mark,
     Panel,
     Plot,
     subset_note,
+    symbol,
 )
 from mdr_service.queries.fields import at_end, field, solve_stress
 from mdr_service.queries.wear import solve_wear
@@ -174,7 +174,7 @@ def _load_names(query: StressQuery | WearQuery) -> list[str]:
         if isinstance(each.value, list) and len(each.value) > 1
     }
     return [
-        ", ".join(f"{SYMBOLS[name]} = {values[index]:.4g}" for name, values in listed.items())
+        ", ".join(f"{symbol(name)} = {values[index]:.4g}" for name, values in listed.items())
         for index in range(min(query.loads, MAX_CURVES))
     ]
 
