@@ -51,7 +51,9 @@ function keepLoad(key, value) {
   if (key === "oscillation") {
     inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
   }
-  if (key === "normal") inputs.path = rescaled(0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
+  if (key === "normal") {
+    inputs.path = rescaled(0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
+  }
   if (key === "tangential") {
     inputs.path = rescaled(1, Math.abs(known[value]) || (value === "tangential_force" ? 20 : 4e-7));
   }
@@ -253,12 +255,10 @@ function showForPrint(printing) {
   if (printing) redraw();
 }
 
-const showAddress = () => history.replaceState(null, "", toAddress(inputs));
-
 function refresh() {
   clearTimeout(refresh.timer);
   // Browsers limit how often the address may change.
-  refresh.timer = setTimeout(showAddress, 250);
+  refresh.timer = setTimeout(() => history.replaceState(null, "", toAddress(inputs)), 250);
   if (inputs.kind !== "tabulated" || inputs.table.r.length) sketch();
   solve();
 }
@@ -321,10 +321,7 @@ function connect() {
 
 makeTabs();
 connect();
-showForm();
-showPath();
-showAddress();
-solve();
+show(inputs);
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   showForm();
