@@ -11,7 +11,7 @@ from fastapi import FastAPI
 
 from mdr_core import __version__
 from mdr_service import health, middleware, openapi
-from mdr_service.api import explorer, operations, parameters, queries
+from mdr_service.api import explorer, operations, queries
 from mdr_service.settings import SETTINGS
 from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
@@ -36,11 +36,7 @@ def create_app() -> FastAPI:
     """Return the application."""
     app = FastAPI(
         # Routes of an included router would take some microseconds longer per request.
-        routes=[
-            route
-            for part in (queries, parameters, operations, explorer)
-            for route in part.router.routes
-        ],
+        routes=[route for part in (queries, operations, explorer) for route in part.router.routes],
         title="MDR",
         version=__version__,
         description=openapi.DESCRIPTION,

@@ -1,7 +1,8 @@
-"""Endpoints of the queries by POST, and the route class that they share."""
+"""Endpoints of the queries: by POST, with a route class of their own, and by URL parameters."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence, Sized
+from hashlib import blake2b
 from inspect import signature
 from typing import Annotated, Any, ClassVar, Final, get_args
 
@@ -10,11 +11,18 @@ from fastapi.routing import APIRoute
 from starlette.responses import Response
 
 from mdr_service import cost, problems
-from mdr_service.api.documentation import BATCH_RESPONSES, POST_RESPONSES, QUERY_TEXTS, Responses
+from mdr_service.api.documentation import (
+    BATCH_RESPONSES,
+    GET_RESPONSES,
+    POST_RESPONSES,
+    QUERY_TEXTS,
+    Responses,
+)
 from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
 from mdr_service.dispatch import respond
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import INVALID_REQUEST, ServiceError
+from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import contacts
 from mdr_service.schemas.answers import Answer
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
@@ -26,6 +34,8 @@ from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES
 _ANY: Final = "*/*"
 # Bound; the longest query has about forty.
 _MAX_PARAMETERS: Final = 100
+# A response depends on the query and on the version of the service alone.
+_CACHE_CONTROL: Final = "max-age=3600"
 
 
 class Responder:
@@ -151,3 +161,54 @@ def _declare(
 for _name, (_path, _model, _answer, _tag) in SCHEMAS.items():
     _declare(_name, _path, _tag, _model, _answer)
 _declare("batch", "/v1/batch", "batch", BatchQuery, BatchAnswer, BatchResponder)
+
+
+def _cacheable(request: Request, response: Response) -> Response:
+    """Return the response with a validator, or 304 if the client has it already.
+
+    The tag is weak, since a proxy may compress the same numbers.
+    """
+    digest = blake2b(response.body, digest_size=16).hexdigest()
+    headers = {"ETag": f'W/"{digest}"', "Cache-Control": _CACHE_CONTROL, "Vary": "Accept"}
+    known = header(request.scope, b"if-none-match")
+    tags = {tag.strip().removeprefix("W/") for tag in known.split(",")}
+    if tags & {f'"{digest}"', "*"}:
+        return Response(status_code=304, headers=headers)
+    response.headers.update(headers)
+    return response
+
+
+_get_router: Final = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(url_parameters)])
+
+
+def _declare_get(name: str, title: str, model: Any) -> None:
+    """Declare the endpoint of a query by URL parameters."""
+
+    @_get_router.get(
+        SCHEMAS[name].path,
+        operation_id=f"get_{name}",
+        tags=[SCHEMAS[name].tag],
+        summary=f"{title} by parameters, for spreadsheets and browsers",
+        response_model=SCHEMAS[name].answer,
+    )
+    async def get(parameters: Annotated[model, Query()], request: Request) -> Response:
+        """Return the response of `POST` for numbers and at most one range.
+
+        A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
+        """
+        send = Responder(request, parameters.format, parameters.size)
+        with parameters.pointing():
+            response = await send(name, parameters.query(), parameters.members)
+        return _cacheable(request, response)
+
+
+_TITLES: Final = {
+    "normal": "Normal contact",
+    "tangential": "Partial slip",
+    "history": "Cycles of the tangential load",
+    "stress": "Fields over the radius",
+    "wear": "Limiting state of fretting wear",
+}
+for _name, _title in _TITLES.items():
+    _declare_get(_name, _title, PARAMETERS[_name])
+router.routes += _get_router.routes
