@@ -6,10 +6,9 @@ Each function takes a query, its core solution and its result, and returns plain
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from mdr_service.plots.beneath import subsurface_map
 from mdr_service.plots.forces import history, normal, tangential
 from mdr_service.plots.plot import Map, Plot
-from mdr_service.plots.surfaces import evolution, stress, wear
+from mdr_service.plots.surfaces import evolution, stress, subsurface_map, wear
 from mdr_service.results import Result
 
 PLOTS: Final[Mapping[str, Callable[[Any, Any, Result], Plot | Map]]] = {

@@ -1,4 +1,4 @@
-"""Fields and worn profiles over the radius."""
+"""Fields and worn profiles over the radius, and a map of the stress beneath the surface."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import inf
@@ -6,7 +6,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from mdr_core import fields
+from mdr_core import fields, subsurface
 from mdr_core.history import LoadHistory
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -19,6 +19,7 @@ from mdr_service.plots.plot import (
     POINTS,
     VISIBLE,
     Curve,
+    Map,
     Mark,
     Panel,
     Plot,
@@ -26,9 +27,11 @@ from mdr_service.plots.plot import (
     symbol,
 )
 from mdr_service.queries.fields import at_end, field, solve_stress
+from mdr_service.queries.subsurface import body_of
 from mdr_service.queries.wear import solve_wear
 from mdr_service.results import Contact, Result, Wear
 from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 _Query = TypeVar("_Query", StressQuery, WearQuery)
@@ -37,6 +40,8 @@ _Query = TypeVar("_Query", StressQuery, WearQuery)
 _USUAL, _PEAK, _HEADROOM = 0.97, 2.0, 1.15
 _CUT: Final = frozenset({"pressure", "shear_stress"})
 _REQUESTED: Final = "requested radii"
+# Points of the map along z, and its extent in contact radii.
+_DOWN, _EXTENT = 81, 1.5
 
 
 def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
@@ -64,6 +69,26 @@ def stress(query: StressQuery, source: Contact, result: Result) -> Plot:
         marks += _edge_marks(fronts, "c")
     note = subset_note(loads, query.loads, "loads")
     return Plot(LABELS["radius"], panels, marks, _ends(radius), _REQUESTED, note)
+
+
+def subsurface_map(query: SubsurfaceQuery, source: Contact, result: Result) -> Map:
+    """Return the von Mises stress of the first load in the plane of the request."""
+    contact, partial = at_end(source)
+    a = float(np.ravel(contact.contact_radius)[0])
+    end = _EXTENT * a or 1.0
+    x, z = np.linspace(-end, end, 2 * _DOWN - 1), np.linspace(0.0, end, _DOWN)
+    tensor = subsurface.stress(partial or contact, x, query.y, z[:, None], **body_of(query))
+    first = tensor.von_mises.reshape(-1, z.size, x.size)[0]
+    stick = None
+    if isinstance(source, TangentialContact):
+        stick = float(np.ravel(source.stick_radius)[0])
+    down, across = np.unravel_index(np.argmax(first), first.shape)
+    peak = float(x[across]), float(z[down])
+    if "largest" in result and query.y == 0:
+        found = result["largest"]["von_mises"]
+        peak = float(found["x"][0]), float(found["z"][0])
+    note = subset_note(1, query.loads, "loads")
+    return Map(x, z, first, "von Mises stress", a, stick, peak, note)
 
 
 def wear(query: WearQuery, limit: LimitingWear, result: Result) -> Plot:
