@@ -13,32 +13,24 @@ import orjson
 
 MEDIA_TYPE: Final = "text/csv"
 PLAIN_TEXT: Final = "text/plain"
-# Members of a response, of its cycles or of the end of its history: these have no row.
-_NOT_IN_ROWS: Final = frozenset(
-    {
-        "method",
-        "error_estimate",
-        "field_error_estimate",
-        "warnings",
-        "slip_fronts",
-        "energy_per_cycle",
-        "secant_stiffness",
-        "largest",
-        "search_error_estimate",
-        "yield_onset_force",
-    }
-)
-_OBJECTS: Final = frozenset({"warnings", "largest", "yield_onset_force"})
+_WARNINGS: Final = "warnings"
+# Lists over the cycles of a history or at its end: these have no row.
+_NOT_IN_ROWS: Final = frozenset({_WARNINGS, "slip_fronts", "energy_per_cycle", "secant_stiffness"})
 # Given over the radius only, and repeated for each load.
 _BY_RADIUS: Final = frozenset({"initial_profile"})
 
 
 def write(result: Mapping[str, Any]) -> bytes:
     """Return the table of a result (RFC 4180); infinities are written ``inf``."""
-    values = {name: value for name, value in result.items() if name not in _NOT_IN_ROWS}
+    lists = {name: v for name, v in result.items() if isinstance(v, list | np.ndarray)}
+    values = {name: v for name, v in lists.items() if name not in _NOT_IN_ROWS}
     if not values:
         # None of the chosen members has rows: each is a column of its own length.
-        values = {name: np.atleast_1d(result[name]) for name in result if name not in _OBJECTS}
+        values = {
+            name: np.atleast_1d(value)
+            for name, value in result.items()
+            if name != _WARNINGS and not isinstance(value, Mapping)
+        }
     if "radius" in values:
         columns = _by_position(values, "radius")
     elif "x" in values:
