@@ -256,18 +256,9 @@ class IntervalMoments:
         base : contact coordinates of the breaks below, zero for none, shape (m,).
         """
         profile = self.profile
-        at_break = (base > 0) & (ends[0] == base)
-
-        def values(function: Function) -> Array:
-            found = function(ends)
-            if some(at_break):
-                found[0] = np.where(at_break, _from_below(function, base), found[0])
-            return found
-
         twice = 2 * profile.contact_radius(ends)
-        depth, force, energy = map(
-            values, (profile.depth, profile.reduced_force, profile.reduced_energy)
-        )
+        depth, force = profile.depth(ends), profile.reduced_force(ends)
+        energy = profile.reduced_energy(ends)
         if self.over_forces:
             with np.errstate(divide="ignore"):
                 slope = 1 / twice
