@@ -294,9 +294,7 @@ class IntervalMoments:
         place, moved = _in_logarithm(stop, width, share)
         origin, past = place, np.zeros_like(place)
         if some(beyond):
-            # By rounding an interval may end below the break at its start.
-            below = np.where(thin, (stop - base) - width, start - base)
-            root, climb = _in_root(stop - base, below, width, share)
+            root, climb = _in_root(stop - base, start - base, width, share)
             place = np.where(beyond, np.minimum(base + root * root, stop), place)
             moved = np.where(beyond, 2 * root * climb, moved)
             origin, past = np.where(beyond, base, place), np.where(beyond, root * root, 0.0)

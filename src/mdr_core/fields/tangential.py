@@ -70,13 +70,9 @@ class Traction(NamedTuple):
         return result
 
     def depth_from(self, i: int, x: Array, at: Array) -> Array:
-        """Return the depth from radii of the i-th annulus, or below it, to its upper end [length].
+        """Return the depth from radii x of the i-th annulus, or below, to its upper end [length].
 
-        Parameters
-        ----------
-        i : index of the annulus, from the axis.
-        x : radii [length], shape (m,).
-        at : their contact coordinates, shape (m,).
+        `at` has their contact coordinates.
         """
         x, at = np.maximum(x, self.radius[i]), np.maximum(at, self.coordinate[i])
         top = np.maximum(self.coordinate[i + 1], at)

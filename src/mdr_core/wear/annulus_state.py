@@ -72,11 +72,8 @@ class AnnulusState:
 
     @cached_property
     def retained_wear(self) -> float:
-        """w_c = g(c) - g_0(c): wear that the springs keep when the growing stick zone gets there.
-
-        At a stick edge at rest w_c is the height of g's step that is inside the stick zone.
-        """
-        return self.depth_increase - self._stick_rise if self.initial.stick_grows else 0.0
+        """w_c = g(c) - g_0(c): wear that the springs keep when a growing stick zone gets there."""
+        return self.depth_increase - self._stick_rise
 
     @cached_property
     def _stick_rise(self) -> float:

@@ -129,14 +129,11 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     top = np.broadcast_to(normal.coordinate, share.shape)
 
     def carried(width: Array) -> tuple[Array, Array]:
-        """Return c (d - g(c)) at a coordinate `width` below that of the contact, and its slope."""
+        """Return c (d - g(c)), and its logarithmic slope, `width` below the contact's edge."""
         edge = np.maximum(top - width, profile.first_coordinate)
         c, step = profile.contact_radius(edge), equivalent_1d.depth_step(profile, top, width, edge)
-        return c * step, c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
-
-    def sloped(width: Array) -> tuple[Array, Array]:
-        value, slope = carried(width)
-        return value, width * slope / value
+        slope = c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
+        return c * step, width * slope / (c * step)
 
     widest = top - profile.first_coordinate
     target = np.where(widest > 0, share, 0.0)
@@ -144,7 +141,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     largest = 2 * contact.friction_coefficient * normal.e_star * most
     _reject_overload(contact, amplitude, most < target, largest)
     width = invert(
-        sloped,
+        carried,
         target,
         np.where(target > 0, (low + high) / 2, 1.0),
         low,
