@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mdr_core.abel import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.elementwise import full, some, where
 from mdr_core.profiles import Paraboloid, Profile
 from mdr_core.typing import Array, Flags, Indices

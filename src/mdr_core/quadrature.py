@@ -209,9 +209,7 @@ def _half_rule(points: int) -> tuple[Array, Array]:
 @lru_cache(maxsize=256)
 def composite_rule(points: int, count: int = 1) -> tuple[Array, Array]:
     """Return nodes and weights on [0, 1], cut into `count` equal pieces."""
-    nodes, weights = gauss_legendre(points)
-    starts = np.arange(count)[:, None]
-    return ((starts + (nodes + 1) / 2) / count).ravel(), np.tile(weights / (2 * count), count)
+    return piecewise_rule(points, np.linspace(0.0, 1.0, count + 1))
 
 
 @lru_cache(maxsize=4)

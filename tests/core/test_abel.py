@@ -26,8 +26,10 @@ def two_root_integral(
     weight: Callable[[Array, Array], Array], r: Array, a: float, *, odd: bool = False
 ) -> Array:
     upper = np.full(r.shape, np.sqrt((a - B) * (a + B)))
-    annulus = abel.Annulus(upper, outer_radius=np.full(r.shape, a))
-    return abel.two_root_integral(lambda x, s, _: weight(x, s), B, r, annulus, odd=odd, rtol=RTOL)
+    annulus = abel.annulus.Annulus(upper, outer_radius=np.full(r.shape, a))
+    return abel.two_root.two_root_integral(
+        lambda x, s, _: weight(x, s), B, r, annulus, odd=odd, rtol=RTOL
+    )
 
 
 # At r = B a different rule applies; both must agree around it.
@@ -66,10 +68,14 @@ def test_one_sided_annulus_equals_difference() -> None:
     def weight(x: Array, s: Array, _: NDArray[np.intp]) -> Array:
         return (2 * s - B * np.arctan(s / B)) * s / x
 
-    stick_edge = abel.InnerEnd(upper - lower, np.full(r.shape, c))
-    annulus = abel.two_root_integral(
-        weight, B, r, abel.Annulus(upper, stick_edge), odd=True, rtol=RTOL
+    stick_edge = abel.annulus.InnerEnd(upper - lower, np.full(r.shape, c))
+    annulus = abel.two_root.two_root_integral(
+        weight, B, r, abel.annulus.Annulus(upper, stick_edge), odd=True, rtol=RTOL
     )
-    whole = abel.two_root_integral(weight, B, r, abel.Annulus(upper), odd=True, rtol=RTOL)
-    inner = abel.two_root_integral(weight, B, r, abel.Annulus(lower), odd=True, rtol=RTOL)
+    whole = abel.two_root.two_root_integral(
+        weight, B, r, abel.annulus.Annulus(upper), odd=True, rtol=RTOL
+    )
+    inner = abel.two_root.two_root_integral(
+        weight, B, r, abel.annulus.Annulus(lower), odd=True, rtol=RTOL
+    )
     assert np.allclose(annulus, whole - inner, rtol=1e-12, atol=0)

@@ -11,10 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel import Annulus, InnerEnd, two_root_integral
+from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch, arccosine, slope_integral
 from mdr_core.abel.subpanels import FEW
-from mdr_core.abel.two_root import inverse_hypot
+from mdr_core.abel.two_root import inverse_hypot, two_root_integral
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import Analytic
 from mdr_core.typing import Array, Chosen

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
-from mdr_core.abel import Annulus
+from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import every, number
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
-from mdr_core.abel import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.elementwise import number
 from mdr_core.fields.arc import Arc
 from mdr_core.fields.normal import by_load, fill, stress

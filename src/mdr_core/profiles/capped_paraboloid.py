@@ -144,17 +144,16 @@ class CappedParaboloid(Profile):
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Parameters: see `Profile`."""
-        b, roots = self._break, self._outer(s_a) + self._outer(s_c)
-        beyond = self._ratio * ((a - c) * (a + c) / where(roots > 0, roots, 1.0))
+        b, roots = self._break, (self._outer(s_a), self._outer(s_c))
+        beyond = self._ratio * self._flank.coordinate_width(a, c, *roots)
         across = (s_a - b) + (b - np.minimum(s_c, b))
         return where(s_a <= b, a - c, where(s_c >= b, beyond, across))
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         b, s_c = self._break, s_a - width
-        a, s = self.contact_radius(s_a), self._outer(s_a)
-        total = a + self.contact_radius(s_c)
-        beyond = width / self._ratio * (s + self._outer(s_c)) / where(total > 0, total, 1.0)
-        across = s * s / (a + b) + (width - (s_a - b))
+        s = self._outer(s_a)
+        beyond = self._flank.radius_width(s, width / self._ratio)
+        across = s * s / (self.contact_radius(s_a) + b) + (width - (s_a - b))
         return where(s_a <= b, width, where(s_c >= b, beyond, across))
 
     # The normal contact.

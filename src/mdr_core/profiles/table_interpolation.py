@@ -47,7 +47,8 @@ def interpolate(
     cuts = np.searchsorted(r, sorted({0.0, *breaks, float(r[-1])})).tolist()
     segments = [slice(i, j + 1) for i, j in pairwise(cuts)]
     if kind == "pchip":
-        slopes = _at_ends([_pchip_slopes(r[part], f[part]) for part in segments])
+        # Cubics of these slopes are monotone. Source: fritsch-carlson.
+        slopes = _at_ends([PchipInterpolator(r[part], f[part])(r[part], 1) for part in segments])
         return _hermite(f, width, chord, slopes), r[:0]
     fall = SLOPE_FALLS if kind == "auto" else RINGING
     slopes = _at_ends(_spline_slopes(r, f, segments, smooth=kind == "auto"))
@@ -90,11 +91,6 @@ def _lowest_slopes(rows: Array, width: Array) -> tuple[Array, Array]:
     slopes = c1 + u * (2 * c2 + u * 3 * c3)
     lowest = slopes.argmin(axis=0), np.arange(width.size)
     return slopes[lowest], u[lowest]
-
-
-def _pchip_slopes(r: Array, f: Array) -> Array:
-    """Slopes at the points for which cubic polynomials are monotone. Source: fritsch-carlson."""
-    return np.asarray(PchipInterpolator(r, f)(r, 1))
 
 
 def _spline_slopes(r: Array, f: Array, segments: Sequence[slice], *, smooth: bool) -> list[Array]:

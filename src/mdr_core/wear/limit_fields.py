@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel import Annulus
+from mdr_core.abel.annulus import Annulus
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
 from mdr_core.wear.worn_annulus import RTOL
