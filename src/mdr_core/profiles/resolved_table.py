@@ -25,6 +25,7 @@ _ROUGHNESS: Final = 1e-2
 _SPLINE_FALLS: Final = 1e-5
 # A slope on the axis below this, over the steepest, is interpolation error.
 _SMOOTH_TIP: Final = 1e-6
+_NO_PLATEAUS: Final = np.empty((0, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +105,7 @@ def resolve_table(
         if other.dips().depth.max(initial=0.0) < dips.depth.max() / 2:
             notices.append(_not_by_spline("g", dips.begin[0]))
             rows, spline, panels, dips = monotone, False, other, other.dips()
-    domain, plateaus = float(r[-1]), np.empty((0, 2))
+    domain, plateaus = float(r[-1]), _NO_PLATEAUS
     if dips.top.size:
         # Smaller falls are within the interpolation error of a smooth body.
         noticed = dips.depth > RINGING * panels.at_edges[0].max()
@@ -121,14 +122,12 @@ def resolve_table(
 
 
 def _subpanels(
-    r: Array, f: Array, rows: Array, plateaus: Array | None = None, *, spline: bool = False
+    r: Array, f: Array, rows: Array, plateaus: Array = _NO_PLATEAUS, *, spline: bool = False
 ) -> Subpanels:
     """Transforms of the interpolant, from the axis or the flat's edge on."""
     first = int(np.flatnonzero(f == 0)[-1])
     slope = rows[1:, first:] * np.array([[1.0], [2.0], [3.0]])
-    return resolve(
-        r[first:], slope, np.empty((0, 2)) if plateaus is None else plateaus, spline=spline
-    )
+    return resolve(r[first:], slope, plateaus, spline=spline)
 
 
 def _not_by_spline(name: str, radius: float) -> Notice:
