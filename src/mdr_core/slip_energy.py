@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import is_number, some, where
+from mdr_core.elementwise import is_number, some
 from mdr_core.equivalent_1d import depth_step
 from mdr_core.interval_moments import interval_moments
 from mdr_core.profiles import Profile
@@ -34,11 +34,9 @@ def slip_moment(
     if closed is not None:
         return closed
     with np.errstate(over="ignore", invalid="ignore"):
-        first = profile.first_coordinate
-        low = where(stick < first, first, stick)
         d, force = profile.depth(coordinate), profile.reduced_force(coordinate)
-        chord = (d - profile.depth(low)) * (force + profile.reduced_force(low)) / 2
-        area = chord - (energy - profile.reduced_energy(low))
+        chord = (d - profile.depth(stick)) * (force + profile.reduced_force(stick)) / 2
+        area = chord - (energy - profile.reduced_energy(stick))
         narrow = ~(area > _MIN_AREA_RATIO * d * force)
     if not some(narrow):
         return area

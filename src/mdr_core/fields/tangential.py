@@ -76,8 +76,7 @@ class Traction(NamedTuple):
         """
         x, at = np.maximum(x, self.radius[i]), np.maximum(at, self.coordinate[i])
         top = np.maximum(self.coordinate[i + 1], at)
-        edge = np.maximum(self.radius[i + 1], x)
-        width = self.profile.coordinate_width(edge, x, top, at)
+        width = self.profile.coordinate_width(self.radius[i + 1], x, top, at)
         width = np.where(at == self.coordinate[i], self.width[i], width)
         return equivalent_1d.depth_step(self.profile, top, width, at)
 

@@ -161,8 +161,6 @@ class NonlinearSteps:
 
         Corners that chords have cut are moved to the arcs. None if no arc is left.
         """
-        if not line.in_contact:
-            return None
         tree = slip_memory.as_tree(line)
         # Of each segment, below the vertex of its index.
         end = (line.load_step + 1) * self.path.per_step
@@ -205,7 +203,7 @@ class NonlinearSteps:
             rise = force + rate * slope if moments.over_forces else slope + rate * force
             moved = moments.conjugate(s) - self.conjugate[end]
             miss = normal(s) + sign * self.tangential[end] + rate * moved - sums
-            s = np.where(rise > 0, s - miss / np.where(rise > 0, rise, 1.0), np.nan)
+            s = s - miss / np.where(rise > 0, rise, np.nan)
         # Where the arc is all but parallel to the face, the corner of the chords is as good.
         moved = np.abs(normal(s) - normal(start))
         return np.where(moved < _NEAREST * normal(start), s, start)

@@ -150,8 +150,6 @@ class WearEvolution(validity.ContactResults, WornSurface):
         InputError : as of `worn_depth`.
         """
         r = self._radii(radius)
-        if not self.states or not r.size:
-            return self.tangential_contact.error_estimate
         c, a = self.stick_radius, self.contact_radius
         annulus = np.pi * (a - c) * (a + c)
         least = {

@@ -136,16 +136,15 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         return c * step, width * slope / (c * step)
 
     widest = top - profile.first_coordinate
-    target = np.where(widest > 0, share, 0.0)
-    low, high, most = _first_crossing(carried, widest, target)
+    low, high, most = _first_crossing(carried, widest, share)
     largest = 2 * contact.friction_coefficient * normal.e_star * most
-    _reject_overload(contact, amplitude, most < target, largest)
+    _reject_overload(contact, amplitude, most < share, largest)
     width = invert(
         carried,
-        target,
-        np.where(target > 0, (low + high) / 2, 1.0),
+        share,
+        np.where(share > 0, (low + high) / 2, 1.0),
         low,
-        np.where(target > 0, high, 2.0),
+        np.where(share > 0, high, 2.0),
         f"{profile.kind}'s stick edge at a constant depth",
     )
     edge = top - width
