@@ -69,13 +69,10 @@ class Traction(NamedTuple):
             result += arc.stress(r, rtol) / np.pi
         return result
 
-    def depth_from(self, i: int, x: Array, at: Array) -> Array:
-        """Return the depth from radii x of the i-th annulus, or below, to its upper end [length].
-
-        `at` has their contact coordinates.
-        """
-        x, at = np.maximum(x, self.radius[i]), np.maximum(at, self.coordinate[i])
-        top = np.maximum(self.coordinate[i + 1], at)
+    def depth_from(self, i: int, x: Array) -> Array:
+        """Return the depth from radii x in or below the i-th annulus to its upper end [length]."""
+        at = np.maximum(self.profile.coordinate_from_radius(x), self.coordinate[i])
+        x, top = np.maximum(x, self.radius[i]), np.maximum(self.coordinate[i + 1], at)
         width = self.profile.coordinate_width(self.radius[i + 1], x, top, at)
         width = np.where(at == self.coordinate[i], self.width[i], width)
         return equivalent_1d.depth_step(self.profile, top, width, at)
@@ -204,13 +201,13 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
         # The springs of a flat carry the load of its edge.
         inside = r < load.radius[-1]
         x = np.maximum(r[inside], load.radius[0])
-        at, total = profile.coordinate_from_radius(x), np.zeros(x.shape)
+        total = np.zeros(x.shape)
         for i, slope in enumerate(load.slope):
             below, arc = x < load.radius[i + 1], load.arcs[i] if load.arcs else None
             if arc is not None:
                 total[below] += arc.anchor_step(np.maximum(x[below], arc.low))
             elif slope:
-                total[below] += slope * load.depth_from(i, x[below], at[below])
+                total[below] += slope * load.depth_from(i, x[below])
         result[inside] = load.modulus * total
         return result
 
