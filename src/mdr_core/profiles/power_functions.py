@@ -100,6 +100,23 @@ StickRatios = tuple[_StickRatio, _StickRatio]
 """Under a displacement and under a force."""
 
 
+def linear_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where c/a = rest = 1 - ratio."""
+    return rest, ratio
+
+
+def square_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where (c/a)^2 = rest = 1 - ratio."""
+    k = np.sqrt(rest)
+    return k, ratio / (1 + k)
+
+
+def cubic_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
+    """Return c/a and 1 - c/a where (c/a)^3 = rest = 1 - ratio."""
+    k = np.cbrt(rest)
+    return k, ratio / (1 + k * (1 + k))
+
+
 def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, Array]:
     """Return c/a and 1 - c/a where (c/a)^exponent = rest = 1 - ratio. Source: notes, §4."""
     with np.errstate(divide="ignore"):

@@ -14,11 +14,14 @@ from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
     StickRatios,
+    cubic_stick,
     kappa,
+    linear_stick,
     power,
     power_root,
     power_slope,
     power_stick,
+    square_stick,
 )
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -49,7 +52,7 @@ class Cone(Profile):
     formula: ClassVar[str] = "slope·r"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
     # Source: mdr-5, Eqs. (5.47), (5.49).
-    stick_ratios: ClassVar[StickRatios] = (partial(power_stick, 1.0), partial(power_stick, 2.0))
+    stick_ratios: ClassVar[StickRatios] = (linear_stick, square_stick)
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
@@ -135,7 +138,7 @@ class Paraboloid(Profile):
     formula: ClassVar[str] = "r²/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
     # Source: mdr-5, Eqs. (5.12), (5.16).
-    stick_ratios: ClassVar[StickRatios] = (partial(power_stick, 2.0), partial(power_stick, 3.0))
+    stick_ratios: ClassVar[StickRatios] = (square_stick, cubic_stick)
 
     def f(self, radius: Array) -> Array:
         return radius * radius / (2 * self.radius)
