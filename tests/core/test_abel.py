@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from hypothesis import settings
 
-from mdr_core import abel
+from mdr_core.abel import two_root
+from mdr_core.abel.annulus import Annulus, InnerEnd
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,8 +27,8 @@ def two_root_integral(
     weight: Callable[[Array, Array], Array], r: Array, a: float, *, odd: bool = False
 ) -> Array:
     upper = np.full(r.shape, np.sqrt((a - B) * (a + B)))
-    annulus = abel.annulus.Annulus(upper, outer_radius=np.full(r.shape, a))
-    return abel.two_root.two_root_integral(
+    annulus = Annulus(upper, outer_radius=np.full(r.shape, a))
+    return two_root.two_root_integral(
         lambda x, s, _: weight(x, s), B, r, annulus, odd=odd, rtol=RTOL
     )
 
@@ -68,14 +69,10 @@ def test_one_sided_annulus_equals_difference() -> None:
     def weight(x: Array, s: Array, _: NDArray[np.intp]) -> Array:
         return (2 * s - B * np.arctan(s / B)) * s / x
 
-    stick_edge = abel.annulus.InnerEnd(upper - lower, np.full(r.shape, c))
-    annulus = abel.two_root.two_root_integral(
-        weight, B, r, abel.annulus.Annulus(upper, stick_edge), odd=True, rtol=RTOL
+    stick_edge = InnerEnd(upper - lower, np.full(r.shape, c))
+    annulus = two_root.two_root_integral(
+        weight, B, r, Annulus(upper, stick_edge), odd=True, rtol=RTOL
     )
-    whole = abel.two_root.two_root_integral(
-        weight, B, r, abel.annulus.Annulus(upper), odd=True, rtol=RTOL
-    )
-    inner = abel.two_root.two_root_integral(
-        weight, B, r, abel.annulus.Annulus(lower), odd=True, rtol=RTOL
-    )
+    whole = two_root.two_root_integral(weight, B, r, Annulus(upper), odd=True, rtol=RTOL)
+    inner = two_root.two_root_integral(weight, B, r, Annulus(lower), odd=True, rtol=RTOL)
     assert np.allclose(annulus, whole - inner, rtol=1e-12, atol=0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from mpmath import mp, mpf
@@ -22,7 +24,16 @@ from mdr_core.profiles import (
     Tabulated,
     TruncatedCone,
 )
-from mdr_core.subsurface import MEASURES, largest, stress, yield_finding, yield_onset_force
+from mdr_core.subsurface import (
+    MEASURES,
+    StressTensor,
+    largest,
+    stress,
+    yield_finding,
+    yield_onset_force,
+    yielding,
+)
+from mdr_core.subsurface.stress import on_rings
 from tests.oracles.subsurface_generate import shape_of, tensor
 
 STRENGTH = 0.01
@@ -130,6 +141,31 @@ def test_weak_friction_lifts_one_of_many_peaks(
         ]
         assert max(sampled) < peak * (1 + 1e-7)
         assert max(sampled) > peak * (1 - 3e-3)
+
+
+@pytest.mark.parametrize("push", [0.0, 1e-12, 1e-8, 1e-4])
+@pytest.mark.parametrize("beyond", [1e-6, 1e-3])
+def test_narrow_peaks_next_to_a_flat(
+    beyond: float, push: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each is a ridge in r and z, the longer the closer the slip annulus is to the edge."""
+    calls: list[None] = []
+
+    def counted(*given: Any) -> StressTensor:
+        calls.append(None)
+        return on_rings(*given)
+
+    contact = normal.solve(RoundedPunch(0.5, 10.0), 1.0, contact_radius=0.5 * (1 + beyond))
+    force = push * 0.5 * contact.normal_force
+    case = tangential.solve(contact, 0.9, 0.5, tangential_force=force)
+    monkeypatch.setattr(yielding, "on_rings", counted)
+    peak = float(largest(case, "maximum_shear", poissons_ratio=0.0).value)
+    assert len(calls) < 150
+    r = 0.5 * (1 + beyond * np.linspace(-1, 1, 401))
+    z = 0.5 * beyond * np.geomspace(1e-6, 10, 401)[:, None]
+    sampled = stress(case, r, 0.0, z, poissons_ratio=0.0).maximum_shear.max()
+    assert sampled < peak * (1 + 1e-6)
+    assert sampled > peak * (1 - 3e-3)
 
 
 @pytest.mark.parametrize("measure", MEASURES)

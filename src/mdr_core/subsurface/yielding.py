@@ -23,16 +23,19 @@ from mdr_core.typing import Array, Indices
 from mdr_core.validation import require_poissons_ratio, require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
-# Radii, and depths per e-fold, of a grid in the plane y = 0. The radii cluster at the axis, the
+# Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the
 # edges and the breaks; the depths lie between these parts of the contact radius.
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
 # Peaks of the grid that are climbed if they reach this part of the highest one that is known.
-_PEAKS, _ALMOST = 3, 0.9
-# Points across a box around a peak, and half of the first one in steps of the grid and in its
-# directions: under weak friction a peak may leave the plane.
-_ACROSS, _STEPS, _TURN = np.linspace(-1, 1, 5), 1.5, np.pi / 6
-# Factor by which a box shrinks, and its last size: a smooth peak is missed by the square of it.
-_SHRINK, _SMALLEST = 0.3, 1e-3
+_PEAKS, _ALMOST = 6, 0.8
+# Directions of the grid if there is friction: weak friction may lift a peak out of the plane y = 0.
+_ANGLES: Final = np.arange(3) * np.pi / 6
+# Points across a box around a peak, that in the middle, and half of the first box in steps of the
+# grid.
+_ACROSS, _MIDDLE, _STEPS = np.linspace(-1, 1, 5), (2, 2, 2), 1.5
+# Factor by which a box shrinks; part of the stress by which it may vary in the last one, of all
+# peaks and of the highest ones, and that of rounding errors; rounds.
+_SHRINK, _COARSE, _FLAT, _ROUNDING, _ROUNDS = 0.3, 0.01, 4e-6, 1e-11, 100
 # Decimals of the logarithm of the stress at the onset; accuracy and range of that of the force.
 _DIGITS, _XTOL, _REACH = 5, 1e-5, 60.0
 
@@ -132,8 +135,8 @@ def yield_finding(
     profile, (columns, shape) = pressed.profile, _columns(contact)
 
     def yields(one: Contact) -> bool:
-        peaks = (largest(one, "maximum_shear", poissons_ratio=nu) for nu in ratios)
-        return any(2 * peak.value >= yield_strength for peak in peaks)
+        ((under,), _), limit = foundations(one, 1), yield_strength / 2
+        return any(_peak(under, "maximum_shear", nu, limit)[0] >= limit for nu in ratios)
 
     reaches = cache(lambda *case: yields(_under(profile, *case)))
 
@@ -230,8 +233,13 @@ def _factor(exponent: float, poissons_ratio: float) -> float:
     return float(peak.value / contact.mean_pressure)
 
 
-def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
-    """Value and place of the largest stress in one case; parameters: see `largest`."""
+def _peak(
+    under: Foundation, measure: str, nu: float, limit: float | None = None
+) -> tuple[float, ...]:
+    """Value and place of the largest stress in one case; parameters: see `largest`.
+
+    With a `limit` it is a value on the same side of it as the largest stress.
+    """
     if not under.loaded:
         return 0.0, 0.0, 0.0, 0.0
     profile, edges = under.load.profile, under.load.radius
@@ -254,31 +262,49 @@ def _peak(under: Foundation, measure: str, nu: float) -> tuple[float, ...]:
         r = np.append(-r[:0:-1], r)
     shallow, deep = min(_SHALLOWEST * a, 0.1 * float(np.diff(stops).min())), _DEEPEST * a
     z = np.append(0.0, np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow))))
-    (values,) = on(np.zeros(1), r, z)
+    angles = _ANGLES if under.sheared else _ANGLES[:1]
+    values = on(angles, r, z)
+    if limit is not None and values.max() >= limit:
+        return (float(values.max()),)
     high = (values == maximum_filter(values, 3)) & (values >= _ALMOST * values.max())
+    high[1:, r == 0] = False
     tops = sorted(np.argwhere(high), key=lambda top: -values[*top])[:_PEAKS]
-    turn, across, down = _TURN * under.sheared, _STEPS * np.gradient(r), _STEPS * np.gradient(z)
-    peaks = [
-        _climbed(on, np.array([0.0, r[i], z[j]]), np.array([turn, across[i], down[j]]))
-        for i, j in tops
-    ]
-    value, (angle, radius, depth) = max(peaks, key=lambda peak: peak[0])
+    steps = [_ANGLES[1] * under.sheared, np.gradient(r), np.gradient(z)]
+    coarse = []
+    for k, i, j in tops:
+        box = _STEPS * np.array([steps[0], steps[1][i], steps[2][j]])
+        coarse.append(_climbed(on, np.array([angles[k], r[i], z[j]]), box, _COARSE))
+    highest = max(value for value, _, _ in coarse)
+    if limit is not None and not highest < limit <= highest * (1 + 2 * _COARSE):
+        return (highest,)
+    last = [each[1:] for each in coarse if each[0] >= highest * (1 - _COARSE)]
+    peaks = [_climbed(on, place, box, _FLAT) for place, box in last]
+    value, (angle, radius, depth), _ = max(peaks, key=lambda peak: peak[0])
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
 
-def _climbed(on: Callable[..., Array], place: Array, box: Array) -> tuple[float, Array]:
-    """Return the peak next to a place, and its own place, by boxes of points around it.
+def _climbed(
+    on: Callable[..., Array], place: Array, box: Array, flat: float
+) -> tuple[float, Array, Array]:
+    """Return the peak next to a place, its own place, and the last of the boxes around it.
 
-    A box moves to its highest point, and grows if that is a higher one on its boundary.
+    A box moves to its highest point. In each direction it grows if that lies on its boundary and
+    shrinks if it is the middle, so that it takes the shape of the peak, however narrow. In the
+    last one the stress varies by the part `flat`.
     """
-    value, size = 0.0, 1.0
-    while size > _SMALLEST:
-        axes = place[:, None] + size * box[:, None] * _ACROSS
+    half = box
+    for _ in range(_ROUNDS):
+        axes = place[:, None] + half[:, None] * _ACROSS
         axes[2] = np.abs(axes[2])
         values = on(*axes)
-        spot = np.unravel_index(values.argmax(), values.shape)
-        outward = ((np.abs(_ACROSS[list(spot)]) == 1) & (box > 0)).any()
-        rises = outward and values[spot] > value
-        size = min(size / _SHRINK, 1.0) if rises else size * _SHRINK
-        value, place = float(values[spot]), axes[range(3), spot]
-    return value, place
+        spot = tuple(map(int, np.unravel_index(values.argmax(), values.shape)))
+        if values[spot] > values[_MIDDLE] * (1 + _ROUNDING):
+            place = axes[range(3), spot]
+        else:
+            spot = _MIDDLE
+        if values[spot] - values.min() <= flat * values[spot]:
+            break
+        reach = np.abs(_ACROSS[list(spot)])
+        half = half * np.where(reach == 1, 1 / _SHRINK, np.where(reach == 0, _SHRINK, 1.0))
+        half[0] = min(half[0], box[0])
+    return float(values[spot]), place, half
