@@ -6,9 +6,10 @@ of a rule for such functions is bounded a priori. Each integral therefore takes 
 its length and the tolerance need, and nothing is evaluated twice.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from math import ceil, floor, log2, log10, pi
 from typing import Final
 
@@ -22,14 +23,13 @@ from mdr_core.typing import Array, Chosen, Flags, Indices
 Integrand = Callable[[Array, Chosen], Array]
 
 # Points of the rules for any integral.
-_POINTS: Final = (2, 4, 8, 12, 16, 24, 48)
+_POINTS: Final = (2, 3, 4, 5, 6, 8, 12, 16, 24, 48)
 # Points of the rules on [-H, H] for an even integrand, of which half are evaluated.
-_EVEN_POINTS: Final = (4, 8, 16, 24, 48)
+_EVEN_POINTS: Final = (4, 6, 8, 12, 16, 24, 48)
 # Points of the rule for pieces of a long integral, which has the fewest nodes per unit length.
 _PIECE_POINTS: Final = 24
-# Integrals for which one call of the finest rule takes less time than a call of each, by
-# measurement.
-_FEW: Final = 64
+# Nodes evaluated in the time of one more call of an integrand, by measurement.
+_CALL: Final = 2000
 # Logarithm of the largest double, rounded down.
 _LOG_LARGEST: Final = 700.0
 # Parts of the widest ellipse among which the best bound is searched.
@@ -157,14 +157,42 @@ def integrate(
             rule = (_half_rule if halved else composite_rule)(points[number])
         return _apply(h, rule, start, span, index)
 
-    half = length if halved else length / 2
-    number = _half_lengths(points, decade, analytic).searchsorted(half)
-    if length.size <= _FEW:
-        return by_rule(int(number.max(initial=0)), slice(0, length.size))
-    result = np.empty_like(length)
-    for present in np.flatnonzero(np.bincount(number)).tolist():
-        index = _chosen((number == present).nonzero()[0])
-        result[index] = by_rule(present, index)
+    half, evaluations = length / 2, list(points)
+    if halved:
+        half, evaluations = length, [count // 2 for count in points]
+    return _by_groups(by_rule, half, _half_lengths(points, decade, analytic), evaluations)
+
+
+def _by_groups(
+    by_rule: Callable[[int, Chosen], Array],
+    half_length: Array,
+    longest: Array,
+    nodes: Sequence[int],
+) -> Array:
+    """Evaluate integrals that share a rule in one call; the rule after the last one uses pieces.
+
+    A few integrals are merged with those of the next finer rule where one more call would take
+    longer than the additional `nodes`. Up to the half length `longest` a rule meets the tolerance.
+    """
+    if half_length.size * nodes[-1] <= _CALL:
+        finest = int(longest.searchsorted(half_length.max(initial=0.0)))
+        return by_rule(finest, slice(0, half_length.size))
+    rule = longest.searchsorted(half_length)
+    counts = np.bincount(rule).tolist()
+    present = [number for number, count in enumerate(counts) if count]
+    result = np.empty_like(half_length)
+    first, waiting, more = 0, 0, 0
+    for this, finer in pairwise([*present, len(nodes)]):
+        waiting += counts[this]
+        if finer < len(nodes):
+            more += waiting * (nodes[finer] - nodes[this])
+            if more <= _CALL:
+                continue
+        if waiting == half_length.size:
+            return by_rule(this, slice(0, waiting))
+        index = _chosen(((rule >= first) & (rule <= this)).nonzero()[0])
+        result[index] = by_rule(this, index)
+        first, waiting, more = this + 1, 0, 0
     return result
 
 
