@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pv
 import pyarrow.parquet as pq
-from pyarrow.lib import concat_batches
+from pyarrow.lib import concat_batches  # `pa.concat_batches`, which the type stubs lack.
 
 from mdr_sweep.request_columns import Values
 from mdr_sweep.spec import UsageError
