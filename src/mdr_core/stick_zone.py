@@ -75,10 +75,13 @@ def _in_blocks(name: str, profile: Profile, columns: tuple[Any, ...]) -> StickZo
         named = {key: part(value, start) for key, value in flat_swept.items()}
         block = [part(column, start) for column in flat_columns]
         found.append(_by_load(name, profile.with_parameters(named), *block))
-    return tuple(_joined(parts, shape) for parts in zip(*found, strict=True))  # type: ignore[return-value]
+    edge, width, sign, full_slip, excess = (
+        _joined(parts, shape) for parts in zip(*found, strict=True)
+    )
+    return edge, width, sign, full_slip, excess
 
 
-def _joined(parts: Sequence[Array], shape: tuple[int, ...]) -> Array:
+def _joined(parts: Sequence[Any], shape: tuple[int, ...]) -> Any:
     """Results of all blocks in a shape."""
     if all(not part.ndim and part == parts[0] for part in parts):
         return parts[0]
