@@ -1,13 +1,13 @@
 """Fast multipole sums of the kernel 1/sqrt(|x^2 - t^2|) over panels on one side of the points.
 
-In the far field a block of 1, 2, 4, ... panels acts like a few masses: the kernel depends on x^2
-alone and is interpolated there between nodes of the block. Each point uses the largest blocks that
-are far from it, so that the cost grows like the logarithm of the number of panels.
+In the far field of a block of 1, 2, 4, ... panels their sum depends on x^2 alone: it is a
+polynomial over a root. Each point uses the largest blocks that are far from it, so that the cost
+grows like the logarithm of the number of panels.
 
 Source: notes, §5.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -20,43 +20,56 @@ from mdr_core.typing import Array, Indices
 
 # Least distance of a block from the points in its far field, over its length, both in x^2.
 FAR: Final = 0.5
-# Mobius' map w(v) takes the block, 0 <= v <= 1, to |w| <= 1 and the places of such points,
-# v <= -FAR or infinite, to |w| >= _BEYOND = 2 + sqrt(3).
+# The gap of a point, in x^2 over the length of a block, is FAR <= g <= inf in the far field, and
+# -1 <= g <= 0 in the block. Mobius' map y(g) = (g - _CENTER)/(g + _POLE) takes the former to
+# |y| <= 1 and the latter to |y| >= 2 + sqrt(3), as far from it as possible.
 _BEYOND: Final = 1 + 2 * FAR + 2 * np.sqrt(FAR + FAR * FAR)
-_SHIFT: Final = (_BEYOND - 1) / 2
+_CENTER: Final = (_BEYOND - 1) / 2
+_POLE: Final = _CENTER / _BEYOND
 # Pairs of a block and a point that are processed at once: their arrays stay in cache.
 _PAIRS: Final = 4096
-# Replaces a distance of zero from a node.
-_TINY: Final = 1e-290
 
 
 @lru_cache(maxsize=4)
-def _nodes(count: int) -> tuple[Array, Array, Array]:
-    """Chebyshev points w, their barycentric weights, and their places v in a block.
+def _far_field(count: int) -> tuple[Array, Array, Array]:
+    """Return gaps g, and matrices: sums there to Chebyshev coefficients, those to powers of y.
 
-    Interpolation errs by rho^-count of the part of a block, rho = _BEYOND + sqrt(_BEYOND^2 - 1) =
-    7.3.
+    The sums times sqrt(g + _POLE) are analytic in y up to the block. With Y = 2 + sqrt(3), `count`
+    powers leave rho^-count of the part of a block, rho = Y + sqrt(Y^2 - 1) = 7.3. As rho exceeds
+    1 + sqrt(2), the powers, from the highest on, are as stable as Chebyshev polynomials, but their
+    matrix alone amplifies rounding errors: the two are not multiplied beforehand.
     """
-    w = np.asarray(chebyshev.chebpts1(count), dtype=float)
-    weights = np.sqrt((1 - w) * (1 + w)) * (-1.0) ** np.arange(count)
-    return w, weights, _SHIFT * (1 + w) / (_BEYOND - w)
+    y = np.asarray(chebyshev.chebpts1(count), dtype=float)
+    gaps = (_CENTER + _POLE * y) / (1 - y)
+    to_chebyshev = np.linalg.inv(chebyshev.chebvander(y, count - 1))
+    powers = np.zeros((count, count))
+    for degree in range(count):
+        powers[degree, : degree + 1] = chebyshev.cheb2poly(np.eye(degree + 1)[-1])
+    return gaps, to_chebyshev * np.sqrt(gaps + _POLE), np.ascontiguousarray(powers.T[::-1])
 
 
-def at_nodes(v: Array, masses: Array, count: int) -> Array:
-    """Return masses at the nodes of blocks (count, m) for masses (k, m) at positions v (k, 1 or m).
+def _sum_at(rows: Iterable[Array], gap: Array) -> Array:
+    """Sum of a block at its far points, by the coefficients of the powers of y."""
+    above = gap + _POLE
+    y = (gap - _CENTER) / above
+    total = np.zeros_like(y)
+    for row in rows:
+        total *= y
+        total += row
+    total /= np.sqrt(above, out=above)
+    return total
 
-    v is the distance in x^2 from the end of the block that the points are nearer to, over the
-    block's length.
+
+def panel_sums(v: Array, masses: Array, count: int) -> Array:
+    """Return the sums of masses (k, m) in panels of unit length at `count` far points (count, m).
+
+    v is the distance of the masses from the end of the panel that the points are nearer to, in x^2
+    over the panel's length, shape (k, 1 or m).
     """
-    points, weights, _ = _nodes(count)
-    w = (_BEYOND * v - _SHIFT) / (v + _SHIFT)
-    share = np.subtract(w, points[:, None, None])
-    share += _TINY
-    np.divide(weights[:, None, None], share, out=share)
-    masses = masses / share.sum(axis=0)
+    root = np.sqrt(_far_field(count)[0][:, None, None] + v)
     if v.shape[1] == 1:
-        return np.asarray(share[:, :, 0] @ masses)
-    return np.asarray(np.einsum("nkm,km->nm", share, masses))
+        return np.asarray((1 / root[:, :, 0]) @ masses)
+    return np.asarray((masses / root).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +80,8 @@ class Multipoles:
     """End that the points are nearer to [length]."""
     length: Array
     """Length in x^2 [length^2]."""
-    masses: Array
-    """At the nodes, over the root of the length (blocks, nodes)."""
+    powers: Array
+    """Coefficients of the powers of y, from the highest on (count, blocks)."""
     first: Indices
     last: Indices
     """Panels first <= i < last."""
@@ -78,7 +91,7 @@ class Multipoles:
     """True if the points lie above the panels."""
 
     def far_from(self, place: Array, first: int, last: int) -> tuple[Indices, Indices]:
-        """Return the ranges low <= i < high of ascending points for which each block is masses.
+        """Return the ranges low <= i < high of ascending points for which each block is one.
 
         These points are far from the block but not from its parent.
 
@@ -109,10 +122,6 @@ class Multipoles:
         low, high : range of the points of each block, low <= i < high, shape (blocks,).
         """
         total = np.zeros_like(base)
-        count = self.masses.shape[1]
-        places = _nodes(count)[2]
-        room, taken = np.empty((2, _PAIRS, count))
-        ones = np.ones(count)
         for block, point in pairs(low, high):
             at, edge = base[point], self.edge[block]
             gap = at - edge
@@ -123,13 +132,7 @@ class Multipoles:
             gap *= at + edge
             np.abs(gap, out=gap)
             gap /= self.length[block]
-            root = room[: block.size]
-            np.add(gap[:, None], places, out=root)
-            np.sqrt(root, out=root)
-            # Without a mode, `take` would copy the rows once more.
-            masses = self.masses.take(block, axis=0, out=taken[: block.size], mode="clip")
-            np.divide(masses, root, out=root)
-            add(total, point, root @ ones)
+            add(total, point, _sum_at((row.take(block) for row in self.powers), gap))
         return total
 
 
@@ -157,32 +160,28 @@ def add(total: Array, point: Indices, values: Array) -> None:
     total[low:high] += np.bincount(point - low, weights=values, minlength=high - low)
 
 
-def multipoles(edges: Array, masses: Array, *, above: bool) -> Multipoles:
-    """Return the blocks of panels between `edges` (k + 1) with masses at their nodes (nodes, k).
+def multipoles(edges: Array, sums: Array, *, above: bool) -> Multipoles:
+    """Return the blocks of panels between `edges` (k + 1) with `panel_sums` (count, k).
 
-    If `above`, the points lie above the panels and the nodes count from the right ends.
+    If `above`, the points lie above the panels, which count from their right ends.
     """
     counts, first, last, parent = _tree(edges.size - 1)
     low, high = edges[first], edges[last]
     length = (high - low) * (high + low)
-    count = len(masses)
-    places = _nodes(count)[2]
-    total = np.empty((count, first.size))
-    total[:, : counts[0]] = masses
+    gaps, to_chebyshev, to_powers = _far_field(len(sums))
+    powers = np.empty((len(sums), first.size))
+    powers[:, : counts[0]] = to_powers @ (to_chebyshev @ sums / np.sqrt(length[: counts[0]]))
+    near, far = int(above), 1 - int(above)
     children = 0
     for size, joined in pairwise(counts):
+        pair = slice(children, children + 2 * joined)
         block = slice(children + size, children + size + joined)
-        lower = total[:, children : children + 2 * joined : 2]
-        upper = total[:, children + 1 : children + 2 * joined : 2]
-        part = length[children : children + 2 * joined].reshape(joined, 2).T / length[block]
-        near, far = (part[1], part[0]) if above else part
-        v = np.concatenate([np.multiply.outer(places, near), near + np.multiply.outer(places, far)])
-        both = np.concatenate([upper, lower] if above else [lower, upper])
-        total[:, block] = at_nodes(v, both, count)
+        gap = np.multiply.outer(gaps, np.repeat(length[block], 2))
+        gap[:, far::2] += length[pair][near::2]
+        sums = _sum_at(powers[:, pair], gap / length[pair])
+        powers[:, block] = to_powers @ (to_chebyshev @ (sums[:, ::2] + sums[:, 1::2]))
         children += size
-    total /= np.sqrt(length)
-    rows = np.ascontiguousarray(total.T)
-    return Multipoles(high if above else low, length, rows, first, last, parent, above)
+    return Multipoles(high if above else low, length, powers, first, last, parent, above)
 
 
 @lru_cache(maxsize=4)

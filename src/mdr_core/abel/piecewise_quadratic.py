@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.multipole import Multipoles, add, at_nodes, multipoles, pairs
+from mdr_core.abel.multipole import Multipoles, add, multipoles, pairs, panel_sums
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
 
@@ -26,8 +26,9 @@ _Y: Final = 1 - np.square(_NODES)
 _RULE: Final = 2 * _WEIGHTS * _Y ** np.arange(3)[:, None]
 # Points in a panel that become masses.
 _MASSES: Final = 16
-# Nodes of a block: interpolation leaves 7.3^-16 = 2e-14 of the block's part.
-_NODES_OF_BLOCKS: Final = 16
+# Powers of a block in the far field: they leave 7.3^-15 = 1e-13 of the block's part, and 1e-14 of
+# the whole in the bank of tables.
+_POWERS: Final = 15
 # Jumps of the function within rounding, over its largest terms on both sides.
 _ROUNDING: Final = 256 * float(np.finfo(float).eps)
 
@@ -69,9 +70,9 @@ class PiecewiseQuadratic:
         masses = (c0 + u * (c1 + u * c2)) * width * weights[:, None] / 2
         # Distance from the right end over the length, both in x^2.
         v = (1 - share) * (right + left + u) / (right + left)
-        total = at_nodes(v, masses, _NODES_OF_BLOCKS)
-        total += at_nodes(np.ones((1, 1)), self.impulses[None], _NODES_OF_BLOCKS)
-        return multipoles(self.edges, total, above=True)
+        sums = panel_sums(v, masses, _POWERS)
+        sums += panel_sums(np.ones((1, 1)), self.impulses[None], _POWERS)
+        return multipoles(self.edges, sums, above=True)
 
     def _near(self, panel: Indices, base: Array, offset: Array) -> Array:
         """Integral over the part of each panel that lies below its point."""

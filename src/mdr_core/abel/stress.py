@@ -12,7 +12,7 @@ from numpy.polynomial import polynomial
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch, Kernel
-from mdr_core.abel.multipole import FAR, Multipoles, add, at_nodes, multipoles, pairs
+from mdr_core.abel.multipole import FAR, Multipoles, add, multipoles, pairs, panel_sums
 from mdr_core.abel.panel_moments import far, near, scaled
 from mdr_core.abel.subpanels import LONGEST, fit_points, fitted
 from mdr_core.quadrature import composite_rule, gauss_legendre
@@ -20,9 +20,9 @@ from mdr_core.typing import Array, Chosen
 
 # Points in a panel that become masses.
 _MASSES: Final = 16
-# Nodes of a block: interpolation leaves 7.3^-13 = 6e-12 of the block's part, and 1e-13 of the whole
-# in the bank of tables.
-_NODES: Final = 13
+# Powers of a block in the far field: they leave 7.3^-14 = 8e-13 of the block's part, and 1e-13 of
+# the whole in the bank of tables.
+_POWERS: Final = 14
 # Gauss nodes in a panel of a displacement's integral: the root at its left edge leaves 3^-32.
 _POINTS_OF_DISPLACEMENT: Final = 16
 # Points of a panel that is expanded about another edge.
@@ -113,7 +113,9 @@ class StressPanels:
         u = (1 + nodes) / 2
         powers = u ** np.arange(self.weight.shape[1])[:, None]
         masses = (self.weight @ powers * (weights / 2)).T * self.length
-        return multipoles(self.edges, at_nodes(np.square(u)[:, None], masses, _NODES), above=False)
+        return multipoles(
+            self.edges, panel_sums(np.square(u)[:, None], masses, _POWERS), above=False
+        )
 
     def kernel(self, annulus: Annulus, roots: tuple[Array, Array], r: Array) -> Array:
         """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx.
