@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from mdr_core.quadrature import gauss_legendre
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Flags, Indices
 
 # Largest length of a subpanel over its left edge's distance from the next root below, both in x^2.
 # The root is then at u = +-0.91i, or farther: n Chebyshev points leave 4.3^-n, and the coefficients
@@ -117,9 +117,9 @@ class Subpanels:
 
     def energy_at(self, panel: Indices, s: Array) -> Array:
         """Return int F/E* dg at s in the given subpanels [length^3], shape (m,)."""
-        u = (s / self.length[panel])[:, None]
         degrees = np.arange(1, self.depth.shape[1] + 1)
-        depth, half = self.depth[panel] * u**degrees, self.half_force[panel] * u**degrees
+        powers = (s / self.length[panel])[:, None] ** degrees
+        depth, half = self.depth[panel] * powers, self.half_force[panel] * powers
         # int (sum h_m u^m) d(sum d_n u^n) = sum h_m d_n n/(m + n) u^(m + n).
         product = (half @ (degrees / np.add.outer(degrees, degrees)) * depth).sum(axis=1)
         below = self.at_edges[1, panel] * depth.sum(axis=1)
@@ -178,11 +178,17 @@ class Subpanels:
     def dips(self) -> Dips:
         """Return the dips of g, found at a dozen points of each subpanel and its maxima between."""
         u = np.append(fit_points(FEW)[0], 1.0)
-        powers = u ** np.arange(1, self.depth.shape[1] + 1)[:, None]
+        degrees = np.arange(1, self.depth.shape[1] + 1)
+        # The slope may vanish at the left edge itself.
+        ends = np.append(u[0] / 100, u)
+        rises = (self.depth * degrees) @ ends ** (degrees[:, None] - 1) > 0
+        if rises.all():
+            return Dips(*np.empty((4, 0)))
+        powers = u ** degrees[:, None]
         g = np.append(0.0, self.at_edges[0, :-1, None] + self.depth @ powers)
         s = np.append(0.0, np.multiply.outer(self.length, u))
         panel = np.append(0, np.repeat(np.arange(self.length.size), u.size))
-        at, top = self._maxima(u)
+        at, top = self._maxima(ends, rises)
         place = at * u.size + np.searchsorted(u, top) + 1
         top = top * self.length[at]
         g = np.insert(g, place, self.depth_at(at, top))
@@ -205,16 +211,15 @@ class Subpanels:
         begin = self.radius(panel[first - 1], s[first - 1])
         return Dips(begin, end, highest[first], np.minimum(bottom, g[last]))
 
-    def _maxima(self, u: Array) -> tuple[Indices, Array]:
-        """Return subpanel and u of the maxima of g between ascending points u."""
-        degrees = np.arange(1, self.depth.shape[1] + 1)
-        # The slope may vanish at the left edge itself.
-        ends = np.append(u[0] / 100, u)
-        rises = (self.depth * degrees) @ ends ** (degrees[:, None] - 1) > 0
+    def _maxima(self, u: Array, rises: Flags) -> tuple[Indices, Array]:
+        """Return subpanel and u of the maxima of g between the ascending points u (m,).
+
+        `rises` are the points at which its slope is positive, shape (k, m).
+        """
         panel, place = np.nonzero(rises[:, :-1] & ~rises[:, 1:])
-        low, high = ends[place], ends[place + 1]
-        # Smooth tables have no maximum, and bisecting none takes a tenth of their first query.
-        for _ in range(_BISECTIONS if panel.size else 0):
+        low, high = u[place], u[place + 1]
+        degrees = np.arange(1, self.depth.shape[1] + 1)
+        for _ in range(_BISECTIONS):
             middle = (low + high) / 2
             up = _sum(self.depth, panel, middle, degrees) > 0
             low, high = np.where(up, middle, low), np.where(up, high, middle)

@@ -112,7 +112,7 @@ def _fitted(
         span = length[rest, None]
         by_force[rest, 0] = at_pole[:, 0]
         by_force[rest, 1 : count + 1] = fitted(value) * span
-        by_depth[rest, :count] = at_pole * fitted(1 / x)
+        by_depth[rest, :count] = at_pole * fitted(1 / x) if at_pole.any() else 0.0
         by_depth[rest, count] = 0.0
         by_depth[rest, 1 : count + 1] += fitted(value / x) * span
         error = max(error, float(tail[(tail <= _TOLERANCE) | (count == _MANY)].max(initial=0.0)))
