@@ -143,6 +143,25 @@ def test_weak_friction_lifts_one_of_many_peaks(
         assert max(sampled) > peak * (1 - 3e-3)
 
 
+def test_weak_friction_with_the_largest_stress_next_to_the_axis() -> None:
+    """On the axis the stress in each direction of the search differs by rounding errors."""
+    rng = np.random.default_rng(1)
+    x, z = np.linspace(-0.02, 0.02, 41), np.linspace(0.4, 0.6, 41)[:, None]
+    for _ in range(40):
+        nu, friction, width = (
+            rng.uniform(0, 0.5),
+            10 ** rng.uniform(-2, -1),
+            10 ** rng.uniform(-5, 0),
+        )
+        contact = normal.solve(Paraboloid(1.0), 3.0, contact_radius=1.0)
+        case = tangential.solve(contact, 2.5, friction, stick_radius=1 - width)
+        for measure in MEASURES:
+            peak = float(largest(case, measure, poissons_ratio=nu).value)
+            sampled = getattr(stress(case, x, 0.0, z, poissons_ratio=nu), measure).max()
+            assert sampled < peak * (1 + 1e-6)
+            assert sampled > peak * (1 - 3e-3)
+
+
 @pytest.mark.parametrize("push", [0.0, 1e-12, 1e-8, 1e-4])
 @pytest.mark.parametrize("beyond", [1e-6, 1e-3])
 def test_narrow_peaks_next_to_a_flat(

@@ -23,8 +23,8 @@ from mdr_core.typing import Array, Indices
 from mdr_core.validation import require_poissons_ratio, require_positive
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
-# Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the
-# edges and the breaks; the depths lie between these parts of the contact radius.
+# Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
+# the depths lie between these parts of the contact radius.
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
 # Peaks of the grid that are climbed if they reach this part of the highest one that is known.
 _PEAKS, _ALMOST = 6, 0.8
@@ -238,7 +238,7 @@ def _peak(
 ) -> tuple[float, ...]:
     """Value and place of the largest stress in one case; parameters: see `largest`.
 
-    With a `limit` it is a value on the same side of it as the largest stress.
+    With a `limit`, only a value that is on the same side of it as the largest stress.
     """
     if not under.loaded:
         return 0.0, 0.0, 0.0, 0.0
@@ -264,6 +264,8 @@ def _peak(
     z = np.append(0.0, np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow))))
     angles = _ANGLES if under.sheared else _ANGLES[:1]
     values = on(angles, r, z)
+    # On the axis the directions differ by rounding errors.
+    values[1:, r == 0] = values[0, r == 0]
     if limit is not None and values.max() >= limit:
         return (float(values.max()),)
     high = (values == maximum_filter(values, 3)) & (values >= _ALMOST * values.max())
