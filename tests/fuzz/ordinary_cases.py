@@ -63,7 +63,7 @@ def contact(random: Random, kind: str | None = None) -> Contact:
     depth = random.uniform(1.05, 1.6) * lift if lift else case.radius * spread(random, 1e-6, 1e-2)
     # A foundation compressed by d - g carries at most 2 E* a d, a cone half of that.
     force = 2 * moduli.e_star * case.radius * depth * random.uniform(0.4, 0.7)
-    friction = random.choice((0.1, 0.3, 0.5, random.uniform(0.02, 1.2)))
+    friction = random.choice((0.1, 0.3, 0.5, spread(random, 1e-3, 1.2)))
     return Contact(query, case, moduli, friction, depth, force)
 
 
@@ -271,7 +271,7 @@ _STRESSES: Final = (
 
 
 def subsurface(random: Random, kind: str | None = None) -> dict[str, Any]:
-    """Return a query of stresses beneath the surface, of any load; a few search their peaks."""
+    """Return a query of stresses beneath the surface, of any load; some search their peaks."""
     scene = contact(random, kind)
     query = scene.query | {"body": random.choice((1, 2))}
     query["material"].pop("yield_strength", None)
@@ -290,9 +290,9 @@ def subsurface(random: Random, kind: str | None = None) -> dict[str, Any]:
         if random.random() < 0.3:
             query["y"] = far * random.uniform(-1, 1)
     query["quantities"] = random.sample(_STRESSES, random.randint(1, len(_STRESSES)))
-    if random.random() < 0.03:
+    if random.random() < 0.2:
         query["largest"] = True
-    if random.random() < 0.01 and "load" in query and scene.case.profile["kind"] != "tabulated":
+    if random.random() < 0.03 and "load" in query and scene.case.profile["kind"] != "tabulated":
         query["material"]["yield_strength"] = scene.moduli.e_star * spread(random, 1e-4, 1e-1)
     return query
 
