@@ -56,9 +56,15 @@ class ComputeProcess:
 
     @classmethod
     async def start(cls, seconds: float, self_test: Callable[[], object], room: Room) -> Self:
-        """Start a process, and call `self_test` in it, which raises an error if it is unusable.
+        """Start a process.
 
-        Raises OSError if the process cannot be started, and the errors of `call`.
+        Raises OSError if it cannot be started, and the errors of `call`.
+
+        Parameters
+        ----------
+        seconds : time limit of the start.
+        self_test : function that is called in the process, and raises an error if it is unusable.
+        room : context for the time in which a large result is read.
         """
         # More BLAS threads than cores slow each other down. Modules are found as in the server.
         environment = {"OPENBLAS_NUM_THREADS": "1", **os.environ}
