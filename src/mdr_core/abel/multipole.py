@@ -91,9 +91,9 @@ class Multipoles:
     """True if the points lie above the panels."""
 
     def far_from(self, place: Array, first: int, last: int) -> tuple[Indices, Indices]:
-        """Return the ranges low <= i < high of ascending points for which each block is one.
+        """Return the ranges low <= i < high of the points that use each block.
 
-        These points are far from the block but not from its parent.
+        They are far from the block but not from its parent.
 
         Parameters
         ----------
