@@ -170,8 +170,13 @@ def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -
     stretch = equator / np.sqrt(square)
 
     def h(y: Array, index: Chosen) -> Array:
-        z2 = np.square(stretch[index] * np.sinh(y)) + tilt2[index]
-        return np.arcsinh(np.sqrt(z2)) / np.sqrt(z2 * (1 + z2))
+        # arcsinh(z)/q for q = z sqrt(1 + z^2), with one root and a logarithm.
+        z2 = np.sinh(y, out=y)
+        z2 *= stretch[index]
+        z2 *= z2
+        z2 += tilt2[index]
+        q = np.sqrt(z2 * (1 + z2))
+        return np.log1p(2 * (z2 + q)) / (2 * q)
 
     top = _sphere_root(equator, v, r, edge)
     if inner is None:
