@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
+from mdr_core.elementwise import every
 from mdr_core.typing import Array, Chosen, Flags, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals.
@@ -25,7 +26,7 @@ Integrand = Callable[[Array, Chosen], Array]
 # Points of the rules for any integral.
 _POINTS: Final = (2, 3, 4, 5, 6, 8, 12, 16, 24, 48)
 # Points of the rules on [-H, H] for an even integrand, of which half are evaluated.
-_EVEN_POINTS: Final = (4, 6, 8, 12, 16, 24, 48)
+_EVEN_POINTS: Final = (4, 6, 8, 10, 12, 16, 24, 48)
 # Points of the rule for pieces of a long integral, which has the fewest nodes per unit length.
 _PIECE_POINTS: Final = 24
 # Nodes evaluated in the time of one more call of an integrand, by measurement.
@@ -143,7 +144,7 @@ def integrate(
     even : True where h is even in y.
     analytic : strip and growth of h.
     """
-    halved = bool(np.all(even if lower is None else even & (lower == 0)))
+    halved = every(even if lower is None else even & (lower == 0))
     points = _EVEN_POINTS if halved else _POINTS
     # The half lengths are computed once for each decade of the tolerance.
     decade = max(floor(log10(rtol) + 1e-9), -15)
@@ -157,10 +158,8 @@ def integrate(
             rule = (_half_rule if halved else composite_rule)(points[number])
         return _apply(h, rule, start, span, index)
 
-    half, evaluations = length / 2, list(points)
-    if halved:
-        half, evaluations = length, [count // 2 for count in points]
-    return _by_groups(by_rule, half, _half_lengths(points, decade, analytic), evaluations)
+    longest, half = _half_lengths(points, decade, analytic), length if halved else length / 2
+    return _by_groups(by_rule, half, longest, [count // (1 + halved) for count in points])
 
 
 def _by_groups(
