@@ -14,47 +14,44 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
+from mdr_core.abel.subpanels import fit_points, fitted
 from mdr_core.typing import Array, Indices
 
 # Least distance of a block from the points in its far field, over its length, both in x^2.
 FAR: Final = 0.5
 # The gap of a point, in x^2 over the length of a block, is FAR <= g <= inf in the far field, and
-# -1 <= g <= 0 in the block. Mobius' map y(g) = (g - _CENTER)/(g + _POLE) takes the former to
-# |y| <= 1 and the latter to |y| >= 2 + sqrt(3), as far from it as possible.
-_BEYOND: Final = 1 + 2 * FAR + 2 * np.sqrt(FAR + FAR * FAR)
-_CENTER: Final = (_BEYOND - 1) / 2
-_POLE: Final = _CENTER / _BEYOND
+# -1 <= g <= 0 in the block. Mobius' map u(g) = (g - FAR)/(g + _POLE) takes the former to [0, 1] and
+# the latter to |2 u - 1| >= 2 + sqrt(3), as far from it as possible.
+_POLE: Final = float(np.sqrt(FAR + FAR * FAR)) - FAR
 # Pairs of a block and a point that are processed at once: their arrays stay in cache.
 _PAIRS: Final = 4096
 
 
-@lru_cache(maxsize=4)
-def _far_field(count: int) -> tuple[Array, Array, Array]:
-    """Return gaps g, and matrices: sums there to Chebyshev coefficients, those to powers of y.
+def _gaps(count: int) -> Array:
+    """Gaps at which the sum of a block is fitted."""
+    u = fit_points(count)[0]
+    return np.asarray((FAR + _POLE * u) / (1 - u))
 
-    The sums times sqrt(g + _POLE) are analytic in y up to the block. With Y = 2 + sqrt(3), `count`
+
+def _powers(sums: Array) -> Array:
+    """Coefficients of the powers of u, from the highest on, for sums at the gaps (count, blocks).
+
+    The sums times sqrt(g + _POLE) are analytic in u up to the block. With Y = 2 + sqrt(3), `count`
     powers leave rho^-count of the part of a block, rho = Y + sqrt(Y^2 - 1) = 7.3. As rho exceeds
-    1 + sqrt(2), the powers, from the highest on, are as stable as Chebyshev polynomials, but their
-    matrix alone amplifies rounding errors: the two are not multiplied beforehand.
+    3 + sqrt(8), their coefficients fall, and the sum of the powers is stable.
     """
-    y = np.asarray(chebyshev.chebpts1(count), dtype=float)
-    gaps = (_CENTER + _POLE * y) / (1 - y)
-    to_chebyshev = np.linalg.inv(chebyshev.chebvander(y, count - 1))
-    powers = np.zeros((count, count))
-    for degree in range(count):
-        powers[degree, : degree + 1] = chebyshev.cheb2poly(np.eye(degree + 1)[-1])
-    return gaps, to_chebyshev * np.sqrt(gaps + _POLE), np.ascontiguousarray(powers.T[::-1])
+    root = np.sqrt(_gaps(len(sums)) + _POLE)
+    return fitted((sums * root[:, None]).T).T[::-1]
 
 
 def _sum_at(rows: Iterable[Array], gap: Array) -> Array:
-    """Sum of a block at its far points, by the coefficients of the powers of y."""
+    """Sum of a block at its far points, by the coefficients of the powers of u."""
     above = gap + _POLE
-    y = (gap - _CENTER) / above
-    total = np.zeros_like(y)
+    u = (gap - FAR) / above
+    total = np.zeros_like(u)
     for row in rows:
-        total *= y
+        total *= u
         total += row
     total /= np.sqrt(above, out=above)
     return total
@@ -66,7 +63,7 @@ def panel_sums(v: Array, masses: Array, count: int) -> Array:
     v is the distance of the masses from the end of the panel that the points are nearer to, in x^2
     over the panel's length, shape (k, 1 or m).
     """
-    root = np.sqrt(_far_field(count)[0][:, None, None] + v)
+    root = np.sqrt(_gaps(count)[:, None, None] + v)
     if v.shape[1] == 1:
         return np.asarray((1 / root[:, :, 0]) @ masses)
     return np.asarray((masses / root).sum(axis=1))
@@ -81,7 +78,7 @@ class Multipoles:
     length: Array
     """Length in x^2 [length^2]."""
     powers: Array
-    """Coefficients of the powers of y, from the highest on (count, blocks)."""
+    """Coefficients of the powers of u, from the highest on (count, blocks)."""
     first: Indices
     last: Indices
     """Panels first <= i < last."""
@@ -168,9 +165,9 @@ def multipoles(edges: Array, sums: Array, *, above: bool) -> Multipoles:
     counts, first, last, parent = _tree(edges.size - 1)
     low, high = edges[first], edges[last]
     length = (high - low) * (high + low)
-    gaps, to_chebyshev, to_powers = _far_field(len(sums))
+    gaps = _gaps(len(sums))
     powers = np.empty((len(sums), first.size))
-    powers[:, : counts[0]] = to_powers @ (to_chebyshev @ sums / np.sqrt(length[: counts[0]]))
+    powers[:, : counts[0]] = _powers(sums / np.sqrt(length[: counts[0]]))
     near, far = int(above), 1 - int(above)
     children = 0
     for size, joined in pairwise(counts):
@@ -179,7 +176,7 @@ def multipoles(edges: Array, sums: Array, *, above: bool) -> Multipoles:
         gap = np.multiply.outer(gaps, np.repeat(length[block], 2))
         gap[:, far::2] += length[pair][near::2]
         sums = _sum_at(powers[:, pair], gap / length[pair])
-        powers[:, block] = to_powers @ (to_chebyshev @ (sums[:, ::2] + sums[:, 1::2]))
+        powers[:, block] = _powers(sums[:, ::2] + sums[:, 1::2])
         children += size
     return Multipoles(high if above else low, length, powers, first, last, parent, above)
 

@@ -38,7 +38,7 @@ _BISECTIONS: Final = 48
 _BLOCK: Final = 2048
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def fit_points(count: int) -> tuple[Array, Array, Array]:
     """Return points in [0, 1], and the matrices to Chebyshev coefficients and on to powers of u.
 
