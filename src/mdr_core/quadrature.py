@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil, floor, log2, log10, pi
+from math import ceil, floor, inf, log2, log10, pi
 from typing import Final
 
 import numpy as np
@@ -39,6 +39,8 @@ _ELLIPSES: Final = np.linspace(0.1, 1.0, 10)
 _BISECTIONS: Final = 30
 # Nodes of pieces of half length 1 in a strip of pi/2, by the smallest tolerance that they reach.
 _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
+# Length of those pieces.
+_PIECE: Final = 2.0
 # Distance from the end of a piece below which a singularity lies on it.
 _NEAREST: Final = 2.0**-52
 # Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
@@ -52,12 +54,14 @@ class Analytic:
     The singularities that the substitutions leave lie at |Im y| = pi/2, outside the strip.
     An integrand of high degree needs the `fewest` points on any interval, however short. `zeros`
     counts the zeros in or next to the interval, near which the integrand is small throughout.
+    `before` is the distance of a near singularity on the real axis before y = 0.
     """
 
     growth: float = 2.0
     strip: float = 0.47 * pi
     fewest: int = 0
     zeros: int = 0
+    before: float = inf
 
 
 DEFAULT: Final = Analytic()
@@ -144,6 +148,12 @@ def integrate(
     even : True where h is even in y.
     analytic : strip and growth of h.
     """
+    if analytic.before < inf:
+        longest = max(float(length.max(initial=0.0)), _NEAREST)
+        count = ceil(longest / _PIECE)
+        halvings = halvings_towards(analytic.before * count / longest)
+        rule = graded_rule(nodes_of_pieces(rtol), halvings, count)
+        return _apply(h, rule, lower, length, slice(0, length.size))
     halved = every(even if lower is None else even & (lower == 0))
     points = _EVEN_POINTS if halved else _POINTS
     # The half lengths are computed once for each decade of the tolerance.
@@ -152,14 +162,14 @@ def integrate(
     def by_rule(number: int, index: Chosen) -> Array:
         span, start = length[index], None if lower is None else lower[index]
         if number == len(points):
-            longest = 2 * float(_half_lengths((_PIECE_POINTS,), decade, analytic)[0])
-            rule = composite_rule(_PIECE_POINTS, ceil(float(span.max()) / longest))
+            piece = 2 * float(_half_lengths((_PIECE_POINTS,), decade, analytic)[0])
+            rule = composite_rule(_PIECE_POINTS, ceil(float(span.max()) / piece))
         else:
             rule = (_half_rule if halved else composite_rule)(points[number])
         return _apply(h, rule, start, span, index)
 
-    longest, half = _half_lengths(points, decade, analytic), length if halved else length / 2
-    return _by_groups(by_rule, half, longest, [count // (1 + halved) for count in points])
+    limits, half = _half_lengths(points, decade, analytic), length if halved else length / 2
+    return _by_groups(by_rule, half, limits, [count // (1 + halved) for count in points])
 
 
 def _by_groups(

@@ -1,6 +1,7 @@
 """Regressions of the core, each reduced to its smallest example."""
 
 from typing import Any
+from unittest.mock import patch
 
 import mpmath
 import numpy as np
@@ -281,6 +282,35 @@ def test_slip_near_the_axis_in_full_slip() -> None:
     result = tangential.solve(contact, 0.8, 0.5, tangential_displacement=3.0)
     lag = 3.0 - 0.5 / 0.8 * 1.1
     assert fields.slip(result, [0.0, 1e-50]) == pytest.approx(-lag, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize(("slope", "part"), [(30.0, 1.5), (1e3, 1 + 1e-9), (1e4, 1e4)])
+def test_pressure_of_a_steep_spherical_tip_cone(slope: float, part: float) -> None:
+    """The sphere ends next to its equator; the next singularity lies close to the tangent point."""
+    given = {"kind": "spherical_tip_cone", "slope": slope, "tip_radius": 1.0}
+    profile = profiles.SphericalTipCone(slope, 1.0)
+    a = part * float(profile.tangent_radius)
+    contact = normal.solve(profile, 1.0, contact_radius=a)
+    radii = [0.0, 0.5 * float(profile.tangent_radius), 0.9999 * a]
+    at = slip_reference.setting(given, "contact_radius", a, slip_reference.Material(1.0, 1.0, 1.0))
+    with mpmath.workdps(40):
+        exact = [float(slip_reference.traction(at, mpmath.mpf(0), mpmath.mpf(r))) for r in radii]
+    # Fewer radii may take fewer nodes.
+    for part_of in (slice(3), *(slice(i, i + 1) for i in range(3))):
+        result = fields.pressure(contact, radii[part_of], rtol=1e-13)
+        assert result == pytest.approx(exact[part_of], rel=1e-11, abs=0)
+
+
+def test_largest_pressure_of_a_steep_cone_takes_little_longer() -> None:
+    nodes = []
+    for slope in (1.0, 1e5):
+        contact = normal.solve(profiles.SphericalTipCone(slope, 1.0), 1.0, contact_radius=10.0)
+        weight = profiles.SphericalTipCone._flank_slope
+        with patch.object(profiles.SphericalTipCone, "_flank_slope", autospec=True) as counted:
+            counted.side_effect = weight
+            assert contact.maximum_pressure > 0
+        nodes.append(sum(call.args[1].size for call in counted.call_args_list))
+    assert nodes[1] < 20 * nodes[0]
 
 
 @pytest.mark.parametrize("slope", [3.0, 30.0, 300.0])

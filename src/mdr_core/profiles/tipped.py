@@ -26,6 +26,8 @@ _OnFlank = Callable[[Array, Array], Array]
 
 # Width of the strip of analyticity over the distance of the singularity.
 _INSIDE: Final = 0.9
+# Distance below which pieces that halve towards it take fewer nodes, by measurement.
+_NEAR: Final = 0.3
 
 
 class TippedCone(Profile):
@@ -186,6 +188,10 @@ class TippedCone(Profile):
             span = where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
             inner = InnerEnd(span, c)
         distance = float(np.arcsinh(self._opposite_singularity / b))
+        if distance < _NEAR:
+            analytic = Analytic(before=distance)
+        else:
+            analytic = Analytic(strip=min(DEFAULT.strip, _INSIDE * distance))
         value = two_root_integral(
             lambda x, s, _: self._flank_weight(x, s),
             b,
@@ -193,7 +199,7 @@ class TippedCone(Profile):
             Annulus(s, inner, a),
             odd=False,
             rtol=rtol,
-            analytic=Analytic(strip=min(DEFAULT.strip, _INSIDE * distance)),
+            analytic=analytic,
         )
         return value / pi
 
