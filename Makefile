@@ -14,6 +14,8 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
+# The tests start a hundred processes, each of which would compile every module anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi verification docs dist lock clean
 .DELETE_ON_ERROR:
