@@ -1,5 +1,6 @@
 """Fixtures: the service in process, and the selection of the two test tiers."""
 
+import gc
 import signal
 from collections import Counter
 from collections.abc import Iterator
@@ -35,6 +36,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             if number[test] % marker.args[0]:
                 item.add_marker(pytest.mark.long)
             number[test] += 1
+
+
+def pytest_collection_finish() -> None:
+    # Each garbage collection would visit all tests, which takes a tenth of the time.
+    gc.freeze()
 
 
 class Client:

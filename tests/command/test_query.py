@@ -56,7 +56,7 @@ def in_process(capfdbinary: pytest.CaptureFixture[bytes], tmp_path: Path) -> InP
     return InProcess(capfdbinary, tmp_path / "request.json")
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(8)
 @pytest.mark.parametrize(
     "format_name", ["json", "csv", "npz", pytest.param("svg", marks=pytest.mark.long)]
 )
@@ -200,6 +200,7 @@ def test_closed_output_pipe_ends_silently() -> None:
     assert (process.returncode, err) == (141, b"")
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("command", ["profiles", "normal"])
 def test_output_on_a_full_device_is_reported(command: str) -> None:
     with Path("/dev/full").open("wb") as device:

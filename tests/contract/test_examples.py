@@ -482,6 +482,7 @@ def test_example_gives_the_textbook_result(
     assert codes == WARNINGS.get(name, set()) | ({"singular"} if "null" in answer.text else set())
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("name", EXAMPLES["evolution"])
 def test_wear_evolution_matches_its_limits(client: Client, name: str) -> None:
     document = client.post("/v1/wear/evolution", EXAMPLES["evolution"][name]["value"]).json()

@@ -34,6 +34,7 @@ def test_every_figure_has_request_curl_and_python() -> None:
     assert {path.stem for path in (FOLDER / "gallery").iterdir()} == set(FIGURES)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", FIGURES)
 def test_figure_is_the_response(client: Client, name: str) -> None:
     path, target = curl_command(COMMANDS[name])

@@ -101,6 +101,7 @@ def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
     return failures
 
 
+@pytest.mark.every(3)
 @batched(bank.load("history_cycles"))
 def test_dissipated_energy_and_stiffness_of_a_cycle(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of_a_cycle)

@@ -80,6 +80,7 @@ def largest_difference(result: Any, reference: Any) -> float:
     )
 
 
+@pytest.mark.every(4)
 @every_profile
 def test_fifty_load_steps_match_the_springs(name: str) -> None:
     d, u = random_path(1)
@@ -152,6 +153,7 @@ def force_path(name: str, steps: int, normal: str, tangential: str) -> dict[str,
     return {normal: forward[normal], tangential: loads[tangential]}
 
 
+@pytest.mark.every(6)
 @pytest.mark.parametrize(
     ("name", "normal", "tangential"),
     [

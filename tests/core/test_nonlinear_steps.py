@@ -43,6 +43,7 @@ def by_straight_steps(
     return {name: getattr(exact, name)[number - 1 :: number] for name in names}
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("seed", [8, 13, 22, 52])
 def test_estimate_of_nonlinear_steps_on_a_rough_table(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -62,6 +63,7 @@ def test_estimate_of_nonlinear_steps_on_a_rough_table(seed: int) -> None:
         assert getattr(found, name) == pytest.approx(expected, rel=0, abs=bound)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("profile", [Paraboloid(1.0), Cone(0.5)])
 @pytest.mark.parametrize("seed", range(3))
 def test_nonlinear_steps_are_extrapolated(profile: Profile, seed: int) -> None:

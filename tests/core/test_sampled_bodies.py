@@ -70,7 +70,7 @@ BODIES = {
 }
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
 def test_error_order_of_a_smooth_table(body: Body) -> None:
     a = mpf(A)

@@ -234,6 +234,7 @@ def test_tables_that_are_exact(flat: float, count: int) -> None:
     assert np.abs(result - expected).max() < 1e-11 * np.abs(expected).max()
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", PATHS)
 @pytest.mark.parametrize(
     "profile", [Paraboloid(2.0), Cone(0.2), Power(0.3, 1.6), RoundedPunch(0.5, 2.0), TABLE]

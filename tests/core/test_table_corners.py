@@ -40,7 +40,7 @@ def worst_pressure(r: np.ndarray, kind: Any, a: float, radii: list[float]) -> fl
         )
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(15)
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
 @pytest.mark.parametrize("grading", [1, 2])
 @pytest.mark.parametrize("a", [EDGE, 0.0301])
@@ -63,7 +63,7 @@ def test_pressure_on_either_side_of_a_node_next_to_the_edge(kind: Any) -> None:
     assert worst_pressure(r, kind, node * (1 + 1e-6), radii) <= INTERPOLANT
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(15)
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
 @pytest.mark.parametrize("gap", [1e-12, 1e-9, 1e-5, 1e-2])
 def test_pressure_where_two_radii_nearly_agree(kind: Any, gap: float) -> None:
@@ -204,7 +204,7 @@ def test_stresses_next_to_a_flat(*, force: float, part: float, tabulated: bool) 
                 assert value == pytest.approx(float(true / mp.pi), rel=1e-11, abs=0)
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(10)
 @pytest.mark.parametrize("kind", INTERPOLATIONS)
 @pytest.mark.parametrize("place", [-1e-3, -1e-13, 0, 1e-13, 1e-6, 1e-3])
 def test_stick_edge_next_to_a_node(kind: Any, place: float) -> None:

@@ -21,7 +21,7 @@ from mdr_service.settings import SETTINGS
 from tests.conftest import JSON
 from tests.faults.server import PATIENCE, free_port, wait_until_ready
 
-pytestmark = [pytest.mark.long, pytest.mark.alone]
+pytestmark = pytest.mark.long
 
 BODY = (
     b'{"profile": {"kind": "cone", "slope": 0.1}, "material": {"e_star": 1}, '

@@ -24,7 +24,6 @@ SMALL = {
     "material": {"e_star": 1.0, "g_star": 0.8},
     "load": {"normal_force": 1.0},
 }
-# A few hundred milliseconds of computation.
 # Some tenths of a second of a core, with a short response.
 LONGER = {
     "profile": {"kind": "paraboloid", "radius": 1.0},

@@ -24,7 +24,7 @@ from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.faults.server import PATIENCE, free_port, wait_until_ready
 
-pytestmark = [pytest.mark.long, pytest.mark.alone]
+pytestmark = pytest.mark.long
 
 CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": {"e_star": 1}}
 BODY = json.dumps(CONE | {"load": {"normal_force": 1}}).encode()
@@ -175,6 +175,7 @@ def test_headers_are_limited_in_bytes_and_number(
             assert body == before[0][1]
 
 
+@pytest.mark.alone
 def test_longer_query_runs_on_the_event_loop_only_beside_few_others(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -277,6 +278,7 @@ def test_upgrade_is_ignored_and_the_request_is_served(
     assert served.responses(text * 3, number=3) == served.responses(post()) * 3
 
 
+@pytest.mark.alone
 def test_body_after_an_upgrade_is_not_read_as_a_request(served: Served) -> None:
     """Behind a proxy, this would let one client answer the next client's request (smuggling)."""
     with served.connect() as client:
@@ -316,6 +318,7 @@ def test_100_continue_is_sent(served: Served) -> None:
         assert read(client, 1)[0][0] == 200
 
 
+@pytest.mark.alone
 @pytest.mark.usefixtures("short_timeouts")
 @pytest.mark.parametrize(
     ("pieces", "name"),
@@ -343,6 +346,7 @@ def test_slow_request_is_rejected(served: Served, pieces: list[bytes], name: str
     assert json.loads(body)["type"] == f"urn:mdr:problem:{name}"
 
 
+@pytest.mark.alone
 @pytest.mark.usefixtures("short_timeouts")
 def test_early_response_closes_a_connection_with_an_endless_body(served: Served) -> None:
     with served.connect() as client:
@@ -351,6 +355,7 @@ def test_early_response_closes_a_connection_with_an_endless_body(served: Served)
         wait_for(lambda: send_all(client, (b"a",)))
 
 
+@pytest.mark.alone
 @pytest.mark.usefixtures("short_timeouts")
 def test_slow_response_is_not_a_request_timeout(served: Served) -> None:
     query = next(iter(EXAMPLES["evolution"].values()))["value"] | {"resolution": 96}
@@ -377,6 +382,7 @@ def reader(served: Served, buffer: int) -> socket.socket:
     return client
 
 
+@pytest.mark.alone
 def test_client_that_does_not_read_is_disconnected(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -391,6 +397,7 @@ def test_client_that_does_not_read_is_disconnected(
         wait_for(lambda: is_closed(client))
 
 
+@pytest.mark.alone
 def test_slow_reader_receives_the_whole_response(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:

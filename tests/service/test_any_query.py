@@ -300,7 +300,7 @@ def check(client: Client, path: str, query: object, model: type[SolvedAnswer]) -
         assert all(error["pointer"] for error in document["errors"])
 
 
-def with_examples(test: Callable[..., None], examples: int = 250) -> Callable[..., None]:
+def with_examples(test: Callable[..., None], examples: int = 150) -> Callable[..., None]:
     return settings(
         max_examples=examples,
         deadline=None,
@@ -327,7 +327,7 @@ def test_stress_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/stress", query, StressAnswer)
 
 
-@partial(with_examples, examples=150)
+@partial(with_examples, examples=100)
 @given(query=SUBSURFACE)
 def test_subsurface_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/subsurface", query, SubsurfaceAnswer)
@@ -357,13 +357,13 @@ def test_wear_limit_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear", query, WearAnswer)
 
 
-@partial(with_examples, examples=12)
+@partial(with_examples, examples=8)
 @given(query=wear_queries())
 def test_wear_evolution_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/wear/evolution", query, EvolutionAnswer)
 
 
-@partial(with_examples, examples=40)
+@partial(with_examples, examples=25)
 @given(query=partial_slip_wear())
 def test_wear_evolution_of_ordinary_bodies(client: Client, query: dict[str, object]) -> None:
     answer = client.post("/v1/wear/evolution", query)

@@ -101,7 +101,7 @@ class Annulus:
         return mp.quad(integrand, ends) / mp.pi
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(9)
 @pytest.mark.parametrize("relative", WIDTHS)
 @pytest.mark.parametrize("name", SHAPES)
 def test_narrow_annulus(name: str, relative: float) -> None:

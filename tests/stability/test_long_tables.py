@@ -70,6 +70,7 @@ CURVES = {
 }
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("name", CURVES)
 def test_number_of_points(name: str) -> None:
     sweep = CURVES[name]()

@@ -139,6 +139,7 @@ CURVES = {
 }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", CURVES)
 def test_near_full_slip(name: str) -> None:
     sweep = CURVES[name]()

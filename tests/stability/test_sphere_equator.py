@@ -203,6 +203,7 @@ CURVES = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", CURVES)
 def test_equator_and_small_contact_limits(name: str) -> None:
     CURVES[name]().holds()

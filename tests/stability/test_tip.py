@@ -170,6 +170,7 @@ CURVES = {
 }
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("name", CURVES)
 def test_near_the_tip(name: str) -> None:
     sweep = CURVES[name]()

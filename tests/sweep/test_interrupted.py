@@ -14,7 +14,7 @@ import pytest
 
 from tests.sweep import running
 
-pytestmark = [pytest.mark.long, pytest.mark.alone]
+pytestmark = pytest.mark.long
 
 CASES, CHUNK = 2000, 100
 OPTIONS = ("tangential", "--table", "cases.parquet", "--chunk", str(CHUNK), "--workers", "2")

@@ -15,7 +15,7 @@ from tests.conftest import Client
 from tests.sweep.cases import KINDS, Row, random_cases, served, swept, table
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(7)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("query", ["normal", "tangential"])
 def test_rows_of_every_kind_equal_the_responses(client: Client, query: str, kind: str) -> None:
@@ -57,6 +57,7 @@ BODIES: list[Row] = [
 ]
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("kind", ["paraboloid", "sphere", "cone", "rounded_punch", "power"])
 def test_rows_with_a_yield_strength_equal_the_responses(client: Client, kind: str) -> None:
     rows = [
