@@ -178,7 +178,12 @@ def _cacheable(request: Request, response: Response) -> Response:
     return response
 
 
-_get_router: Final = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(url_parameters)])
+async def _each_once(request: Request) -> None:
+    """Reject a repeated parameter. A coroutine: the framework runs plain functions in a thread."""
+    url_parameters(request)
+
+
+_get_router: Final = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(_each_once)])
 
 
 def _declare_get(name: str, title: str, model: Any) -> None:
