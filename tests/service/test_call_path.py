@@ -1,4 +1,4 @@
-"""Number of source files on the call path of a small query."""
+"""Number of source files on the call path of a small query, and requests that need no thread."""
 
 import asyncio
 import json
@@ -8,12 +8,15 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import pytest
+
 import mdr_core
 import mdr_service
 from mdr_core import normal
 from mdr_core.profiles import Paraboloid
 from mdr_service.app import create_app
 from mdr_service.schemas.examples import EXAMPLES
+from tests.conftest import JSON, Client
 
 SERVICE, CORE = (Path(str(each.__file__)).parent for each in (mdr_service, mdr_core))
 BODY = json.dumps(EXAMPLES["normal"]["hertz"]["value"]).encode()
@@ -86,3 +89,34 @@ def test_small_query_passes_few_files() -> None:
     assert len(own(called)) <= 12, own(called)
     assert {"mdr_service/middleware.py", "mdr_service/dispatch.py"} <= set(own(stacked))
     assert {"mdr_core/normal.py", "mdr_core/profiles/powers.py"} <= set(own(stacked))
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "status"),
+    [
+        ("POST", "/v1/normal", BODY, 200),
+        ("POST", "/v1/normal", b"{}", 422),
+        ("POST", "/v1/normal", b"{", 400),
+        ("GET", "/v1/normal?kind=cone&slope=0.1&e_star=1&normal_force=1", b"", 200),
+        ("GET", "/v1/normal?kind=cone&kind=cone", b"", 422),
+        ("GET", "/v1/normal?kind=spoon", b"", 422),
+        ("GET", "/v1/nowhere", b"", 404),
+        ("GET", "/v1/batch", b"", 405),
+        ("GET", "/health", b"", 200),
+    ],
+)
+def test_request_needs_no_thread(
+    client: Client,
+    monkeypatch: pytest.MonkeyPatch,
+    method: str,
+    path: str,
+    body: bytes,
+    status: int,
+) -> None:
+    """The framework runs plain dependencies and exception handlers in a thread, which is slow."""
+
+    async def run_sync(function: object, *_arguments: object, **_options: object) -> None:
+        raise AssertionError(f"{function} runs in a thread")
+
+    monkeypatch.setattr("anyio.to_thread.run_sync", run_sync)
+    assert client.request(method, path, content=body, headers=JSON).status_code == status
