@@ -14,7 +14,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
 export OPENBLAS_NUM_THREADS := 1
-# The tests start a hundred processes, each of which would compile every module anew.
+# Without bytecode, each of the hundred processes that the tests start would compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi verification docs dist lock clean

@@ -39,8 +39,8 @@ _ELLIPSES: Final = np.linspace(0.1, 1.0, 10)
 _BISECTIONS: Final = 30
 # Nodes of pieces of half length 1 in a strip of pi/2, by the smallest tolerance that they reach.
 _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
-# Length of those pieces.
-_PIECE: Final = 2.0
+PIECE: Final = 2.0
+"""Length of those pieces."""
 # Distance from the end of a piece below which a singularity lies on it.
 _NEAREST: Final = 2.0**-52
 # Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
@@ -149,10 +149,7 @@ def integrate(
     analytic : strip and growth of h.
     """
     if analytic.before < inf:
-        longest = max(float(length.max(initial=0.0)), _NEAREST)
-        count = ceil(longest / _PIECE)
-        halvings = halvings_towards(analytic.before * count / longest)
-        rule = graded_rule(nodes_of_pieces(rtol), halvings, count)
+        rule = rule_towards(analytic.before, float(length.max(initial=0.0)), rtol)
         return _apply(h, rule, lower, length, slice(0, length.size))
     halved = every(even if lower is None else even & (lower == 0))
     points = _EVEN_POINTS if halved else _POINTS
@@ -286,3 +283,10 @@ def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
 def halvings_towards(distance: float) -> int:
     """Return the halvings of a piece of length 1 for a singularity at a distance before it."""
     return max(ceil(-log2(max(distance, _NEAREST))), 0)
+
+
+def rule_towards(distance: float, length: float, rtol: float) -> tuple[Array, Array]:
+    """Return nodes and weights on [0, 1] for [0, length], singular at a distance before 0."""
+    count = max(ceil(length / PIECE), 1)
+    halvings = halvings_towards(distance * count / length) if length > 0 else 0
+    return graded_rule(nodes_of_pieces(rtol), halvings, count)

@@ -16,18 +16,18 @@ import numpy as np
 
 from mdr_core.abel.two_root import Weight
 from mdr_core.quadrature import (
+    PIECE,
     composite_rule,
     graded_rule,
     halvings_towards,
     nodes_of_pieces,
     piecewise_rule,
+    rule_towards,
 )
 from mdr_core.typing import Array, Indices
 
 # Part of s(r) above which an angle removes the root at r, and below which log(s) resolves g'.
 _UPPER: Final = 0.5
-# Length of a piece in the logarithm; `nodes_of_pieces` returns its number of nodes.
-_PIECE: Final = 2.0
 # Highest power that such a piece resolves.
 _STEEP: Final = 8.0
 # Pieces of one e-fold of the radius, relative to those of the whole upper part.
@@ -254,7 +254,7 @@ def _lower(
     if not longest > 0:
         # Two neighbouring doubles may have the same logarithm.
         return np.zeros((len(kernels), s_r.size))
-    piece = _PIECE * min(1.0, _STEEP / branch.steepness)
+    piece = PIECE * min(1.0, _STEEP / branch.steepness)
     count = max(ceil(longest / piece), 1)
     part = count / longest
     if branch.steepness > _STEEP:
@@ -265,7 +265,7 @@ def _lower(
         nodes, weights = graded_rule(points, halvings_towards(distance * part) + 1, count)
     elif branch.opposite_singularity < inf:
         distance = asinh(branch.opposite_singularity / base)
-        nodes, weights = graded_rule(points, halvings_towards(distance * part), count)
+        nodes, weights = rule_towards(distance, longest, rtol)
         nodes = 1 - nodes
     else:
         nodes, weights = composite_rule(points, count)
@@ -301,5 +301,5 @@ def _rule_of_powers(piece: float, reach: float, length: float, points: int) -> t
     """
     ends = [0.0]
     while ends[-1] < length:
-        ends.append(ends[-1] + max(piece, _PIECE * _STEEP * ends[-1] / reach))
+        ends.append(ends[-1] + max(piece, PIECE * _STEEP * ends[-1] / reach))
     return piecewise_rule(points, np.array(ends) / ends[-1])

@@ -28,6 +28,7 @@ _POLE: Final = float(np.sqrt(FAR + FAR * FAR)) - FAR
 _PAIRS: Final = 4096
 
 
+@lru_cache(maxsize=4)
 def _gaps(count: int) -> Array:
     """Gaps at which the sum of a block is fitted."""
     u = fit_points(count)[0]

@@ -5,16 +5,12 @@ Source: notes, §7.
 """
 
 from math import ceil
-from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.displacement import integrals_in_blocks
-from mdr_core.quadrature import composite_rule, graded_rule, halvings_towards, nodes_of_pieces
+from mdr_core.quadrature import composite_rule, nodes_of_pieces, rule_towards
 from mdr_core.typing import Array, Parameter
-
-# Length of a piece in v; `nodes_of_pieces` returns its number of nodes.
-_PIECE: Final = 2.0
 
 
 def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: float) -> Array:
@@ -34,10 +30,7 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
     past = (r - big_radius) + edge if v > 1 else r - big_radius * np.tanh(v)
     beyond = np.maximum(past, 0.0)
     # The pieces halve towards the edge, down to the nearest root.
-    count = ceil(v / _PIECE) or 1
-    nearest = _nearest_root(big_radius, edge, beyond) * count
-    halvings = halvings_towards(nearest / v if v > 0 else 1.0)
-    places, weights = graded_rule(nodes_of_pieces(rtol), halvings, count)
+    places, weights = rule_towards(_nearest_root(big_radius, edge, beyond), v, rtol)
     x, short, density = _stepped(big_radius, np.asarray(v), v * places)
 
     def values(part: slice) -> Array:

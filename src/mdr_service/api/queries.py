@@ -100,7 +100,7 @@ class QueryRoute(APIRoute):
         name = str(self.operation_id)
 
         async def handle(request: Request) -> Response:
-            given = url_parameters(request)
+            given = await url_parameters(request)
             options = given.pop("format", None), given.pop("size", None)
             responder: Responder = responder_type(request, *options)
             if given:
@@ -112,8 +112,11 @@ class QueryRoute(APIRoute):
         return handle
 
 
-def url_parameters(request: Request) -> dict[str, str]:
-    """Return the parameters of the URL, each of which can be given once."""
+async def url_parameters(request: Request) -> dict[str, str]:
+    """Return the parameters of the URL, each of which can be given once.
+
+    A coroutine: the framework runs plain dependencies in a thread, which takes longer than a query.
+    """
     text: bytes = request.scope["query_string"]
     if not text:
         return {}
@@ -178,12 +181,7 @@ def _cacheable(request: Request, response: Response) -> Response:
     return response
 
 
-async def _each_once(request: Request) -> None:
-    """Reject a repeated parameter. A coroutine: the framework runs plain functions in a thread."""
-    url_parameters(request)
-
-
-_get_router: Final = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(_each_once)])
+_get_router: Final = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(url_parameters)])
 
 
 def _declare_get(name: str, title: str, model: Any) -> None:
