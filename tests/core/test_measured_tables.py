@@ -69,7 +69,7 @@ def measured(f: Array, noise: float, *, rounded: bool) -> Array:
     return np.maximum.accumulate(np.append(0.0, np.maximum(f + error, 0.0)[1:]))
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(7)
 @pytest.mark.parametrize("errors", ["random", "rounding"])
 @pytest.mark.parametrize("noise", NOISE)
 @pytest.mark.parametrize("intervals", [50, 200])

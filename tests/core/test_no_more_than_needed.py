@@ -17,7 +17,7 @@ import pytest
 from mdr_core import equivalent_1d, normal, tangential
 from mdr_core.fields import normal as normal_fields
 from mdr_core.fields import tangential as tangential_fields
-from mdr_core.profiles import KINDS, Profile
+from mdr_core.profiles import KINDS, Profile, SphericalTipCone
 from mdr_core.profiles import base as profiles
 from mdr_service.queries.fields import solve_stress, stress_result
 from mdr_service.schemas.fields import StressQuery
@@ -188,3 +188,13 @@ def test_slip_needs_no_stress() -> None:
     ):
         answer = run_stress(quantities=["slip"], **LOADED)
     assert "pressure" not in answer
+
+
+def test_largest_pressure_of_a_steep_cone_takes_little_longer() -> None:
+    costs = []
+    for slope in (1.0, 1e5):
+        contact = normal.solve(SphericalTipCone(slope, 1.0), 1.0, contact_radius=10.0)
+        with counted() as count:
+            assert contact.maximum_pressure > 0
+        costs.append(count.integrand)
+    assert 0 < costs[1] < 20 * costs[0]

@@ -97,7 +97,7 @@ def test_stresses_of_the_bodies_are_mirror_images() -> None:
     assert float(one.x) == pytest.approx(-float(two.x), rel=1e-3, abs=0)
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(3)
 @pytest.mark.parametrize("stick", [None, 0.08])
 @pytest.mark.parametrize(
     "profile",
@@ -164,7 +164,7 @@ def test_weak_friction_with_the_largest_stress_next_to_the_axis() -> None:
             assert sampled > peak * (1 - 3e-3)
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(3)
 @pytest.mark.parametrize("push", [0.0, 1e-12, 1e-8, 1e-4])
 @pytest.mark.parametrize("beyond", [1e-6, 1e-3])
 def test_narrow_peaks_next_to_a_flat(
@@ -211,7 +211,7 @@ def test_onset_is_that_of_any_load_in_its_ratio(profile: Profile) -> None:
         assert forces == pytest.approx(np.full(3, forces[0]), rel=1e-4, abs=0)
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(3)
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize(
     "profile", [Sphere(2.0), RoundedPunch(0.05, 2.0), Power(0.4, 1.5), Hyperboloid(0.2, 0.05)]

@@ -239,7 +239,7 @@ def test_pressure_integrates_to_the_force(control: str) -> None:
         )
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(3)
 @pytest.mark.parametrize("part", [1e-6, 1e-2])
 @TWO_OF_THREE
 def test_narrow_annulus_widens_by_half(control: str, part: float) -> None:

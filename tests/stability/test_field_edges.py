@@ -117,7 +117,7 @@ def test_error_within_estimate_on_a_grid(shape: str, fraction: float) -> None:
 def test_error_within_estimate_next_to_the_edges(shape: str, control: str) -> None:
     for fraction in (1e-5, 0.5):
         contact, at, c = solved(shape, fraction, control)
-        for offset in (1e-14, 1e-10):
+        for offset in (1e-14, 1e-12, 1e-9):
             ends = float(contact.stick_radius), float(contact.normal.contact_radius)
             radii = np.array([end * (1 + side * offset) for end in ends for side in (-1, 1)])
             for name in FIELDS:
