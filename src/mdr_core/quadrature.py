@@ -17,7 +17,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
-from mdr_core.elementwise import every
+from mdr_core.elementwise import every, some
 from mdr_core.typing import Array, Chosen, Flags, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals.
@@ -151,7 +151,7 @@ def integrate(
     if analytic.before < inf:
         rule = rule_towards(analytic.before, float(length.max(initial=0.0)), rtol)
         return _apply(h, rule, lower, length, slice(0, length.size))
-    halved = every(even if lower is None else even & (lower == 0))
+    halved = every(even) and (lower is None or not some(lower))
     points = _EVEN_POINTS if halved else _POINTS
     # The half lengths are computed once for each decade of the tolerance.
     decade = max(floor(log10(rtol) + 1e-9), -15)

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.subpanels import fit_points, fitted
+from mdr_core.abel.subpanels import fit_points
 from mdr_core.typing import Array, Indices
 
 # Least distance of a block from the points in its far field, over its length, both in x^2.
@@ -43,7 +43,8 @@ def _powers(sums: Array) -> Array:
     3 + sqrt(8), their coefficients fall, and the sum of the powers is stable.
     """
     root = np.sqrt(_gaps(len(sums)) + _POLE)
-    return fitted((sums * root[:, None]).T).T[::-1]
+    _, to_chebyshev, powers = fit_points(len(sums))
+    return np.asarray((powers.T @ (to_chebyshev @ (sums * root[:, None])))[::-1])
 
 
 def _sum_at(rows: Iterable[Array], gap: Array) -> Array:
@@ -120,8 +121,8 @@ class Multipoles:
         low, high : range of the points of each block, low <= i < high, shape (blocks,).
         """
         total = np.zeros_like(base)
-        for block, point in pairs(low, high):
-            at, edge = base[point], self.edge[block]
+        for blocks, counts, point in pairs(low, high):
+            at, edge = base[point], self.edge[blocks].repeat(counts)
             gap = at - edge
             if offset is not None:
                 shift = offset[point]
@@ -129,13 +130,17 @@ class Multipoles:
                 at = at + shift
             gap *= at + edge
             np.abs(gap, out=gap)
-            gap /= self.length[block]
-            add(total, point, _sum_at((row.take(block) for row in self.powers), gap))
+            gap /= self.length[blocks].repeat(counts)
+            powers = (row.repeat(counts) for row in self.powers[:, blocks])
+            add(total, point, _sum_at(powers, gap))
         return total
 
 
-def pairs(low: Indices, high: Indices) -> Iterator[tuple[Indices, Indices]]:
-    """Yield all pairs of a block and a point of its range, block and point of each, in portions."""
+def pairs(low: Indices, high: Indices) -> Iterator[tuple[slice, Indices, Indices]]:
+    """Yield all pairs of a block and a point of its range in portions.
+
+    Each portion is a slice of blocks, the number of points of each, and the points (pairs,).
+    """
     ends = np.cumsum(high - low)
     shift = high - ends
     total = int(ends[-1]) if ends.size else 0
@@ -145,8 +150,9 @@ def pairs(low: Indices, high: Indices) -> Iterator[tuple[Indices, Indices]]:
     for start, first, last in zip(starts.tolist(), firsts.tolist(), lasts.tolist(), strict=True):
         counts = np.minimum(ends[first : last + 1] - start, _PAIRS)
         counts[1:] -= counts[:-1].copy()
-        block = np.repeat(np.arange(first, first + counts.size), counts)
-        yield block, np.arange(start, start + block.size) + shift[block]
+        blocks = slice(first, first + counts.size)
+        point = shift[blocks].repeat(counts)
+        yield blocks, counts, point + np.arange(start, start + point.size)
 
 
 def add(total: Array, point: Indices, values: Array) -> None:

@@ -57,8 +57,8 @@ class PiecewiseQuadratic:
         # A point may lie above an edge by less than the rounding of its radius.
         begin = np.searchsorted(place, self.edges[:-1])
         end = np.maximum(low[: begin.size], begin)
-        for panel, point in pairs(begin, end):
-            add(total, point, self._near(panel, base[point], offset[point]))
+        for panels, counts, point in pairs(begin, end):
+            add(total, point, self._near(panels, counts, base[point], offset[point]))
         return total
 
     @cached_property
@@ -74,19 +74,19 @@ class PiecewiseQuadratic:
         sums += panel_sums(np.ones((1, 1)), self.impulses[None], _POWERS)
         return multipoles(self.edges, sums, above=True)
 
-    def _near(self, panel: Indices, base: Array, offset: Array) -> Array:
-        """Integral over the part of each panel that lies below its point."""
-        left, right = self.edges[panel], self.edges[panel + 1]
+    def _near(self, panels: slice, counts: Indices, base: Array, offset: Array) -> Array:
+        """Integral over the part of each panel that lies below its points."""
+        left, right = (part[panels].repeat(counts) for part in (self.edges[:-1], self.edges[1:]))
         above = (base - left) + offset
-        c = self.coefficients[:, panel]
+        c = self.coefficients[:, panels].repeat(counts, axis=1)
         total = _from_end(c, left, np.maximum(above, 0.0))
         over = np.flatnonzero((base - right) + offset > 0)
         # Continue the polynomial beyond the panel, and subtract what lies there.
         u = (right - left)[over]
-        c0, c1, c2 = c[:, over]
+        c0, c1, c2 = c.take(over, axis=1)
         moved = np.stack([c0 + u * (c1 + u * c2), c1 + 2 * u * c2, c2])
         total[over] -= _from_end(moved, right[over], ((base - right) + offset)[over])
-        impulse = self.impulses[panel]
+        impulse = self.impulses[panels].repeat(counts)
         seen = np.flatnonzero((impulse != 0) & (above > 0) & (base != left))
         gap = above[seen]
         total[seen] += impulse[seen] / np.sqrt(gap) / np.sqrt(2 * left[seen] + gap)

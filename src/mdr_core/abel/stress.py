@@ -162,12 +162,13 @@ class StressPanels:
         low, high = self._multipoles.far_from(r, first, last)
         total = self._multipoles.sums(r, None, low, high)
         end = np.searchsorted(r, self.edges[first + 1 : last + 1])
-        for number, point in pairs(np.minimum(high[first:last], end), end):
-            panel, at = number + first, r[point]
-            left, right = self.edges[panel], self.edges[panel + 1]
+        columns = self.edges[:-1], self.edges[1:], self.length
+        for panels, counts, point in pairs(np.minimum(high[first:last], end), end):
+            used, at = slice(first + panels.start, first + panels.stop), r[point]
+            left, right, length = (column[used].repeat(counts) for column in columns)
             above, to_right = (left - at) * (left + at), (right - at) * (right + at)
-            rows = self._rows.take(panel, axis=1)
-            add(total, point, near(rows, self.length[panel], above, to_right))
+            rows = self._rows[:, used].repeat(counts, axis=1)
+            add(total, point, near(rows, length, above, to_right))
         return total
 
     def _cut(self, panel: int, ends: _RadialEnds, r: Array) -> Array:

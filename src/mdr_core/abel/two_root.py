@@ -121,7 +121,8 @@ def two_root_integral(
         lower = where(width > upper / 2, by_radii, lower)
         least = where(lower > 0, lower, upper)
     signed2, on_break = (b - r) * (b + r), r == b
-    if some(on_break):
+    any_on_break = some(on_break)
+    if any_on_break:
         # A radius on the break takes the rule of one just above it.
         signed2 = np.where(on_break, -np.square(_NEXT_TO_BREAK * np.minimum(least, b)), signed2)
     above = signed2 < 0
@@ -131,13 +132,15 @@ def two_root_integral(
     if inner is None:
         length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
     else:
-        root = where(on_break, lower, inverse_hypot(c, r))
+        root = inverse_hypot(c, r)
+        if any_on_break:
+            root = np.where(on_break, lower, root)
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
         gap2 = np.minimum(edge2, width * (upper + lower))
-        roots = np.sqrt(edge2) * np.where(above & (root == 0), epsilon, lower) + root * upper
+        roots = np.sqrt(edge2) * np.where(root > 0, lower, epsilon) + root * upper
         length = np.arcsinh(gap2 / np.maximum(roots, _TINY))
         start = np.arcsinh(np.minimum(root, lower) / epsilon)
-    shift, base2 = np.where(above, -signed2, 0.0), b * b
+    shift, base2 = np.maximum(-signed2, 0.0), b * b
 
     def h(y: Array, index: Chosen) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
@@ -149,7 +152,7 @@ def two_root_integral(
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
     result = integrate(h, length, rtol, start, even=odd or above, analytic=analytic)
-    if some(on_break):
+    if any_on_break:
         # Infinite where F ~ 1/s and the annulus begins at the break.
         begins = True if inner is None else (width >= upper) | (lower <= 0)
         index = np.flatnonzero(on_break & begins)
