@@ -108,15 +108,11 @@ def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
     The stress is sampled between its singular radii. Every candidate for the highest peak is then
     refined by polynomial interpolation.
     """
-    a, c = profile.contact_radius(edge), [profile.contact_radius(part) for part in slip[1:]]
+    c = [profile.contact_radius(part) for part in slip[1:]]
 
     def field(load: Indices, at: Array) -> Array:
-        r, values = profile.contact_radius(at), np.zeros(at.shape)
-        inside = r < a[load]
-        load = load[inside]
         inner = InnerEnd(slip[0][load], c[0][load]) if slip else None
-        values[inside] = profile.pressure_kernel(Annulus(edge[load], inner), r[inside], _RTOL)
-        return values
+        return profile.pressure_kernel_at(Annulus(edge[load], inner), at, _RTOL)
 
     best = np.zeros(edge.size)
     fixed = np.append(profile.first_coordinate, profile.coordinate_breaks)

@@ -1,6 +1,6 @@
 """Maximum pressure and shear stress of a contact."""
 
-from math import inf, pi
+from math import acosh, cosh, inf, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -8,6 +8,7 @@ import pytest
 from mpmath import mp, mpf
 
 from mdr_core import fields, normal, tangential
+from mdr_core.extrema import largest_stress
 from mdr_core.profiles import (
     Cone,
     FlatPunch,
@@ -145,6 +146,44 @@ def test_maxima_of_many_profiles_match_single_profiles() -> None:
     for i in range(2):
         alone = normal.solve(RoundedPunch(float(b[i]), 1.0), E_STAR, contact_radius=a[i])
         assert swept[i] == pytest.approx(float(alone.maximum_pressure), rel=2e-15, abs=0)
+
+
+B, R = 0.5, 4.0
+# Root of y tanh(y) = 1.
+LAPLACE = 1.1996786402577339
+
+
+def flat_table() -> Tabulated:
+    """Points of a rounded punch; the slope of "pchip" next to the flat is 3/4 of the chord's, so
+    that f'' is 6/2 - 2 * 3/4 = 3/2 of its value there."""
+    x = np.linspace(0.0, 1.0, 20)
+    return Tabulated(np.append(0.0, B + x), np.append(0.0, x * x / (2 * R)), "pchip")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
+@pytest.mark.parametrize("s", [1e-7, 1e-10, 1e-15, 1e-40])
+@pytest.mark.parametrize(
+    ("profile", "bend"),
+    [(RoundedPunch(B, R), 1 / R), (flat_table(), 1.5 / R)],
+    ids=["rounded_punch", "table"],
+)
+def test_largest_stress_just_beyond_a_flat(
+    profile: Profile, bend: float, s: float, share: float
+) -> None:
+    """Where s << b, dg/ds = s^2 f''/b, so that the stress is that of a plane punch with a round
+    edge, (f''/(pi b)) int_max(t, c)^s u^2/sqrt(u^2 - t^2) du in the coordinate t of the radius.
+
+    It is largest at t = max(c, s/cosh(y)), y tanh(y) = 1, for c = 0 with the value
+    f'' s^2 y/(2 pi b). From s = 1e-8 b on no radius in double precision lies beyond the flat.
+    """
+    contact = normal.solve(profile, E_STAR, indentation_depth=profile.depth(np.array([s])))
+    pressure = E_STAR * bend / B * s * s * LAPLACE / (2 * pi)
+    assert contact.maximum_pressure == pytest.approx(pressure, rel=1e-12, abs=0)
+    width, edge = np.array([(1 - share) * s]), np.array([s])
+    found = largest_stress(profile, edge, np.array([True]), (width, edge - width))
+    t = max(share, 1 / cosh(LAPLACE))
+    shear = bend / B * s * s * (sqrt(1 - t * t) + t * t * acosh(1 / t)) / (2 * pi)
+    assert found == pytest.approx(shear, rel=1e-12, abs=0)
 
 
 def test_maximum_pressure_of_a_tabulated_paraboloid() -> None:

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 
 from mdr_core import history as load_history
 from mdr_core import normal, tangential
-from mdr_core.errors import InputError
+from mdr_core.errors import AccuracyError, InputError
 from mdr_core.profiles import (
     CappedParaboloid,
     Cone,
@@ -373,6 +373,21 @@ def test_contact_that_no_double_tells_from_its_flat() -> None:
         np.array(stress(each, x, 0.0, 0.1, poissons_ratio=0.3)) for each in (rounded, flat)
     )
     assert np.abs(one - other).max() < 1e-12 * np.abs(other).max()
+
+
+def test_largest_stress_that_no_radius_resolves_is_rejected() -> None:
+    """Beneath the edge the stresses are similar where s << b: they grow like s^2."""
+    punch = RoundedPunch(0.5, 2.0)
+    close, far, unresolved = (
+        normal.solve(punch, 3.0, indentation_depth=punch.depth(np.array(s)))
+        for s in (1e-6, 1e-5, 1e-7)
+    )
+    one, other = (float(largest(each, poissons_ratio=0.3).value) for each in (close, far))
+    assert one == pytest.approx(other / 100, rel=1e-5, abs=0)
+    with pytest.raises(AccuracyError, match="beyond the flat"):
+        largest(unresolved, poissons_ratio=0.3)
+    cone = normal.solve(TruncatedCone(0.5, 0.1), 3.0, normal_force=1e-40)
+    assert largest(cone, poissons_ratio=0.3).value == np.inf
 
 
 def test_unreachable_stress_has_no_onset() -> None:

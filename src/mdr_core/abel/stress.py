@@ -117,7 +117,13 @@ class StressPanels:
             self.edges, panel_sums(np.square(u)[:, None], masses, _POWERS), above=False
         )
 
-    def kernel(self, annulus: Annulus, roots: tuple[Array, Array], r: Array) -> Array:
+    def kernel(
+        self,
+        annulus: Annulus,
+        roots: tuple[Array, Array],
+        r: Array,
+        beyond: Array | None = None,
+    ) -> Array:
         """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx.
 
         Source: mdr-5, Eqs. (5.68), (5.70).
@@ -127,32 +133,35 @@ class StressPanels:
         annulus : its coordinate is the radius.
         roots : sqrt(x^2 - flat^2) at a and at c, 0 inside the flat, as accurate as the load
             however near they are to it [length].
-        r : radii r < a [length], shape (m,).
+        r : radii r < a, or r <= a where `beyond` is known [length], shape (m,).
+        beyond : sqrt(r^2 - flat^2), if all radii lie beyond the flat and it has more digits
+            [length], shape (m,).
         """
         a, inner, _ = annulus
         width, c = (a, np.zeros(1)) if inner is None else inner
         annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width, *roots)])
         if annuli.shape[1] == 1:
-            return self._over(_RadialEnds(*annuli[:, 0].tolist()), r)
+            return self._over(_RadialEnds(*annuli[:, 0].tolist()), r, beyond)
         different, number = np.unique(annuli, axis=1, return_inverse=True)
         result = np.empty_like(r)
         for i, ends in enumerate(different.T.tolist()):
             points = np.flatnonzero(number == i)
-            result[points] = self._over(_RadialEnds(*ends), r[points])
+            there = None if beyond is None else beyond[points]
+            result[points] = self._over(_RadialEnds(*ends), r[points], there)
         return result
 
-    def _over(self, ends: _RadialEnds, radius: Array) -> Array:
+    def _over(self, ends: _RadialEnds, radius: Array, beyond: Array | None) -> Array:
         """Kernel of an annulus, over whole panels and those at its ends."""
         a, c = ends.outer, ends.inner
-        order = np.argsort(radius, kind="stable")
-        r = radius[order]
+        order = np.argsort(radius if beyond is None else beyond, kind="stable")
+        r, s = radius[order], None if beyond is None else beyond[order]
         if self.smooth_tip and self.edges[0] == c == 0:
             r = np.maximum(r, _AXIS * min(self.length[0], a))
         last = min(int(np.searchsorted(self.edges[1:], a)), self.length.size - 1)
         first = max(int(np.searchsorted(self.edges, c)), int(ends.inner_root > 0))
         total = self._whole(first, last, r) if first < last else np.zeros_like(r)
         for panel in {last, first - 1} - {-1}:
-            total += self._cut(panel, ends, r)
+            total += self._cut(panel, ends, r, s)
         result = np.empty_like(r)
         result[order] = total
         return result
@@ -171,25 +180,31 @@ class StressPanels:
             add(total, point, near(rows, length, above, to_right))
         return total
 
-    def _cut(self, panel: int, ends: _RadialEnds, r: Array) -> Array:
-        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii."""
+    def _cut(self, panel: int, ends: _RadialEnds, r: Array, s: Array | None) -> Array:
+        """Part of one panel that lies in the annulus c <= x <= a, at ascending radii.
+
+        s is `beyond` of `kernel`.
+        """
         a, c, width, root_a, root_c = ends
         b, right = float(self.edges[panel]), min(float(self.edges[panel + 1]), a)
-        total = np.zeros_like(r)
-        # For radii above c the integral starts at the radius and does not depend on c.
-        beyond = int(np.searchsorted(r, c)) if c > b or (panel == 0 and root_c > 0) else 0
-        at = r[beyond : int(np.searchsorted(r, right))]
+        total, begins_inside = np.zeros_like(r), c > b or (panel == 0 and root_c > 0)
         # Next to the flat only the root tells a from it.
         length = root_a if panel == 0 and right == a else sqrt((right - b) * (right + b))
+        # The width is accurate however narrow the annulus.
+        whole = (width if right == a else right - c) * (right + c)
+        # The rounding error of root_c is that of root_a.
+        by_root = panel == 0 and (c == b or root_a * root_c < b * b)
+        past = root_c * root_c if by_root else (c - b) * (c + b)
+        if panel == 0 and s is not None:
+            # All differences of squares are those of the roots.
+            b, right, c, r = 0.0, length, root_c, s
+        # For radii above c the integral starts at the radius and does not depend on c.
+        beyond = int(np.searchsorted(r, c)) if begins_inside else 0
+        at = r[beyond : int(np.searchsorted(r, right))]
         rows = self._rows[:, panel] * (length / self.length[panel]) ** np.arange(len(self._rows))
         above, to_right = (b - at) * (b + at), (right - at) * (right + at)
         total[beyond : beyond + at.size] = _panel_integral(rows, length, above, to_right)
         if beyond:
-            # The width is accurate however narrow the annulus.
-            whole = (width if right == a else right - c) * (right + c)
-            # The rounding error of root_c is that of root_a.
-            by_root = panel == 0 and (c == b or root_a * root_c < b * b)
-            past = root_c * root_c if by_root else (c - b) * (c + b)
             below = (c - r[:beyond]) * (c + r[:beyond])
             total[:beyond] = self._from_inner(panel, past, whole, below)
         return total

@@ -79,6 +79,7 @@ def two_root_integral(
     odd: bool,
     rtol: float,
     analytic: Analytic = DEFAULT,
+    beyond: Array | None = None,
 ) -> Array:
     """Return the integrals of F(x)/sqrt(x^2 - r^2) over x from max(r, b, c) to a.
 
@@ -95,6 +96,7 @@ def two_root_integral(
     odd : True if F is odd in s, which halves the nodes for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
     analytic : strip in which the integrand is analytic in y, and its growth.
+    beyond : sqrt(r^2 - b^2), if all radii lie beyond the break and it has more digits [length].
 
     Returns
     -------
@@ -120,19 +122,23 @@ def two_root_integral(
         by_radii = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
         lower = where(width > upper / 2, by_radii, lower)
         least = where(lower > 0, lower, upper)
-    signed2, on_break = (b - r) * (b + r), r == b
+    if beyond is None:
+        signed2, on_break = (b - r) * (b + r), r == b
+        # a^2 - r^2, from the radius where that is exact.
+        edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
+    else:
+        signed2, on_break = -beyond * beyond, beyond == 0
+        edge2 = (upper - beyond) * (upper + beyond)
     any_on_break = some(on_break)
     if any_on_break:
         # A radius on the break takes the rule of one just above it.
         signed2 = np.where(on_break, -np.square(_NEXT_TO_BREAK * np.minimum(least, b)), signed2)
     above = signed2 < 0
     epsilon = np.sqrt(np.abs(signed2))
-    # a^2 - r^2, from the radius where that is exact.
-    edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
     if inner is None:
         length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
     else:
-        root = inverse_hypot(c, r)
+        root = inverse_hypot(c, r) if beyond is None else inverse_hypot(lower, beyond)
         if any_on_break:
             root = np.where(on_break, lower, root)
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.

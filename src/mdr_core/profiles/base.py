@@ -375,3 +375,13 @@ class Profile(ABC):
         radius : radii 0 <= r < a [length], shape (m,).
         rtol : relative tolerance.
         """
+
+    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
+        """`pressure_kernel` at contact coordinates up to that of the edge, where it is zero.
+
+        Beyond a flat a radius has fewer digits than the coordinate.
+        """
+        r, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
+        inside = r < self.contact_radius(annulus.outer)
+        values[inside] = self.pressure_kernel(annulus.at(inside), r[inside], rtol)
+        return values

@@ -89,6 +89,20 @@ class Truncated(FlatEnded):
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
+        return self._kernel(annulus, radius, rtol)
+
+    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
+        """Parameters: see `Profile`."""
+        radius, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
+        inside = coordinate < annulus.outer
+        chosen = annulus.at(inside), radius[inside], rtol
+        values[inside] = self._kernel(*chosen, beyond=coordinate[inside])
+        return values
+
+    def _kernel(
+        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
+    ) -> Array:
+        """Stress integral; `beyond` are the contact coordinates of the radii, if known [1]."""
         integral = two_root_integral(
             lambda x, s, _: self.weight(x, s),
             float(self.flat_radius),
@@ -97,6 +111,7 @@ class Truncated(FlatEnded):
             odd=True,
             rtol=rtol,
             analytic=self.analytic,
+            beyond=beyond,
         )
         return integral / pi
 

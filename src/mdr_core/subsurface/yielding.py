@@ -13,7 +13,7 @@ from scipy.ndimage import maximum_filter
 from scipy.optimize import brentq
 
 from mdr_core import normal, tangential
-from mdr_core.errors import InputError
+from mdr_core.errors import AccuracyError, InputError
 from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
@@ -36,6 +36,9 @@ _ACROSS, _MIDDLE, _STEPS = np.linspace(-1, 1, 5), (2, 2, 2), 1.5
 # Factor by which a box shrinks; part of the stress by which it may vary in the last one, of all
 # peaks and of the highest ones, and that of rounding errors; rounds.
 _SHRINK, _COARSE, _FLAT, _ROUNDING, _ROUNDS = 0.3, 0.01, 4e-6, 1e-11, 100
+# Contact coordinate over the radius of a flat below which no radius in double precision resolves
+# the stress beneath the edge: at this one it is too low by 5e-6 of its value.
+_RESOLVED: Final = 1e-6
 # Decimals of the logarithm of the stress at the onset; accuracy and range of that of the force.
 _DIGITS, _XTOL, _REACH = 5, 1e-5, 60.0
 
@@ -71,6 +74,7 @@ def largest(
     Raises
     ------
     InputError : another measure or body, or a Poisson's ratio out of range.
+    AccuracyError : the contact extends beyond a flat by less than 1e-12 of its radius.
     """
     if measure not in MEASURES:
         raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
@@ -102,6 +106,7 @@ def yield_onset_force(
     Raises
     ------
     InputError : another measure, no load, or a yield strength that is not positive.
+    AccuracyError : see `largest`.
     """
     require_positive(("yield_strength",), yield_strength)
     profile, (columns, shape) = contact.normal.profile, _columns(contact)
@@ -246,6 +251,12 @@ def _peak(
     for b in under.infinite_radii:
         if infinite_deviator(profile, b, (nu,), under.slips_from):
             return inf, b, 0.0, 0.0
+    if limit is None and under.load.coordinate[-1] < _RESOLVED * profile.first_radius:
+        raise AccuracyError(
+            "the contact extends so little beyond the flat that no radius in double precision "
+            "resolves the largest stress beneath its edge: increase the load",
+            ("load",),
+        )
 
     def on(angle: Array, r: Array, z: Array) -> Array:
         """The measure by direction, r of either sign, and z; zero where it is infinite."""
