@@ -103,7 +103,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, size=size)
     if arguments.file:
-        raise InputError(("file",), "does not go with options: give one of them")
+        raise InputError(("file",), "cannot be combined with options: give one of them")
     parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
         return respond(name, parameters.query(), media_type, parameters.members, size)

@@ -41,7 +41,8 @@ def near_full_slip(
     """Return the largest condition number of each load's results near full slip [1].
 
     The distance from full slip is F_N(c) under a force and d(c) under a displacement. Its condition
-    number passes to c by the inverse of the function's elasticity, and from c to all other results.
+    number passes to c by the inverse of the function's logarithmic derivative, and from c to all
+    other results.
 
     Parameters
     ----------

@@ -231,7 +231,7 @@ class IntervalMoments:
         if every(by_rule):
             return Moments(span, self.over_narrow(span, ends, base, beyond))
         if some(closed):
-            found = self._part(closed).over_wide(span[closed], ends[:, closed], base[closed])
+            found = self._part(closed).over_wide(span[closed], ends[:, closed])
             weights[:, closed] = found
         if some(by_rule):
             at = span[by_rule], ends[:, by_rule], base[by_rule], beyond[by_rule]
@@ -246,14 +246,13 @@ class IntervalMoments:
         part = {name: profile.parameters[name][chosen] for name in profile.swept}
         return IntervalMoments(profile.with_parameters(part), self.over_forces)
 
-    def over_wide(self, span: Array, ends: Array, base: Array) -> Array:
+    def over_wide(self, span: Array, ends: Array) -> Array:
         """Return the moments over wide intervals, by parts, in closed form.
 
         Parameters
         ----------
         span : lengths of the intervals in the normal coordinate, shape (m,).
         ends : both ends in the contact coordinate, shape (2, m).
-        base : contact coordinates of the breaks below, zero for none, shape (m,).
         """
         profile = self.profile
         twice = 2 * profile.contact_radius(ends)
@@ -277,7 +276,8 @@ class IntervalMoments:
 
         Parameters
         ----------
-        span, ends, base : see `over_wide`.
+        span, ends : see `over_wide`.
+        base : contact coordinates of the breaks below, zero for none, shape (m,).
         beyond : True beyond a break or a flat's edge, where all is smooth in the root of the
             distance from `base`; elsewhere it is in the logarithm.
         """

@@ -26,7 +26,7 @@ _SMALLEST_STEP: Final = 1e-14
 # Distance from the target, in log, below which the step has converged on a steep rise as well:
 # just above a slope discontinuity it is short long before.
 _CLOSE: Final = 1e-8
-# Relative width of a bracket without a double inside.
+# Relative width of a bracket of at most four spacings of doubles.
 _ADJACENT: Final = 2.0**-51
 # Factor by which an open bracket grows.
 _STRIDE: Final = 16.0

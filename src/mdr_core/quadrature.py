@@ -27,7 +27,7 @@ Integrand = Callable[[Array, Chosen], Array]
 _POINTS: Final = (2, 3, 4, 5, 6, 8, 12, 16, 24, 48)
 # Points of the rules on [-H, H] for an even integrand, of which half are evaluated.
 _EVEN_POINTS: Final = (4, 6, 8, 10, 12, 16, 24, 48)
-# Points of the rule for pieces of a long integral, which has the fewest nodes per unit length.
+# Points of the rule for pieces of a long integral, within 5 % of the fewest nodes per unit length.
 _PIECE_POINTS: Final = 24
 # Nodes evaluated in the time of one more call of an integrand, by measurement.
 _CALL: Final = 2000

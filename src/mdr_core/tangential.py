@@ -24,7 +24,7 @@ _STEP_ERROR: Final = 40.0
 # Relative rounding error of a load.
 _LOAD_ERROR: Final = 8 * 2.0**-52
 # Relative rounding error of an edge that follows from a load.
-_EDGE_ERROR: Final = 2 * _LOAD_ERROR
+EDGE_ERROR: Final = 2 * _LOAD_ERROR
 
 # Step of depth or force between two contact coordinates.
 _Step = Callable[[Profile, Array, Array, Array], Array]
@@ -43,7 +43,10 @@ class TangentialContact(validity.ContactResults):
     stick_coordinate: Array
     """Stick radius in the contact coordinate of the profile; undefined in full slip."""
     width: Array
-    """Distance of the stick edge from the contact edge in that coordinate, without cancellation."""
+    """Distance of the stick edge from the contact edge in that coordinate, without cancellation.
+
+    For a flat punch, the load over that of full slip [1].
+    """
     sign: Array
     """Direction of the load; a single 1 if all are positive."""
     full_slip: Flags
@@ -160,7 +163,7 @@ class TangentialContact(validity.ContactResults):
     @property
     def slips_from(self) -> Array:
         """Least radius with slip [length]; infinite without."""
-        return np.where(self.full_slip | (self.width > 0), self.stick_radius, np.inf)
+        return np.where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
 
     @cached_property
     def tangential_stiffness(self) -> Array:
@@ -222,7 +225,7 @@ class TangentialContact(validity.ContactResults):
             # The distance from full slip has the error of the limiting force or displacement.
             error = error + self.normal.error_estimates * self._load_condition
         elif self.normal.control != "contact_radius":
-            error = error + _EDGE_ERROR * conditioning.narrow_annulus(self._coordinate, self.width)
+            error = error + EDGE_ERROR * conditioning.narrow_annulus(self._coordinate, self.width)
         return error
 
     @cached_property

@@ -97,7 +97,7 @@ def findings(contact: SolvedContact, material: Material) -> list[Finding]:
     Parameters
     ----------
     contact : contact with or without friction, or load history; for wear the one before wear.
-    material : effective moduli, as of `from_bodies`.
+    material : effective moduli, as from `from_bodies`.
     """
     found = of_normal_contact(contact.normal, material, contact.slips_from)
     if contact.g_star is not None:
@@ -149,18 +149,19 @@ def of_normal_contact(
             f"{steepest:.2g} at the contact edge"
         )
 
+    ratios = () if material is None else material.poissons_ratios
+
+    def yields(radius: Parameter) -> Flags:
+        return infinite_deviator(contact.profile, radius, ratios, slips_from)
+
     def places() -> str:
         return (
-            f"the elastic pressure is infinite at radius {listed_infinite_radii(contact)}: "
+            f"the elastic pressure is infinite at radius {listed_infinite_radii(contact, yields)}: "
             "a real material yields there under any load"
         )
 
-    ratios = () if material is None else material.poissons_ratios
-    plastic = _infinite(
-        contact, lambda b: infinite_deviator(contact.profile, b, ratios, slips_from)
-    )
     steep = Finding("half_space", error > _HALF_SPACE_ERROR, size)
-    return [steep, Finding("plastic", plastic, places)]
+    return [steep, Finding("plastic", _infinite(contact, yields), places)]
 
 
 def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:
@@ -191,9 +192,13 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     return Finding("impossible_moduli", impossible, unphysical)
 
 
+def _always(_radius: Parameter) -> bool:
+    return True
+
+
 def infinite_pressure(contact: LoadedContact) -> Flags:
     """Return the loads under which the pressure is infinite somewhere."""
-    return _infinite(contact, lambda _radius: True)
+    return _infinite(contact, _always)
 
 
 def infinite_deviator(
@@ -228,10 +233,13 @@ def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool
     return found
 
 
-def listed_infinite_radii(contact: LoadedContact) -> str:
-    """Return the radii of infinite pressure inside the largest contact, as text."""
+def listed_infinite_radii(
+    contact: LoadedContact, counts: Callable[[Parameter], Flags | bool] = _always
+) -> str:
+    """Return the radii of infinite pressure that count in the largest contact, as text."""
     largest = extremes(contact.contact_radius)[1]
-    least = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)
+    radii = contact.profile.infinite_pressure_radii
+    least = (extremes(b)[0] for b in radii if some(counts(b)))
     return listed([f"{b:.12g}" for b in least if b <= largest])
 
 

@@ -38,7 +38,8 @@ def picture_size(text: str, media_type: str) -> tuple[int, int]:
     size = (int(found[1]), int(found[2])) if found else (0, 0)
     if media_type in PICTURES and min(size) >= _SMALLEST and max(size) <= _LARGEST:
         return size
-    errors = [("/size", f"{SIZE}; other formats have no size")]
+    detail = SIZE if media_type in PICTURES else "is valid for pictures only: svg, png and pdf"
+    errors = [("/size", detail)]
     raise problems.ServiceError(problems.INVALID_REQUEST, "some parameters are invalid", errors)
 
 

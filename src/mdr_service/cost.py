@@ -130,7 +130,7 @@ def require_feasible(query: Query | BatchQuery, media_type: str) -> float:
         part = limit / expected
         detail = f"estimated time of {expected:.2g} s far exceeds the limit of {limit:.2g} s"
         fits = [
-            (f"/{name}", f"{detail}; about {int(part * count)} would fit")
+            (f"/{name}", f"{detail}; about {max(int(part * count), 1)} would fit")
             for name, count in _sizes(query).items()
         ]
         raise ServiceError(problems.TOO_COSTLY, detail, fits)

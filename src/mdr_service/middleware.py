@@ -27,7 +27,7 @@ from mdr_service.transfers import LONG, Transfers
 
 # Ids that a client can give to its requests.
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
-# Status in the log for a client that disconnected before the response, as of nginx.
+# Status in the log for a client that disconnected before the response, as in nginx.
 _CLIENT_CLOSED_REQUEST: Final = 499
 # Status sent before the body was read to its end.
 _UNREAD: Final = problems.BODY_TOO_LARGE.status

@@ -80,7 +80,7 @@ class ServiceError(Exception):
 
 
 INTERNAL_ERROR: Final = ServiceError(
-    INTERNAL, "the service has failed on this request; report it with the instance"
+    INTERNAL, "internal error: report it with the request, and with the instance if there is one"
 )
 FAILURES: Final = (ServiceError, InputError, AccuracyError, ValidationError)
 """Exceptions with a problem document of their own; any other is an internal error."""

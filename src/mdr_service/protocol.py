@@ -27,7 +27,7 @@ from mdr_service.settings import SETTINGS
 MAX_HEADER_BYTES: Final = 32_768
 """Maximum length of request line and headers; nginx has 32 kB as well, Apache 8 kB a line."""
 MAX_HEADER_FIELDS: Final = 100
-"""Maximum number of headers, as of Apache."""
+"""Maximum number of headers, as in Apache."""
 # Maximum number of pipelined requests of a connection, each in memory; browsers sent up to 6.
 _MAX_PIPELINED: Final = 32
 # Interval at which the client's progress is checked.

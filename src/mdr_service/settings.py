@@ -50,7 +50,8 @@ class Settings(BaseModel):
     max_transfer_bytes: int = Field(
         32 * 1024**2,
         ge=0,
-        description="Maximum total length of large bodies in memory; one may exceed it [bytes].",
+        description="Maximum total length of large bodies in memory; a single request may exceed "
+        "it [bytes].",
     )
     compute_processes: int = Field(2, ge=1, le=1_000, description="Number of compute processes.")
     budget_seconds: float = Field(
@@ -69,7 +70,10 @@ class Settings(BaseModel):
         description="Maximum time in which a request arrives, headers and body [s].",
     )
     shutdown_seconds: int = Field(
-        15, ge=1, description="Maximum time for requests in flight after SIGTERM [s]."
+        15,
+        ge=1,
+        description="Maximum time for requests in flight after SIGTERM; more than "
+        "MDR_BUDGET_SECONDS and MDR_QUEUE_SECONDS together [s].",
     )
     cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
         (), description="Origins allowed by CORS, separated by commas."

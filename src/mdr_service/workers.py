@@ -1,10 +1,10 @@
 """Compute processes of the server, and the queue before them.
 
 Computations that are longer than a round trip run in a process of their own: a thread would hold
-the interpreter's lock, and could not be terminated. They wait in the order of arrival for up to
-`queue_seconds`, then run for up to `budget_seconds`; a single limit would terminate computations
-half-way that had mainly waited. While others wait, one that takes far longer than usual is
-terminated, so that a few expensive queries cannot starve the rest.
+the global interpreter lock (GIL), and could not be terminated. They wait in the order of arrival
+for up to `queue_seconds`, then run for up to `budget_seconds`; a single limit would terminate
+computations half-way that had mainly waited. While others wait, one that takes far longer than
+usual is terminated, so that a few expensive queries cannot starve the rest.
 """
 
 import logging
@@ -148,7 +148,7 @@ class WorkerPool:
                 if self._tasks:
                     self._tasks.start_soon(self._start)
         observability.RESTARTS.labels("displaced").inc()
-        raise self._busy("terminated because shorter queries were waiting")
+        raise self._busy("terminated: it took far longer than usual while other queries waited")
 
     async def _take_process(self, job: _Job) -> ComputeProcess:
         if self._start_failed and not (self._idle or self._running):

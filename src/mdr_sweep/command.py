@@ -34,7 +34,11 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="FIELD=START:STOP:N[:log]",
         help="axis of a grid of cases; the last axis varies fastest",
     )
-    add("--answers", default="", help="quantities to compute, separated by commas (all)")
+    add(
+        "--answers",
+        default="",
+        help="quantities to compute, separated by commas (all but the largest stresses)",
+    )
     add("--keep", default="", help="columns of the table to copy, separated by commas")
     add("--out", type=Path, required=True, help="result: .parquet or .csv")
     add("--overwrite", action="store_true", help="replace an existing result")

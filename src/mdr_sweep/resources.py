@@ -2,6 +2,7 @@
 
 import os
 import resource
+import sys
 from collections.abc import Iterator
 from math import log2
 from time import process_time
@@ -71,12 +72,14 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     tables.write(pa.BufferOutputStream(), ".parquet", [rows], {})
     writing = (process_time() - start) / part.num_rows
     solving /= part.num_rows
-    cores = len(os.sched_getaffinity(0))
+    cores = _cores()
     saved = source.rows * solving * (1 - 1 / cores)
     processes = workers or (cores if saved > START_SECONDS else 1)
     processes = 0 if processes == 1 else processes
     start_up = START_SECONDS if processes else 0.0
-    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    # In KiB on Linux, in bytes on macOS.
+    unit = 1 if sys.platform == "darwin" else 1024
+    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
     return Estimate(
         rows=source.rows,
         chunk=min(2 ** int(log2(max(_CHUNK_SECONDS / solving, 1.0))), tables.ROW_GROUP),
@@ -85,3 +88,10 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
         memory=own * (1 + processes),
         disk=2 * source.rows * rows.nbytes / part.num_rows,
     )
+
+
+def _cores() -> int:
+    """Processors that this process may use; macOS has no affinity."""
+    if sys.platform == "darwin":
+        return os.cpu_count() or 1
+    return len(os.sched_getaffinity(0))

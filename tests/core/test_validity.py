@@ -62,6 +62,22 @@ def test_infinite_deviatoric_stress() -> None:
         assert set(warnings_of(sharper, rubber)) == {"plastic"}
 
 
+def test_warning_lists_the_radii_of_infinite_deviatoric_stress_only() -> None:
+    rubber, r = bodies(0.5), np.arange(6.0)
+    table = Tabulated(r, 1e-3 * r * (r + 1), "linear")
+    contact = normal.solve(table, rubber.e_star, contact_radius=3.5)
+    slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=2.5)
+    message = warnings_of(slips, rubber)["plastic"].message()
+    assert message.startswith("the elastic pressure is infinite at radius 3: ")
+
+
+def test_flat_punch_slips_nowhere_or_everywhere() -> None:
+    contact = normal.solve(FlatPunch(2.0), 1.0, normal_force=1.0)
+    pushed = tangential.solve(contact, 1.0, 0.5, tangential_force=[0.0, 0.25, 0.5])
+    assert pushed.slips_from.tolist() == [np.inf, np.inf, 0.0]
+    assert pushed.method == "closed_form"
+
+
 def first_order_error(slope: Any, pressure: Any, k: float) -> float:
     """Relative increase of the force at prescribed depth, because points move inwards.
 

@@ -16,7 +16,7 @@ from mdr_core.typing import Array
 _MAX_POWERS: Final = 28
 # Value of t below which arcosh(1/root) is computed as artanh(t).
 _SMALL: Final = 0.5
-# Nodes of a panel at a distance of half its length in x^2, where n nodes leave 3.4^-2n.
+# Nodes of a panel at a distance of half its length in x^2, where n nodes leave 3.6^-2n.
 _FAR_NODES: Final = 12
 
 

@@ -125,7 +125,7 @@ def _fitted(
 def _beyond_flat(
     source: PiecewiseQuadratic, left: float, length: float, pole: float
 ) -> tuple[Array, Array]:
-    """Coefficients as of `_fitted` next to a flat, where G/s is a series in s^2."""
+    """Coefficients as from `_fitted` next to a flat, where G/s is a series in s^2."""
     points, _, _ = fit_points(_TERMS)
     s = length * np.sqrt(points)
     x = np.hypot(left, s)

@@ -22,7 +22,7 @@ from mdr_core.typing import Array, Chosen
 # Closer to the axis than this part of the radius at which an arc starts the stress is that on the
 # axis.
 _NEAR_AXIS: Final = 1e-8
-# The same part of the radius at which an arc that starts on the axis ends.
+# The same for an arc that starts on the axis, as a part of the radius at which it ends.
 _NEXT_TO_AXIS: Final = 1e-120
 # Nodes on every piece: a subpanel of a table is a polynomial through up to 22 points.
 _NODES: Final = 24

@@ -36,8 +36,8 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     Parameters
     ----------
     contact : normal contact of one profile, under any number of loads.
-    radius : radii [length], >= 0, shape (m,). Within a few units in the last place of the contact
-        radius the pressure has a root, and no accuracy relative to itself.
+    radius : radii [length], >= 0, shape (m,). The pressure has a root at the contact radius: its
+        relative error grows without bound within a few units in the last place of it.
     rtol : relative accuracy, 1e-13 to 1e-3.
 
     Returns

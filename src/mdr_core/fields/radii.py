@@ -14,12 +14,10 @@ from mdr_core.elementwise import broadcast, some
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
-from mdr_core.tangential import TangentialContact
+from mdr_core.tangential import EDGE_ERROR, TangentialContact
 from mdr_core.typing import Array
 
 _EPS: Final = float(np.finfo(float).eps)
-# Relative rounding error of an edge that follows from a load.
-EDGE_ROUNDING: Final = 16 * _EPS
 # Units in the last place of an edge within which the error of a field is not estimated.
 _TOO_CLOSE: Final = 4.0
 # Largest error of a field by that of an edge, relative to its largest value, on a grid with room
@@ -46,21 +44,21 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
         radius = np.append(contact.slip_fronts, contact.contact_radius)
         gaps = np.diff(radius, prepend=0.0)
         scale = np.minimum(gaps, np.append(gaps[1:], gaps[-1])) / contact.profile.steepness
-        rounding = 0.0 if contact.profile.has_no_partial_slip else EDGE_ROUNDING
+        rounding = 0.0 if contact.profile.has_no_partial_slip else EDGE_ERROR
         return Edges(radius, rounding * radius, scale)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
     beyond = a - profile.first_radius
     exact = normal.control == "contact_radius" or profile.has_no_partial_slip
-    error, scale = beyond * (0.0 if exact else EDGE_ROUNDING), beyond / profile.steepness
+    error, scale = beyond * (0.0 if exact else EDGE_ERROR), beyond / profile.steepness
     if not isinstance(contact, TangentialContact):
         return Edges(*map(np.ravel, (a, error, scale)))
     exact = contact.control == "stick_radius" or profile.has_no_partial_slip
     c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
     # Near full slip the condition number of c amplifies the rounding error of the load.
     condition = 1 + contact.load_rounding / normal.error_estimates
-    error_c = c * (0.0 if exact else EDGE_ROUNDING * condition)
+    error_c = c * (0.0 if exact else EDGE_ERROR * condition)
     parts = (a, c), (error, error_c), (scale, scale)
     return Edges(*(np.ravel([broadcast(part, c.shape) for part in pair]) for pair in parts))
 
@@ -135,7 +133,7 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     gaps = np.diff(stops, append=inf)
     place = np.searchsorted(stops, moving)
     gap = np.minimum(gaps[place], gaps[place - 1])
-    clear = (EDGE_ROUNDING / (2 * _GRID_ERROR)) ** 2 * np.square(moving) / gap
+    clear = (EDGE_ERROR / (2 * _GRID_ERROR)) ** 2 * np.square(moving) / gap
     stops[place] = moving - np.minimum(clear, gap / 4)
     return graded(np.append(stops[stops < end], end), points)
 

@@ -1,9 +1,9 @@
 """Tangential fields of a contact or at the end of a load history: sums over annuli.
 
-Between two neighbouring slip fronts q_x falls by mu k per unit of q, k the slope of the anchors: 0
-where the springs stick under a monotonic load, 1 where they slip. The stress is therefore a sum of
-kernels, each over the annulus between two fronts. On the arcs that nonlinear load steps leave, k
-varies with the radius, and the kernels are superposed.
+Between two neighbouring slip fronts dq_x/dq = mu k, k the slope of the anchors: 0 where the springs
+stick under a monotonic load, 1 where they slip. The stress is therefore a sum of kernels, each over
+the annulus between two fronts. On the arcs that nonlinear load steps leave, k varies with the
+radius, and the kernels are superposed.
 """
 
 from collections.abc import Callable
@@ -123,7 +123,9 @@ def shear_stress(
 def slip(
     contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
 ) -> Array:
-    """Return the slip s(r) = u_x(r) - delta_x of the surface in the contact [length].
+    """Return the slip s(r) = u(r) - u_x of the surface in the contact [length].
+
+    It is the displacement u(r) of the surface less that of the body.
 
     s = -mu (E*/G*) sum (k_i - k_i-1) S(x_i-1; r), S the slip kernel; zero in the stick zone and
     outside the contact, negative for a positive displacement. In full slip the displacement

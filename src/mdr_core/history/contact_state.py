@@ -10,7 +10,7 @@ from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
-from mdr_core.history.traction_branches import TractionBranches, widths
+from mdr_core.history.traction_vertices import TractionVertices, widths
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
@@ -89,19 +89,19 @@ class ContactState(Results):
         return interval_moments(self.profile, over_forces=False)
 
     @cached_property
-    def _branches(self) -> TractionBranches:
-        return TractionBranches(self._moments, slip_memory.as_tree(self.polyline))
+    def _vertices(self) -> TractionVertices:
+        return TractionVertices(self._moments, slip_memory.as_tree(self.polyline))
 
     @property
     def depth(self) -> Array:
         """Depths w of the vertices, from 0 to d [length]; empty in separation."""
-        vertices = np.append(self._branches.depth[:-1], self.indentation_depth)
+        vertices = np.append(self._vertices.depth[:-1], self.indentation_depth)
         return vertices if self.in_contact else vertices[:0]
 
     @property
     def load(self) -> Array:
         """q_x of the springs at the vertices [force/length]; linear in w between them."""
-        tree = self._branches.tree
+        tree = self._vertices.tree
         above = np.cumsum((tree.slope * tree.span)[:0:-1])
         loads = self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
         return loads if self.in_contact else loads[:0]
@@ -109,19 +109,19 @@ class ContactState(Results):
     @cached_property
     def coordinate(self) -> Array:
         """Contact coordinates of the vertices; in separation that of the axis."""
-        return read_only(self._branches.coordinate)
+        return read_only(self._vertices.coordinate)
 
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
-        return read_only(self._branches.tree.slope[1:])
+        return read_only(self._vertices.tree.slope[1:])
 
     @cached_property
     def segments(self) -> TractionSegments:
         """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
         if self.curved_segments is not None:
             return self.curved_segments
-        tree = self._branches.tree
+        tree = self._vertices.tree
         width = widths(self._moments, tree, self.coordinate)
         straight = np.zeros(self.slope.shape)
         return TractionSegments(self.coordinate, width, self.slope, straight)
@@ -144,7 +144,7 @@ class ContactState(Results):
     @property
     def tangential_energy(self) -> float:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        return self.energy_unit * float(self._branches.square[-1])
+        return self.energy_unit * float(self._vertices.square[-1])
 
     @cached_property
     def dissipation(self) -> float:
@@ -161,7 +161,7 @@ class ContactState(Results):
 
     @property
     def slip_fronts(self) -> Array:
-        """Radii inside the contact where the branch of q_x changes, ascending [length]."""
+        """Radii inside the contact between two segments of q_x, ascending [length]."""
         if self.profile.has_no_partial_slip:
             return np.zeros(0)
         edges = self.coordinate if self.curved_segments is None else self.curved_segments.coordinate
@@ -170,7 +170,7 @@ class ContactState(Results):
     @property
     def tangential_force(self) -> float:
         """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
-        return self.friction_coefficient * self.e_star * float(self._branches.shear[-1])
+        return self.friction_coefficient * self.e_star * float(self._vertices.shear[-1])
 
 
 def read_only(values: Array) -> Array:
@@ -236,7 +236,7 @@ def advance(
 
     Examples
     --------
-    Eq. (5.15): half of the displacement at full slip, on a cone, is F_x = 3/4 mu F_N.
+    At half of the displacement at full slip a cone has F_x = 3/4 mu F_N: Eqs. (5.47), (5.49).
 
     >>> from mdr_core.profiles import Cone
     >>> state = advance(unloaded(Cone(0.1), 1.0, 1.0, 0.5), 2.0, 0.0)

@@ -68,13 +68,13 @@ def cycles(
 
     Parameters
     ----------
-    profile, e_star, g_star, friction_coefficient : as of `solve`.
+    profile, e_star, g_star, friction_coefficient : as for `solve`.
     indentation_depth, normal_force : exactly one, the mean [length], [force].
     normal_amplitude : of the same quantity, >= 0, at most the mean.
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
     samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps.
-    rtol : relative accuracy, as of `solve`.
+    rtol : relative accuracy, as for `solve`.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def cycles(
 
     Raises
     ------
-    InputError : as of `solve`, and a normal amplitude outside 0 to the mean.
+    InputError : as for `solve`, and a normal amplitude outside 0 to the mean.
 
     Examples
     --------

@@ -1,9 +1,9 @@
 """Energy dissipated by friction, from the segments that the slip front swept.
 
 While the slip front runs down a segment of the polyline from n_H to n_L, every spring above it
-slips by the front's own shift ds = |1 -+ k| dw, under the friction mu E* (d - w'):
+slips by the front's own shift, mu (E*/G*) |1 -+ k| dw, under the friction mu E* (d - w'):
 
-    D/(mu E*) = |1 -+ k| int dw int_w^d (d - w') 2 dx'.
+    G* D/(mu E*)^2 = |1 -+ k| int dw int_w^d (d - w') 2 dx'.
 
 Interchanged, the inner integral M over the path of the front is known for each spring. The load
 point moves linearly, so M is a polynomial of degree 2 in w' between the four ends of the two
@@ -20,7 +20,7 @@ from mdr_core.typing import Array
 
 
 def per_segment(moments: IntervalMoments, segments: SlipSegments) -> Array:
-    """Return D/(mu E*) of every segment [length^3]."""
+    """Return G* D/(mu E*)^2 of every segment [length^3]."""
     dissipated = np.zeros(segments.step.size)
     full = np.flatnonzero(segments.full)
     if full.size and not moments.over_forces:

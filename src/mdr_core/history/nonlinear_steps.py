@@ -20,7 +20,7 @@ from mdr_core.history.contact_state import TractionSegments
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
-from mdr_core.history.traction_branches import widths
+from mdr_core.history.traction_vertices import widths
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 

@@ -166,7 +166,7 @@ class PolylineStack:
     ) -> int:
         """Extend the polyline straight to the load point; return the place of its vertex.
 
-        Where one sum is constant both coordinates move by the same number.
+        Where one sum is constant both coordinates move by the same amount.
         """
         forward_step = max(deeper + further, 0.0) if rise < 0 else 0.0
         backward_step = max(deeper - further, 0.0) if fall < 0 else 0.0

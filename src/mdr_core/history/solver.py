@@ -20,7 +20,7 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import only_one
 
-# Rounding error of the sums over the branches, relative to that of the profile.
+# Rounding error of the sums over the segments, relative to that of the profile.
 _SUMS: Final = 40.0
 
 
@@ -76,7 +76,7 @@ class LoadHistory(validity.ContactResults):
 
     @cached_property
     def tangential_force(self) -> Array:
-        """F_x = mu E* sum k_i (I_i - I_i-1) over the branches [force]. Source: notes, §10."""
+        """F_x = mu E* sum k_i (I_i - I_i-1) over the segments [force]. Source: notes, §10."""
         start = self.path.start
         if self.path.over_forces:
             return self.path.tangential
@@ -84,7 +84,7 @@ class LoadHistory(validity.ContactResults):
 
     @cached_property
     def tangential_displacement(self) -> Array:
-        """u_x = mu (E*/G*) sum k_i (w_i - w_i-1) over the branches [length].
+        """u_x = mu (E*/G*) sum k_i (w_i - w_i-1) over the segments [length].
 
         Source: notes, §10. After full slip under a prescribed force, which leaves it undetermined,
         it counts from the axis.
@@ -133,7 +133,7 @@ class LoadHistory(validity.ContactResults):
         if isinstance(steps, ExtrapolatedResults):
             curved_segments = steps.nonlinear.curved_segments(steps.finest.last)
             steps = steps.finest
-        part, at = steps.last_branches
+        part, at = steps.last_vertices
         line = steps.last
         if self.path.over_forces:
             line = self._over_depths(part.depth_step[at[1:]], line)
@@ -158,7 +158,7 @@ class LoadHistory(validity.ContactResults):
         if profile.has_no_partial_slip or isinstance(steps, ExtrapolatedResults):
             return self.state.slip_fronts
         # The state would be built for them alone.
-        part, at = steps.last_branches
+        part, at = steps.last_vertices
         return profile.contact_radius(part.coordinate[at[1:-1]])
 
     @property

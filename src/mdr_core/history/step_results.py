@@ -10,7 +10,7 @@ import numpy as np
 
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
-from mdr_core.history.traction_branches import TractionBranches
+from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
 
@@ -20,7 +20,7 @@ _BLOCK: Final = 16_384
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
 
 # Some of the steps, their vertices, the path of the slip front, and the polyline after them.
-_Block = tuple[slice, TractionBranches, FrontPath, Polyline]
+_Block = tuple[slice, TractionVertices, FrontPath, Polyline]
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class StepResults:
     def dissipation(self) -> Array:
         """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
 
-        def dissipated(_part: TractionBranches, path: FrontPath) -> Array:
+        def dissipated(_part: TractionVertices, path: FrontPath) -> Array:
             segments = slip_memory.slip_segments(path)
             each = dissipation.per_segment(self.moments, segments)
             return np.asarray(np.bincount(segments.step, each, path.load.size), dtype=float)
@@ -66,7 +66,7 @@ class StepResults:
         """
         slips = 1 if self.moments.profile.has_no_partial_slip else 2
 
-        def code(part: TractionBranches, _path: FrontPath) -> Indices:
+        def code(part: TractionVertices, _path: FrontPath) -> Indices:
             tree, top = part.tree, part.tree.top
             slipping = (tree.growth[top] == 0).any(axis=1)
             full = slipping & (tree.parent[tree.parent[top]] < 0)
@@ -80,8 +80,8 @@ class StepResults:
         return self._end[-1]
 
     @property
-    def last_branches(self) -> tuple[TractionBranches, Indices]:
-        """Branches with the vertices of the last polyline, and their indices from the axis."""
+    def last_vertices(self) -> tuple[TractionVertices, Indices]:
+        """Vertices of the last block, and the indices of those of the last polyline."""
         part = self._end[1]
         indices, vertex = [], int(part.tree.top[-1])
         while vertex >= 0:
@@ -104,9 +104,9 @@ class StepResults:
             chosen = slice(begin, begin + _BLOCK)
             points = LoadPoints._make(row[chosen] for row in self.points)
             tree, path, line = slip_memory.apply_steps(line, points)
-            yield chosen, TractionBranches(self.moments, tree), path, line
+            yield chosen, TractionVertices(self.moments, tree), path, line
 
-    def _per_step(self, result: Callable[[TractionBranches, FrontPath], Any]) -> Array:
+    def _per_step(self, result: Callable[[TractionVertices, FrontPath], Any]) -> Array:
         """Return a result of every step, zero in blocks without contact."""
         values = np.zeros(self.points.normal.shape)
         for chosen, part, path, _ in self._blocks:

@@ -31,6 +31,8 @@ NORMAL_QUANTITIES: Final = (
     "normal_stiffness",
     "elastic_energy",
 )
+# Fields of a contact, likewise.
+FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 _NO_BREAKS: Final = np.empty(0)
 _NO_PLATEAUS: Final = np.empty((0, 2))
 

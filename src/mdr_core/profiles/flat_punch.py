@@ -8,7 +8,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
-from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
+from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.typing import Array, Parameter
 
 
@@ -27,7 +27,7 @@ class FlatPunch(Profile):
 
     kind: ClassVar[str] = "flat_punch"
     formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
-    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, "pressure")
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:

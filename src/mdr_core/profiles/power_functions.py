@@ -44,7 +44,7 @@ def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
 
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
-    """Return C n r^(n-1), infinite at r = 0 for n < 1; overflow as of `power`."""
+    """Return C n r^(n-1), infinite at r = 0 for n < 1; overflow as for `power`."""
     factor, scale = _scaled(coefficient, exponent)
     return (factor * scale * exponent) * raised(r * scale, exponent - 1)
 

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from functools import partial
 from math import pi
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import log_ratio, power_moment, root_step
 from mdr_core.elementwise import full, some, where
-from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
+from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
     StickRatios,
@@ -24,14 +24,6 @@ from mdr_core.profiles.power_functions import (
     square_stick,
 )
 from mdr_core.typing import Array, Flags, Parameter
-
-_EVERYTHING: Final = (
-    *NORMAL_QUANTITIES,
-    "pressure",
-    "shear_stress",
-    "slip",
-    "normal_displacement",
-)
 
 
 @dataclass(frozen=True)
@@ -50,7 +42,7 @@ class Cone(Profile):
     kind: ClassVar[str] = "cone"
     exponent: ClassVar[float] = 1.0
     formula: ClassVar[str] = "slope·r"
-    closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
     # Source: mdr-5, Eqs. (5.47), (5.49).
     stick_ratios: ClassVar[StickRatios] = (linear_stick, square_stick)
 
@@ -136,7 +128,7 @@ class Paraboloid(Profile):
     kind: ClassVar[str] = "paraboloid"
     exponent: ClassVar[float] = 2.0
     formula: ClassVar[str] = "r²/(2·radius)"
-    closed_forms: ClassVar[tuple[str, ...]] = _EVERYTHING
+    closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
     # Source: mdr-5, Eqs. (5.12), (5.16).
     stick_ratios: ClassVar[StickRatios] = (square_stick, cubic_stick)
 

@@ -217,7 +217,7 @@ class Tabulated(FlatEnded):
         return float(panels.depth_at(*place)[0]), float(panels.half_force_at(*place)[0])
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        """By the condition of a spheroid, of the largest increase of g'(x)/x. See `Profile`."""
+        """By an upper bound of the increase of g'(x)/x on the panels. See `Profile`."""
         if self.flat_radius > 0:
             return coordinate < 0
         panels, (panel, s) = self.resolved.panels, _located(self._edges, coordinate)

@@ -1,12 +1,14 @@
 """Loads of the foundation and their moments, from which the stresses beneath a contact follow.
 
-With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are int (1 + i k) g' Im K dx
+With zeta = z + i x, rho = sqrt(r^2 + zeta^2) and u = rho + zeta they are int (1 + i m) g' Im K dx
 for
 
     K = 1/rho, zeta/rho^3, 1/(rho u), 1/rho^3, 1/u, 1/u^2, 1/(rho u^2),
 
-k the slope of q_x over q: the real part belongs to the normal load, the imaginary part to the
-tangential load. The kernels are singular at x^2 = w = (r + i z)^2. Source: notes, §14.
+m = dq_x/dq = +-mu k, k the slope of the anchors: the real part belongs to the normal load, the
+imaginary part to the tangential load. The kernels are singular at x^2 = w = (r + i z)^2.
+
+Source: notes, §14.
 """
 
 from math import ceil, inf, log2, prod
@@ -45,7 +47,7 @@ _NEAREST: Final = 1e-32
 _SMALL: Final = 1e-9
 # Largest contact radius, and inverse of the smallest one: 1/rho^3 is a double.
 _LARGEST: Final = 1e95
-# Nodes times points evaluated at once: complex arrays above 128 kB are allocated anew.
+# Nodes times points evaluated at once: complex arrays above 128 kB are mapped on each allocation.
 _BLOCK: Final = 8_192
 
 
@@ -67,10 +69,10 @@ class Foundation:
 
     def __init__(self, load: Traction, body: int) -> None:
         self.load, profile = load, load.profile
-        self.share = (1 if body == 2 else -1) * load.modulus / load.e_star
-        """k where the springs slip, as it acts on the body [1]."""
+        self.friction = (1 if body == 2 else -1) * load.modulus / load.e_star
+        """mu, with the sign of the traction on the body [1]."""
         rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
-        self._anchors = self.share * np.array([load.slope, rate])
+        self._anchors = self.friction * np.array([load.slope, rate])
         self._inverse = any(arc and arc.inverse for arc in load.arcs)
         # Least radius at which q_x has a slope, infinite if it has none.
         self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)

@@ -30,7 +30,7 @@ class StressTensor(NamedTuple):
     """Stresses [pressure], tension positive, x along the tangential force, z into the body.
 
     Each has the shape of the points, or of loads and points. Where the pressure is infinite, the
-    normal stresses are -inf.
+    normal stresses are -inf and the shear stresses inf, whatever their signs.
     """
 
     xx: Array
@@ -137,7 +137,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         whole = load._replace(slope=np.ones_like(load.slope), arcs=())
         p, tau = (each.stress(np.zeros(1), _AXIS_RTOL) for each in (whole, load))
-        moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.share * tau)
+        moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.friction * tau)
         moments[4, origin] = moments[0, origin] / 2
     found = load.e_star / np.pi * of_moments(moments, (r, depth, e), nu)
     found[:3, ..., infinite], found[3:, ..., infinite] = -inf, inf

@@ -147,7 +147,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
         Raises
         ------
-        InputError : as of `worn_depth`.
+        InputError : as for `worn_depth`.
         """
         r = self._radii(radius)
         c, a = self.stick_radius, self.contact_radius
@@ -178,7 +178,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
 
         They cluster at the axis, the breaks, the first and the last contact radius, and a stick
-        radius at rest; one that moves has an error. Errors as of `limit.LimitingWear.grid`.
+        radius at rest; one that moves has an error. Errors as for `limit.LimitingWear.grid`.
         """
         edges = self.contact_radius[[0, -1]]
         if not self.initial.stick_moves:
@@ -275,7 +275,7 @@ def solve(
 
     Raises
     ------
-    InputError : several loads; an amplitude at which the whole contact slides, at once or, with
+    InputError : several loads; an amplitude at which full slip occurs, at once or, with
         the depth and the force amplitude held, after some cycles; cycles that are negative or not
         ascending; a worn contact that reaches the profile's end.
     AccuracyError : the wear is not resolved.

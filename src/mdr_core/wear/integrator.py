@@ -135,7 +135,7 @@ def _require_all_cycles(
     if isfinite(full_slip_at):
         raise InputError(
             ("cycles", int(np.searchsorted(cycles, full_slip_at))),
-            f"after {full_slip_at:.3g} cycles the whole contact slides: wear at this depth reduces "
+            f"after {full_slip_at:.3g} cycles full slip begins: wear at this depth reduces "
             "the normal force until it no longer carries the tangential force",
         )
 

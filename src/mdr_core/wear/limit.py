@@ -21,8 +21,8 @@ from mdr_core.wear.arguments import grid, one_amplitude
 # Width of the worn annulus over that of the slip annulus, where both are narrow: the mean of
 # r cos(t) - c up to the angle arccos(c/r) is two thirds of r - c.
 _NARROW: Final = 1.5
-# Part of the largest width from which on a worn annulus may reach the end of the profile, 1 but for
-# rounding.
+# Part of the largest width of a worn annulus from which it is tested whether it reaches the end of
+# the profile; any part below 1 serves.
 _AT_END: Final = 0.99
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
@@ -39,7 +39,7 @@ _WARNINGS: Final = {
 
 @dataclass(frozen=True, repr=False)
 class LimitingWear(validity.ContactResults):
-    """State in which all slip has worn off; arrays over the broadcast loads.
+    """Limiting state, in which the slip annulus carries no pressure; arrays over the loads.
 
     In full slip under a constant force the wear is unbounded: depth, wear radius and worn volume
     are infinite. In full slip at a constant depth it ends where nothing touches.
@@ -177,7 +177,7 @@ class LimitingWear(validity.ContactResults):
         f in the stick zone and outside the worn annulus; in the annulus
         (2/pi) int_0^c g(x)/sqrt(r^2 - x^2) dx + (2/pi) d arccos(c/r).
 
-        Source: mdr-5, Eqs. (5.83), (5.85). Errors as of `initial_profile`.
+        Source: mdr-5, Eqs. (5.83), (5.85). Errors as for `initial_profile`.
         """
         return self.initial_profile(radius) + self.worn_depth(radius)
 
@@ -185,7 +185,7 @@ class LimitingWear(validity.ContactResults):
         """Return (2/pi) int_c^r (d - g(x))/sqrt(r^2 - x^2) dx in the worn annulus [length].
 
         Never negative, zero in the stick zone and outside the annulus. Source: mdr-5, Eqs. (5.75),
-        (5.82); notes, §9. Shape and errors as of `limiting_profile`.
+        (5.82); notes, §9. Shape and errors as for `limiting_profile`.
         """
         r = self._radii(radius)
         return limit_fields.worn_depth(self.stick_zone, self.wear_radius, r)

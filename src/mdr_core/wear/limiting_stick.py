@@ -68,7 +68,7 @@ def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
 
     In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
     """
-    step = _carried(contact, amplitude, contact.stick_radius)
+    step = _step_of_force(contact, amplitude, contact.stick_radius)
     before = contact.tangential_displacement / contact.displacement_ratio
     grown = np.maximum(step, before) / np.where(before > 0, before, 1.0)
     moved = contact.stick_coordinate, contact.stick_radius, grown * contact.slip_width
@@ -121,12 +121,12 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     Raises InputError for a force that no stick zone carries: wear ends in full slip, without limit.
     """
     normal, profile = contact.normal, contact.normal.profile
-    share = _carried(contact, amplitude, np.ones(()))
-    share = np.broadcast_to(share, contact.width.shape)
+    target = _step_of_force(contact, amplitude, np.ones(()))
+    target = np.broadcast_to(target, contact.width.shape)
     if profile.has_no_partial_slip:
-        _reject_overload(contact, amplitude, contact.full_slip, contact.limiting_force)
-        return _from(contact, np.zeros_like(share))
-    top = np.broadcast_to(normal.coordinate, share.shape)
+        _reject_overload(amplitude, contact.full_slip, contact.limiting_force)
+        return _from(contact, np.zeros_like(target))
+    top = np.broadcast_to(normal.coordinate, target.shape)
 
     def carried(width: Array) -> tuple[Array, Array]:
         """Return c (d - g(c)), and its logarithmic slope, `width` below the contact's edge."""
@@ -136,21 +136,21 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         return c * step, width * slope / (c * step)
 
     widest = top - profile.first_coordinate
-    low, high, most = _first_crossing(carried, widest, share)
+    low, high, most = _first_crossing(carried, widest, target)
     largest = 2 * contact.friction_coefficient * normal.e_star * most
-    _reject_overload(contact, amplitude, most < share, largest)
+    _reject_overload(amplitude, most < target, largest)
     width = invert(
         carried,
-        share,
-        np.where(share > 0, (low + high) / 2, 1.0),
+        target,
+        np.where(target > 0, (low + high) / 2, 1.0),
         low,
-        np.where(share > 0, high, 2.0),
+        np.where(target > 0, high, 2.0),
         f"{profile.kind}'s stick edge at a constant depth",
     )
     edge = top - width
     radius = np.where(width > 0, profile.contact_radius(edge), normal.contact_radius)
     moved = edge, radius, profile.radius_width(top, width)
-    return _from(contact, _carried(contact, amplitude, radius), moved=moved)
+    return _from(contact, _step_of_force(contact, amplitude, radius), moved=moved)
 
 
 def _first_crossing(
@@ -182,9 +182,7 @@ def _first_crossing(
     return np.where(found, before, start), np.where(found, at, left), most
 
 
-def _reject_overload(
-    contact: TangentialContact, force: Array, beyond: Flags, largest: Array
-) -> None:
+def _reject_overload(force: Array, beyond: Flags, largest: Array) -> None:
     if not np.any(beyond):
         return
     beyond, most = np.broadcast_arrays(beyond, largest)
@@ -209,8 +207,8 @@ def find(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     return _BY_CONTROL[contact.normal.control, contact.control](contact, amplitude)
 
 
-def _carried(contact: TangentialContact, force: Array, radius: Array) -> Array:
-    """Return F_x/(2 mu E* c), zero for c = 0."""
+def _step_of_force(contact: TangentialContact, force: Array, radius: Array) -> Array:
+    """Return the step F_x/(2 mu E* c) at a stick radius c, zero for c = 0 [length]."""
     resistance = 2 * contact.friction_coefficient * contact.normal.e_star * radius
     return np.where(resistance > 0, force / np.where(resistance > 0, resistance, 1.0), 0.0)
 
@@ -229,7 +227,7 @@ def _from(
     normal = contact.normal
     # Without a normal load nothing wears.
     loaded = np.asarray(normal.coordinate > normal.profile.first_coordinate)
-    # A flat punch either sticks or slides as a whole.
+    # A flat punch either sticks or is in full slip.
     rests = (slip_width <= 0) | ~loaded
     parts = (
         np.where(rests, normal.coordinate, coordinate),

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import fields, normal
+from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.typing import Array
 from mdr_core.validation import checked_radii
 from mdr_core.wear.annulus_state import AnnulusState
@@ -106,12 +107,12 @@ class WornSurface:
         return initial.depth_unit * np.maximum.accumulate(result, axis=0)
 
     def profile(self, radius: ArrayLike) -> Array:
-        """Return the worn profile f(r) [length], (cycles, m). Errors as of `worn_depth`."""
+        """Return the worn profile f(r) [length], (cycles, m). Errors as for `worn_depth`."""
         r = self._radii(radius)
         return np.asarray(self.initial.normal.profile.f(r) + self.worn_depth(r))
 
     def pressure(self, radius: ArrayLike) -> Array:
-        """Return p(r) [pressure], (cycles, m). Errors as of `worn_depth`.
+        """Return p(r) [pressure], (cycles, m). Errors as for `worn_depth`.
 
         Never negative, zero outside the contact. In the limit it is that of a flat punch of
         radius c, infinite at c; before, it has a narrow peak there.
@@ -187,12 +188,12 @@ def _worn_depth(state: AnnulusState, radius: Array) -> Array:
     result = np.zeros(radius.shape)
     a = float(state.x[-1])
     inside = (radius > state.stick) & (radius < a)
-    s = _root(radius[inside], state.stick)
+    s = inverse_hypot(radius[inside], state.stick)
     result[inside] = s * state.initial.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
     at, step = state.passed
     if step.any():
         worn = radius < a
-        root = _root(radius[worn][:, None], at)
+        root = inverse_hypot(radius[worn][:, None], at)
         result[worn] += 2 / np.pi * (np.arctan2(root, at) @ step)
     # Below rounding at the edges, and between nodes that are too few, the polynomials may be < 0.
     return np.maximum(result, 0.0)
@@ -203,7 +204,7 @@ def _worn_volume(state: AnnulusState) -> float:
     b, a = state.end, float(state.x[-1])
     total = b**3 * float(state.initial.maps.volume @ state.worn)
     at, step = state.passed
-    root = _root(np.full(at.shape, a), at)
+    root = inverse_hypot(np.full(at.shape, a), at)
     total += float(step @ (a * a * np.arctan2(root, at) - at * root)) / np.pi
     return 2 * np.pi * total
 
@@ -214,7 +215,7 @@ def _annulus_pressure(state: AnnulusState, radius: Array) -> Array:
     even = np.append(state.pressure[:-1] / maps.cosine[:-1], 0.0)
     # At the edge, from the even polynomial of degree 4 through its three neighbours.
     even[-1] = (15 * even[-2] - 6 * even[-3] + even[-4]) / 10
-    squares = np.minimum((_root(radius, state.stick) / state.end) ** 2, 1.0)
+    squares = np.minimum((inverse_hypot(radius, state.stick) / state.end) ** 2, 1.0)
     return np.asarray(maps.at(maps.cosine, squares) * maps.at(even, squares))
 
 
@@ -227,7 +228,7 @@ def _stick_pressure(state: AnnulusState, radius: Array) -> Array:
     Source: mdr-5, Eqs. (5.34), (5.79).
     """
     maps, c = state.initial.maps, state.stick
-    inner = _root(np.full(radius.shape, c), radius)
+    inner = inverse_hypot(np.full(radius.shape, c), radius)
     total = (1 / np.sqrt(np.add.outer(inner**2, state.end**2 * maps.points))) @ (
         maps.steps @ state.gamma
     )
@@ -246,8 +247,4 @@ def _trail_stress(trail: Array, radius: Array) -> Array:
     wide = width > 0
     total = np.diff(logs, axis=1) @ np.where(wide, step / np.where(wide, width, 1.0), 0.0)
     # Where the edge rested, w_c rose at one radius.
-    return np.asarray(total + step[~wide].sum() / _root(passed[-1:], radius))
-
-
-def _root(r: Array, c: float | Array) -> Array:
-    return np.asarray(np.sqrt(np.maximum(r - c, 0.0) * (r + c)))
+    return np.asarray(total + step[~wide].sum() / inverse_hypot(passed[-1:], radius))

@@ -131,8 +131,9 @@ Compute the limiting profile: the annulus outside the stick zone wears until it 
 
 The given controls are held constant. With a constant depth and displacement amplitude, and with
 constant forces, the limiting state is unique and does not depend on the wear law. With a
-constant normal force and displacement amplitude it depends on the path: the response is
-Eq. (5.90) with a warning `path_dependent`; `/v1/wear/evolution` computes the path itself.
+constant normal force and displacement amplitude it depends on the path: the response is the
+approximation of Popov and Heß (2015), Eq. (5.90), with a warning `path_dependent`;
+`/v1/wear/evolution` computes the path itself.
 
 In full slip, wear is unbounded under a constant force (`endless_wear`), and ends in separation
 at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).""",

@@ -121,12 +121,12 @@ async def url_parameters(request: Request) -> dict[str, str]:
     if not text:
         return {}
     if text.count(b"&") >= _MAX_PARAMETERS:
-        raise _invalid({"": f"at most {_MAX_PARAMETERS} parameters are read"})
+        raise _invalid({"": f"at most {_MAX_PARAMETERS} parameters are allowed"})
     pairs = request.query_params.multi_items()
     numbers = Counter(name for name, _ in pairs)
     if len(numbers) < len(pairs):
         repeated = [name for name, number in numbers.items() if number > 1]
-        raise _invalid(dict.fromkeys(repeated, "is given twice"))
+        raise _invalid(dict.fromkeys(repeated, "is given more than once"))
     return dict(pairs)
 
 

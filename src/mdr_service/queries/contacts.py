@@ -86,7 +86,7 @@ def control(given: Choice) -> Arguments:
 def paired(name: str, given: Choice, load: Choice) -> Arguments:
     """Return the tangential control: one value for all normal loads, or one for each."""
     if given.count > 1 and load.count not in {1, given.count}:
-        detail = f"{given.count} values for {load.count} loads: one or as many are needed"
+        detail = f"{given.count} values for {load.count} normal loads: give one, or as many"
         raise InputError((name, given.control), detail)
     return control(given)
 

@@ -28,7 +28,7 @@ def solve_subsurface(query: SubsurfaceQuery) -> Contact:
     require_loads(query)
     for name in ("x", "z"):
         if query.has(name) == query.has("points"):
-            raise InputError((name,), "either x and z or points are needed")
+            raise InputError((name,), "give either x and z, or points, not both")
     require_few_numbers(query, "x")
     body_of(query)
     return solve_loaded(query)

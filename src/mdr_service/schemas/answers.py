@@ -41,7 +41,10 @@ class AnswerWarning(Answer):
 class SolvedAnswer(Answer):
     """Method, accuracy and warnings of every response."""
 
-    method: str = Field(description="Most expensive method among the results.")
+    method: str = Field(
+        description="Most expensive method among the results: `closed_form`, `quadrature` "
+        "(numerical integration) or `panel_moments` (closed integrals over a table's panels)."
+    )
     error_estimate: float = _number(
         "Bound on the numerical error: of scalars relative to their values, of fields, histories "
         "and stresses to the largest value; for wear over the cycles an estimate"
@@ -216,7 +219,7 @@ class WearAnswer(SolvedAnswer):
 class EvolutionAnswer(SolvedAnswer):
     """One entry per number of cycles in every list; fields only if requested.
 
-    `error_estimate` bounds the error of the quantities without a radius.
+    `error_estimate` is that of the quantities without a radius, by comparison with a coarser run.
     """
 
     cycles: list[float] = _number("Numbers of cycles, as requested")
@@ -230,8 +233,8 @@ class EvolutionAnswer(SolvedAnswer):
     )
     dissipated_energy: list[float] = _energy("Energy dissipated by slip in all cycles")
     field_error_estimate: float = _number(
-        "Upper bound of the error of each field, relative to its largest value or the mean in the "
-        "contact; absent without fields",
+        "Estimated error of each field, relative to its largest value or the mean in the contact; "
+        "absent without fields",
         default=None,
     )
     radius: list[float] = _length("Radii r, requested or chosen", default=None)

@@ -22,7 +22,7 @@ class BatchItem(Strict):
         )
     )
     request: dict[str, Any] = Field(
-        description="Request of the query, as of its own endpoint: `NormalQuery` for `normal`, "
+        description="Request of the query, as for its own endpoint: `NormalQuery` for `normal`, "
         "and so on."
     )
 

@@ -12,7 +12,7 @@ _COEFFICIENT = "length^(1-exponent)"
 
 
 class FlatPunchProfile(Strict):
-    """A flat-ended rigid cylinder: 0 for r ≤ radius, then a wall."""
+    """A flat-ended cylindrical punch: 0 for r ≤ radius, then ∞."""
 
     kind: Literal["flat_punch"]
     radius: float = positive("length", "Radius of the flat face")
@@ -141,14 +141,14 @@ class TabulatedProfile(Strict):
     kind: Literal["tabulated"]
     r: list[Size] = quantity(
         "length",
-        "Radii of the points, from 0, increasing",
+        "Radii of the points, from 0, strictly increasing",
         min_length=2,
         max_length=SETTINGS.max_table_points,
         fail_fast=True,
     )
     f: list[Signed] = quantity(
         "length",
-        "Heights of the profile at the points, from 0, not falling",
+        "Heights of the profile at the points, from 0, non-decreasing",
         min_length=2,
         max_length=SETTINGS.max_table_points,
         fail_fast=True,

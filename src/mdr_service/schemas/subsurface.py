@@ -52,7 +52,8 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
         "tension is positive, and principal_1 ≥ principal_2 ≥ principal_3", default=["von_mises"]
     )
     largest: bool = Field(
-        default=False, description="Search the largest von Mises and shear stress."
+        default=False,
+        description="Return the largest von Mises and maximum shear stress of the body, and where.",
     )
 
     @property

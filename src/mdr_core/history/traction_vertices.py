@@ -26,7 +26,7 @@ _SHORT: Final = 2e-3
 
 
 @dataclass(frozen=True)
-class TractionBranches:
+class TractionVertices:
     """Vertices of the polyline, with the contact whose edge each of them is."""
 
     moments: IntervalMoments
