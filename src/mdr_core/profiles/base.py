@@ -379,9 +379,14 @@ class Profile(ABC):
         """
 
     def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
-        """`pressure_kernel` at contact coordinates up to that of the edge, where it is zero.
+        """Stress integral at places given as contact coordinates, zero at the edge [1].
 
         Beyond a flat a radius has fewer digits than the coordinate.
+
+        Parameters
+        ----------
+        annulus, rtol : see `pressure_kernel`.
+        coordinate : contact coordinates up to that of a, shape (m,).
         """
         r, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
         inside = r < self.contact_radius(annulus.outer)
