@@ -73,7 +73,11 @@ def largest_stress(
     a, c = profile.contact_radius(edge), profile.contact_radius(slip[1]) if slip else 0.0
     infinite = loaded & False
     for b in profile.infinite_pressure_radii:
-        infinite = infinite | (loaded & (c <= b) & (b <= a))
+        begins = c <= b
+        if slip and not profile.has_no_partial_slip:
+            # A radius just beyond a flat may round to that of the flat.
+            begins = where(b == profile.first_radius, slip[1] <= profile.first_coordinate, begins)
+        infinite = infinite | (loaded & begins & (b <= a))
     if not some(loaded & ~infinite):
         return where(infinite, inf, full(0.0, edge))
     finite = np.atleast_1d(loaded & ~infinite)
@@ -111,7 +115,7 @@ def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
     c = [profile.contact_radius(part) for part in slip[1:]]
 
     def field(load: Indices, at: Array) -> Array:
-        inner = InnerEnd(slip[0][load], c[0][load]) if slip else None
+        inner = InnerEnd(slip[0][load], c[0][load], slip[1][load]) if slip else None
         return profile.pressure_kernel_at(Annulus(edge[load], inner), at, _RTOL)
 
     best = np.zeros(edge.size)

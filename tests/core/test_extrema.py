@@ -18,6 +18,7 @@ from mdr_core.profiles import (
     RoundedPunch,
     Sphere,
     Tabulated,
+    TruncatedParaboloid,
 )
 from tests.core.comparison import profile_from
 from tests.oracles import reference
@@ -184,6 +185,30 @@ def test_largest_stress_just_beyond_a_flat(
     t = max(share, 1 / cosh(LAPLACE))
     shear = bend / B * s * s * (sqrt(1 - t * t) + t * t * acosh(1 / t)) / (2 * pi)
     assert found == pytest.approx(shear, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("part", [0.01, 0.5, 0.9999, 0.99999])
+@pytest.mark.parametrize("beyond", [1e-9, 1e-3, 0.5])
+def test_maximum_shear_stress_of_a_truncated_paraboloid(beyond: float, part: float) -> None:
+    """At the stick edge, (mu E*/(pi R)) int_c^a (x^2 + s^2)/sqrt(x^2 - c^2) dx/s, with the root
+    s = sqrt(x^2 - b^2) in place of the radius, which near full slip resolves c - b no more."""
+    profile = TruncatedParaboloid(B, R)
+    contact = normal.solve(profile, E_STAR, contact_radius=B * (1 + beyond))
+    limit = MU * E_STAR / G_STAR * contact.indentation_depth
+    pushed = tangential.solve(contact, G_STAR, MU, tangential_displacement=part * limit)
+    with mp.workdps(30):
+        b, a = mpf(B), mpf(float(contact.coordinate))
+        width = mpf(float(pushed.width))
+        c = a - width if width < a / 2 else mpf(float(pushed.stick_coordinate))
+        top = mp.acosh(a / c)
+
+        def density(y: mpf) -> mpf:
+            s2 = (c * mp.cosh(y)) ** 2
+            return (b * b + 2 * s2) / mp.sqrt(b * b + s2)
+
+        integral = mp.quad(density, [top * k / 8 for k in range(9)])
+        expected = float(integral * MU * E_STAR / (mp.pi * R))
+    assert float(pushed.maximum_shear_stress) == pytest.approx(expected, rel=1e-13, abs=0)
 
 
 def test_maximum_pressure_of_a_tabulated_paraboloid() -> None:

@@ -1,6 +1,6 @@
 """The annulus c <= x <= a over which a stress kernel is integrated."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from mdr_core.typing import Array, Flags, Indices
 
@@ -12,6 +12,8 @@ class InnerEnd(NamedTuple):
     """Difference of the coordinates of a and c, free of cancellation."""
     radius: Array
     """c [length], so that c - r is exact next to it."""
+    coordinate: Any = None
+    """c in the coordinate, where points are given in it as well; None if they are radii."""
 
 
 class Annulus(NamedTuple):
@@ -32,9 +34,8 @@ class Annulus(NamedTuple):
     def at(self, chosen: Flags | Indices) -> "Annulus":
         """Return the annuli of the chosen points."""
 
-        def pick(part: Array) -> Array:
-            return part if part.size == 1 else part[chosen]
+        def pick(part: Any) -> Any:
+            return part if part is None or part.size == 1 else part[chosen]
 
         inner = None if self.inner is None else InnerEnd(*map(pick, self.inner))
-        radius = None if self.outer_radius is None else pick(self.outer_radius)
-        return Annulus(pick(self.outer), inner, radius)
+        return Annulus(pick(self.outer), inner, pick(self.outer_radius))

@@ -27,7 +27,7 @@ def root_step(annulus: Annulus, r: Array) -> Array:
     root_a = np.sqrt((a - r) * (a + r))
     if inner is None:
         return root_a
-    width, c = inner
+    width, c, _ = inner
     root_c = inverse_hypot(c, r)
     return np.where(c > r, width * (a + c) / (root_a + root_c), root_a)
 

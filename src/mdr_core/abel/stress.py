@@ -138,7 +138,7 @@ class StressPanels:
             [length], shape (m,).
         """
         a, inner, _ = annulus
-        width, c = (a, np.zeros(1)) if inner is None else inner
+        width, c = (a, np.zeros(1)) if inner is None else inner[:2]
         annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width, *roots)])
         if annuli.shape[1] == 1:
             return self._over(_RadialEnds(*annuli[:, 0].tolist()), r, beyond)

@@ -97,6 +97,7 @@ def two_root_integral(
     rtol : relative tolerance, 1e-3 to 1e-14.
     analytic : strip in which the integrand is analytic in y, and its growth.
     beyond : sqrt(r^2 - b^2), if all radii lie beyond the break and it has more digits [length].
+        The inner end then has its coordinate.
 
     Returns
     -------
@@ -116,11 +117,14 @@ def two_root_integral(
     upper2, least, start = upper * upper, upper, None
     if inner is not None:
         width, c = inner.width, np.maximum(inner.radius, b)
-        # Next to the break a given radius is accurate, but one from a load no more than b^2/lower:
-        # the difference is as accurate as upper. In a narrow annulus its width is.
-        lower, error = upper - width, _ROUNDING * upper
-        by_radii = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
-        lower = where(width > upper / 2, by_radii, lower)
+        lower, known = upper - width, inner.coordinate
+        if known is None:
+            # Next to the break a given radius is accurate, but one from a load no more than
+            # b^2/lower: the difference is as accurate as upper.
+            error = _ROUNDING * upper
+            known = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
+        # In a narrow annulus its width is accurate.
+        lower = where(width > upper / 2, known, lower)
         least = where(lower > 0, lower, upper)
     if beyond is None:
         signed2, on_break = (b - r) * (b + r), r == b
@@ -138,7 +142,8 @@ def two_root_integral(
     if inner is None:
         length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
     else:
-        root = inverse_hypot(c, r) if beyond is None else inverse_hypot(lower, beyond)
+        # Zero at c itself.
+        root = inverse_hypot(c, r) if beyond is None else inverse_hypot(inner.coordinate, beyond)
         if any_on_break:
             root = np.where(on_break, lower, root)
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.

@@ -254,7 +254,10 @@ class Tabulated(FlatEnded):
     def _kernel(self, annulus: Annulus, radius: Array, beyond: Array | None = None) -> Array:
         """Stress integral; `beyond` are the contact coordinates of the radii, if known [1]."""
         outer, inner, _ = annulus
-        roots = outer, outer - (outer if inner is None else inner.width)
+        if inner is None or inner.coordinate is None:
+            roots = outer, outer - (outer if inner is None else inner.width)
+        else:
+            roots = outer, inner.coordinate
         return self.resolved.stress.kernel(self.radial(annulus), roots, radius, beyond) / np.pi
 
 

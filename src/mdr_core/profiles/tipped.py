@@ -170,7 +170,7 @@ class TippedCone(Profile):
         if some(tip):
             top = np.minimum(a, b)
             if inner is not None:
-                width, c = inner
+                width, c, _ = inner
                 part = where(width < b / 2, width - (a - top), top - c)
                 ends = InnerEnd(np.maximum(part, 0.0), np.minimum(c, b))
             total[tip] = self._tip_kernel(Annulus(top, ends).at(tip), radius[tip], rtol)
@@ -183,7 +183,7 @@ class TippedCone(Profile):
         a, inner, _ = annulus
         s = inverse_hypot(a, b)
         if inner is not None:
-            width, c = inner
+            width, c, _ = inner
             square = where(c > b, width * (2 * a - width), 0.0)
             span = where(c > b, root_difference(s, square, inverse_hypot(c, b)), s)
             inner = InnerEnd(span, c)
