@@ -14,7 +14,7 @@ from tests.contract.conftest import Visit, needs_chromium
 
 pytestmark = [pytest.mark.long, needs_chromium]
 TABS = ["press", "push", "cycle", "stress", "wear"]
-SCENES = 100
+SCENES = 60
 
 
 def test_first_visit_shows_results_and_charts(visit: Visit) -> None:

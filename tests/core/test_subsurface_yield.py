@@ -117,7 +117,7 @@ def test_largest_stress_is_not_exceeded_by_samples(profile: Profile, stick: floa
         assert getattr(at, measure) == pytest.approx(float(peak.value), rel=1e-5, abs=0)
 
 
-@pytest.mark.every(2)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("profile", "nu", "friction", "stick", "highest"),
     [
@@ -164,7 +164,7 @@ def test_weak_friction_with_the_largest_stress_next_to_the_axis() -> None:
             assert sampled > peak * (1 - 3e-3)
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(8)
 @pytest.mark.parametrize("push", [0.0, 1e-12, 1e-8, 1e-4])
 @pytest.mark.parametrize("beyond", [1e-6, 1e-3])
 def test_narrow_peaks_next_to_a_flat(

@@ -89,9 +89,8 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(
     assert worn.worn_volume == pytest.approx(volume, rel=2 * worn.error_estimate, abs=0)
 
 
-@pytest.mark.parametrize(
-    "held", [pytest.param("indentation_depth", marks=pytest.mark.long), "normal_force"]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("held", ["indentation_depth", "normal_force"])
 def test_edge_of_the_contact_leaves_a_break_that_it_rests_on(held: str) -> None:
     """The slope of g is infinite at the edge; reference: the limit once wear has stopped."""
     body = kinked()

@@ -28,6 +28,7 @@ def with_infinity(value: object) -> object:
     return inf if value is None else value
 
 
+@pytest.mark.every(2)
 @EVERY_EXAMPLE
 def test_arrays_are_bit_identical_to_json(
     client: Client, path: str, query: dict[str, object]
