@@ -34,8 +34,6 @@ HEADER = (
     "ratio",
     "reference code",
 )
-
-
 Row = dict[str, str]
 
 

@@ -286,7 +286,7 @@ def test_unloading_and_reloading_by_displacement(name: str, sign: int, rho: floa
 
 
 @shapes
-def test_slip_fronts_separate_the_traction_vertices(name: str) -> None:
+def test_slip_fronts_separate_the_segments_of_the_traction(name: str) -> None:
     force = FORCES[name]
     top, back = 0.9 * MU * force, 0.5 * MU * force
     curve = FirstLoading(name, "normal_force", force)

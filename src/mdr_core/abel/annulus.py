@@ -12,7 +12,7 @@ class InnerEnd(NamedTuple):
     """Difference of the coordinates of a and c, free of cancellation."""
     radius: Array
     """c [length], so that c - r is exact next to it."""
-    coordinate: Any = None
+    coordinate: Array | None = None
     """c in the coordinate, where points are given in it as well; None if they are radii."""
 
 

@@ -117,14 +117,16 @@ def two_root_integral(
     upper2, least, start = upper * upper, upper, None
     if inner is not None:
         width, c = inner.width, np.maximum(inner.radius, b)
-        lower, known = upper - width, inner.coordinate
-        if known is None:
+        lower = upper - width
+        if inner.coordinate is None:
             # Next to the break a given radius is accurate, but one from a load no more than
             # b^2/lower: the difference is as accurate as upper.
             error = _ROUNDING * upper
-            known = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
+            root_c = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
+        else:
+            root_c = inner.coordinate
         # In a narrow annulus its width is accurate.
-        lower = where(width > upper / 2, known, lower)
+        lower = where(width > upper / 2, root_c, lower)
         least = where(lower > 0, lower, upper)
     if beyond is None:
         signed2, on_break = (b - r) * (b + r), r == b
@@ -143,7 +145,7 @@ def two_root_integral(
         length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
     else:
         # Zero at c itself.
-        root = inverse_hypot(c, r) if beyond is None else inverse_hypot(inner.coordinate, beyond)
+        root = inverse_hypot(c, r) if beyond is None else inverse_hypot(root_c, beyond)
         if any_on_break:
             root = np.where(on_break, lower, root)
         # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.

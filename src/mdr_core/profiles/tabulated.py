@@ -238,21 +238,10 @@ class Tabulated(FlatEnded):
     def panels(self) -> StressPanels:
         return self.resolved.stress
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """Source: notes, §5. Parameters: see `Profile`."""
+    def _kernel(
+        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
+    ) -> Array:
         del rtol
-        return self._kernel(annulus, radius)
-
-    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
-        """Parameters: see `Profile`."""
-        del rtol
-        values, inside = np.zeros(coordinate.shape), coordinate < annulus.outer
-        annulus, coordinate = annulus.at(inside), coordinate[inside]
-        values[inside] = self._kernel(annulus, self.contact_radius(coordinate), coordinate)
-        return values
-
-    def _kernel(self, annulus: Annulus, radius: Array, beyond: Array | None = None) -> Array:
-        """Stress integral; `beyond` are the contact coordinates of the radii, if known [1]."""
         outer, inner, _ = annulus
         if inner is None or inner.coordinate is None:
             roots = outer, outer - (outer if inner is None else inner.width)

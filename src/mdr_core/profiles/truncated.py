@@ -52,6 +52,24 @@ class FlatEnded(Profile):
         total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
         return width * (2 * s_a - width) / where(total > 0, total, 1.0)
 
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """Source: notes, §5. Parameters: see `Profile`."""
+        return self._kernel(annulus, radius, rtol)
+
+    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
+        """Parameters: see `Profile`."""
+        radius, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
+        inside = coordinate < annulus.outer
+        chosen = annulus.at(inside), radius[inside], rtol
+        values[inside] = self._kernel(*chosen, coordinate[inside])
+        return values
+
+    @abstractmethod
+    def _kernel(
+        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
+    ) -> Array:
+        """`pressure_kernel`; `beyond` are the contact coordinates of the radii, if known [1]."""
+
 
 class Truncated(FlatEnded):
     """Flat-ended profile with a closed dg/ds = g'(x) s/x beyond it, s = sqrt(x^2 - b^2)."""
@@ -87,22 +105,9 @@ class Truncated(FlatEnded):
     def depth_slope(self, coordinate: Array) -> Array:
         return self.weight(self.contact_radius(coordinate), coordinate)
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """Source: notes, §5. Parameters: see `Profile`."""
-        return self._kernel(annulus, radius, rtol)
-
-    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
-        """Parameters: see `Profile`."""
-        radius, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
-        inside = coordinate < annulus.outer
-        chosen = annulus.at(inside), radius[inside], rtol
-        values[inside] = self._kernel(*chosen, beyond=coordinate[inside])
-        return values
-
     def _kernel(
         self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
     ) -> Array:
-        """Stress integral; `beyond` are the contact coordinates of the radii, if known [1]."""
         integral = two_root_integral(
             lambda x, s, _: self.weight(x, s),
             float(self.flat_radius),

@@ -117,7 +117,7 @@ def yield_onset_force(
     def excess(one: _Loaded) -> float:
         """Logarithm of the measure over the limit."""
         peak = largest(one, measure, poissons_ratio=poissons_ratio, body=body)
-        # Next to the equator of a body its distance may vanish by rounding: the peak is then zero.
+        # Next to the equator the distance from it may round to zero, and the peak with it.
         return round(float(np.clip(np.log(peak.value / limit), -_REACH, _REACH)), _DIGITS)
 
     # Loads in one ratio of the forces share the onset.
