@@ -8,8 +8,9 @@ import numpy as np
 
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
-from mdr_core.history import dissipation, slip_memory
-from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
+from mdr_core.history import slip_memory
+from mdr_core.history.dissipation import Dissipation
+from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
 from mdr_core.history.traction_vertices import TractionVertices, widths
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.profiles import Profile
@@ -90,7 +91,11 @@ class ContactState(Results):
 
     @cached_property
     def _vertices(self) -> TractionVertices:
-        return TractionVertices(self._moments, slip_memory.as_tree(self.polyline))
+        return TractionVertices(self._moments, self._tree, self.coordinate)
+
+    @cached_property
+    def _tree(self) -> VertexTree:
+        return slip_memory.as_tree(self.polyline)
 
     @property
     def depth(self) -> Array:
@@ -101,7 +106,7 @@ class ContactState(Results):
     @property
     def load(self) -> Array:
         """q_x of the springs at the vertices [force/length]; linear in w between them."""
-        tree = self._vertices.tree
+        tree = self._tree
         above = np.cumsum((tree.slope * tree.span)[:0:-1])
         loads = self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
         return loads if self.in_contact else loads[:0]
@@ -109,19 +114,19 @@ class ContactState(Results):
     @cached_property
     def coordinate(self) -> Array:
         """Contact coordinates of the vertices; in separation that of the axis."""
-        return read_only(self._vertices.coordinate)
+        return read_only(self._moments.contact_coordinate(self._tree.normal))
 
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
-        return read_only(self._vertices.tree.slope[1:])
+        return read_only(self._tree.slope[1:])
 
     @cached_property
     def segments(self) -> TractionSegments:
         """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
         if self.curved_segments is not None:
             return self.curved_segments
-        tree = self._vertices.tree
+        tree = self._tree
         width = widths(self._moments, tree, self.coordinate)
         straight = np.zeros(self.slope.shape)
         return TractionSegments(self.coordinate, width, self.slope, straight)
@@ -151,8 +156,10 @@ class ContactState(Results):
         """Energy dissipated by friction on the step of `advance` that led here [force length]."""
         if self.last_step is None:
             return 0.0
-        segments = slip_memory.slip_segments(self.last_step)
-        return self.energy_unit * float(dissipation.per_segment(self._moments, segments).sum())
+        moments = self._moments
+        slip = Dissipation(moments, self.last_step)
+        each = slip.per_step(moments.contact_coordinate(slip.ends))
+        return self.energy_unit * float(each.sum())
 
     @property
     def energy_unit(self) -> float:

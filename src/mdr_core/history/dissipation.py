@@ -12,47 +12,95 @@ prescribed the identity holds with the reduced force in place of the depth and t
 |d(1/2x)| in place of 2 dx. Source: notes, §10.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
 import numpy as np
 
-from mdr_core.history.slip_memory import SlipSegments
+from mdr_core.history.slip_memory import FrontPath, SlipSegments, slip_segments
 from mdr_core.interval_moments import IntervalMoments
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 
-def per_segment(moments: IntervalMoments, segments: SlipSegments) -> Array:
-    """Return G* D/(mu E*)^2 of every segment [length^3]."""
-    dissipated = np.zeros(segments.step.size)
-    full = np.flatnonzero(segments.full)
-    if full.size and not moments.over_forces:
-        # In full slip friction is mu F_N. Prescribed forces do not exceed it.
-        ends = segments.upper_gap[full], segments.lower_gap[full]
-        low, high = np.minimum(*ends), np.maximum(*ends)
-        dissipated[full] = segments.slip[full] * moments.conjugate_mean(low, high - low)
-    if moments.profile.has_no_partial_slip:
-        return dissipated
-    partial = np.flatnonzero(~segments.full & (segments.span > 0))
-    given = segments.normal, segments.span, segments.upper_gap, segments.lower_gap
-    low, length, coefficients = _intervals(*(row[partial] for row in given))
-    some = length > 0
-    part = np.zeros(coefficients.shape)
-    weights = moments.over(low[some], length[some]).weights
-    # Over forces the measure is infinite on the axis, where M is zero.
-    chosen = coefficients[:, some]
-    part[:, some] = np.multiply(chosen, weights, where=chosen > 0, out=np.zeros(chosen.shape))
-    total = part.sum(axis=0).sum(axis=0)
-    dissipated[partial] = segments.slip[partial] / segments.span[partial] * total
-    return dissipated
+class _SlipIntervals(NamedTuple):
+    """The three intervals between the four ends of the paths of front and load point."""
+
+    segment: Indices
+    """Index of each segment in partial slip, shape (n,)."""
+    ends: Array
+    """The four ends in the normal coordinate, ascending, shape (4, n)."""
+    length: Array
+    """Length of each interval, shape (3, n)."""
+    coefficients: Array
+    """Bernstein coefficients of M on each interval, shape (3, 3, n)."""
 
 
-def _intervals(
-    normal: Array, span: Array, upper: Array, lower: Array
-) -> tuple[Array, Array, Array]:
-    """Return the three intervals between the four ends of the paths of front and load point.
+@dataclass(frozen=True)
+class Dissipation:
+    """Energy dissipated on the steps of one path of the slip front."""
 
-    Lower ends and lengths, shape (3, n), and the Bernstein coefficients of M, shape (3, 3, n).
+    moments: IntervalMoments
+    path: FrontPath
+
+    @property
+    def ends(self) -> Array:
+        """Ends of the intervals in the normal coordinate, shape (4, n)."""
+        return np.zeros((4, 0)) if self._has_no_partial_slip else self._intervals.ends
+
+    def per_step(self, coordinate: Array) -> Array:
+        """Return G* D/(mu E*)^2 of every step [length^3].
+
+        `coordinate` has the contact coordinates of the ends, shape (4, n).
+        """
+        segments = self._segments
+        dissipated = np.zeros(segments.step.size)
+        full = np.flatnonzero(segments.full)
+        if full.size and not self.moments.over_forces:
+            # In full slip friction is mu F_N. Prescribed forces do not exceed it.
+            ends = segments.upper_gap[full], segments.lower_gap[full]
+            low, high = np.minimum(*ends), np.maximum(*ends)
+            dissipated[full] = segments.slip[full] * self.moments.conjugate_mean(low, high - low)
+        if not self._has_no_partial_slip:
+            partial = self._intervals.segment
+            ratio = segments.slip[partial] / segments.span[partial]
+            dissipated[partial] = ratio * self._in_partial_slip(coordinate)
+        return np.asarray(np.bincount(segments.step, dissipated, self.path.load.size), dtype=float)
+
+    def _in_partial_slip(self, coordinate: Array) -> Array:
+        """Return int M |dy'| over the three intervals of each segment in partial slip."""
+        _, ends, length, coefficients = self._intervals
+        some = length > 0
+        part = np.zeros(coefficients.shape)
+        edges = np.array([coordinate[:-1][some], coordinate[1:][some]])
+        weights = self.moments.over(ends[:-1][some], length[some], edges).weights
+        # Over forces the measure is infinite on the axis, where M is zero.
+        chosen = coefficients[:, some]
+        part[:, some] = np.multiply(chosen, weights, where=chosen > 0, out=np.zeros(chosen.shape))
+        return np.asarray(part.sum(axis=0).sum(axis=0))
+
+    @property
+    def _has_no_partial_slip(self) -> bool:
+        return self.moments.profile.has_no_partial_slip
+
+    @cached_property
+    def _segments(self) -> SlipSegments:
+        return slip_segments(self.path)
+
+    @cached_property
+    def _intervals(self) -> _SlipIntervals:
+        return _slip_intervals(self._segments)
+
+
+def _slip_intervals(segments: SlipSegments) -> _SlipIntervals:
+    """Return the intervals of the segments in partial slip.
+
     Above the lower end `normal` of the segment, the front moves from `span` to 0 and the load
     point from span + upper to `lower`.
     """
+    partial = np.flatnonzero(~segments.full & (segments.span > 0))
+    given = segments.normal, segments.span, segments.upper_gap, segments.lower_gap
+    normal, span, upper, lower = (row[partial] for row in given)
     top = span + upper
     overtaken, rising = lower <= span, lower > top
     # The load point moves by this many times the movement of the front.
@@ -67,10 +115,10 @@ def _intervals(
     at_second = np.where(ratio > 0, np.square(upper) / (2 * some), 0.0)
     at_second = np.where(overtaken, at_second, np.abs(ratio) * np.square(span) / 2)
     between = np.where(overtaken, lower * upper / 2, (at_first + at_second) / 2)
-    ends = np.cumsum([normal, first, second], axis=0)
+    ends = np.cumsum([normal, first, second, third], axis=0)
     coefficients = [
         [nothing, at_first, at_second],
         [first * lower / 2, between, nothing],
         [at_first, at_second, nothing],
     ]
-    return ends, np.array([first, second, third]), np.array(coefficients)
+    return _SlipIntervals(partial, ends, np.array([first, second, third]), np.array(coefficients))

@@ -8,8 +8,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from mdr_core.history import dissipation, slip_memory
-from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline
+from mdr_core.history import slip_memory
+from mdr_core.history.dissipation import Dissipation
+from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
 from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
@@ -19,8 +20,40 @@ _BLOCK: Final = 16_384
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
 
-# Some of the steps, their vertices, the path of the slip front, and the polyline after them.
-_Block = tuple[slice, TractionVertices, FrontPath, Polyline]
+
+@dataclass(frozen=True)
+class _Block:
+    """Some of the steps, and the polyline after them."""
+
+    moments: IntervalMoments
+    steps: slice
+    tree: VertexTree
+    path: FrontPath
+    line: Polyline
+
+    @cached_property
+    def vertices(self) -> TractionVertices:
+        """Vertices of the polylines."""
+        coordinate = self._coordinates[: self.tree.normal.size]
+        return TractionVertices(self.moments, self.tree, coordinate)
+
+    @cached_property
+    def dissipation(self) -> Array:
+        """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
+        coordinate = self._coordinates[self.tree.normal.size :]
+        return self._slip.per_step(coordinate.reshape(4, -1))
+
+    @cached_property
+    def _slip(self) -> Dissipation:
+        return Dissipation(self.moments, self.path)
+
+    @cached_property
+    def _coordinates(self) -> Array:
+        """Contact coordinates of the vertices and of the ends of the slip intervals.
+
+        An inversion of both takes hardly longer than one of a part.
+        """
+        return self.moments.contact_coordinate(np.append(self.tree.normal, self._slip.ends))
 
 
 @dataclass(frozen=True)
@@ -35,28 +68,22 @@ class StepResults:
     @cached_property
     def shear(self) -> Array:
         """F_x/(mu E*) [length^2]."""
-        return self._per_step(lambda part, _: part.tree.at_load_points(part.shear))
+        return self._per_step(lambda block: block.tree.at_load_points(block.vertices.shear))
 
     @cached_property
     def displacement(self) -> Array:
         """G* u_x/(mu E*) [length], from zero on the axis."""
-        return self._per_step(lambda part, _: part.tree.at_load_points(part.anchor))
+        return self._per_step(lambda block: block.tree.at_load_points(block.vertices.anchor))
 
     @cached_property
     def energy(self) -> Array:
         """Stored tangential energy over (mu E*)^2/G* [length^3], >= 0."""
-        return self._per_step(lambda part, _: part.tree.at_load_points(part.square))
+        return self._per_step(lambda block: block.tree.at_load_points(block.vertices.square))
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
-
-        def dissipated(_part: TractionVertices, path: FrontPath) -> Array:
-            segments = slip_memory.slip_segments(path)
-            each = dissipation.per_segment(self.moments, segments)
-            return np.asarray(np.bincount(segments.step, each, path.load.size), dtype=float)
-
-        return self._per_step(dissipated)
+        return self._per_step(lambda block: block.dissipation)
 
     @cached_property
     def regime(self) -> Indices:
@@ -66,8 +93,8 @@ class StepResults:
         """
         slips = 1 if self.moments.profile.has_no_partial_slip else 2
 
-        def code(part: TractionVertices, _path: FrontPath) -> Indices:
-            tree, top = part.tree, part.tree.top
+        def code(block: _Block) -> Indices:
+            tree, top = block.tree, block.tree.top
             slipping = (tree.growth[top] == 0).any(axis=1)
             full = slipping & (tree.parent[tree.parent[top]] < 0)
             return np.where(top >= 0, np.where(full, 3, np.where(slipping, slips, 1)), 0)
@@ -77,17 +104,17 @@ class StepResults:
     @property
     def last(self) -> Polyline:
         """Polyline after the last step, over normal coordinates."""
-        return self._end[-1]
+        return self._end.line
 
     @property
     def last_vertices(self) -> tuple[TractionVertices, Indices]:
         """Vertices of the last block, and the indices of those of the last polyline."""
-        part = self._end[1]
-        indices, vertex = [], int(part.tree.top[-1])
+        tree = self._end.tree
+        indices, vertex = [], int(tree.top[-1])
         while vertex >= 0:
             indices.append(vertex)
-            vertex = int(part.tree.parent[vertex])
-        return part, np.array(indices[::-1], dtype=np.intp)
+            vertex = int(tree.parent[vertex])
+        return self._end.vertices, np.array(indices[::-1], dtype=np.intp)
 
     @property
     def _blocks(self) -> Iterable[_Block]:
@@ -104,12 +131,12 @@ class StepResults:
             chosen = slice(begin, begin + _BLOCK)
             points = LoadPoints._make(row[chosen] for row in self.points)
             tree, path, line = slip_memory.apply_steps(line, points)
-            yield chosen, TractionVertices(self.moments, tree), path, line
+            yield _Block(self.moments, chosen, tree, path, line)
 
-    def _per_step(self, result: Callable[[TractionVertices, FrontPath], Any]) -> Array:
+    def _per_step(self, result: Callable[[_Block], Any]) -> Array:
         """Return a result of every step, zero in blocks without contact."""
         values = np.zeros(self.points.normal.shape)
-        for chosen, part, path, _ in self._blocks:
-            if part.tree.normal.size:
-                values[chosen] = result(part, path)
+        for block in self._blocks:
+            if block.tree.normal.size:
+                values[block.steps] = result(block)
         return values

@@ -31,11 +31,8 @@ class TractionVertices:
 
     moments: IntervalMoments
     tree: VertexTree
-
-    @cached_property
-    def coordinate(self) -> Array:
-        """Contact coordinate of each vertex."""
-        return self.moments.contact_coordinate(self.tree.normal)
+    coordinate: Array
+    """Contact coordinate of each vertex."""
 
     @cached_property
     def radius(self) -> Array:
