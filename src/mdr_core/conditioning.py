@@ -73,14 +73,15 @@ def near_full_slip(
 def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     """Return the largest condition number of a history prescribed by forces near full slip [1].
 
-    All are of every load step: its normal contact, |F_x| as `size` and mu F_N as `limit` [force].
+    `size` and `limit` are |F_x| and mu F_N of every load step [force]; `contact` has the normal
+    contact of each, or the one of all.
     """
     partial = (limit > 0) & (size < limit)
     ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
     worst = np.argmax(ratio)
     if contact.profile.has_no_partial_slip or not ratio[worst] > _LATE:
         return 0.0
-    coordinate, part = contact.coordinate[worst], ratio[worst]
+    coordinate, part = np.broadcast_to(contact.coordinate, ratio.shape)[worst], ratio[worst]
     edge, _ = stick_edge(contact.profile, coordinate, part, 1 - part, of_force=True)
     ends = coordinate, edge
     return float(

@@ -534,7 +534,7 @@ def test_stored_energy_at_the_plateaus_of_a_rough_table(seed: int, control: str)
         },
     }[control]
     found = history.solve(profile, 1.0, 1.0, MU, **path)
-    a = float(found.normal.contact_radius[-1])
+    a = float(found.contact_radius[-1])
     stops = np.concatenate([profile.coordinate_breaks, fields.edges(found.state).radius])
     stops = np.unique([0.0, a, *stops[(stops > 0) & (stops < a)]])
     nodes, weights = np.polynomial.legendre.leggauss(60)

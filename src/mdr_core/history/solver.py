@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
+from mdr_core.elementwise import is_number, number
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, nonlinear_steps, slip_memory
 from mdr_core.history.contact_state import ContactState, read_only, unloaded
@@ -18,7 +19,7 @@ from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import only_one
+from mdr_core.validation import extremes, only_one
 
 # Rounding error of the sums over the segments, relative to that of the profile.
 _SUMS: Final = 40.0
@@ -30,7 +31,7 @@ class LoadHistory(validity.ContactResults):
 
     path: SampledPath
     normal: NormalContact
-    """Normal contact of every sample, with zero load in separation."""
+    """Normal contact of every sample, with zero load in separation; one if the load is constant."""
     results: StepResults | ExtrapolatedResults
     """Results of the tangential foundation in reduced units."""
     rtol: float
@@ -56,23 +57,28 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def indentation_depth(self) -> Array:
         """d [length]; negative in separation."""
-        return self.path.normal if self.path.depth_prescribed else self.normal.indentation_depth
+        if self.path.depth_prescribed:
+            return self.path.normal
+        return self._at_samples(self.normal.indentation_depth)
 
     @cached_property
     def normal_force(self) -> Array:
         """F_N [force]."""
-        return self.normal.normal_force
+        return self._at_samples(self.normal.normal_force)
 
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]; zero in separation."""
-        separated = self.path.normal < 0
-        return np.where(separated, 0.0, self.normal.contact_radius)
+        return np.where(self.path.normal < 0, 0.0, self.normal.contact_radius)
 
     @cached_property
     def elastic_energy(self) -> Array:
         """Energy stored by the normal load, int F_N dd [force length]."""
-        return self.normal.elastic_energy
+        return self._at_samples(self.normal.elastic_energy)
+
+    def _at_samples(self, value: Array) -> Array:
+        """Return a result of the normal contact at every sample."""
+        return np.full(self.path.normal.shape, value) if is_number(value) else value
 
     @cached_property
     def tangential_force(self) -> Array:
@@ -269,11 +275,13 @@ def solve(
 
 
 def _normal_contact(path: SampledPath, rtol: float) -> NormalContact:
-    """Return the normal contact; raise InputError if a load is beyond the end of the profile."""
-    name = path.normal_name
-    loads = {name: np.maximum(path.normal, 0.0)}
+    """Return the normal contact, raising InputError if a load is beyond the end of the profile."""
+    name, load = path.normal_name, np.maximum(path.normal, 0.0)
+    least, most = extremes(load)
+    # A single load takes less time than several.
+    given = {name: number(most) if least == most else load}
     try:
-        return normal.solve(path.start.profile, path.start.e_star, **loads, rtol=rtol)
+        return normal.solve(path.start.profile, path.start.e_star, **given, rtol=rtol)
     except InputError as error:
         if error.path[:1] != ("load",):
             raise
