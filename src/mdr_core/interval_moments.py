@@ -112,6 +112,10 @@ class IntervalMoments:
             return Moments(span, np.zeros((3, span.size)))
         if ends is None:
             ends = self.contact_coordinate(np.array([low, low + span]))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            closed = self.profile.interval_moments(span, ends, over_forces=self.over_forces)
+        if closed is not None:
+            return Moments(span, np.where(span > 0, closed, 0.0))
         if low.size > _BLOCK:
             blocks = [slice(i, i + _BLOCK) for i in range(0, low.size, _BLOCK)]
             parts = [self._part(part).over(low[part], span[part], ends[:, part]) for part in blocks]

@@ -53,11 +53,14 @@ class Dissipation:
 
         `coordinate` has the contact coordinates of the ends, shape (4, n).
         """
+        if self._has_no_partial_slip and self.moments.over_forces:
+            # Prescribed forces do not exceed friction.
+            return np.zeros(self.path.load.size)
         segments = self._segments
         dissipated = np.zeros(segments.step.size)
         full = np.flatnonzero(segments.full)
         if full.size and not self.moments.over_forces:
-            # In full slip friction is mu F_N. Prescribed forces do not exceed it.
+            # In full slip friction is mu F_N.
             ends = segments.upper_gap[full], segments.lower_gap[full]
             low, high = np.minimum(*ends), np.maximum(*ends)
             dissipated[full] = segments.slip[full] * self.moments.conjugate_mean(low, high - low)

@@ -161,7 +161,9 @@ class LoadHistory(validity.ContactResults):
     def slip_fronts(self) -> Array:
         """Radii of the slip fronts at the end of the history, ascending [length]."""
         profile, steps = self.normal.profile, self.results
-        if profile.has_no_partial_slip or isinstance(steps, ExtrapolatedResults):
+        if profile.has_no_partial_slip:
+            return np.zeros(0)
+        if isinstance(steps, ExtrapolatedResults):
             return self.state.slip_fronts
         # The state would be built for them alone.
         part, at = steps.last_vertices

@@ -299,6 +299,17 @@ class Profile(ABC):
         """
         return None
 
+    def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array | None:
+        """Moments of `IntervalMoments` where they are closed for every interval, else None.
+
+        Parameters
+        ----------
+        span : lengths of the intervals in the normal coordinate, > 0, shape (m,).
+        ends : both ends in the contact coordinate, shape (2, m).
+        over_forces : the normal coordinate is the reduced force, not the depth.
+        """
+        return None
+
     # Fields.
 
     @property

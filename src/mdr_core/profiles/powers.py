@@ -91,6 +91,21 @@ class Cone(Profile):
         rise = np.square((pi / 2) * self.slope) + 0 * coordinate
         return rise * np.square(width) * width / 6
 
+    def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
+        """Over depths h (2/3, 2/3, 2/3), h = b - a; over forces, with c = a/b,
+
+        (h/(6 b^2 (1 + c)^2)) ((3 + c)/c, 4, 1 + 3c).
+
+        Source: notes, §6. Parameters: see `Profile`.
+        """
+        stiffness = (pi / 2) * self.slope
+        if not over_forces:
+            return np.broadcast_to(2 / 3 * (span / stiffness), (3, span.size))
+        b, c = ends[1], ends[0] / ends[1]
+        # span = stiffness h b (1 + c).
+        factor = span / (stiffness * b * b * b * 6) / (1 + c) ** 3
+        return factor * np.array([3 / c + 1, np.full_like(c, 4.0), 1 + 3 * c])
+
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """t [sqrt(r^2 - c^2) - c arccos(c/r)]. Source: notes, §4. Parameters: see `Profile`."""
         root = np.sqrt((r - c) * (r + c))
@@ -173,6 +188,30 @@ class Paraboloid(Profile):
         a, c = coordinate, coordinate - width
         squares = (a * a + 3 * a * c + c * c) / np.square(self.radius)
         return 2 / 15 * np.square(width) * width * squares
+
+    def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
+        """With h = b - a and c = a/b, over depths
+
+        (2h/(15 (1 + c)^2)) (8 + 9c + 3c^2, 4 + 12c + 4c^2, 3 + 9c + 8c^2),
+
+        and over forces
+
+        (h/(10 b^2 (1 + c + c^2)^2)) (5/c + 6 + 3c + c^2, 3 + 9c + 3c^2, 1 + 3c + 6c^2 + 5c^3).
+
+        Source: notes, §6. Parameters: see `Profile`.
+        """
+        b, c = ends[1], ends[0] / ends[1]
+        squares = c * c
+        if not over_forces:
+            # span = h b (1 + c)/R.
+            factor = span * self.radius / b * (2 / 15) / (1 + c) ** 3
+            parts = 8 + 9 * c + 3 * squares, 4 + 12 * c + 4 * squares, 3 + 9 * c + 8 * squares
+            return factor * np.array(parts)
+        # span = 4 h b^2 (1 + c + c^2)/(3R).
+        factor = span * self.radius / (b * b * b * b) * (3 / 40) / (1 + c + squares) ** 3
+        upper = 1 + 3 * c + 6 * squares + 5 * squares * c
+        parts = 5 / c + 6 + 3 * c + squares, 3 + 9 * c + 3 * squares, upper
+        return factor * np.array(parts)
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
