@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
-from mdr_core.elementwise import is_number, number
+from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, nonlinear_steps, slip_memory
 from mdr_core.history.contact_state import ContactState, read_only, unloaded
@@ -78,7 +78,7 @@ class LoadHistory(validity.ContactResults):
 
     def _at_samples(self, value: Array) -> Array:
         """Return a result of the normal contact at every sample."""
-        return np.full(self.path.normal.shape, value) if is_number(value) else value
+        return value if np.ndim(value) else np.full(self.path.normal.shape, value)
 
     @cached_property
     def tangential_force(self) -> Array:

@@ -92,9 +92,9 @@ class Cone(Profile):
         return rise * np.square(width) * width / 6
 
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
-        """Over depths h (2/3, 2/3, 2/3), h = b - a; over forces, with c = a/b,
+        """Moments from a to b, with h = b - a and c = a/b.
 
-        (h/(6 b^2 (1 + c)^2)) ((3 + c)/c, 4, 1 + 3c).
+        (2h/3) (1, 1, 1) over depths, (h/(6 b^2 (1 + c)^2)) (3/c + 1, 4, 1 + 3c) over forces.
 
         Source: notes, §6. Parameters: see `Profile`.
         """
@@ -106,10 +106,13 @@ class Cone(Profile):
         factor = span / (stiffness * b * b * b * 6) / (1 + c) ** 3
         return factor * np.array([3 / c + 1, np.full_like(c, 4.0), 1 + 3 * c])
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
-        """t [sqrt(r^2 - c^2) - c arccos(c/r)]. Source: notes, §4. Parameters: see `Profile`."""
-        root = np.sqrt((r - c) * (r + c))
-        return self.slope * np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), r)
+    def slip_integral(self, c: Array, root: Array) -> Array:
+        """(pi t/2) [s - c arccos(c/r)], s = sqrt(r^2 - c^2).
+
+        Source: notes, §4. Parameters: see `Profile`.
+        """
+        gap = np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), root)
+        return (pi / 2) * self.slope * gap
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))].
@@ -190,13 +193,11 @@ class Paraboloid(Profile):
         return 2 / 15 * np.square(width) * width * squares
 
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
-        """With h = b - a and c = a/b, over depths
+        """Moments from a to b, with h = b - a and c = a/b.
 
-        (2h/(15 (1 + c)^2)) (8 + 9c + 3c^2, 4 + 12c + 4c^2, 3 + 9c + 8c^2),
-
-        and over forces
-
-        (h/(10 b^2 (1 + c + c^2)^2)) (5/c + 6 + 3c + c^2, 3 + 9c + 3c^2, 1 + 3c + 6c^2 + 5c^3).
+        (2h/(15 (1 + c)^2)) (8 + 9c + 3c^2, 4 + 12c + 4c^2, 3 + 9c + 8c^2) over depths and
+        (h/(10 b^2 (1 + c + c^2)^2)) (5/c + 6 + 3c + c^2, 3 + 9c + 3c^2, 1 + 3c + 6c^2 + 5c^3)
+        over forces.
 
         Source: notes, §6. Parameters: see `Profile`.
         """
@@ -213,15 +214,13 @@ class Paraboloid(Profile):
         parts = 5 / c + 6 + 3 * c + squares, 3 + 9 * c + 3 * squares, upper
         return factor * np.array(parts)
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
-        """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
+    def slip_integral(self, c: Array, root: Array) -> Array:
+        """(1/(2R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
 
         Source: mdr-5, Eq. (5.45). Parameters: see `Profile`.
         """
-        square = (r - c) * (r + c)
-        root = np.sqrt(square)
         gap = atan_gap(root, np.where(c > 0, c, 1.0))
-        return (c * gap + square * np.arctan2(root, c)) / (pi * self.radius)
+        return (c * gap + root * root * np.arctan2(root, c)) / (2 * self.radius)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).

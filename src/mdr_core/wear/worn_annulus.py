@@ -8,7 +8,7 @@ Source: notes, §9.
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -80,7 +80,7 @@ class WornAnnulus:
 
         Source: mdr-5, Eq. (5.41).
         """
-        return 2 / np.pi * self._integrals(width, arccosine)[0]
+        return 2 / np.pi * self._rise(width)
 
     def mean_rise(self, width: Array) -> Array:
         """Return the mean of g(r cos(t)) - g(c) over 0 < t < arccos(c/r), r = c + w [length].
@@ -88,11 +88,19 @@ class WornAnnulus:
         At the outer edge, where the worn depth vanishes, it equals d - g(c), Eq. (5.88). It grows
         with the width wherever g does. Source: notes, §9.
         """
-        return self._integrals(width, arccosine)[0] / self.angle(width)
+        return self._rise(width) / self.angle(width)
+
+    def _rise(self, width: Array) -> Array:
+        closed = self.profile.slip_integral(self.stick, self._root(width))
+        return self._integrals(width, arccosine)[0] if closed is None else closed
+
+    def _root(self, width: Array) -> Array:
+        """Return sqrt(r^2 - c^2) [length]."""
+        return np.asarray(np.sqrt(width * (2 * self.stick + width)))
 
     def angle(self, width: Array) -> Array:
         """Return arccos(c/r) [1]."""
-        return np.asarray(np.arctan2(np.sqrt(width * (2 * self.stick + width)), self.stick))
+        return np.asarray(np.arctan2(self._root(width), self.stick))
 
     def worn_volume(self, width: Array, step: Array) -> Array:
         """Return 4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx = 2 pi int_c^r h r dr [length^3].
@@ -100,7 +108,7 @@ class WornAnnulus:
         `step` = d - g(c). At the outer edge the derivative by the width vanishes with the worn
         depth h, so that the rounding error of the width has no effect. Source: notes, §9.
         """
-        constant = _segment(self.stick, np.sqrt(width * (2 * self.stick + width)))
+        constant = _segment(self.stick, self._root(width))
         return np.asarray(4 * (step * constant - self._integrals(width, _segment)[0]))
 
     def width_where_worn(self, step: Array, start: Array) -> Array:
@@ -108,12 +116,19 @@ class WornAnnulus:
 
         Source: mdr-5, Eq. (5.88), for any profile.
         """
+        # Of a power where the slip integral is closed.
+        profile: Any = self.profile
 
         def sloped(width: Array) -> tuple[Array, Array]:
-            angle, r = self.angle(width), self.stick + width
-            rate = self.stick / (r * np.sqrt(width * (2 * self.stick + width)))
-            total, growth = self._integrals(width, arccosine, _rate)
-            return total / angle, width * (growth / total - rate / angle)
+            root, c, r = self._root(width), self.stick, self.stick + width
+            angle = np.arctan2(root, c)
+            total = profile.slip_integral(c, root)
+            if total is None:
+                total, growth = self._integrals(width, arccosine, _rate)
+            else:
+                # By Euler's theorem: under a power the integral is homogeneous in c and r.
+                growth = (profile.exponent * total + c * profile.dg(c) * angle) / r
+            return total / angle, width * (growth / total - c / (r * root) / angle)
 
         return invert(
             sloped,
