@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scipy.optimize import minimize_scalar
 
 from mdr_core import fields, normal, tangential
 from mdr_core.extrema import largest_stress
@@ -245,3 +246,39 @@ def test_maxima_of_paraboloid_sweep_match_single_profiles() -> None:
         single = tangential.solve(alone, G_STAR, MU, tangential_force=float(force[i] * MU / 2))
         assert swept.maximum_pressure[i] == alone.maximum_pressure
         assert tangential_contact.maximum_shear_stress[i] == single.maximum_shear_stress
+
+
+def _punch_pressure(r: mpf, edge: mpf) -> mpf:
+    """p(r) pi R/(E* b) under a rounded punch with b = 1, by mdr-5, Eq. (5.70)."""
+
+    def weight(s: mpf) -> mpf:
+        return (2 * s - mp.atan(s)) * s / mp.hypot(s, 1)
+
+    if r < 1:
+        return mp.quad(lambda s: weight(s) / mp.sqrt(s * s + 1 - r * r), [0, edge])
+    start = mp.sqrt(r * r - 1)
+
+    def beyond(v: mpf) -> mpf:
+        s = mp.hypot(v, start)
+        return weight(s) / s
+
+    return mp.quad(beyond, [0, mp.sqrt(edge * edge - start * start)])
+
+
+@pytest.mark.parametrize("edge", [3e-5, 0.02, 0.3, 0.7, 1.0, 1.9, 6.0, 40.0, 3e4, 2e6])
+def test_maximum_pressure_of_rounded_punches(edge: float) -> None:
+    """Against a search in mpmath: at the peak the error of the radius has no effect."""
+
+    def height(share: float) -> float:
+        # Up to 1 a part of the flat, beyond it a part of the edge's coordinate.
+        r = mpf(share) if share < 1 else mp.hypot(1, (share - 1) * edge)
+        return -float(_punch_pressure(r, mpf(edge)))
+
+    with mp.workdps(20):
+        shares = np.linspace(0.0, 1.95, 40)
+        at = int(np.clip(np.argmin([height(share) for share in shares]), 1, 38))
+        around = shares[at - 1], shares[at + 1]
+        found = minimize_scalar(height, bounds=around, method="bounded", options={"xatol": 1e-9})
+    profile, edge_of_profile = RoundedPunch(0.7, 5.0), np.float64(0.7 * edge)
+    result = largest_stress(profile, edge_of_profile, edge_of_profile > 0)
+    assert result == pytest.approx(-found.fun / pi * 0.7 / 5.0, rel=1e-13, abs=0)
