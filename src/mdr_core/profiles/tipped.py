@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
-from mdr_core.elementwise import piecewise, some, where
+from mdr_core.elementwise import number, piecewise, some, where
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.powers import Paraboloid
@@ -148,15 +148,23 @@ class TippedCone(Profile):
         return self._split(coordinate, self._tip.reduced_force, self._flank_force)
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        b = self.tangent_radius
+        b, start, rate = self.tangent_radius, self.scale, self._flank_rate
 
         def density(s: Array) -> Array:
             x = np.hypot(b, s)
             return self._flank_force(x, s) * self._flank_weight(x, s)
 
-        tip = self._tip.reduced_energy(np.minimum(coordinate, self.scale))
-        _, s = self._outer(np.maximum(coordinate - self.scale, 0.0) * self._flank_rate)
-        return tip + energy_integral(density, s, np.minimum(b, self._opposite_singularity))
+        def beyond(place: Array) -> Array:
+            _, s = self._outer((place - start) * rate)
+            nearest = np.minimum(b, self._opposite_singularity)
+            return self._tip_energy + energy_integral(density, s, nearest)
+
+        return piecewise(coordinate, start, self._tip.reduced_energy, beyond)
+
+    @cached_property
+    def _tip_energy(self) -> Array:
+        """Reduced energy of the whole tip [length^3]."""
+        return self._tip.reduced_energy(number(1.0) * self.scale)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""
