@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
-from math import comb, inf, nan
+from math import comb, inf
 from typing import Any, Final
 
 import numpy as np
@@ -83,11 +83,11 @@ def largest_stress(
             # A radius just beyond a flat may round to that of the flat.
             begins = where(b == profile.first_radius, slip[1] <= profile.first_coordinate, begins)
         infinite = infinite | (loaded & begins & (b <= a))
-    known = full(nan, edge)
+    unknown, result = loaded & ~infinite, where(infinite, inf, full(0.0, edge))
     if isinstance(profile, RoundedPunch) and slip is None:
-        known = _on_curve(profile, edge)
-    unknown = loaded & ~infinite & np.isnan(known)
-    result = where(infinite, inf, where(loaded, known, 0.0))
+        on_curve = _on_curve(profile, edge)
+        known = unknown & np.isfinite(on_curve)
+        unknown, result = unknown & ~known, where(known, on_curve, result)
     if not some(unknown):
         return result
     finite, result = np.atleast_1d(unknown), np.atleast_1d(result)

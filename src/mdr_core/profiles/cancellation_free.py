@@ -12,8 +12,8 @@ from mdr_core.typing import Array, Parameter
 
 # Below it a rational function replaces the difference, which loses more than three bits there.
 _THRESHOLD: Final = 0.5
-# Numerators and denominators of (1 - arctan(z)/z)/u and (1 - tanh(z)/z)/u for u = z^2 <= 1/4,
-# ascending. They interpolate at Chebyshev nodes, to 1.3e-18.
+# Coefficients of numerator and denominator of (1 - arctan(z)/z)/u for u = z^2 <= 1/4, ascending.
+# The function interpolates at the Chebyshev nodes of [0, 1/4], to 1.3e-18.
 _ATAN: Final = (
     (
         0.3333333333333333,
@@ -31,6 +31,7 @@ _ATAN: Final = (
         0.006165875923157523,
     ),
 )
+# The same of (1 - tanh(z)/z)/u.
 _TANH: Final = (
     (0.3333333333333333, 0.02050385004918763, 0.00019940191776318837),
     (1.0, 0.4615115501475625, 0.023298063907570273, 0.00020677352824930548),
