@@ -55,6 +55,8 @@ class Polyline(NamedTuple):
     """normal - anchor of each vertex as (high, low), shape (n, 2)."""
     load_step: Indices
     """Load step that laid the segment below each vertex."""
+    anchor: Array
+    """Growth of the anchor over the segment below each vertex, shape (n,)."""
 
     @property
     def load_point(self) -> tuple[float, float]:
@@ -86,6 +88,8 @@ class VertexTree:
     """Normal coordinate of each vertex, >= 0."""
     growth: Array
     """Growth of both sums over the segment below each vertex, without cancellation."""
+    anchor: Array
+    """Growth of the anchor over the segment below each vertex, without cancellation."""
     top: Indices
     """Vertex of the load point after each step; -1 in separation."""
 
@@ -97,8 +101,7 @@ class VertexTree:
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor on the segment below each vertex, from -1 to 1."""
-        forward, backward = self.growth.T
-        return np.asarray((forward - backward) / (forward + backward))
+        return np.asarray(self.anchor / self.span)
 
     def at_load_points(self, values: Array) -> Array:
         """Return the values of the vertices of the load points, zero in separation."""
@@ -154,10 +157,10 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
     held = len(start.forward) if start.in_contact else 0
     places, made = _AXIS + held + _VERTICES * count, held + _VERTICES * count
     high, low = np.zeros((places, 2)), np.zeros((places, 2))
-    growth = np.zeros((places, 2))
+    growth, anchor = np.zeros((places, 2)), np.zeros(places)
     number, load_step = np.full(places, -1, dtype=np.intp), np.zeros(places, dtype=np.intp)
     parent, normal = np.empty(made, dtype=np.intp), np.empty(made)
-    steps, moved = np.empty((made, 2)), np.zeros((count, 2))
+    steps, anchors, moved = np.empty((made, 2)), np.empty(made), np.zeros((count, 2))
     visits = held + _VISITS * count
     front_step, front = np.empty(visits, dtype=np.intp), np.empty((visits, 3))
     if held:
@@ -165,10 +168,12 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
         for part, column in ((high, 0), (low, 1)):
             part[own, 0], part[own, 1] = start.forward[:, column], start.backward[:, column]
         growth[own], load_step[own], number[own] = start.growth, start.load_step, np.arange(held)
+        anchor[own] = anchors[:held] = start.anchor
         tree = as_tree(start)
         parent[:held], normal[:held], steps[:held] = tree.parent, tree.normal, tree.growth
-    filled = parent, normal, steps, held, moved, front_step, front
-    stack = kernel.PolylineStack(high, low, growth, number, load_step, _AXIS - 1 + held, *filled)
+    top = _AXIS - 1 + held
+    filled = parent, normal, steps, anchors, held, moved, front_step, front
+    stack = kernel.PolylineStack(high, low, growth, anchor, number, load_step, top, *filled)
     tops = np.empty(count, dtype=np.intp)
     stack.run(
         np.ascontiguousarray(points.normal),
@@ -179,7 +184,7 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
         *start.load_point,
     )
     used, visited = stack.made, stack.visited
-    tree = VertexTree(parent[:used], normal[:used], steps[:used], tops)
+    tree = VertexTree(parent[:used], normal[:used], steps[:used], anchors[:used], tops)
     path = FrontPath(
         front_step[:visited],
         front[:visited, :2],
@@ -191,7 +196,7 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
         return tree, path, separated(float(points.normal[-1]), float(points.tangential[-1]))
     own = slice(_AXIS, stack.top + 1)
     forward, backward = np.array([high[own], low[own]]).T
-    return tree, path, Polyline(forward, backward, load_step[own].copy())
+    return tree, path, Polyline(forward, backward, load_step[own].copy(), anchor[own].copy())
 
 
 def slip_segments(path: FrontPath) -> SlipSegments:
@@ -248,6 +253,7 @@ def as_tree(line: Polyline) -> VertexTree:
         np.arange(count, dtype=np.intp) - 1,
         np.maximum(sums[:, 0] + sums[:, 1], 0.0) / 2,
         line.growth,
+        line.anchor,
         np.array([count - 1], dtype=np.intp),
     )
 
@@ -257,11 +263,12 @@ def separated(normal: float, tangential: float) -> Polyline:
     forward, backward = normal + tangential, normal - tangential
     rounding = tangential - (forward - normal), -tangential - (backward - normal)
     sums = np.array([[[forward, rounding[0]]], [[backward, rounding[1]]]])
-    return Polyline(sums[0], sums[1], np.zeros(1, dtype=np.intp))
+    return Polyline(sums[0], sums[1], np.zeros(1, dtype=np.intp), np.zeros(1))
 
 
-def stacked(growth: Array, load_step: Indices) -> Polyline:
-    """Return the polyline from the axis whose segments have the given growth, shape (n, 2)."""
+def stacked(span: Array, slope: Array, load_step: Indices) -> Polyline:
+    """Return the polyline from the axis whose segments have the given lengths and slopes."""
+    growth = np.stack([span * (1 + slope), span * (1 - slope)], axis=1)
     rows = np.zeros((2, len(growth) + 1, 2))
     for column, steps in enumerate(growth.T):
         high = low = 0.0
@@ -272,4 +279,4 @@ def stacked(growth: Array, load_step: Indices) -> Polyline:
             low += (high - (total - part)) + (step - part)
             high = total
             rows[column, i] = high, low
-    return Polyline(rows[0], rows[1], np.append(0, load_step))
+    return Polyline(rows[0], rows[1], np.append(0, load_step), np.append(0.0, span * slope))

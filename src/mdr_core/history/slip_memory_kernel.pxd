@@ -10,6 +10,7 @@ cdef class PolylineStack:
     cdef double[:, ::1] high
     cdef double[:, ::1] low
     cdef double[:, ::1] growth
+    cdef double[::1] anchor
     cdef Py_ssize_t[::1] number
     cdef Py_ssize_t[::1] load_step
     cdef public Py_ssize_t top
@@ -18,6 +19,7 @@ cdef class PolylineStack:
     cdef Py_ssize_t[::1] parent
     cdef double[::1] normal
     cdef double[:, ::1] steps
+    cdef double[::1] anchors
     cdef double[:, ::1] moved
     cdef Py_ssize_t[::1] front_step
     cdef double[:, ::1] front
@@ -36,23 +38,21 @@ cdef class PolylineStack:
     ) noexcept
     @cython.locals(
         lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
-        at=Py_ssize_t, full=bint, oblique=bint
+        at=Py_ssize_t, full=bint, oblique=bint, step_below=Py_ssize_t
     )
     cdef Py_ssize_t _slip(self, Py_ssize_t start, double x, Py_ssize_t step) noexcept
     @cython.locals(base=Py_ssize_t, near=bint)
     cdef void _cut(
         self, Py_ssize_t lower, Py_ssize_t upper, Py_ssize_t own, Py_ssize_t other, double keep
     ) noexcept
-    cdef void _cut_at_constant_anchor(
-        self, Py_ssize_t lower, Py_ssize_t own, Py_ssize_t other, double keep
-    ) noexcept
     @cython.locals(first=bint)
     cdef Py_ssize_t _last_reached(self, Py_ssize_t lower, Py_ssize_t upper) noexcept
     @cython.locals(at=Py_ssize_t)
     cdef Py_ssize_t _extend(
-        self, Py_ssize_t below, double forward_step, double backward_step, double x,
-        Py_ssize_t load_step
+        self, Py_ssize_t below, double forward_step, double backward_step, double further,
+        double x, Py_ssize_t load_step
     ) noexcept
+    cdef void _lay(self, Py_ssize_t at, double further) noexcept
     cdef Py_ssize_t _constant(self, Py_ssize_t at) noexcept
     cdef void _settle(self, Py_ssize_t at, Py_ssize_t own) noexcept
     @cython.locals(new=Py_ssize_t)

@@ -31,15 +31,17 @@ class PolylineStack:
     """Vertices of the polyline, and the arrays that the loop fills.
 
     Coordinate sums are unevaluated sums high + low of two doubles. `growth` is the growth of both
-    sums over the segment below a vertex, `number` the index of the vertex among all that were made,
+    sums over the segment below a vertex and `anchor` that of the anchor, which a difference of both
+    would lose where it is small; `number` the index of the vertex among all that were made,
     `load_step` the load step that laid the segment.
 
     Parameters
     ----------
-    high, low, growth, number, load_step : columns of the stack.
+    high, low, growth, anchor, number, load_step : columns of the stack.
     top : place of its last vertex.
-    parent, normal, steps : to be filled with parent, normal coordinate and growth of every vertex.
-    made : number of vertices that these three hold already.
+    parent, normal, steps, anchors : to be filled with parent, normal coordinate, growth and growth
+        of the anchor of every vertex.
+    made : number of vertices that these four hold already.
     moved : to be filled with the decrease of both sums of the load point over each step.
     front_step, front : to be filled with the step of each visit of the slip front, and its row of
         `_visit`.
@@ -50,12 +52,14 @@ class PolylineStack:
         high: Array,
         low: Array,
         growth: Array,
+        anchor: Array,
         number: Indices,
         load_step: Indices,
         top: int,
         parent: Indices,
         normal: Array,
         steps: Array,
+        anchors: Array,
         made: int,
         moved: Array,
         front_step: Indices,
@@ -64,12 +68,14 @@ class PolylineStack:
         self.high = high
         self.low = low
         self.growth = growth
+        self.anchor = anchor
         self.number = number
         self.load_step = load_step
         self.top = top
         self.parent = parent
         self.normal = normal
         self.steps = steps
+        self.anchors = anchors
         self.made = made
         self.moved = moved
         self.front_step = front_step
@@ -172,10 +178,11 @@ class PolylineStack:
         backward_step = max(deeper - further, 0.0) if fall < 0 else 0.0
         if continues and at > AXIS:
             # One segment for one straight line.
+            further += self.anchor[at]
             forward_step += self.growth[at, FORWARD]
             backward_step += self.growth[at, BACKWARD]
             at -= 1
-        return self._extend(at, forward_step, backward_step, x, load_step)
+        return self._extend(at, forward_step, backward_step, further, x, load_step)
 
     def _slip(self, start: int, x: float, step: int) -> int:
         """Cut the polyline where it exceeds the load point; return the place of its vertex."""
@@ -201,14 +208,19 @@ class PolylineStack:
                 self._visit(start, lower, step)
             forward_step = self._excess(POINT, lower, FORWARD)
             backward_step = self._excess(POINT, lower, BACKWARD)
-            return self._extend(lower, forward_step, backward_step, x, self.load_step[upper])
+            further = (forward_step - backward_step) / 2
+            step_below = self.load_step[upper]
+            return self._extend(lower, forward_step, backward_step, further, x, step_below)
         # In full slip the corner is that of the mirror image, and both sums grow from the axis.
         source = upper - full
         rest = keep * full
+        further = 0.0
         if oblique:
             self._cut(lower, upper, own, other, keep)
             source = CORNER
             rest = self.growth[CORNER, other]
+            span = self.growth[upper, FORWARD] + self.growth[upper, BACKWARD]
+            further = self.anchor[upper] * ((keep + rest) / span)
         high = self.high[source, other]
         low = self.low[source, other]
         if not full:
@@ -217,6 +229,7 @@ class PolylineStack:
             self._visit(start, CORNER, step)
         self._put(upper, own, self.high[POINT, own], self.low[POINT, own], keep)
         self._put(upper, other, high, low, rest)
+        self._lay(upper, further)
         self._make(upper, self._normal(upper))
         reach = (self.high[POINT, other] - high) + (self.low[POINT, other] - low)
         if reach <= 0:
@@ -226,41 +239,37 @@ class PolylineStack:
         at = upper + 1
         self._put(at, own, self.high[POINT, own], self.low[POINT, own], 0.0)
         self._put(at, other, self.high[POINT, other], self.low[POINT, other], reach)
+        self._lay(at, 0.0)
         self._make(at, x)
         return at
 
     def _cut(self, lower: int, upper: int, own: int, other: int, keep: float) -> None:
         """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
         growth = self.growth[upper, other]
-        if growth == self.growth[upper, own]:
-            self._cut_at_constant_anchor(lower, own, other, keep)
-            return
-        ratio = growth / self.growth[upper, own]
         over = self._excess(upper, POINT, own)
         # From the nearer end, so that the distances to both are free of cancellation.
         near = keep <= over
         base = lower if near else upper
-        move = keep * ratio if near else -over * ratio
-        rest = max(move if near else growth + move, 0.0)
+        distance = keep if near else -over
+        # On the whole segment both sums differ by twice the growth of the anchor.
+        anchor = self.anchor[upper] if own == FORWARD else -self.anchor[upper]
+        less = distance * (2 * anchor / self.growth[upper, own])
+        if 2 * abs(less) < abs(distance):
+            # The sums grow nearly alike: to both parts of the own step a small one is added, so
+            # that small slopes keep their digits and none arises from rounding errors.
+            move = self.high[POINT, own] - self.high[base, own]
+            move_low = _rounding(self.high[POINT, own], -self.high[base, own], move)
+            move_low += self.low[POINT, own] - self.low[base, own] - less
+            step = distance - less
+        else:
+            move = distance * (growth / self.growth[upper, own])
+            move_low = 0.0
+            step = move
+        rest = max(step if near else growth + step, 0.0)
         high = self.high[base, other]
         total = high + move
-        low = _rounding(high, move, total) + self.low[base, other]
+        low = _rounding(high, move, total) + move_low + self.low[base, other]
         self._put(CORNER, other, total + low, _rounding(total, low, total + low), rest)
-
-    def _cut_at_constant_anchor(self, lower: int, own: int, other: int, keep: float) -> None:
-        """Find the corner on a segment of constant anchor, where both sums grow alike.
-
-        Exactly: the stress of a slope that is mere rounding error is infinite at a tip or a slope
-        discontinuity.
-        """
-        base = self.high[lower, own]
-        move = self.high[POINT, own] - base
-        moved_low = _rounding(self.high[POINT, own], -base, move)
-        moved_low += self.low[POINT, own] - self.low[lower, own]
-        high = self.high[lower, other]
-        total = high + move
-        low = _rounding(high, move, total) + moved_low + self.low[lower, other]
-        self._put(CORNER, other, total + low, _rounding(total, low, total + low), keep)
 
     def _last_reached(self, lower: int, upper: int) -> int:
         """Sum in which the load point is reached further out on a segment where both grow."""
@@ -273,7 +282,13 @@ class PolylineStack:
         return BACKWARD if first else FORWARD
 
     def _extend(
-        self, below: int, forward_step: float, backward_step: float, x: float, load_step: int
+        self,
+        below: int,
+        forward_step: float,
+        backward_step: float,
+        further: float,
+        x: float,
+        load_step: int,
     ) -> int:
         """Push the load point; two segments on the same face become one."""
         if below > AXIS and (
@@ -283,16 +298,26 @@ class PolylineStack:
             below -= 1
             forward_step = self._excess(POINT, below, FORWARD)
             backward_step = self._excess(POINT, below, BACKWARD)
+            further = (forward_step - backward_step) / 2
         at = below
         if forward_step > 0 or backward_step > 0:
             at = below + 1
             self.growth[at, FORWARD] = max(forward_step, 0.0)
             self.growth[at, BACKWARD] = max(backward_step, 0.0)
             self.load_step[at] = load_step
+            self._lay(at, further)
             self._make(at, x)
         self._settle(at, FORWARD)
         self._settle(at, BACKWARD)
         return at
+
+    def _lay(self, at: int, further: float) -> None:
+        """Set the growth of the anchor; if one sum alone grows, it is half of that growth."""
+        if self.growth[at, BACKWARD] == 0:
+            further = self.growth[at, FORWARD] / 2
+        elif self.growth[at, FORWARD] == 0:
+            further = -self.growth[at, BACKWARD] / 2
+        self.anchor[at] = further
 
     def _constant(self, at: int) -> int:
         """Sum that is constant on the segment below a vertex."""
@@ -314,6 +339,7 @@ class PolylineStack:
         self.normal[new] = normal
         self.steps[new, FORWARD] = self.growth[at, FORWARD]
         self.steps[new, BACKWARD] = self.growth[at, BACKWARD]
+        self.anchors[new] = self.anchor[at]
 
     def _visit(self, start: int, at: int, step: int) -> None:
         """Record a vertex that the slip front reaches: distances from the start, normal coordinate.

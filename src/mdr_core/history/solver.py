@@ -154,8 +154,7 @@ class LoadHistory(validity.ContactResults):
         if not line.in_contact:
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
         slope = slip_memory.as_tree(line).slope[1:]
-        growth = np.stack([span * (1 + slope), span * (1 - slope)], axis=1)
-        return slip_memory.stacked(growth, line.load_step[1:])
+        return slip_memory.stacked(span, slope, line.load_step[1:])
 
     @property
     def slip_fronts(self) -> Array:

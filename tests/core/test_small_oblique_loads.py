@@ -1,0 +1,53 @@
+"""Tangential loads far smaller than friction, under normal loads that change with them."""
+
+import numpy as np
+import pytest
+
+from mdr_core.history import solve
+from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Profile, RoundedPunch, Sphere
+
+MU, E_STAR, G_STAR = 0.3, 1.0, 0.8
+PROFILES = [Paraboloid(1.7), Cone(0.3), Sphere(2.0), RoundedPunch(0.5, 3.0)]
+# Loading, unloading with slip that cuts the first segments, reloading.
+NORMAL = np.array([0.5, 1.0, 0.6, 0.9, 0.4, 0.8])
+TANGENTIAL = np.array([0.3, -0.2, 0.5, 0.1, -0.4, 0.2])
+RESULTS = ("tangential_displacement", "tangential_force", "tangential_energy", "dissipated_energy")
+
+
+@pytest.mark.parametrize("part", [0.3, 1e-3, 1e-9, 1e-15, 1e-40])
+@pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
+def test_oblique_loading_sticks(profile: Profile, part: float) -> None:
+    """Forces in proportion: u_x = (E*/G*) (F_x/F_N) d, since every spring sticks. Notes, §10."""
+    result = solve(
+        profile, E_STAR, G_STAR, MU, normal_force=[0.01], tangential_force=[part * MU * 0.01]
+    )
+    expected = E_STAR / G_STAR * part * MU * result.indentation_depth[0]
+    assert result.tangential_displacement[0] == pytest.approx(expected, rel=1e-13, abs=0)
+    assert result.dissipated_energy[0] == 0
+    assert result.regime[0] == "stick"
+
+
+@pytest.mark.parametrize("forces", [True, False], ids=["forces", "displacements"])
+@pytest.mark.parametrize("profile", [*PROFILES, FlatPunch(1.0)], ids=lambda profile: profile.kind)
+def test_results_have_a_limit_at_small_amplitudes(profile: Profile, forces: bool) -> None:  # noqa: FBT001
+    """Tangential loads a millionth as large have results of the same ratios, up to the larger."""
+
+    def scaled(amplitude: float) -> list[np.ndarray]:
+        if forces:
+            path = {
+                "normal_force": 0.01 * NORMAL,
+                "tangential_force": 0.01 * amplitude * TANGENTIAL,
+            }
+        else:
+            path = {
+                "indentation_depth": 0.01 * NORMAL,
+                "tangential_displacement": 0.01 * amplitude * TANGENTIAL,
+            }
+        found = solve(profile, E_STAR, G_STAR, MU, **path)
+        powers = 1, 1, 2, 2
+        return [
+            getattr(found, name) / amplitude**n for name, n in zip(RESULTS, powers, strict=True)
+        ]
+
+    for small, large in zip(scaled(1e-16), scaled(1e-10), strict=True):
+        assert small == pytest.approx(large, rel=1e-8, abs=1e-9 * np.abs(large).max())
