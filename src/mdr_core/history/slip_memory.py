@@ -120,11 +120,12 @@ class FrontPath(NamedTuple):
     step: Indices
     """Step of each visit, shape (k,)."""
     distance: Array
-    """Distance from the load point at the start of the step, in both sums, shape (k, 2)."""
+    """Distance from the load point at the start of the step, in both sums and in the anchor, shape
+    (k, 3)."""
     normal: Array
     """Normal coordinate of the vertex; -1 on the axis."""
     moved: Array
-    """Decrease of both sums of the load point over each step, shape (steps, 2)."""
+    """Decrease of both sums and of the anchor of the load point on each step, shape (steps, 3)."""
     load: Array
     """Normal coordinate of the load point after each step."""
 
@@ -160,9 +161,9 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
     growth, anchor = np.zeros((places, 2)), np.zeros(places)
     number, load_step = np.full(places, -1, dtype=np.intp), np.zeros(places, dtype=np.intp)
     parent, normal = np.empty(made, dtype=np.intp), np.empty(made)
-    steps, anchors, moved = np.empty((made, 2)), np.empty(made), np.zeros((count, 2))
+    steps, anchors, moved = np.empty((made, 2)), np.empty(made), np.zeros((count, 3))
     visits = held + _VISITS * count
-    front_step, front = np.empty(visits, dtype=np.intp), np.empty((visits, 3))
+    front_step, front = np.empty(visits, dtype=np.intp), np.empty((visits, 4))
     if held:
         own = slice(_AXIS, _AXIS + held)
         for part, column in ((high, 0), (low, 1)):
@@ -187,8 +188,8 @@ def apply_steps(start: Polyline, points: LoadPoints) -> tuple[VertexTree, FrontP
     tree = VertexTree(parent[:used], normal[:used], steps[:used], anchors[:used], tops)
     path = FrontPath(
         front_step[:visited],
-        front[:visited, :2],
-        front[:visited, 2],
+        front[:visited, :3],
+        front[:visited, 3],
         moved,
         np.maximum(points.normal, 0.0),
     )
@@ -215,7 +216,7 @@ def slip_segments(path: FrontPath) -> SlipSegments:
         # The load point passes through the segment: the friction limit acts in both sums in turn.
         share = side[crossed] / (side[crossed] - lower_side[crossed])
         middle = upper[crossed] + share[:, None] * (lower[crossed] - upper[crossed])
-        rest = (lower[crossed] - middle).sum(axis=1) / 2
+        rest = (lower[crossed] - middle)[:, :2].sum(axis=1) / 2
         step, moved = np.append(step, step[crossed]), np.append(moved, moved[crossed], axis=0)
         upper, lower = np.append(upper, middle, axis=0), np.append(lower, lower[crossed], axis=0)
         normal, full = np.append(normal, normal[crossed]), np.append(full, full[crossed])
@@ -223,7 +224,7 @@ def slip_segments(path: FrontPath) -> SlipSegments:
         lower_side[crossed] = 0.0
         side, lower_side = np.append(side, 0 * share), np.append(lower_side, -side[crossed])
     slip, gaps = _slip(np.array([upper, lower]), moved, side + lower_side)
-    span = np.where(full, 0.0, (lower - upper).sum(axis=1) / 2)
+    span = np.where(full, 0.0, (lower - upper)[:, :2].sum(axis=1) / 2)
     end = np.where(full, path.load[step], gaps[1])
     found = SlipSegments(step, normal, span, slip, gaps[0], end, full)
     return SlipSegments._make(row[slip > 0] for row in found)
@@ -231,18 +232,30 @@ def slip_segments(path: FrontPath) -> SlipSegments:
 
 def _side(distance: Array, moved: Array) -> Array:
     """Sign of the sum in which the load point reaches a spring first: + backward, - forward."""
-    forward, backward = moved.T
-    crosswise = distance[:, 0] * backward - distance[:, 1] * forward
+    forward, backward, _ = moved.T
+    crosswise = _crosswise(distance.T, moved.T)
     return np.where(forward <= 0, 1.0, np.where(backward <= 0, -1.0, crosswise))
+
+
+def _crosswise(distance: Array, moved: Array) -> Array:
+    """Distance in the forward sum times the backward movement, less the other product.
+
+    With the normal coordinate and the anchor it is twice the same difference, which keeps its
+    digits where the anchor moves far less than the normal coordinate.
+    """
+    (near, other, anchor), (forward, backward, further) = distance, moved
+    by_anchor = anchor * (forward + backward) - (near + other) * further
+    small = 2 * np.abs(further) < np.minimum(forward, backward)
+    return np.where(small, by_anchor, near * backward - other * forward)
 
 
 def _slip(ends: Array, moved: Array, side: Array) -> tuple[Array, Array]:
     """Slip while the front moves between two ends, and its distance to the load point at both."""
     some = np.arange(side.size)
     bound = np.where(side >= 0, 1, 0)
-    reached, free = ends[:, some, bound], ends[:, some, 1 - bound]
-    ratio = moved[some, 1 - bound] / moved[some, bound]
-    return reached[1] - reached[0], np.maximum(free - reached * ratio, 0.0) / 2
+    reached = ends[:, some, bound]
+    behind = np.where(side >= 0, 1.0, -1.0) * _crosswise(ends.transpose(2, 0, 1), moved.T[:, None])
+    return reached[1] - reached[0], np.maximum(behind / moved[some, bound], 0.0) / 2
 
 
 def as_tree(line: Polyline) -> VertexTree:

@@ -63,6 +63,7 @@ cdef class PolylineStack:
         self, Py_ssize_t at, Py_ssize_t own, double high, double low, double growth
     ) noexcept
     cdef double _excess(self, Py_ssize_t upper, Py_ssize_t lower, Py_ssize_t own) noexcept
+    cdef double _further(self, Py_ssize_t upper, Py_ssize_t lower) noexcept
     cdef double _normal(self, Py_ssize_t at) noexcept
 
 @cython.locals(below=Py_ssize_t, i=Py_ssize_t)

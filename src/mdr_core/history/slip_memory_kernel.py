@@ -42,7 +42,8 @@ class PolylineStack:
     parent, normal, steps, anchors : to be filled with parent, normal coordinate, growth and growth
         of the anchor of every vertex.
     made : number of vertices that these four hold already.
-    moved : to be filled with the decrease of both sums of the load point over each step.
+    moved : to be filled with the decrease of both sums and of the anchor of the load point over
+        each step.
     front_step, front : to be filled with the step of each visit of the slip front, and its row of
         `_visit`.
     """
@@ -126,6 +127,7 @@ class PolylineStack:
                 if max(rise, fall) > 0:
                     self.moved[i, FORWARD] = rise
                     self.moved[i, BACKWARD] = fall
+                    self.moved[i, 2] = self._further(at, POINT)
                     at = self._slip(at, x, i)
                     straight = False
                 else:
@@ -351,7 +353,8 @@ class PolylineStack:
         self.front_step[row] = step
         self.front[row, FORWARD] = self._excess(start, at, FORWARD)
         self.front[row, BACKWARD] = self._excess(start, at, BACKWARD)
-        self.front[row, 2] = -1.0 if at == AXIS else self._normal(at)
+        self.front[row, 2] = self._further(start, at)
+        self.front[row, 3] = -1.0 if at == AXIS else self._normal(at)
 
     def _put(self, at: int, own: int, high: float, low: float, growth: float) -> None:
         self.high[at, own] = high
@@ -364,6 +367,16 @@ class PolylineStack:
             self.low[upper, own] - self.low[lower, own]
         )
         return difference
+
+    def _further(self, upper: int, lower: int) -> float:
+        """Difference of the anchor between two vertices, half of that of the sums."""
+        high: float = (self.high[upper, FORWARD] - self.high[upper, BACKWARD]) - (
+            self.high[lower, FORWARD] - self.high[lower, BACKWARD]
+        )
+        low: float = (self.low[upper, FORWARD] - self.low[upper, BACKWARD]) - (
+            self.low[lower, FORWARD] - self.low[lower, BACKWARD]
+        )
+        return (high + low) / 2
 
     def _normal(self, at: int) -> float:
         """Normal coordinate of a vertex, half of both sums."""
