@@ -126,7 +126,7 @@ def _on_curve(profile: RoundedPunch, edge: Array) -> Array:
 def _curve() -> BPoly:
     """Largest pressure of all rounded punches, times s/(d E*), over log(s/b)."""
     unit = RoundedPunch(1.0, 1.0)
-    share = (1 - np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)) / 2
+    share = _clustered(_DEGREE)
     ends = np.linspace(-_CURVED, _CURVED, _PIECES + 1)
     edge = np.exp(ends[:-1] + np.diff(ends) * share[:, None])
     height = _search(unit, edge.ravel()).reshape(edge.shape) * edge / unit.depth(edge)
@@ -159,10 +159,14 @@ def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
     return best
 
 
+def _clustered(count: int) -> Array:
+    """Points of [0, 1] that divide it into `count` intervals and cluster at both ends."""
+    return np.asarray((1 - np.cos(np.pi * np.arange(count + 1) / count)) / 2)
+
+
 def _between(stops: Array, count: int) -> Array:
     """Samples of each load between its stops, at which they cluster; shape (loads, m)."""
-    share = (1 - np.cos(np.pi * np.arange(count) / count)) / 2
-    samples = stops[:, :-1, None] + np.diff(stops)[..., None] * share
+    samples = stops[:, :-1, None] + np.diff(stops)[..., None] * _clustered(count)[:-1]
     return np.concatenate([samples.reshape(len(stops), -1), stops[:, -1:]], axis=1)
 
 

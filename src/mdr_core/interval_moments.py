@@ -98,20 +98,19 @@ class IntervalMoments:
             normal = np.minimum(normal, self.normal(number(end)))
         return coordinate_from_load(self.profile, normal, of_force=self.over_forces)
 
-    def over(self, low: Array, span: Array, ends: Array | None = None) -> Moments:
+    def over(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).
 
         Parameters
         ----------
         low, span : lower ends and lengths in the normal coordinate, shape (m,).
-        ends : both ends in the contact coordinate, shape (2, m), if they are known; the parameters
-            of the profile may then be arrays over the intervals.
+        ends : both ends in the contact coordinate, shape (2, m).
+
+        The parameters of the profile may be arrays over the intervals.
         """
         if self.profile.has_no_partial_slip:
             # The contact radius is constant.
             return Moments(span, np.zeros((3, span.size)))
-        if ends is None:
-            ends = self.contact_coordinate(np.array([low, low + span]))
         with np.errstate(divide="ignore", invalid="ignore"):
             closed = self.profile.interval_moments(span, ends, over_forces=self.over_forces)
         if closed is not None:
@@ -161,18 +160,18 @@ class IntervalMoments:
 
     def conjugate_step(self, low: Array, span: Array) -> Array:
         """Return the increase of the conjugate over each interval, a sum of positive terms."""
-        lower, middle, upper = self.over(low, span).weights
-        at = low + span if self.over_forces else low
-        a = self.profile.contact_radius(self.contact_coordinate(at))
+        ends = self.contact_coordinate(np.array([low, low + span]))
+        lower, middle, upper = self.over(low, span, ends).weights
+        a = self.profile.contact_radius(ends[1 if self.over_forces else 0])
         if self.over_forces:
             return np.asarray(span * (1 / (2 * a) + upper + middle / 2))
         return np.asarray(span * (2 * a + lower + middle / 2))
 
     def conjugate_mean(self, low: Array, span: Array) -> Array:
         """Return the mean reduced force over each interval of depth."""
-        at = self.contact_coordinate(low)
-        force, a = self.profile.reduced_force(at), self.profile.contact_radius(at)
-        return np.asarray(force + span * (a + self.over(low, span).weights[0] / 2))
+        ends = self.contact_coordinate(np.array([low, low + span]))
+        force, a = self.profile.reduced_force(ends[0]), self.profile.contact_radius(ends[0])
+        return np.asarray(force + span * (a + self.over(low, span, ends).weights[0] / 2))
 
     @cached_property
     def _breaks(self) -> tuple[Array, Array]:

@@ -27,13 +27,13 @@ def test_oblique_loading_sticks(profile: Profile, part: float) -> None:
     assert result.regime[0] == "stick"
 
 
-@pytest.mark.parametrize("forces", [True, False], ids=["forces", "displacements"])
+@pytest.mark.parametrize("control", ["forces", "displacements"])
 @pytest.mark.parametrize("profile", [*PROFILES, FlatPunch(1.0)], ids=lambda profile: profile.kind)
-def test_results_have_a_limit_at_small_amplitudes(profile: Profile, forces: bool) -> None:  # noqa: FBT001
+def test_results_have_a_limit_at_small_amplitudes(profile: Profile, control: str) -> None:
     """Tangential loads a millionth as large have results of the same ratios, up to the larger."""
 
     def scaled(amplitude: float) -> list[np.ndarray]:
-        if forces:
+        if control == "forces":
             path = {
                 "normal_force": 0.01 * NORMAL,
                 "tangential_force": 0.01 * amplitude * TANGENTIAL,

@@ -254,7 +254,7 @@ def _slip(ends: Array, moved: Array, side: Array) -> tuple[Array, Array]:
     some = np.arange(side.size)
     bound = np.where(side >= 0, 1, 0)
     reached = ends[:, some, bound]
-    behind = np.where(side >= 0, 1.0, -1.0) * _crosswise(ends.transpose(2, 0, 1), moved.T[:, None])
+    behind = (2 * bound - 1) * _crosswise(ends.transpose(2, 0, 1), moved.T[:, None])
     return reached[1] - reached[0], np.maximum(behind / moved[some, bound], 0.0) / 2
 
 

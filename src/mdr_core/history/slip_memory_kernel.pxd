@@ -2,7 +2,7 @@
 
 cimport cython
 
-cdef Py_ssize_t FORWARD, BACKWARD, NEITHER, POINT, CORNER, MIRROR, AXIS
+cdef Py_ssize_t FORWARD, BACKWARD, ANCHOR, NEITHER, POINT, CORNER, MIRROR, AXIS
 
 
 @cython.final
@@ -38,7 +38,7 @@ cdef class PolylineStack:
     ) noexcept
     @cython.locals(
         lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
-        at=Py_ssize_t, full=bint, oblique=bint, step_below=Py_ssize_t
+        at=Py_ssize_t, full=bint, oblique=bint
     )
     cdef Py_ssize_t _slip(self, Py_ssize_t start, double x, Py_ssize_t step) noexcept
     @cython.locals(base=Py_ssize_t, near=bint)
@@ -63,7 +63,7 @@ cdef class PolylineStack:
         self, Py_ssize_t at, Py_ssize_t own, double high, double low, double growth
     ) noexcept
     cdef double _excess(self, Py_ssize_t upper, Py_ssize_t lower, Py_ssize_t own) noexcept
-    cdef double _further(self, Py_ssize_t upper, Py_ssize_t lower) noexcept
+    cdef double _anchor_step(self, Py_ssize_t upper, Py_ssize_t lower) noexcept
     cdef double _normal(self, Py_ssize_t at) noexcept
 
 @cython.locals(below=Py_ssize_t, i=Py_ssize_t)

@@ -15,6 +15,8 @@ from mdr_core.typing import Array, Indices
 FORWARD = 0
 # Column of the sum normal - anchor.
 BACKWARD = 1
+# Column of the anchor.
+ANCHOR = 2
 # Mark of a segment on which both sums grow.
 NEITHER = 2
 # Place of the new load point on the stack.
@@ -127,7 +129,7 @@ class PolylineStack:
                 if max(rise, fall) > 0:
                     self.moved[i, FORWARD] = rise
                     self.moved[i, BACKWARD] = fall
-                    self.moved[i, 2] = self._further(at, POINT)
+                    self.moved[i, ANCHOR] = self._anchor_step(at, POINT)
                     at = self._slip(at, x, i)
                     straight = False
                 else:
@@ -208,11 +210,10 @@ class PolylineStack:
         if keep <= 0:
             if not full:
                 self._visit(start, lower, step)
+            # One of the two is zero.
             forward_step = self._excess(POINT, lower, FORWARD)
             backward_step = self._excess(POINT, lower, BACKWARD)
-            further = (forward_step - backward_step) / 2
-            step_below = self.load_step[upper]
-            return self._extend(lower, forward_step, backward_step, further, x, step_below)
+            return self._extend(lower, forward_step, backward_step, 0.0, x, self.load_step[upper])
         # In full slip the corner is that of the mirror image, and both sums grow from the axis.
         source = upper - full
         rest = keep * full
@@ -292,7 +293,10 @@ class PolylineStack:
         x: float,
         load_step: int,
     ) -> int:
-        """Push the load point; two segments on the same face become one."""
+        """Push the load point; two segments on the same face become one.
+
+        `further` is the growth of the anchor if both sums grow.
+        """
         if below > AXIS and (
             (backward_step <= 0 and self.growth[below, BACKWARD] == 0)
             or (forward_step <= 0 and self.growth[below, FORWARD] == 0)
@@ -300,7 +304,6 @@ class PolylineStack:
             below -= 1
             forward_step = self._excess(POINT, below, FORWARD)
             backward_step = self._excess(POINT, below, BACKWARD)
-            further = (forward_step - backward_step) / 2
         at = below
         if forward_step > 0 or backward_step > 0:
             at = below + 1
@@ -346,6 +349,7 @@ class PolylineStack:
     def _visit(self, start: int, at: int, step: int) -> None:
         """Record a vertex that the slip front reaches: distances from the start, normal coordinate.
 
+        The distances are those in both sums and in the anchor.
         On the axis, where all springs slip, -1 takes the place of the coordinate.
         """
         row = self.visited
@@ -353,7 +357,7 @@ class PolylineStack:
         self.front_step[row] = step
         self.front[row, FORWARD] = self._excess(start, at, FORWARD)
         self.front[row, BACKWARD] = self._excess(start, at, BACKWARD)
-        self.front[row, 2] = self._further(start, at)
+        self.front[row, ANCHOR] = self._anchor_step(start, at)
         self.front[row, 3] = -1.0 if at == AXIS else self._normal(at)
 
     def _put(self, at: int, own: int, high: float, low: float, growth: float) -> None:
@@ -368,7 +372,7 @@ class PolylineStack:
         )
         return difference
 
-    def _further(self, upper: int, lower: int) -> float:
+    def _anchor_step(self, upper: int, lower: int) -> float:
         """Difference of the anchor between two vertices, half of that of the sums."""
         high: float = (self.high[upper, FORWARD] - self.high[upper, BACKWARD]) - (
             self.high[lower, FORWARD] - self.high[lower, BACKWARD]
