@@ -54,8 +54,8 @@ _NONLINEAR_STEP, _NODE = 2.5e-3, 7.5e-3
 # tables. Times of integrals grow with the fourth root.
 _IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
-# Profiles whose largest pressure may lie off the axis.
-_SEARCHED_PROFILES: Final = frozenset({"rounded_punch", "series", "spherical_tip_cone"})
+# Profiles whose largest pressure may have to be searched off the axis.
+_SEARCHED_PROFILES: Final = frozenset({"series", "spherical_tip_cone"})
 # Time per point beneath the surface.
 _POINT: Final = 4e-6
 # Number of points of a search for the peak, and of such searches for the onset of yield.
