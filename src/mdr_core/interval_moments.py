@@ -131,32 +131,38 @@ class IntervalMoments:
         next_break = first[crossed]
         stop[crossed] = breaks[next_break]
         length[crossed] = np.maximum(normal_at_breaks[next_break] - low[crossed], 0.0)
-        found = self._smooth(low, length, np.array([start, stop]), base)
+        found = self.over_smooth(low, length, np.array([start, stop]), base)
         if not crossed.size:
             return found
         between = self._chained(found.at(crossed), next_break, last[crossed] - 1)
         top = np.maximum(span[crossed] - between.span, 0.0)
         base, at_base = breaks[last[crossed] - 1], normal_at_breaks[last[crossed] - 1]
-        upper = self._smooth(at_base, top, np.maximum([base, ends[1][crossed]], base), base)
+        upper = self.over_smooth(at_base, top, np.maximum([base, ends[1][crossed]], base), base)
         found.weights[:, crossed] = between.joined(upper).weights
         return Moments(span, found.weights)
 
     def _by_break(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments for a profile with one break at most, or one in each case."""
         if not self.profile.coordinate_breaks.size:
-            return self._smooth(low, span, ends, np.zeros_like(span))
+            return self.over_smooth(low, span, ends, np.zeros_like(span))
         base, _ = break_below(self.profile, ends[1])
         crossed = base > ends[0]
         if not some(crossed):
-            return self._smooth(low, span, ends, base)
+            return self.over_smooth(low, span, ends, base)
+        # The parts below a break are further cases.
+        below = np.flatnonzero(crossed)
         part = np.where(crossed, np.clip(_from_below(self.normal, base) - low, 0.0, span), 0.0)
-        inside = np.maximum(base, ends[0])
-        lower = self._smooth(low, part, np.array([ends[0], inside]), np.zeros_like(base))
-        upper = self._smooth(low + part, span - part, np.array([inside, ends[1]]), base)
+        found = self._part(np.append(np.arange(span.size), below)).over_smooth(
+            np.append(low + part, low[below]),
+            np.append(span - part, part[below]),
+            np.hstack([[np.maximum(base, ends[0]), ends[1]], [ends[0][below], base[below]]]),
+            np.append(base, np.zeros(below.size)),
+        )
+        upper, lower = found.at(slice(span.size)), found.at(slice(span.size, None))
         # The first moment is infinite on the axis where forces are prescribed.
         with np.errstate(invalid="ignore"):
-            joined = lower.joined(upper).weights
-        return Moments(span, np.where(crossed, joined, upper.weights))
+            upper.weights[:, below] = lower.joined(upper.at(below)).weights
+        return Moments(span, upper.weights)
 
     def conjugate_step(self, low: Array, span: Array) -> Array:
         """Return the increase of the conjugate over each interval, a sum of positive terms."""
@@ -196,7 +202,7 @@ class IntervalMoments:
         """Moments from each break to the 2^k-th next, for k = 0, 1, ..."""
         breaks, normal = self._breaks
         ends = np.array([breaks[:-1], breaks[1:]])
-        chains, size = [self._smooth(normal[:-1], np.diff(normal), ends, ends[0])], 1
+        chains, size = [self.over_smooth(normal[:-1], np.diff(normal), ends, ends[0])], 1
         # On a plateau the measure is concentrated at one normal coordinate.
         plateau = normal[:-1] == normal[1:]
         twice = 2 * self.profile.contact_radius(ends[:, plateau])
@@ -222,7 +228,7 @@ class IntervalMoments:
                 at[index] += 1 << k
         return Moments(span, weights)
 
-    def _smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
+    def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
         """Return the moments over intervals without a break inside; `base` is the one below."""
         profile, weights = self.profile, np.zeros((3, low.size))
         least = _SHALLOW * profile.first_radius
@@ -234,14 +240,13 @@ class IntervalMoments:
         if every(by_rule):
             return Moments(span, self.over_narrow(span, ends, base, beyond))
         if some(closed):
-            found = self._part(closed).over_wide(span[closed], ends[:, closed])
-            weights[:, closed] = found
+            weights[:, closed] = self._part(closed).over_wide(span[closed], ends[:, closed])
         if some(by_rule):
             at = span[by_rule], ends[:, by_rule], base[by_rule], beyond[by_rule]
             weights[:, by_rule] = self._part(by_rule).over_narrow(*at)
         return Moments(span, weights)
 
-    def _part(self, chosen: Flags | slice) -> "IntervalMoments":
+    def _part(self, chosen: Flags | Indices | slice) -> "IntervalMoments":
         """The chosen cases of a sweep."""
         profile = self.profile
         if not profile.swept:
@@ -327,7 +332,8 @@ _of_table: Final = lru_cache(maxsize=16)(IntervalMoments)
 
 def _from_below(function: Function, breaks: Array) -> Array:
     """Limit of a function from below: above, an infinite slope magnifies rounding errors."""
-    return 2 * function(breaks * (1 - _BELOW)) - function(breaks * (1 - 2 * _BELOW))
+    near, far = function(np.multiply.outer([1 - _BELOW, 1 - 2 * _BELOW], breaks))
+    return np.asarray(2 * near - far)
 
 
 def _in_logarithm(stop: Array, width: Array, share: Array) -> tuple[Array, Array]:
