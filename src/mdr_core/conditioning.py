@@ -129,18 +129,19 @@ def beyond_break(contact: NormalContact) -> Array:
     profile = contact.profile
     if not profile.coordinate_breaks.size:
         return full(0.0, contact.coordinate)
-    load, slope = load_functions(profile, of_force=contact.control == "normal_force")
-    if contact.control == "contact_radius":
-        load, slope = profile.contact_radius, profile.radius_slope
     at = where(contact.coordinate > 0, contact.coordinate, np.nan)
     with np.errstate(all="ignore"):
-        rise = np.log(_radial_slope(profile, at * (1 + _STEP)))
-        rise = rise - np.log(_radial_slope(profile, at * (1 - _STEP)))
-        share = np.maximum(load(at) / (at * slope(at)), _COORDINATE)
-        condition = np.abs(rise) * share / (2 * _STEP)
+        places = np.multiply.outer([1 - _STEP, 1, 1 + _STEP], at)
+        depth_slope, radius_slope = profile.depth_slope(places), profile.radius_slope(places)
+        # g'(a) is their ratio.
+        low, _, high = np.log(depth_slope / radius_slope)
+        if contact.control == "contact_radius":
+            load, slope = contact.contact_radius, radius_slope[1]
+        elif contact.control == "normal_force":
+            load = contact.normal_force / contact.e_star
+            slope = 2 * contact.contact_radius * depth_slope[1]
+        else:
+            load, slope = contact.indentation_depth, depth_slope[1]
+        share = np.maximum(load / (at * slope), _COORDINATE)
+        condition = np.abs(high - low) * share / (2 * _STEP)
     return where(np.isfinite(condition), condition, 0.0)
-
-
-def _radial_slope(profile: Profile, coordinate: Array) -> Array:
-    """g'(a) [1]."""
-    return profile.depth_slope(coordinate) / profile.radius_slope(coordinate)

@@ -65,18 +65,21 @@ def near(rows: Array, length: Array | float, above: Array, to_right: Array) -> A
         )
 
 
-def far(rows: Array, length: float, above: Array) -> Array:
-    """Return the integral of `near` over one panel for radii below it, b^2 - r^2 >= L^2/2.
+def far(rows: Array, length: float, above: Array, start: float = 0.0, part: float = 1.0) -> Array:
+    """Return the integral of `near` over a panel, or over a part of it, for radii far below it.
+
+    The radii are below the place where the integral begins by at least half of its length in x^2.
 
     Parameters
     ----------
     rows : `scaled` coefficients, shape (n,) [any].
     length : L [length].
-    above : b^2 - r^2 [length^2], shape (m,).
+    above : x^2 - r^2, x where the integral begins [length^2], shape (m,).
+    start, part : u where the integral begins, and its length in u [1].
     """
     nodes, weights = gauss_legendre(_FAR_NODES)
-    u = (1 + nodes) / 2
-    powers = u ** np.arange(len(rows))[:, None]
-    masses = (rows / _SCALES[: len(rows)]) @ powers * (weights / 2) * length
-    root = np.sqrt(np.add.outer(above, np.square(length * u)))
+    past = part * (1 + nodes) / 2
+    powers = (start + past) ** np.arange(len(rows))[:, None]
+    masses = (rows / _SCALES[: len(rows)]) @ powers * (weights / 2) * (part * length)
+    root = np.sqrt(np.add.outer(above, length * length * past * (2 * start + past)))
     return np.asarray((1 / root) @ masses)

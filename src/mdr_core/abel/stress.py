@@ -16,7 +16,7 @@ from mdr_core.abel.multipole import FAR, Multipoles, add, multipoles, pairs, pan
 from mdr_core.abel.panel_moments import far, near, scaled
 from mdr_core.abel.subpanels import LONGEST, fit_points, fitted
 from mdr_core.quadrature import composite_rule, gauss_legendre
-from mdr_core.typing import Array, Chosen
+from mdr_core.typing import Array, Chosen, Indices
 
 # Points in a panel that become masses.
 _MASSES: Final = 16
@@ -108,6 +108,10 @@ class StressPanels:
         return scaled(self.weight.T)
 
     @cached_property
+    def _counts(self) -> Indices:
+        return _nonzero(self._rows)
+
+    @cached_property
     def _multipoles(self) -> Multipoles:
         nodes, weights = gauss_legendre(_MASSES)
         u = (1 + nodes) / 2
@@ -176,7 +180,7 @@ class StressPanels:
             used, at = slice(first + panels.start, first + panels.stop), r[point]
             left, right, length = (column[used].repeat(counts) for column in columns)
             above, to_right = (left - at) * (left + at), (right - at) * (right + at)
-            rows = self._rows[:, used].repeat(counts, axis=1)
+            rows = self._rows[: self._counts[used].max(), used].repeat(counts, axis=1)
             add(total, point, near(rows, length, above, to_right))
         return total
 
@@ -201,7 +205,8 @@ class StressPanels:
         # For radii above c the integral starts at the radius and does not depend on c.
         beyond = int(np.searchsorted(r, c)) if begins_inside else 0
         at = r[beyond : int(np.searchsorted(r, right))]
-        rows = self._rows[:, panel] * (length / self.length[panel]) ** np.arange(len(self._rows))
+        rows = self._rows[: self._counts[panel], panel]
+        rows = rows * (length / self.length[panel]) ** np.arange(rows.size)
         above, to_right = (b - at) * (b + at), (right - at) * (right + at)
         total[beyond : beyond + at.size] = _panel_integral(rows, length, above, to_right)
         if beyond:
@@ -212,24 +217,39 @@ class StressPanels:
     def _from_inner(self, panel: int, past: float, whole: float, below: Array) -> Array:
         """Part of one panel from c on, `whole` long in x^2, at radii below c, c^2 - r^2 = `below`.
 
-        W is expanded about c, on pieces that are short next to its root at the panel's left edge,
-        where x^2 is less by `past`.
+        At near radii W is expanded about c, on pieces that are short next to its root at the
+        panel's left edge, where x^2 is less by `past`.
         """
+        begin, full = int(np.searchsorted(-below, -FAR * whole, "right")), float(self.length[panel])
+        start, part = sqrt(past) / full, whole / (sqrt(past + whole) + sqrt(past)) / full
+        total = np.empty_like(below)
+        rows = self._rows[: self._counts[panel], panel]
+        total[:begin] = far(rows, full, below[:begin], start, part)
+        if begin == below.size:
+            return total
+        near_below = below[begin:]
+        total[begin:] = 0.0
         ends = [0.0]
         while ends[-1] < whole:
             ends.append(min(ends[-1] + LONGEST * (past + ends[-1]), whole))
         points, _, _ = fit_points(_POINTS)
         degrees = np.arange(self.weight.shape[1])[:, None]
-        total = np.zeros_like(below)
         for low, high in pairwise(ends):
             length = sqrt(high - low)
             own = length * points
             s = np.sqrt(past + low + own * own)
-            weight = self.weight[panel] @ (s / self.length[panel]) ** degrees * own / s
-            rows = scaled(fitted(weight)[:, None])[:, 0]
+            weight = self.weight[panel] @ (s / full) ** degrees * own / s
+            rows = scaled(fitted(weight)[:, None])
             rows[0] = 0.0
-            total += _panel_integral(rows, length, below + low, below + high)
+            rows = rows[: _nonzero(rows)[0], 0]
+            total[begin:] += _panel_integral(rows, length, near_below + low, near_below + high)
         return total
+
+
+def _nonzero(rows: Array) -> Indices:
+    """Number of `scaled` coefficients of each panel up to the last pair that is not zero."""
+    pairs = rows.reshape(len(rows) // 2, 2, -1).any(axis=1)
+    return np.asarray(2 * np.maximum(np.logical_or.accumulate(pairs[::-1]).sum(axis=0), 1))
 
 
 def _panel_integral(rows: Array, length: float, above: Array, to_right: Array) -> Array:
