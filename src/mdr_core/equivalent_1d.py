@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.breaks import break_below, has_many_breaks
-from mdr_core.elementwise import broadcast, every, full, is_number, number, some, where
+from mdr_core.elementwise import every, full, is_number, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
@@ -44,12 +44,11 @@ _Slope = Callable[[Array, Array, Array], Array]
 def load_functions(profile: Profile, *, of_force: bool) -> tuple[Function, Function]:
     """Return the load as a function of the contact coordinate s, and its derivative.
 
-    The load is F_N/E* [length^2], of slope 2 a d'(s), or the depth [length]. Source: notes, §1.
+    The load is F_N/E* [length^2], or the depth [length]. Source: notes, §1.
     """
-    radius, slope = profile.contact_radius, profile.depth_slope
     if of_force:
-        return profile.reduced_force, lambda s: 2 * radius(s) * slope(s)
-    return profile.depth, slope
+        return profile.reduced_force, profile.force_slope
+    return profile.depth, profile.depth_slope
 
 
 def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Array:
@@ -230,13 +229,18 @@ def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
 
 
 def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
-    """First approximation of the contact coordinate: good to 2e-5 where one curve serves a kind."""
-    scale = profile.scale
-    if not profile.similar:
-        return broadcast(scale, np.broadcast_shapes(target.shape, np.shape(scale)))
-    with np.errstate(divide="ignore"):
-        function, _ = load_functions(profile, of_force=of_force)
-        height = np.log(target / function(number(1.0) * scale))
+    """First approximation of the contact coordinate: good to 2e-5 where one curve serves a kind.
+
+    Otherwise that of the power that rises as the load does at the scale.
+    """
+    scale = number(1.0) * profile.scale
+    function, slope = load_functions(profile, of_force=of_force)
+    with np.errstate(all="ignore"):
+        at_scale = function(scale)
+        height = np.log(target / at_scale)
+        if not profile.similar:
+            start = scale * np.exp(height * (at_scale / (scale * slope(scale))))
+            return where((start > 0) & (start < inf), start, scale)
     return scale * np.exp(np.interp(height, *_curve(type(profile), of_force=of_force)))
 
 

@@ -194,8 +194,7 @@ class IntervalMoments:
 
     def _slope(self, s: Array) -> Array:
         """Derivative of the normal coordinate with respect to the contact coordinate."""
-        slope = self.profile.depth_slope(s)
-        return 2 * self.profile.contact_radius(s) * slope if self.over_forces else slope
+        return (self.profile.force_slope if self.over_forces else self.profile.depth_slope)(s)
 
     @cached_property
     def _chains(self) -> list[Moments]:

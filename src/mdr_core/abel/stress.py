@@ -248,8 +248,9 @@ class StressPanels:
 
 def _nonzero(rows: Array) -> Indices:
     """Number of `scaled` coefficients of each panel up to the last pair that is not zero."""
-    pairs = rows.reshape(len(rows) // 2, 2, -1).any(axis=1)
-    return np.asarray(2 * np.maximum(np.logical_or.accumulate(pairs[::-1]).sum(axis=0), 1))
+    used = rows[::-1] != 0
+    pairs = np.logical_or.accumulate(used[::2] | used[1::2])
+    return np.asarray(2 * np.maximum(pairs.sum(axis=0), 1))
 
 
 def _panel_integral(rows: Array, length: float, above: Array, to_right: Array) -> Array:

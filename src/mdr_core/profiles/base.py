@@ -254,6 +254,10 @@ class Profile(ABC):
     def reduced_force(self, coordinate: Array) -> Array:
         """Normal force over E*, F_N/E* = 2 int_0^a x g'(x) dx [length^2]."""
 
+    def force_slope(self, coordinate: Array) -> Array:
+        """Derivative of F_N/E* with respect to the contact coordinate s, 2 a d'(s)."""
+        return 2 * self.contact_radius(coordinate) * self.depth_slope(coordinate)
+
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)

@@ -147,6 +147,12 @@ class TippedCone(Profile):
     def reduced_force(self, coordinate: Array) -> Array:
         return self._split(coordinate, self._tip.reduced_force, self._flank_force)
 
+    def force_slope(self, coordinate: Array) -> Array:
+        rate = self._flank_rate
+        return self._split(
+            coordinate, self._tip.force_slope, lambda x, s: 2 * x * self._flank_slope(x, s) * rate
+        )
+
     def reduced_energy(self, coordinate: Array) -> Array:
         b, start, rate = self.tangent_radius, self.scale, self._flank_rate
 
