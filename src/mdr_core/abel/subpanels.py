@@ -235,6 +235,10 @@ class Subpanels:
 
         Newton's method in log u; a step out of the bracket is replaced by the middle.
         """
+        if target.size > _BLOCK:
+            blocks = [target[i : i + _BLOCK] for i in range(0, target.size, _BLOCK)]
+            panels, places = zip(*(self.inverse(quantity, block) for block in blocks), strict=True)
+            return np.concatenate(panels), np.concatenate(places)
         values, rows = self.at_edges[quantity], (self.depth, self.half_force)[quantity]
         panel = np.searchsorted(values[1:-1], target)
         above, whole = target - values[panel], values[panel + 1] - values[panel]
@@ -242,12 +246,14 @@ class Subpanels:
         goal, whole = np.where(positive, above, 1.0), np.where(positive, whole, 1.0)
         # Both grow nearly in proportion to x - b, and so to s^2.
         u = np.sqrt(np.minimum(goal / whole, 1.0))
-        low, high = np.zeros_like(u), np.ones_like(u)
-        degrees, done = np.arange(1, rows.shape[1] + 1), ~positive
+        low, high, done = np.zeros_like(u), np.ones_like(u), ~positive
+        terms = rows[panel]
+        rises = terms * np.arange(1, rows.shape[1] + 1)
         for _ in range(_STEPS):
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                value = _sum(rows, panel, u)
-                step = np.log(goal / value) * value / _sum(rows, panel, u, degrees)
+                powers = _powers(u, rows.shape[1])
+                value = np.einsum("ij,ij->i", terms, powers)
+                step = np.log(goal / value) * value / np.einsum("ij,ij->i", rises, powers)
                 moved = u * np.exp(step)
             low, high = np.where(value < goal, u, low), np.where(value < goal, high, u)
             moved = np.where((moved >= low) & (moved <= high), moved, (low + high) / 2)
@@ -264,5 +270,9 @@ def _sum(rows: Array, panel: Indices, u: Array, factors: Array | None = None) ->
         blocks = [slice(i, i + _BLOCK) for i in range(0, u.size, _BLOCK)]
         return np.concatenate([_sum(rows, panel[part], u[part], factors) for part in blocks])
     terms = rows[panel] if factors is None else rows[panel] * factors
-    powers = np.multiply.accumulate(np.repeat(u, terms.shape[1]).reshape(terms.shape), axis=1)
-    return np.asarray(np.einsum("ij,ij->i", terms, powers))
+    return np.asarray(np.einsum("ij,ij->i", terms, _powers(u, terms.shape[1])))
+
+
+def _powers(u: Array, count: int) -> Array:
+    """Powers of u from 1 to `count`, shape (m, count)."""
+    return np.multiply.accumulate(np.repeat(u, count).reshape(u.size, count), axis=1)
