@@ -16,13 +16,12 @@ import numpy as np
 
 from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import every, full, is_number, number, some, where
-from mdr_core.errors import InputError
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
 from mdr_core.profiles.power_functions import raised
 from mdr_core.quadrature import gauss_legendre, in_order
 from mdr_core.typing import Array, Flags
-from mdr_core.validation import first_index
+from mdr_core.validation import require_inside
 
 # Width of an annulus, relative to a, up to which a step is an integral: for a wider one the
 # difference amplifies rounding errors at most 20-fold.
@@ -64,8 +63,8 @@ def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Ar
     end = profile.last_coordinate
     if end is not None:
         function, _ = load_functions(profile, of_force=of_force)
-        outside = load > function(number(end))
-        _reject(outside, profile, "normal_force" if of_force else "indentation_depth")
+        name = "normal_force" if of_force else "indentation_depth"
+        require_inside(name, load > function(number(end)), profile.domain)
     return _root(profile, load, of_force=of_force)
 
 
@@ -82,7 +81,7 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     for a flat punch.
     """
     if not every(profile.domain == inf):
-        _reject(contact_radius > profile.domain, profile, "contact_radius")
+        require_inside("contact_radius", contact_radius > profile.domain, profile.domain)
     coordinate = profile.coordinate_from_radius(contact_radius)
     plateaus = profile.coordinate_plateaus
     if not plateaus.size:
@@ -190,17 +189,6 @@ def stick_edge(
         f"{profile.kind}'s slip annulus",
     )
     return where(early, coordinate - width, late), where(early, width, coordinate - late)
-
-
-def _reject(outside: Flags, profile: Profile, name: str) -> None:
-    if some(outside):
-        domain = np.broadcast_to(profile.domain, outside.shape)[outside].flat[0]
-        raise InputError(
-            ("load", name, *first_index(outside)),
-            f"the contact would extend beyond radius {domain}, where the profile ends "
-            "or ceases to be admissible",
-            outside,
-        )
 
 
 def _root(profile: Profile, target: Array, start: Array | None = None, *, of_force: bool) -> Array:

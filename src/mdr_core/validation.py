@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.elementwise import some
 from mdr_core.errors import InputError
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array, Flags, Parameter
 
 # Smallest result of which sums of a few products keep full precision.
 _SMALLEST: Final = 1e-290
@@ -72,6 +73,21 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
     if bad.any():
         detail = "the contact under this load leaves the range of double precision"
         raise InputError((*path, *first_index(bad)), detail, bad)
+
+
+def require_inside(name: str, outside: Flags, domain: Parameter) -> None:
+    """Raise InputError at the first load under which the contact would exceed the `domain`.
+
+    `domain` is the radius at which the profile ends [length], `name` that of the load.
+    """
+    if some(outside):
+        end = np.broadcast_to(domain, outside.shape)[outside].flat[0]
+        raise InputError(
+            ("load", name, *first_index(outside)),
+            f"the contact would extend beyond radius {end}, where the profile ends or ceases to be "
+            "admissible",
+            outside,
+        )
 
 
 def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:

@@ -16,7 +16,7 @@ from mdr_core.profiles.resolved_table import resolve_table
 from mdr_core.profiles.table_interpolation import Interpolation, checked_heights
 from mdr_core.profiles.truncated import FlatEnded
 from mdr_core.typing import Array, Flags, Indices, Parameter
-from mdr_core.validation import first_index
+from mdr_core.validation import require_inside
 
 # Bound on the error of the sums over the panels: several times the largest in the bank of tables.
 _ROUNDING: Final = 1e-12
@@ -198,14 +198,7 @@ class Tabulated(FlatEnded):
         return self._inverse(1, reduced_force / 2, "normal_force")
 
     def _inverse(self, quantity: int, target: Array, load: str) -> Array:
-        outside = target > self._limits[quantity]
-        if outside.any():
-            raise InputError(
-                ("load", load, *first_index(outside)),
-                f"the contact would extend beyond radius {self.domain}, where the profile ends or "
-                "ceases to be admissible",
-                outside,
-            )
+        require_inside(load, target > self._limits[quantity], self.domain)
         panel, s = self.resolved.panels.inverse(quantity, np.ravel(target))
         found = np.minimum(np.hypot(self._edges[panel], s), self.last_coordinate)
         return found.reshape(np.shape(target))
