@@ -122,15 +122,14 @@ class CappedParaboloid(Profile):
 
     # The contact coordinate.
 
-    def _outer(self, coordinate: Array) -> Array:
-        """s = sqrt(a^2 - b^2), zero within the cap [length]."""
-        past = coordinate - self._break
-        return where(past < 0, 0.0, past) / self._ratio
+    def _place(self, coordinate: Array) -> tuple[Array, Array]:
+        """a and s = sqrt(a^2 - b^2), zero within the cap [length]."""
+        inner = where(coordinate > self._break, self._break, coordinate)
+        s = (coordinate - inner) / self._ratio
+        return np.sqrt(inner * inner + s * s), s
 
     def contact_radius(self, coordinate: Array) -> Array:
-        b, s = self._break, self._outer(coordinate)
-        inner = where(coordinate > b, b, coordinate)
-        return np.sqrt(inner * inner + s * s)
+        return self._place(coordinate)[0]
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         return self._coordinate(contact_radius, inverse_hypot(contact_radius, self._break))
@@ -139,36 +138,42 @@ class CappedParaboloid(Profile):
         return np.minimum(a, self._break) + self._ratio * s
 
     def radius_slope(self, coordinate: Array) -> Array:
-        beyond = self._outer(coordinate) / (self.contact_radius(coordinate) * self._ratio)
-        return where(coordinate <= self._break, 1.0, beyond)
+        a, s = self._place(coordinate)
+        return where(coordinate <= self._break, 1.0, s / (a * self._ratio))
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Parameters: see `Profile`."""
-        b, roots = self._break, (self._outer(s_a), self._outer(s_c))
+        b, roots = self._break, (self._place(s_a)[1], self._place(s_c)[1])
         beyond = self._ratio * self._flank.coordinate_width(a, c, *roots)
         across = (s_a - b) + (b - np.minimum(s_c, b))
         return where(s_a <= b, a - c, where(s_c >= b, beyond, across))
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         b, s_c = self._break, s_a - width
-        s = self._outer(s_a)
+        a, s = self._place(s_a)
         beyond = self._flank.radius_width(s, width / self._ratio)
-        across = s * s / (self.contact_radius(s_a) + b) + (width - (s_a - b))
+        across = s * s / (a + b) + (width - (s_a - b))
         return where(s_a <= b, width, where(s_c >= b, beyond, across))
 
     # The normal contact.
 
     def depth(self, coordinate: Array) -> Array:
-        a = self.contact_radius(coordinate)
-        return a * (a / self.tip_radius + self._outer(coordinate) / self._flank.radius)
+        a, s = self._place(coordinate)
+        return a * (a / self.tip_radius + s / self._flank.radius)
 
     def depth_slope(self, coordinate: Array) -> Array:
-        beyond = self._weight(self.contact_radius(coordinate), self._outer(coordinate))
+        return self._slope(coordinate, *self._place(coordinate))
+
+    def _slope(self, coordinate: Array, a: Array, s: Array) -> Array:
         within = 2 * coordinate / self.tip_radius
-        return where(coordinate <= self._break, within, beyond / self._ratio)
+        return where(coordinate <= self._break, within, self._weight(a, s) / self._ratio)
 
     def reduced_force(self, coordinate: Array) -> Array:
-        return self._force(self.contact_radius(coordinate), self._outer(coordinate))
+        return self._force(*self._place(coordinate))
+
+    def force_slope(self, coordinate: Array) -> Array:
+        a, s = self._place(coordinate)
+        return 2 * a * self._slope(coordinate, a, s)
 
     def _force(self, a: Array, s: Array) -> Array:
         return 4 * a * a * a / (3 * self.tip_radius) + self._flank.reduced_force(s)
@@ -192,7 +197,7 @@ class CappedParaboloid(Profile):
 
         inner = np.minimum(coordinate, b)
         cap = 8 / 15 * (np.square(inner * inner) * inner) / np.square(self.tip_radius)
-        return cap + energy_integral(density, self._outer(coordinate), b)
+        return cap + energy_integral(density, self._place(coordinate)[1], b)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Stress integral of the cap plus k times that of a truncated paraboloid.
@@ -200,7 +205,7 @@ class CappedParaboloid(Profile):
         Source: notes, §2. Parameters: see `Profile`.
         """
         outer, inner, edge = annulus
-        s, beyond = self._outer(outer), None
+        s, beyond = self._place(outer)[1], None
         if inner is not None:
             past = outer - inner.width > self._break
             beyond = InnerEnd(where(past, inner.width / self._ratio, s), inner.radius)
