@@ -45,9 +45,9 @@ ROOTS = (
 QUADRATURE = (
     ("mdr_core.tangential", "slip_moment"),
     ("mdr_core.normal", "largest_stress"),
-    ("mdr_core.profiles.base", "energy_integral"),
-    ("mdr_core.profiles.tipped", "energy_integral"),
-    ("mdr_core.profiles.capped_paraboloid", "energy_integral"),
+    ("mdr_core.profiles.base", "power_law_integral"),
+    ("mdr_core.profiles.tipped", "power_law_integral"),
+    ("mdr_core.profiles.capped_paraboloid", "power_law_integral"),
     ("mdr_core.equivalent_1d", "_narrow_step"),
     ("mdr_core.interval_moments.IntervalMoments", "over_narrow"),
     ("mdr_core.interval_moments.IntervalMoments", "over_wide"),

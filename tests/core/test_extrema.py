@@ -16,8 +16,10 @@ from mdr_core.profiles import (
     Paraboloid,
     Power,
     Profile,
+    RoundedCone,
     RoundedPunch,
     Sphere,
+    SphericalTipCone,
     Tabulated,
     TruncatedParaboloid,
 )
@@ -282,3 +284,23 @@ def test_maximum_pressure_of_rounded_punches(edge: float) -> None:
     profile, edge_of_profile = RoundedPunch(0.7, 5.0), np.float64(0.7 * edge)
     result = largest_stress(profile, edge_of_profile, edge_of_profile > 0)
     assert result == pytest.approx(-found.fun / pi * 0.7 / 5.0, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize("ratio", [1 + 1e-12, 1.1, 3.0, 1e3, 1e9, 1e20, 1e45])
+@pytest.mark.parametrize("kind", [RoundedCone, SphericalTipCone])
+def test_maximum_pressure_of_rounded_cones(
+    kind: type[RoundedCone | SphericalTipCone], ratio: float
+) -> None:
+    # Under a shallow slope both tips are paraboloids.
+    slope, tip_radius = 1e-9, 3e-2
+    a = ratio * slope * tip_radius
+    contact = normal.solve(kind(slope, tip_radius), E_STAR, contact_radius=a)
+    # With x = b cosh(y), the stress of mdr-5, Eq. (5.68), at r = 0.
+    with mp.workdps(30):
+        end = mp.acosh(mpf(a) / (mpf(slope) * mpf(tip_radius)))
+        flank = mp.quad(
+            lambda y: mp.tanh(y) * (mp.atan(mp.sinh(y)) + 2 * mp.exp(-y)),
+            [0, *(stop for stop in (2, 10, 40) if stop < end), end],
+        )
+        expected = float(E_STAR * mpf(slope) * (2 + flank) / mp.pi)
+    assert float(contact.maximum_pressure) == pytest.approx(expected, rel=1e-13, abs=0)

@@ -16,8 +16,8 @@ from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integra
 from mdr_core.abel.stress import StressPanels
 from mdr_core.elementwise import full, number
 from mdr_core.errors import Notice
-from mdr_core.profiles.energy import energy_integral
 from mdr_core.profiles.power_functions import StickRatios
+from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import require_positive
 
@@ -266,7 +266,7 @@ class Profile(ABC):
             return np.square(depth - self.depth(s)) * self.radius_slope(s)
 
         flat = self.contact_radius(full(0.0, coordinate)) * np.square(depth)
-        return flat + energy_integral(density, coordinate, self.scale)
+        return flat + power_law_integral(density, coordinate, self.scale)
 
     def coordinate_from_depth(self, depth: Array) -> Array | None:
         """Inverse of `depth` where it has a closed form, else None."""

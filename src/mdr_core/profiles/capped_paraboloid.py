@@ -14,7 +14,7 @@ from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
-from mdr_core.profiles.energy import energy_integral
+from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.profiles.truncated import TruncatedParaboloid
 from mdr_core.typing import Array, Parameter
 
@@ -197,7 +197,7 @@ class CappedParaboloid(Profile):
 
         inner = np.minimum(coordinate, b)
         cap = 8 / 15 * (np.square(inner * inner) * inner) / np.square(self.tip_radius)
-        return cap + energy_integral(density, self._place(coordinate)[1], b)
+        return cap + power_law_integral(density, self._place(coordinate)[1], b)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Stress integral of the cap plus k times that of a truncated paraboloid.

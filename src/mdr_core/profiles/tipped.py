@@ -14,7 +14,7 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
 from mdr_core.elementwise import number, piecewise, some, where
 from mdr_core.profiles.base import Profile
-from mdr_core.profiles.energy import energy_integral
+from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.profiles.powers import Paraboloid
 from mdr_core.profiles.spheroids import Sphere
 from mdr_core.quadrature import DEFAULT, Analytic
@@ -80,6 +80,11 @@ class TippedCone(Profile):
     def _opposite_singularity(self) -> Parameter:
         """Distance of the flank's singularity at s = -`_opposite_singularity` [length]."""
         return inf
+
+    @property
+    def _nearest(self) -> Parameter:
+        """Distance of the flank's nearest singularity from s = 0 [length]."""
+        return np.minimum(self.tangent_radius, self._opposite_singularity)
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -162,8 +167,7 @@ class TippedCone(Profile):
 
         def beyond(place: Array) -> Array:
             _, s = self._outer((place - start) * rate)
-            nearest = np.minimum(b, self._opposite_singularity)
-            return self._tip_energy + energy_integral(density, s, nearest)
+            return self._tip_energy + power_law_integral(density, s, self._nearest)
 
         return piecewise(coordinate, start, self._tip.reduced_energy, beyond)
 
@@ -171,6 +175,18 @@ class TippedCone(Profile):
     def _tip_energy(self) -> Array:
         """Reduced energy of the whole tip [length^3]."""
         return self._tip.reduced_energy(number(1.0) * self.scale)
+
+    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
+        """Sum of the tip's part and (1/pi) int dg/x on the flank. Parameters: see `Profile`."""
+        b, start = self.tangent_radius, self.scale
+        tip = self._tip.axis_stress(np.minimum(coordinate, start), rtol)
+
+        def density(s: Array) -> Array:
+            x = np.hypot(b, s)
+            return self._flank_weight(x, s) / x
+
+        _, s = self._outer(np.maximum(coordinate - start, 0.0) * self._flank_rate)
+        return tip + power_law_integral(density, s, self._nearest) / pi
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""

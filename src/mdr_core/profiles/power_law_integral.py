@@ -1,4 +1,4 @@
-"""Elastic energy by quadrature, for profiles without a closed form of it."""
+"""Quadrature of densities that are powers of the place, near zero and far from it."""
 
 from collections.abc import Callable
 from typing import Final
@@ -10,16 +10,14 @@ from mdr_core.quadrature import gauss_legendre, in_order
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import extremes
 
-# Length in w = arcsinh(s/scale) beyond which a density has decayed to rounding error.
-_DECAY: Final = 40.0
 # Gauss-Legendre nodes of a piece.
 _NODES: Final = 16
-# Longest piece in w: the integrand grows at most like exp(5 w), for which the a priori bound of 16
-# nodes is 1e-17.
+# Longest piece in w = arcsinh(s/scale): the integrand grows at most like exp(5 w), for which the a
+# priori bound of 16 nodes is 1e-17.
 _LONGEST: Final = 1.5
 
 
-def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Parameter) -> Array:
+def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: Parameter) -> Array:
     """Return int_0^upper density(s) ds of a positive density that is a power of s at either end.
 
     s = scale sinh(w) resolves it also where s is much larger than the scale.
@@ -27,15 +25,14 @@ def energy_integral(density: Callable[[Array], Array], upper: Array, scale: Para
     top = np.arcsinh(upper / scale)
     if not some(top):
         return top
-    length = where(top < _DECAY, top, _DECAY)
     # Every load has its own pieces, summed in order: its result does not depend on other loads.
-    count = where(length > _LONGEST, np.ceil(length / _LONGEST), 1.0)
+    count = where(top > _LONGEST, np.ceil(top / _LONGEST), 1.0)
     nodes, weights = gauss_legendre(_NODES)
     total = full(0.0, top)
     for piece in range(int(extremes(count)[1])):
         # Loads with fewer pieces have no nodes beyond the lower end.
         fraction = np.minimum(np.divide.outer(piece + (1 - nodes) / 2, count), 1.0)
-        w = top - fraction * length
+        w = top - fraction * top
         values = density(scale * np.sinh(w)) * np.cosh(w)
         total = total + where(piece < count, in_order(weights, values), 0.0)
-    return total * scale * length / (2 * count)
+    return total * scale * top / (2 * count)
