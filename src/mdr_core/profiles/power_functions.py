@@ -54,14 +54,25 @@ def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Par
 
     The scale is the power of two next to |C|^(1/n), so that it adds no rounding error.
     """
-    if isinstance(exponent, float) and exponent <= _DIRECT:
-        return coefficient, 1.0
+    if isinstance(exponent, float):
+        if exponent <= _DIRECT:
+            return coefficient, 1.0
+        if isinstance(coefficient, float):
+            return _split_of_one(coefficient, exponent)
+    return _split(coefficient, exponent)
+
+
+def _split(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Parameter]:
     n = exponent
     octaves = where(n > _DIRECT, np.rint(np.log2(np.abs(coefficient)) / n), 0.0)
     # Both products are exact, where octaves x n would be rounded.
     coarse = np.rint(n * _COARSE) / _COARSE
     factor = coefficient * np.exp2(-octaves * coarse) * np.exp2(-octaves * (n - coarse))
     return factor, np.exp2(octaves)
+
+
+# Every function of a power takes it again.
+_split_of_one: Final = lru_cache(maxsize=256)(_split)
 
 
 def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Array:

@@ -93,6 +93,11 @@ class Series(Profile):
         return tuple((c, n) for n, c in sorted(merged.items()) if c != 0)
 
     @cached_property
+    def _powers_of_g(self) -> tuple[tuple[float, float], ...]:
+        """The same of the equivalent profile. Source: mdr-5, Eq. (5.25)."""
+        return tuple((float(kappa(n)) * c, n) for c, n in self._powers)
+
+    @cached_property
     def _positive(self) -> bool:
         """True if no term is negative."""
         return all(c > 0 for c, _ in self._powers)
@@ -159,16 +164,15 @@ class Series(Profile):
         return _total(depth for depth, _ in self._depths(x))
 
     def dg(self, x: Array) -> Array:
-        return _total(kappa(n) * power_slope(c, x, n) for c, n in self._powers)
+        return _total(power_slope(c, x, n) for c, n in self._powers_of_g)
 
     def _depths(self, x: Array) -> Iterator[tuple[Array, float]]:
         """Each term of g [length], and its exponent."""
-        return ((kappa(n) * power(c, x, n), n) for c, n in self._powers)
+        return ((power(c, x, n), n) for c, n in self._powers_of_g)
 
     def reduced_force(self, coordinate: Array) -> Array:
         parts = (2 * n / (n + 1) * depth for depth, n in self._depths(coordinate))
-        with np.errstate(over="ignore"):
-            return _total(parts) * coordinate
+        return _total(parts, coordinate)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """sum_ij d_i d_j a n_i n_j (n_i + n_j + 2)/((n_i + 1)(n_j + 1)(n_i + n_j + 1))."""
@@ -179,7 +183,7 @@ class Series(Profile):
                 for d, n in depths
                 for e, m in depths
             )
-            return _total(pairs) * coordinate
+            return _total(pairs, coordinate)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         if not self._positive or any(2 < n < 4 for _, n in self._powers):
@@ -187,7 +191,7 @@ class Series(Profile):
         return _total(n * (n - 3 if n >= 4 else -1) * d for d, n in self._depths(coordinate)) <= 0
 
     def axis_stress(self, coordinate: Array, rtol: float) -> Array:
-        slopes = ((kappa(n) * power_slope(c, coordinate, n), n) for c, n in self._powers)
+        slopes = ((power_slope(c, coordinate, n), n) for c, n in self._powers_of_g)
         return _total(slope / (pi * (n - 1)) for slope, n in slopes)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
@@ -196,17 +200,17 @@ class Series(Profile):
         tolerance = max(rtol / (1 + self._cancellation), _FINEST)
         total = np.zeros(radius.shape)
         with np.errstate(all="ignore"):
-            for c, n in self._powers:
+            for c, n in self._powers_of_g:
                 moment = power_moment(n - 1, annulus, radius, tolerance)
-                total += kappa(n) / pi * power_slope(c, annulus.outer, n) * moment
+                total += power_slope(c, annulus.outer, n) / pi * moment
         if annulus.inner is None and self.infinite_pressure_radii:
             # At the axis the term of lowest exponent dominates.
             total[radius == 0] = inf
         return total
 
 
-def _total(parts: Iterable[Array]) -> Array:
-    """Sum of the terms of a positive total; infinity where terms of either sign overflow."""
+def _total(parts: Iterable[Array], factor: Array | float = 1.0) -> Array:
+    """Sum of the terms of a positive total, times a factor; infinity where they overflow."""
     with np.errstate(all="ignore"):
-        total: Any = sum(parts)
+        total: Any = sum(parts) * factor
     return where(np.isnan(total), inf, total)
