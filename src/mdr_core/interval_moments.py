@@ -228,7 +228,7 @@ class IntervalMoments:
         return Moments(span, weights)
 
     def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
-        """Return the moments over intervals without a break inside; `base` is the one below."""
+        """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
         profile, weights = self.profile, np.zeros((3, low.size))
         least = _SHALLOW * profile.first_radius
         shallow = (base == 0) & (profile.contact_radius(ends[1]) < least)

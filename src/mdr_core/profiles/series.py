@@ -94,7 +94,7 @@ class Series(Profile):
 
     @cached_property
     def _powers_of_g(self) -> tuple[tuple[float, float], ...]:
-        """The same of the equivalent profile. Source: mdr-5, Eq. (5.25)."""
+        """(kappa_n coefficient, exponent) of the terms of g. Source: mdr-5, Eq. (5.25)."""
         return tuple((float(kappa(n)) * c, n) for c, n in self._powers)
 
     @cached_property
