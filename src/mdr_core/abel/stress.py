@@ -220,15 +220,14 @@ class StressPanels:
         At near radii W is expanded about c, on pieces that are short next to its root at the
         panel's left edge, where x^2 is less by `past`.
         """
-        begin, full = int(np.searchsorted(-below, -FAR * whole, "right")), float(self.length[panel])
-        start, part = sqrt(past) / full, whole / (sqrt(past + whole) + sqrt(past)) / full
-        total = np.empty_like(below)
+        total, panel_length, s_c = np.zeros_like(below), float(self.length[panel]), sqrt(past)
+        begin = int(np.searchsorted(-below, -FAR * whole, side="right"))
         rows = self._rows[: self._counts[panel], panel]
-        total[:begin] = far(rows, full, below[:begin], start, part)
-        if begin == below.size:
+        part = whole / (sqrt(past + whole) + s_c) / panel_length
+        total[:begin] = far(rows, panel_length, below[:begin], s_c / panel_length, part)
+        close = below[begin:]
+        if not close.size:
             return total
-        near_below = below[begin:]
-        total[begin:] = 0.0
         ends = [0.0]
         while ends[-1] < whole:
             ends.append(min(ends[-1] + LONGEST * (past + ends[-1]), whole))
@@ -238,11 +237,11 @@ class StressPanels:
             length = sqrt(high - low)
             own = length * points
             s = np.sqrt(past + low + own * own)
-            weight = self.weight[panel] @ (s / full) ** degrees * own / s
+            weight = self.weight[panel] @ (s / panel_length) ** degrees * own / s
             rows = scaled(fitted(weight)[:, None])
             rows[0] = 0.0
             rows = rows[: _nonzero(rows)[0], 0]
-            total[begin:] += _panel_integral(rows, length, near_below + low, near_below + high)
+            total[begin:] += _panel_integral(rows, length, close + low, close + high)
         return total
 
 

@@ -58,12 +58,12 @@ def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Par
         if exponent <= _DIRECT:
             return coefficient, 1.0
         if isinstance(coefficient, float):
-            return _split_of_one(coefficient, exponent)
-    return _split(coefficient, exponent)
+            return _by_octaves_of_one(coefficient, exponent)
+    return _by_octaves(coefficient, exponent)
 
 
-def _split(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Parameter]:
-    n = exponent
+def _by_octaves(coefficient: Parameter, n: Parameter) -> tuple[Parameter, Parameter]:
+    """Factor and scale; the scale is 1 for exponents n up to `_DIRECT`."""
     octaves = where(n > _DIRECT, np.rint(np.log2(np.abs(coefficient)) / n), 0.0)
     # Both products are exact, where octaves x n would be rounded.
     coarse = np.rint(n * _COARSE) / _COARSE
@@ -72,7 +72,7 @@ def _split(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Para
 
 
 # Every function of a power takes it again.
-_split_of_one: Final = lru_cache(maxsize=256)(_split)
+_by_octaves_of_one: Final = lru_cache(maxsize=256)(_by_octaves)
 
 
 def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Array:
