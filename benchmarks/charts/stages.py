@@ -60,6 +60,9 @@ STAGES = ("validation", "root finding", "quadrature", "other", "serialisation", 
 COLORS = ("#1f5fa8", "#c1272d", "#e0922f", "#8a6d3b", "#2b8a3e", "0.7")
 HEADER = ("label", "endpoint", "kind", *(f"{name} [us]" for name in STAGES), "all [us]")
 SECONDS, LEAST, ASKED, SHORTEST = 0.25, 5, 500, "flat_punch"
+# Length of the axis, in the longest bar of the last label: longer bars are cut, and end with their
+# time.
+ROOM = 1.25
 
 
 class Timed:
@@ -158,6 +161,8 @@ def main(label: str) -> None:
     kinds = list(dict.fromkeys(row[2] for row in rows))
     figure, axes = panels(1, len(ENDPOINTS), 2.4, 5.0)
     for ax, endpoint in zip(axes, ENDPOINTS, strict=True):
+        last = [float(row[-1]) for row in rows if row[:2] == [labels[-1], endpoint]]
+        end = ROOM * max(last) / 1e3
         for number, one in enumerate(labels):
             mine = {row[2]: row for row in rows if row[:2] == [one, endpoint]}
             parts = np.array([[float(x) for x in mine[kind][3:9]] for kind in kinds])
@@ -167,6 +172,10 @@ def main(label: str) -> None:
                 own = name if number == len(labels) - 1 else None
                 ax.barh(place, column / 1e3, 0.36, left=left / 1e3, color=color, label=own)
                 left += column
+            for y, time in zip(place, left / 1e3, strict=True):
+                if time > end:
+                    ax.text(end, y, f" {time:.3g}", fontsize=6, va="center")
+        ax.set_xlim(0.0, end)
         ax.set_yticks(range(len(kinds)), kinds if ax is axes[0] else [""] * len(kinds), fontsize=7)
         ax.set(title=f"/v1/{endpoint}", xlabel="ms")
         ax.invert_yaxis()
