@@ -36,6 +36,8 @@ from mdr_service.serializers import json as json_format
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from matplotlib.axes import Axes
+
 ROOTS = (
     ("mdr_core.equivalent_1d", "invert"),
     ("mdr_core.wear.worn_annulus", "invert"),
@@ -60,9 +62,9 @@ STAGES = ("validation", "root finding", "quadrature", "other", "serialisation", 
 COLORS = ("#1f5fa8", "#c1272d", "#e0922f", "#8a6d3b", "#2b8a3e", "0.7")
 HEADER = ("label", "endpoint", "kind", *(f"{name} [us]" for name in STAGES), "all [us]")
 SECONDS, LEAST, ASKED, SHORTEST = 0.25, 5, 500, "flat_punch"
-# Length of the axis, in the longest bar of the last label: longer bars are cut, and end with their
+# Length of the axis over the longest bar of the last label. Longer bars are cut, and end with their
 # time.
-ROOM = 1.25
+AXIS_TO_LAST = 1.25
 
 
 class Timed:
@@ -152,34 +154,40 @@ def body(kind: str, endpoint: str) -> bytes:
     return json.dumps(small_queries.requests(kind)[endpoint]).encode()
 
 
+def draw(ax: Axes, rows: list[list[str]], kinds: list[str]) -> None:
+    """Draw the stages of one endpoint, for each kind the bars of all labels."""
+    labels = list(dict.fromkeys(row[0] for row in rows))
+    end = AXIS_TO_LAST * max(float(row[-1]) for row in rows if row[0] == labels[-1]) / 1e3
+    for number, label in enumerate(labels):
+        mine = {row[2]: row for row in rows if row[0] == label}
+        parts = np.array([[float(x) for x in mine[kind][3:9]] for kind in kinds])
+        left = np.zeros(len(kinds))
+        place = np.arange(len(kinds)) + (number - (len(labels) - 1) / 2) * 0.4
+        for column, name, color in zip(parts.T, STAGES, COLORS, strict=True):
+            own = name if number == len(labels) - 1 else None
+            ax.barh(place, column / 1e3, 0.36, left=left / 1e3, color=color, label=own)
+            left += column
+        for y, time in zip(place, left / 1e3, strict=True):
+            if time > end:
+                ax.text(end, y, f" {time:.3g}", fontsize=6, va="center")
+    ax.set_xlim(0.0, end)
+    ax.set_yticks(range(len(kinds)), [""] * len(kinds))
+    ax.set(xlabel="ms")
+    ax.invert_yaxis()
+    ax.grid(visible=False, axis="y")
+
+
 def main(label: str) -> None:
     path = FOLDER / "stages.csv"
     known = list(csv.reader(path.open(encoding="utf-8")))[1:] if path.exists() else []
     rows = [row for row in known if row[0] != label] + measured(label)
     table(HEADER, rows, "stages")
-    labels = list(dict.fromkeys(row[0] for row in rows))
     kinds = list(dict.fromkeys(row[2] for row in rows))
     figure, axes = panels(1, len(ENDPOINTS), 2.4, 5.0)
     for ax, endpoint in zip(axes, ENDPOINTS, strict=True):
-        last = [float(row[-1]) for row in rows if row[:2] == [labels[-1], endpoint]]
-        end = ROOM * max(last) / 1e3
-        for number, one in enumerate(labels):
-            mine = {row[2]: row for row in rows if row[:2] == [one, endpoint]}
-            parts = np.array([[float(x) for x in mine[kind][3:9]] for kind in kinds])
-            left = np.zeros(len(kinds))
-            place = np.arange(len(kinds)) + (number - (len(labels) - 1) / 2) * 0.4
-            for column, name, color in zip(parts.T, STAGES, COLORS, strict=True):
-                own = name if number == len(labels) - 1 else None
-                ax.barh(place, column / 1e3, 0.36, left=left / 1e3, color=color, label=own)
-                left += column
-            for y, time in zip(place, left / 1e3, strict=True):
-                if time > end:
-                    ax.text(end, y, f" {time:.3g}", fontsize=6, va="center")
-        ax.set_xlim(0.0, end)
-        ax.set_yticks(range(len(kinds)), kinds if ax is axes[0] else [""] * len(kinds), fontsize=7)
-        ax.set(title=f"/v1/{endpoint}", xlabel="ms")
-        ax.invert_yaxis()
-        ax.grid(visible=False, axis="y")
+        draw(ax, [row for row in rows if row[1] == endpoint], kinds)
+        ax.set_title(f"/v1/{endpoint}")
+    axes[0].set_yticklabels(kinds, fontsize=7)
     shown = axes[0].get_legend_handles_labels()
     figure.legend(*shown, loc="outside upper center", ncols=len(STAGES))
     save(figure, "stages", footer("fastapi", "pydantic", "uvicorn", "orjson"))

@@ -238,10 +238,10 @@ class StressPanels:
             own = length * points
             s = np.sqrt(past + low + own * own)
             weight = self.weight[panel] @ (s / panel_length) ** degrees * own / s
-            rows = scaled(fitted(weight)[:, None])
-            rows[0] = 0.0
-            rows = rows[: _nonzero(rows)[0], 0]
-            total[begin:] += _panel_integral(rows, length, close + low, close + high)
+            piece = scaled(fitted(weight)[:, None])
+            piece[0] = 0.0
+            piece = piece[: _nonzero(piece)[0], 0]
+            total[begin:] += _panel_integral(piece, length, close + low, close + high)
         return total
 
 
