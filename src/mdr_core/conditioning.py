@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.elementwise import full, some, where
-from mdr_core.equivalent_1d import load_functions, stick_edge
+from mdr_core.equivalent_1d import load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
@@ -57,11 +57,12 @@ def near_full_slip(
     if profile.has_no_partial_slip or not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
-    load, slope = load_functions(profile, of_force=force_prescribed)
-    other, other_slope = load_functions(profile, of_force=not force_prescribed)
+    other = load_and_slope(profile, of_force=not force_prescribed)
     with np.errstate(all="ignore"):
-        moved = load(low) / (slope(low) * np.maximum(1 - ratio, _EPS / 2))
-        condition = _CUBE * moved * other_slope(low) / (other(high) - other(low))
+        load, slope = load_and_slope(profile, of_force=force_prescribed)(low)
+        other_load, other_slope = other(low)
+        moved = load / (slope * np.maximum(1 - ratio, _EPS / 2))
+        condition = _CUBE * moved * other_slope / (other(high)[0] - other_load)
         if edges:
             radial = moved * profile.radius_slope(low)
             c, a = profile.contact_radius(low), profile.contact_radius(high)
@@ -131,17 +132,19 @@ def beyond_break(contact: NormalContact) -> Array:
         return full(0.0, contact.coordinate)
     at = where(contact.coordinate > 0, contact.coordinate, np.nan)
     with np.errstate(all="ignore"):
-        places = np.multiply.outer([1 - _STEP, 1, 1 + _STEP], at)
-        depth_slope, radius_slope = profile.depth_slope(places), profile.radius_slope(places)
+        sides = [(1 - _STEP) * at, (1 + _STEP) * at]
+        depth_slopes = [profile.depth_slope(side) for side in sides]
+        radius_slopes = [profile.radius_slope(side) for side in sides]
         # g'(a) is their ratio.
-        low, _, high = np.log(depth_slope / radius_slope)
+        low, high = (np.log(d / a) for d, a in zip(depth_slopes, radius_slopes, strict=True))
+        # The smaller slope gives the larger estimate.
         if contact.control == "contact_radius":
-            load, slope = contact.contact_radius, radius_slope[1]
+            load, slope = contact.contact_radius, np.minimum(*radius_slopes)
         elif contact.control == "normal_force":
             load = contact.normal_force / contact.e_star
-            slope = 2 * contact.contact_radius * depth_slope[1]
+            slope = 2 * contact.contact_radius * np.minimum(*depth_slopes)
         else:
-            load, slope = contact.indentation_depth, depth_slope[1]
+            load, slope = contact.indentation_depth, np.minimum(*depth_slopes)
         share = np.maximum(load / (at * slope), _COORDINATE)
         condition = np.abs(high - low) * share / (2 * _STEP)
     return where(np.isfinite(condition), condition, 0.0)

@@ -6,9 +6,13 @@ formula that a single number needs, and return a number.
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
+
+# Types of single numbers and flags; NumPy's doubles are floats as well.
+_NUMBERS: Final = (float, int)
+_FLAGS: Final = (np.bool_, bool)
 
 
 def number(value: float) -> Any:
@@ -18,7 +22,7 @@ def number(value: float) -> Any:
 
 def is_number(value: Any) -> bool:
     """True for a single number, false for an array."""
-    return isinstance(value, float | int)
+    return isinstance(value, _NUMBERS)
 
 
 def _number(value: Any) -> Any:
@@ -38,7 +42,7 @@ def every(flags: Any) -> bool:
 
 def where(condition: Any, this: Any, other: Any) -> Any:
     """Return `this` where the condition holds, else `other`."""
-    if isinstance(condition, np.bool_ | bool):
+    if isinstance(condition, _FLAGS):
         return _number(this if condition else other)
     return np.where(condition, this, other)
 
@@ -63,6 +67,34 @@ def piecewise(
     if count in {0, first.size}:
         return broadcast(below(place) if count else beyond(place), first.shape)
     return np.where(first, below(np.minimum(place, start)), beyond(np.maximum(place, start)))
+
+
+def piecewise_pair(
+    place: Any, start: Any, below: Callable[[Any], Any], beyond: Callable[[Any], Any]
+) -> tuple[Any, Any]:
+    """Return the two values of below(place) up to `start`, and those of beyond(place) from there.
+
+    Parameters: see `piecewise`.
+    """
+    if is_number(place) and is_number(start):
+        found = below(place) if place < start else beyond(place)
+    else:
+        first = place < start
+        if every(first):
+            found = below(place)
+        elif not some(first):
+            found = beyond(place)
+        else:
+            sides = below(np.minimum(place, start)), beyond(np.maximum(place, start))
+            found = [np.where(first, *values) for values in zip(*sides, strict=True)]
+    value, other = found
+    return value, other
+
+
+def common_shape(*values: Any) -> tuple[int, ...]:
+    """Return the shape to which numbers and arrays broadcast, or raise ValueError."""
+    shapes = {getattr(value, "shape", ()) for value in values}
+    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
 
 
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:

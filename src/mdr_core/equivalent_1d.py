@@ -16,7 +16,7 @@ import numpy as np
 
 from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import every, full, is_number, number, some, where
-from mdr_core.inversion import Function, invert
+from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
 from mdr_core.profiles.power_functions import raised
 from mdr_core.quadrature import gauss_legendre, in_order
@@ -40,14 +40,12 @@ _CURVED, _SPACING, _MAX_LOG = 14.0, 0.02, 150.0
 _Slope = Callable[[Array, Array, Array], Array]
 
 
-def load_functions(profile: Profile, *, of_force: bool) -> tuple[Function, Function]:
-    """Return the load as a function of the contact coordinate s, and its derivative.
+def load_and_slope(profile: Profile, *, of_force: bool) -> Sloped:
+    """Return the load and its derivative as a function of the contact coordinate.
 
     The load is F_N/E* [length^2], or the depth [length]. Source: notes, §1.
     """
-    if of_force:
-        return profile.reduced_force, profile.force_slope
-    return profile.depth, profile.depth_slope
+    return profile.force_and_slope if of_force else profile.depth_and_slope
 
 
 def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Array:
@@ -62,9 +60,9 @@ def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Ar
         return closed
     end = profile.last_coordinate
     if end is not None:
-        function, _ = load_functions(profile, of_force=of_force)
+        most, _ = load_and_slope(profile, of_force=of_force)(number(end))
         name = "normal_force" if of_force else "indentation_depth"
-        require_inside(name, load > function(number(end)), profile.domain)
+        require_inside(name, load > most, profile.domain)
     return _root(profile, load, of_force=of_force)
 
 
@@ -146,13 +144,13 @@ def stick_edge(
         inner, annulus = closed[of_force](ratio, rest)
         return coordinate * inner, coordinate * annulus
     step = force_step if of_force else depth_step
-    function, slope = load_functions(profile, of_force=of_force)
-    total = function(coordinate)
+    function = load_and_slope(profile, of_force=of_force)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        total, first = function(coordinate)
     if not is_number(ratio * total):
         coordinate, total, ratio, rest = np.broadcast_arrays(coordinate, total, ratio, rest)
     early = ratio < _EARLY
     with np.errstate(divide="ignore", invalid="ignore"):
-        first = slope(coordinate)
         late = coordinate
         if not every(early):
             goal = where(early, 0.0, rest * total)
@@ -177,8 +175,9 @@ def stick_edge(
     target = where(start > 0, target, 0.0)
 
     def sloped(width: Array) -> tuple[Array, Array]:
-        value = step(profile, coordinate, width, coordinate - width)
-        return value, width * slope(coordinate - width) / value
+        stick = coordinate - width
+        value = step(profile, coordinate, width, stick)
+        return value, width * function(stick)[1] / value
 
     width = invert(
         sloped,
@@ -195,13 +194,13 @@ def _root(profile: Profile, target: Array, start: Array | None = None, *, of_for
     """Contact coordinate of a load within the domain, from a first approximation."""
     if start is None:
         start = _start(profile, target, of_force=of_force)
-    function, slope = load_functions(profile, of_force=of_force)
+    function = load_and_slope(profile, of_force=of_force)
     end = profile.last_coordinate
     low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
 
     def sloped(s: Array) -> tuple[Array, Array]:
-        value = function(s)
-        return value, s * slope(s) / value
+        value, slope = function(s)
+        return value, s * slope / value
 
     start = where(high < start, high, start)
     return invert(sloped, target, start, low, high, profile.kind, smooth=_smooth(profile))
@@ -222,12 +221,11 @@ def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
     Otherwise that of the power that rises as the load does at the scale.
     """
     scale = number(1.0) * profile.scale
-    function, slope = load_functions(profile, of_force=of_force)
     with np.errstate(all="ignore"):
-        at_scale = function(scale)
+        at_scale, slope = load_and_slope(profile, of_force=of_force)(scale)
         height = np.log(target / at_scale)
         if not profile.similar:
-            start = scale * np.exp(height * (at_scale / (scale * slope(scale))))
+            start = scale * np.exp(height * (at_scale / (scale * slope)))
             return where((start > 0) & (start < inf), start, scale)
     return scale * np.exp(np.interp(height, *_curve(type(profile), of_force=of_force)))
 
@@ -236,7 +234,7 @@ def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
 def _curve(kind: type[Profile], *, of_force: bool) -> tuple[Array, Array]:
     """Logarithms of the load and of the contact coordinate, over those at the scale."""
     unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
-    function, _ = load_functions(unit, of_force=of_force)
+    function = unit.reduced_force if of_force else unit.depth
     places = np.concatenate([[-_MAX_LOG], np.arange(-_CURVED, _CURVED, _SPACING), [_MAX_LOG]])
     return np.log(function(np.exp(places)) / function(number(1.0))), places
 

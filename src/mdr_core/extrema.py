@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
-from mdr_core.elementwise import full, some, where
+from mdr_core.elementwise import full, is_number, some, where
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
 
@@ -90,11 +90,15 @@ def largest_stress(
         unknown, result = unknown & ~known, where(known, on_curve, result)
     if not some(unknown):
         return result
+    if is_number(edge):
+        if slip is None and profile.falls_from_axis(edge):
+            return profile.axis_stress(edge, _RTOL)
+        return _search(profile, *(np.array([part]) for part in (edge, *(slip or ()))))[0]
     finite, result = np.atleast_1d(unknown), np.atleast_1d(result)
     parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
         result[finite] = _largest(profile, *(part[finite] for part in parts))
-        return result.reshape(shape)[()]
+        return result.reshape(shape)
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
     for place in zip(*np.nonzero(finite), strict=True):
         one = profile.with_parameters({name: float(value[place]) for name, value in named.items()})

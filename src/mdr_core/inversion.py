@@ -89,7 +89,9 @@ def invert(
             longest = where(known, where(regular, _LAST_STEP, _LAST_BUT_ONE), _SMALLEST_STEP)
             short = (abs(residual) <= _CLOSE) & (size <= longest)
             converged = short & known & (regular | (size <= _SMALLEST_STEP))
-            proposed = s * np.exp(where(size < _MAX_LOG_STEP, step, np.sign(step) * _MAX_LOG_STEP))
+            if not every(size < _MAX_LOG_STEP):
+                step = where(size < _MAX_LOG_STEP, step, np.sign(step) * _MAX_LOG_STEP)
+            proposed = s * np.exp(step)
             if every(done | converged):
                 s, done = where(done, s, proposed), done | converged
                 break

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
-from mdr_core.elementwise import broadcast, is_number, some, where
+from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.normal import NormalContact, not_reached
@@ -163,7 +163,7 @@ class TangentialContact(validity.ContactResults):
     @property
     def slips_from(self) -> Array:
         """Least radius with slip [length]; infinite without."""
-        return np.where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
+        return where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
 
     @cached_property
     def tangential_stiffness(self) -> Array:
@@ -310,11 +310,11 @@ def solve(
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
     parameters = (g_star, friction_coefficient)
-    shapes = given.shape, contact.coordinate.shape, *map(np.shape, parameters)
     try:
-        shape = np.broadcast_shapes(*shapes)
+        shape = common_shape(given, contact.coordinate, *parameters)
     except ValueError:
-        detail = f"the shape {given.shape} does not agree with the normal loads, {shapes[1]}"
+        normal = contact.coordinate.shape
+        detail = f"the shape {given.shape} does not agree with the normal loads, {normal}"
         raise InputError(("tangential", name), detail) from None
     edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
     edge, width = broadcast(edge, shape), broadcast(width, shape)

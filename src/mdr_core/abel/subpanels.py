@@ -105,6 +105,16 @@ class Subpanels:
     error: float
     """Largest of the last coefficients, relative to the largest value of a subpanel."""
 
+    @cached_property
+    def _degrees(self) -> Array:
+        """n of the powers, from 1 on."""
+        return np.arange(1.0, self.depth.shape[1] + 1)
+
+    @cached_property
+    def _shares(self) -> Array:
+        """n/(m + n) of the powers m and n, shape (m, n)."""
+        return self._degrees / np.add.outer(self._degrees, self._degrees)
+
     def depth_at(self, panel: Indices, s: Array) -> Array:
         """Return g at s in the given subpanels [length], shape (m,)."""
         above = _sum(self.depth, panel, s / self.length[panel])
@@ -117,11 +127,10 @@ class Subpanels:
 
     def energy_at(self, panel: Indices, s: Array) -> Array:
         """Return int F/E* dg at s in the given subpanels [length^3], shape (m,)."""
-        degrees = np.arange(1, self.depth.shape[1] + 1)
-        powers = (s / self.length[panel])[:, None] ** degrees
+        powers = (s / self.length[panel])[:, None] ** self._degrees
         depth, half = self.depth[panel] * powers, self.half_force[panel] * powers
         # int (sum h_m u^m) d(sum d_n u^n) = sum h_m d_n n/(m + n) u^(m + n).
-        product = (half @ (degrees / np.add.outer(degrees, degrees)) * depth).sum(axis=1)
+        product = (half @ self._shares * depth).sum(axis=1)
         below = self.at_edges[1, panel] * depth.sum(axis=1)
         return np.asarray(self.at_edges[2, panel] + 2 * (below + product))
 
@@ -130,7 +139,7 @@ class Subpanels:
 
         J is the jump of f' at the left edge, on the axis the limit of g'.
         """
-        length, degrees = self.length[panel], np.arange(1, self.depth.shape[1] + 1)
+        length, degrees = self.length[panel], self._degrees
         jump, first = self.depth[panel, 0] / length, 2 * self.depth[panel, 1]
         rest = _sum(self.depth[:, 2:], panel, s / length, degrees[2:])
         return jump, (first + rest) / np.square(length)
@@ -138,7 +147,7 @@ class Subpanels:
     @property
     def weight(self) -> Array:
         """Coefficients of the powers of u, from 0 on, of dg/ds [1], shape (k, n)."""
-        return self.depth * np.arange(1, self.depth.shape[1] + 1) / self.length[:, None]
+        return self.depth * self._degrees / self.length[:, None]
 
     @cached_property
     def over_axis(self) -> Array:
@@ -169,7 +178,7 @@ class Subpanels:
     @cached_property
     def _largest(self) -> Array:
         """Largest h'(x)/x in the first subpanel, then that from the second up to each of them."""
-        u, degrees = fit_points(FEW)[0], np.arange(1, self.depth.shape[1] + 1)
+        u, degrees = fit_points(FEW)[0], self._degrees
         curved = self.depth[:, 2:] * (degrees * (degrees - 2))[2:]
         own = (curved @ u ** (degrees[2:, None] - 4.0)).max(axis=1) / self.length**4
         own = np.where(self.depth[:, 0] > 0, np.inf, np.maximum(own, 0.0))
@@ -178,7 +187,7 @@ class Subpanels:
     def dips(self) -> Dips:
         """Return the dips of g, found at a dozen points of each subpanel and its maxima between."""
         u = np.append(fit_points(FEW)[0], 1.0)
-        degrees = np.arange(1, self.depth.shape[1] + 1)
+        degrees = self._degrees
         # The slope may vanish at the left edge itself.
         ends = np.append(u[0] / 100, u)
         rises = (self.depth * degrees) @ ends ** (degrees[:, None] - 1) > 0
@@ -218,10 +227,9 @@ class Subpanels:
         """
         panel, place = np.nonzero(rises[:, :-1] & ~rises[:, 1:])
         low, high = u[place], u[place + 1]
-        degrees = np.arange(1, self.depth.shape[1] + 1)
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
-            up = _sum(self.depth, panel, middle, degrees) > 0
+            up = _sum(self.depth, panel, middle, self._degrees) > 0
             low, high = np.where(up, middle, low), np.where(up, high, middle)
         return panel, low
 
@@ -240,7 +248,7 @@ class Subpanels:
             panels, places = zip(*(self.inverse(quantity, block) for block in blocks), strict=True)
             return np.concatenate(panels), np.concatenate(places)
         values, rows = self.at_edges[quantity], (self.depth, self.half_force)[quantity]
-        panel = np.searchsorted(values[1:-1], target)
+        panel = values[1:-1].searchsorted(target)
         above, whole = target - values[panel], values[panel + 1] - values[panel]
         positive = (above > 0) & (whole > 0)
         goal, whole = np.where(positive, above, 1.0), np.where(positive, whole, 1.0)
@@ -248,7 +256,7 @@ class Subpanels:
         u = np.sqrt(np.minimum(goal / whole, 1.0))
         low, high, done = np.zeros_like(u), np.ones_like(u), ~positive
         terms = rows[panel]
-        rises = terms * np.arange(1, rows.shape[1] + 1)
+        rises = terms * self._degrees
         for _ in range(_STEPS):
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 powers = _powers(u, rows.shape[1])
@@ -275,4 +283,4 @@ def _sum(rows: Array, panel: Indices, u: Array, factors: Array | None = None) ->
 
 def _powers(u: Array, count: int) -> Array:
     """Powers of u from 1 to `count`, shape (m, count)."""
-    return np.multiply.accumulate(np.repeat(u, count).reshape(u.size, count), axis=1)
+    return np.multiply.accumulate(u.repeat(count).reshape(u.size, count), axis=1)

@@ -171,9 +171,9 @@ class CappedParaboloid(Profile):
     def reduced_force(self, coordinate: Array) -> Array:
         return self._force(*self._place(coordinate))
 
-    def force_slope(self, coordinate: Array) -> Array:
+    def force_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
         a, s = self._place(coordinate)
-        return 2 * a * self._slope(coordinate, a, s)
+        return self._force(a, s), 2 * a * self._slope(coordinate, a, s)
 
     def _force(self, a: Array, s: Array) -> Array:
         return 4 * a * a * a / (3 * self.tip_radius) + self._flank.reduced_force(s)

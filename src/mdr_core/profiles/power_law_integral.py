@@ -28,10 +28,13 @@ def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: P
     # Every load has its own pieces, summed in order: its result does not depend on other loads.
     count = where(top > _LONGEST, np.ceil(top / _LONGEST), 1.0)
     nodes, weights = gauss_legendre(_NODES)
+    shares = ((1 - nodes) / 2).reshape(-1, *(1,) * top.ndim)
     total = full(0.0, top)
     for piece in range(int(extremes(count)[1])):
-        # Loads with fewer pieces have no nodes beyond the lower end.
-        fraction = np.minimum(np.divide.outer(piece + (1 - nodes) / 2, count), 1.0)
+        fraction = (piece + shares) / count
+        if piece:
+            # Loads with fewer pieces have no nodes beyond the lower end.
+            fraction = np.minimum(fraction, 1.0)
         w = top - fraction * top
         values = density(scale * np.sinh(w)) * np.cosh(w)
         total = total + where(piece < count, in_order(weights, values), 0.0)

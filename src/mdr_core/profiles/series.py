@@ -137,6 +137,17 @@ class Series(Profile):
         crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
         return exp(min(max(crossing, -_MAX_LOG), _MAX_LOG))
 
+    def _total(self, parts: Iterable[Array], factor: Array | float = 1.0) -> Array:
+        """Sum of the terms of a positive total, times a factor; infinity where they overflow."""
+        total: Any
+        if self._positive:
+            total = sum(parts) * factor
+            return total
+        # Terms of both signs may overflow.
+        with np.errstate(all="ignore"):
+            total = sum(parts) * factor
+        return where(np.isnan(total), inf, total)
+
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         return (0.0,) if self._powers[0][1] <= 1 else ()
@@ -155,24 +166,37 @@ class Series(Profile):
         return min(1.0, self._powers[0][1])
 
     def f(self, radius: Array) -> Array:
-        return _total(power(c, radius, n) for c, n in self._powers)
+        return self._total(power(c, radius, n) for c, n in self._powers)
 
     def df(self, radius: Array) -> Array:
-        return _total(power_slope(c, radius, n) for c, n in self._powers)
+        return self._total(power_slope(c, radius, n) for c, n in self._powers)
 
     def g(self, x: Array) -> Array:
-        return _total(depth for depth, _ in self._depths(x))
+        return self._total(depth for depth, _ in self._depths(x))
 
     def dg(self, x: Array) -> Array:
-        return _total(power_slope(c, x, n) for c, n in self._powers_of_g)
+        return self._total(power_slope(c, x, n) for c, n in self._powers_of_g)
 
     def _depths(self, x: Array) -> Iterator[tuple[Array, float]]:
         """Each term of g [length], and its exponent."""
         return ((power(c, x, n), n) for c, n in self._powers_of_g)
 
+    def depth_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
+        """From the same powers: x g'(x) is the sum of n d, where d are the terms of g."""
+        terms = list(self._depths(coordinate))
+        scaled = self._total(n * depth for depth, n in terms)
+        return self._total(depth for depth, _ in terms), scaled / coordinate
+
     def reduced_force(self, coordinate: Array) -> Array:
-        parts = (2 * n / (n + 1) * depth for depth, n in self._depths(coordinate))
-        return _total(parts, coordinate)
+        return self._force(self._depths(coordinate), coordinate)
+
+    def force_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
+        """From the same powers; see `depth_and_slope`."""
+        terms = list(self._depths(coordinate))
+        return self._force(terms, coordinate), 2 * self._total(n * depth for depth, n in terms)
+
+    def _force(self, terms: Iterable[tuple[Array, float]], coordinate: Array) -> Array:
+        return self._total((2 * n / (n + 1) * depth for depth, n in terms), coordinate)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """sum_ij d_i d_j a n_i n_j (n_i + n_j + 2)/((n_i + 1)(n_j + 1)(n_i + n_j + 1))."""
@@ -183,16 +207,18 @@ class Series(Profile):
                 for d, n in depths
                 for e, m in depths
             )
-            return _total(pairs, coordinate)
+            return self._total(pairs, coordinate)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         if not self._positive or any(2 < n < 4 for _, n in self._powers):
             return coordinate < 0
-        return _total(n * (n - 3 if n >= 4 else -1) * d for d, n in self._depths(coordinate)) <= 0
+        return (
+            self._total(n * (n - 3 if n >= 4 else -1) * d for d, n in self._depths(coordinate)) <= 0
+        )
 
     def axis_stress(self, coordinate: Array, rtol: float) -> Array:
         slopes = ((power_slope(c, coordinate, n), n) for c, n in self._powers_of_g)
-        return _total(slope / (pi * (n - 1)) for slope, n in slopes)
+        return self._total(slope / (pi * (n - 1)) for slope, n in slopes)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: mdr-5, Eqs. (5.68), (5.70), superposed. Parameters: see `Profile`."""
@@ -207,10 +233,3 @@ class Series(Profile):
             # At the axis the term of lowest exponent dominates.
             total[radius == 0] = inf
         return total
-
-
-def _total(parts: Iterable[Array], factor: Array | float = 1.0) -> Array:
-    """Sum of the terms of a positive total, times a factor; infinity where they overflow."""
-    with np.errstate(all="ignore"):
-        total: Any = sum(parts) * factor
-    return where(np.isnan(total), inf, total)

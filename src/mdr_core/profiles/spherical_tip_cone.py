@@ -116,16 +116,20 @@ class SphericalTipCone(TippedCone):
         return x * (self._log_term(x, s) + self.slope * phi)
 
     def _flank_slope(self, x: Array, s: Array) -> Array:
+        return self._slope(x, s, self._log_term(x, s), np.arctan(s / self.tangent_radius))
+
+    def _slope(self, x: Array, s: Array, log_term: Array, phi: Array) -> Array:
         """L + t phi + t b R/(x h + s R)."""
         b, big, h, t = self.tangent_radius, self.tip_radius, self._opposite_singularity, self.slope
-        log_term = self._log_term(x, s) + t * np.arctan(s / b)
-        return log_term + t * b * big / (x * h + s * big)
+        return log_term + t * phi + t * b * big / (x * h + s * big)
 
-    def _flank_force(self, x: Array, s: Array) -> Array:
+    def _flank_force_and_slope(self, x: Array, s: Array) -> tuple[Array, Array]:
         b, big, h = self.tangent_radius, self.tip_radius, self._opposite_singularity
+        log_term, phi, square = self._log_term(x, s), np.arctan(s / b), x * x
         sphere = np.square(b * b) / (big * x + h * s)
-        sphere = sphere + (big * big + x * x) * tanh_gap(self._log_term(x, s))
-        return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)
+        sphere = sphere + (big * big + square) * tanh_gap(log_term)
+        force = sphere + self.slope * (square * phi + b * s)
+        return force, self._slope(x, s, log_term, phi)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         if self.slope <= _SHALLOW:

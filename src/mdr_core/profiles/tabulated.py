@@ -221,7 +221,8 @@ class Tabulated(FlatEnded):
         """Stress integral at the axis, in closed form. Parameters: see `Profile`."""
         del rtol
         place = _located(self._edges, coordinate)
-        return self.resolved.panels.over_axis_at(*place) / np.pi
+        stress = self.resolved.panels.over_axis_at(*place) / np.pi
+        return stress.reshape(coordinate.shape)[()]
 
     @property
     def branches(self) -> tuple[Branch, ...]:
@@ -245,6 +246,6 @@ class Tabulated(FlatEnded):
 
 def _located(edges: Array, place: Array) -> tuple[Indices, Array]:
     """Subpanel of each place and s there, shape (m,)."""
-    place = np.ravel(place)
-    panel = np.searchsorted(edges[1:-1], place, side="right")
+    place = np.asarray(place).ravel()
+    panel = edges[1:-1].searchsorted(place, side="right")
     return panel, inverse_hypot(place, edges[panel])

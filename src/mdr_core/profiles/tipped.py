@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
-from mdr_core.elementwise import number, piecewise, some, where
+from mdr_core.elementwise import number, piecewise, piecewise_pair, some, where
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.profiles.powers import Paraboloid
@@ -59,8 +59,8 @@ class TippedCone(Profile):
         """g'(x) beyond b [1]."""
 
     @abstractmethod
-    def _flank_force(self, x: Array, s: Array) -> Array:
-        """F_N(x)/E* beyond b [length^2]."""
+    def _flank_force_and_slope(self, x: Array, s: Array) -> tuple[Array, Array]:
+        """F_N(x)/E* [length^2] and g'(x) [1] beyond b."""
 
     @abstractmethod
     def _tip_kernel(self, annulus: Annulus, r: Array, rtol: float) -> Array:
@@ -150,7 +150,17 @@ class TippedCone(Profile):
         )
 
     def reduced_force(self, coordinate: Array) -> Array:
-        return self._split(coordinate, self._tip.reduced_force, self._flank_force)
+        return self.force_and_slope(coordinate)[0]
+
+    def force_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
+        start, rate = self.scale, self._flank_rate
+
+        def beyond(place: Array) -> tuple[Array, Array]:
+            x, s = self._outer((place - start) * rate)
+            force, slope = self._flank_force_and_slope(x, s)
+            return force, 2 * x * slope * rate
+
+        return piecewise_pair(coordinate, start, self._tip.force_and_slope, beyond)
 
     def force_slope(self, coordinate: Array) -> Array:
         rate = self._flank_rate
@@ -163,7 +173,8 @@ class TippedCone(Profile):
 
         def density(s: Array) -> Array:
             x = np.hypot(b, s)
-            return self._flank_force(x, s) * self._flank_weight(x, s)
+            force, slope = self._flank_force_and_slope(x, s)
+            return force * slope * s / x
 
         def beyond(place: Array) -> Array:
             _, s = self._outer((place - start) * rate)
@@ -271,10 +282,11 @@ class RoundedCone(TippedCone):
         b = self.tangent_radius
         return self.slope * (np.arctan(s / b) + 2 * b / (x + s))
 
-    def _flank_force(self, x: Array, s: Array) -> Array:
+    def _flank_force_and_slope(self, x: Array, s: Array) -> tuple[Array, Array]:
         b = self.tangent_radius
-        square = x * x * (np.arctan(s / b) + (4 / 3) * b / (x + s))
-        return self.slope * (square + b * s / 3)
+        angle, rest = np.arctan(s / b), 2 * b / (x + s)
+        force = x * x * (angle + (2 / 3) * rest) + b * s / 3
+        return self.slope * force, self.slope * (angle + rest)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return coordinate >= 0
