@@ -51,6 +51,24 @@ def test_maximum_shear_stress_of_hertz_at_the_stick_edge(part: float) -> None:
     )
 
 
+@pytest.mark.parametrize("part", [1e-30, 1e-3, 0.05, 0.0501, "root", "golden", 0.63])
+def test_maximum_pressure_of_a_sphere(part: float | str) -> None:
+    # p(0) = (E*/pi) [artanh z + chi_2(z)] at z = a/R.
+    with mp.workdps(40):
+        golden = mp.log((1 + mp.sqrt(5)) / 2)
+        # Lewin, Polylogarithms and Associated Functions, 1981, section 1.8.
+        known = {
+            "root": (mp.sqrt(2) - 1, mp.pi**2 / 16 - mp.log(1 + mp.sqrt(2)) ** 2 / 4),
+            "golden": ((mp.sqrt(5) - 1) / 2, mp.pi**2 / 12 - 3 * golden**2 / 4),
+        }
+        z = known[part][0] if isinstance(part, str) else mpf(part)
+        series = mp.nsum(lambda k: z ** (2 * k + 1) / (2 * k + 1) ** 2, [0, mp.inf])
+        chi = known[part][1] if isinstance(part, str) else series
+        expected = E_STAR * float((mp.atanh(z) + chi) / mp.pi)
+    contact = normal.solve(Sphere(3.0), E_STAR, contact_radius=3 * float(z))
+    assert float(contact.maximum_pressure) == pytest.approx(expected, rel=4e-15, abs=0)
+
+
 @pytest.mark.parametrize(
     "profile",
     [Sphere(1.0), Power(0.3, 6.0), RoundedPunch(0.3, 1.0), RoundedPunch(0.499, 10.0)],
