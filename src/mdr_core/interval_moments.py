@@ -11,14 +11,15 @@ however narrow the interval and however small the amplitude. Source: notes, §6 
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks, next_breaks
-from mdr_core.elementwise import every, number, some
+from mdr_core.cached import cached_property
+from mdr_core.elementwise import every, indices, number, some
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
@@ -126,7 +127,7 @@ class IntervalMoments:
         last = np.searchsorted(normal_at_breaks, low + span, side="left")
         first, last = next_breaks(self.profile, breaks, ends, np.array([first, last]))
         base = np.append(0.0, breaks)[first]
-        crossed = np.flatnonzero(last > first)
+        crossed = indices(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         next_break = first[crossed]
         stop[crossed] = breaks[next_break]
@@ -150,8 +151,9 @@ class IntervalMoments:
         if not some(crossed):
             return self.over_smooth(low, span, ends, base)
         # The parts below a break are further cases.
-        below = np.flatnonzero(crossed)
-        part = np.where(crossed, np.clip(_from_below(self.normal, base) - low, 0.0, span), 0.0)
+        below = indices(crossed)
+        inside = np.maximum(_from_below(self.normal, base) - low, 0.0)
+        part = np.where(crossed, np.minimum(inside, span), 0.0)
         found = self._part(np.append(np.arange(span.size), below)).over_smooth(
             np.append(low + part, low[below]),
             np.append(span - part, part[below]),
@@ -220,7 +222,7 @@ class IntervalMoments:
             return lower
         span, weights = lower.span.copy(), lower.weights.copy()
         for k, chain in enumerate(self._chains):
-            index = np.flatnonzero(count >> k & 1)
+            index = indices(count >> k & 1)
             if index.size:
                 part = Moments(span[index], weights[:, index]).joined(chain.at(at[index]))
                 span[index], weights[:, index] = part
@@ -230,8 +232,7 @@ class IntervalMoments:
     def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
         """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
         profile, weights = self.profile, np.zeros((3, low.size))
-        least = _SHALLOW * profile.first_radius
-        shallow = (base == 0) & (profile.contact_radius(ends[1]) < least)
+        shallow = (base == 0) & (profile.contact_radius(ends[1]) < _SHALLOW * profile.first_radius)
         limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
         wide = (ends[1] > limit * ends[0]) | ((base == 0) & (low + span > _WIDE * low))
         closed, by_rule = wide & ~shallow & (span > 0), (~wide | shallow) & (span > 0)

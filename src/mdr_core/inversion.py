@@ -81,12 +81,13 @@ def invert(
             value, slope = function(s)
             regular = smooth(s) if callable(smooth) else smooth
             residual = np.log(goal / value)
-            # Where the slope is not finite, the residual gives the direction alone.
             known = (slope > 0) & (slope < inf)
-            step = where(known, residual / slope, residual)
+            step, longest = residual / slope, where(regular, _LAST_STEP, _LAST_BUT_ONE)
+            if not every(known):
+                # Where the slope is not finite, the residual gives the direction alone.
+                step, longest = where(known, step, residual), where(known, longest, _SMALLEST_STEP)
             size = abs(step)
             # A short step alone may only mean that the function is steep here.
-            longest = where(known, where(regular, _LAST_STEP, _LAST_BUT_ONE), _SMALLEST_STEP)
             short = (abs(residual) <= _CLOSE) & (size <= longest)
             converged = short & known & (regular | (size <= _SMALLEST_STEP))
             if not every(size < _MAX_LOG_STEP):

@@ -9,12 +9,12 @@ Source: notes, §5.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.multipole import Multipoles, add, multipoles, pairs, panel_sums
+from mdr_core.cached import cached_property
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
 

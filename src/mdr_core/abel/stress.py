@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from math import sqrt
 from typing import Final, NamedTuple
@@ -15,6 +14,7 @@ from mdr_core.abel.displacement import Branch, Kernel
 from mdr_core.abel.multipole import FAR, Multipoles, add, multipoles, pairs, panel_sums
 from mdr_core.abel.panel_moments import far, near, scaled
 from mdr_core.abel.subpanels import LONGEST, fit_points, fitted
+from mdr_core.cached import cached_property
 from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.typing import Array, Chosen, Indices
 

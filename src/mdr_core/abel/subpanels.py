@@ -7,12 +7,13 @@ Source: notes, §5.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from mdr_core.cached import cached_property
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
 

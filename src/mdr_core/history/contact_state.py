@@ -1,11 +1,11 @@
 """State of a contact after a load history, and one straight step from it."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from mdr_core.cached import cached_property
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory

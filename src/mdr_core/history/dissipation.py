@@ -13,11 +13,12 @@ prescribed the identity holds with the reduced force in place of the depth and t
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from mdr_core.cached import cached_property
+from mdr_core.elementwise import indices
 from mdr_core.history.slip_memory import FrontPath, SlipSegments, slip_segments
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
@@ -58,7 +59,7 @@ class Dissipation:
             return np.zeros(self.path.load.size)
         segments = self._segments
         dissipated = np.zeros(segments.step.size)
-        full = np.flatnonzero(segments.full)
+        full = indices(segments.full)
         if full.size and not self.moments.over_forces:
             # In full slip friction is mu F_N.
             ends = segments.upper_gap[full], segments.lower_gap[full]
@@ -101,7 +102,7 @@ def _slip_intervals(segments: SlipSegments) -> _SlipIntervals:
     Above the lower end `normal` of the segment, the front moves from `span` to 0 and the load
     point from span + upper to `lower`.
     """
-    partial = np.flatnonzero(~segments.full & (segments.span > 0))
+    partial = indices(~segments.full & (segments.span > 0))
     given = segments.normal, segments.span, segments.upper_gap, segments.lower_gap
     normal, span, upper, lower = (row[partial] for row in given)
     top = span + upper

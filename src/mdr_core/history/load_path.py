@@ -5,11 +5,12 @@ of each pair is prescribed and both change, it is nonlinear in either plane: see
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
 
+from mdr_core.cached import cached_property
+from mdr_core.elementwise import broadcast, common_shape, indices
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
@@ -66,8 +67,8 @@ class SampledPath:
         """Samples whose step is straight neither over depths nor over forces."""
         if self.over_forces != self.depth_prescribed:
             return np.zeros(self.normal.shape, dtype=bool)
-        changes = np.diff(np.stack([self.normal, self.tangential]), axis=1, prepend=0.0)
-        return np.asarray((changes != 0).all(axis=0))
+        first, second = (np.diff(load, prepend=0.0) != 0 for load in (self.normal, self.tangential))
+        return np.asarray(first & second)
 
     @cached_property
     def prescribed(self) -> Array:
@@ -130,7 +131,7 @@ class SampledPath:
         InputError : a tangential force above mu F_N, by the index of its load step.
         """
         limit = np.maximum(normal, 0.0)
-        beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + _ROUNDING))
+        beyond = indices(np.abs(tangential) > limit * (1 + _ROUNDING))
         if beyond.size:
             raise InputError(
                 ("history", "tangential", self.tangential_name, int(step[beyond[0]])),
@@ -171,9 +172,10 @@ def build(
             ("history", "tangential", tangential[0]),
             f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}",
         )
-    first, second = np.broadcast_arrays(normal_points, tangential_points)
-    samples = _along(first, samples_per_step), _along(second, samples_per_step)
-    return SampledPath(start, normal[0], tangential[0], *samples, samples_per_step)
+    shape = common_shape(normal_points, tangential_points)
+    points = broadcast(normal_points, shape), broadcast(tangential_points, shape)
+    first, second = (_along(each, samples_per_step) for each in points)
+    return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step)
 
 
 def _along(points: Array, count: int) -> Array:
@@ -194,7 +196,7 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     if points.ndim != 1 or points.size == 0:
         raise InputError(("history", axis, name), "must be a list of at least one number")
     negative = (points < 0) & (name == "normal_force")
-    bad = np.flatnonzero(~np.isfinite(points) | negative)
+    bad = indices(~np.isfinite(points) | negative)
     if bad.size:
         sign = " and not negative" if name == "normal_force" else ""
         raise InputError(("history", axis, name, int(bad[0])), f"must be finite{sign}")

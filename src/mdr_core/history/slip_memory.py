@@ -16,12 +16,13 @@ are. Source: notes, §10.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import fsum
 from typing import NamedTuple
 
 import numpy as np
 
+from mdr_core.cached import cached_property
+from mdr_core.elementwise import every, indices
 from mdr_core.history import slip_memory_kernel as kernel
 from mdr_core.typing import Array, Flags, Indices
 
@@ -204,14 +205,16 @@ def slip_segments(path: FrontPath) -> SlipSegments:
     """Return the segments between the visits of the slip front, and the slip of all springs."""
     follows = np.append(path.step[1:] == path.step[:-1], False)
     # After the last visit, on the axis, all springs slip until the end of the step.
-    visit = np.flatnonzero(follows | (path.normal < 0))
+    visit = indices(follows | (path.normal < 0))
     full, below = ~follows[visit], np.minimum(visit + 1, follows.size - 1)
     step, upper = path.step[visit], path.distance[visit]
     moved = path.moved[step]
     lower = np.where(full[:, None], moved, path.distance[below])
     normal = np.maximum(np.where(full, 0.0, path.normal[below]), 0.0)
-    side, lower_side = _side(upper, moved), _side(lower, moved)
-    crossed = np.flatnonzero(side * lower_side < 0)
+    ends = np.array([upper, lower])
+    crosswise = _crosswise(ends, moved)
+    side, lower_side = _sides(crosswise, moved)
+    crossed = indices(side * lower_side < 0)
     if crossed.size:
         # The load point passes through the segment: the friction limit acts in both sums in turn.
         share = side[crossed] / (side[crossed] - lower_side[crossed])
@@ -223,38 +226,50 @@ def slip_segments(path: FrontPath) -> SlipSegments:
         lower[crossed], normal[crossed] = middle, normal[crossed] + rest
         lower_side[crossed] = 0.0
         side, lower_side = np.append(side, 0 * share), np.append(lower_side, -side[crossed])
-    slip, gaps = _slip(np.array([upper, lower]), moved, side + lower_side)
+        ends = np.array([upper, lower])
+        crosswise = _crosswise(ends, moved)
+    slip, gaps = _slip(ends, crosswise, moved, side + lower_side)
     span = np.where(full, 0.0, (lower - upper)[:, :2].sum(axis=1) / 2)
     end = np.where(full, path.load[step], gaps[1])
     found = SlipSegments(step, normal, span, slip, gaps[0], end, full)
     return SlipSegments._make(row[slip > 0] for row in found)
 
 
-def _side(distance: Array, moved: Array) -> Array:
-    """Sign of the sum in which the load point reaches a spring first: + backward, - forward."""
-    forward, backward, _ = moved.T
-    crosswise = _crosswise(distance.T, moved.T)
-    return np.where(forward <= 0, 1.0, np.where(backward <= 0, -1.0, crosswise))
-
-
-def _crosswise(distance: Array, moved: Array) -> Array:
+def _crosswise(ends: Array, moved: Array) -> Array:
     """Distance in the forward sum times the backward movement, less the other product.
 
     With the normal coordinate and the anchor it is twice the same difference, which keeps its
     digits where the anchor moves far less than the normal coordinate.
+
+    Parameters
+    ----------
+    ends : distances at both ends of each segment, in both sums and in the anchor, shape (2, k, 3).
+    moved : decrease of the same on the whole step, shape (k, 3).
     """
-    (near, other, anchor), (forward, backward, further) = distance, moved
+    (near, other, anchor), (forward, backward, further) = ends.transpose(2, 0, 1), moved.T
     by_anchor = anchor * (forward + backward) - (near + other) * further
     small = 2 * np.abs(further) < np.minimum(forward, backward)
     return np.where(small, by_anchor, near * backward - other * forward)
 
 
-def _slip(ends: Array, moved: Array, side: Array) -> tuple[Array, Array]:
+def _sides(crosswise: Array, moved: Array) -> tuple[Array, Array]:
+    """Signs at both ends of the sum in which the load point reaches a spring first.
+
+    They are positive in the backward sum and negative in the forward one.
+    """
+    forward, backward, _ = moved.T
+    if not every((forward > 0) & (backward > 0)):
+        crosswise = np.where(forward <= 0, 1.0, np.where(backward <= 0, -1.0, crosswise))
+    side, lower_side = crosswise
+    return side, lower_side
+
+
+def _slip(ends: Array, crosswise: Array, moved: Array, side: Array) -> tuple[Array, Array]:
     """Slip while the front moves between two ends, and its distance to the load point at both."""
     some = np.arange(side.size)
     bound = np.where(side >= 0, 1, 0)
     reached = ends[:, some, bound]
-    behind = (2 * bound - 1) * _crosswise(ends.transpose(2, 0, 1), moved.T[:, None])
+    behind = (2 * bound - 1) * crosswise
     return reached[1] - reached[0], np.maximum(behind / moved[some, bound], 0.0) / 2
 
 

@@ -3,11 +3,11 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
+from mdr_core.cached import cached_property
 from mdr_core.history import slip_memory
 from mdr_core.history.dissipation import Dissipation
 from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree

@@ -10,11 +10,12 @@ follow from the same slopes: u_x G*/(mu E*) = sum k_i (w_i - w_i-1). Source: not
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
 
+from mdr_core.cached import cached_property
+from mdr_core.elementwise import indices
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
@@ -77,7 +78,7 @@ class TractionVertices:
         below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
         ends = self.coordinate[np.array([below, own])]
         # No depth lies between the ends of a plateau.
-        some = np.flatnonzero((tree.parent >= 0) & ((self.depth_step > 0) | (ends[1] > ends[0])))
+        some = indices((tree.parent >= 0) & ((self.depth_step > 0) | (ends[1] > ends[0])))
         moments = interval_moments(self.moments.profile, over_forces=False)
         given = self.depth[below], np.maximum(self.depth_step, 0.0), ends
         # The measure of the moments is 2 dx.
@@ -104,7 +105,7 @@ class TractionVertices:
             some = np.where(tree.normal > 0, tree.normal, 1.0)
             return np.asarray(conjugate / some * tree.span)
         step = conjugate - conjugate[tree.parent]
-        short = np.flatnonzero(tree.span < _SHORT * tree.normal)
+        short = indices(tree.span < _SHORT * tree.normal)
         if short.size:
             lower = tree.normal[tree.parent[short]]
             step[short] = moments.conjugate_step(lower, tree.span[short])
@@ -116,8 +117,8 @@ def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Arr
 
     `coordinate` has the contact coordinates of its vertices, shape (n,).
     """
-    width = np.diff(coordinate)
-    short = np.flatnonzero(tree.span[1:] < _SHORT * tree.normal[1:])
+    width = coordinate[1:] - coordinate[:-1]
+    short = indices(tree.span[1:] < _SHORT * tree.normal[1:])
     if short.size:
         upper, span = tree.normal[1:][short], tree.span[1:][short]
         edges = coordinate[1:][short], span / upper, tree.normal[short] / upper

@@ -5,7 +5,6 @@ The interface is one class, and therefore one long file.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
 
@@ -14,6 +13,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integral
 from mdr_core.abel.stress import StressPanels
+from mdr_core.cached import cached_property
 from mdr_core.elementwise import full, number
 from mdr_core.errors import Notice
 from mdr_core.profiles.power_functions import StickRatios

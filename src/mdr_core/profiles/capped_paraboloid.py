@@ -1,7 +1,6 @@
 """Paraboloid with a flatter parabolic cap, as worn at the tip."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import pi
 from typing import ClassVar, Final
 
@@ -11,6 +10,7 @@ from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.power_moments import root_step
 from mdr_core.abel.two_root import inverse_hypot
+from mdr_core.cached import cached_property
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from mdr_core.abel.stress import StressPanels
 from mdr_core.abel.subpanels import Subpanels
 from mdr_core.abel.table_transform import resolve
+from mdr_core.cached import cached_property
 from mdr_core.errors import InputError, Notice
 from mdr_core.profiles.table_interpolation import RINGING, Interpolation, interpolate
 from mdr_core.typing import Array

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from math import exp, inf, isfinite, log, pi
 from typing import Any, ClassVar, Final
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.power_moments import power_moment
+from mdr_core.cached import cached_property
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile

@@ -1,6 +1,5 @@
 """Profile through the points of a table."""
 
-from functools import cached_property
 from typing import ClassVar, Final
 
 import numpy as np
@@ -10,6 +9,7 @@ from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.stress import StressPanels
 from mdr_core.abel.two_root import inverse_hypot
+from mdr_core.cached import cached_property
 from mdr_core.elementwise import full, number
 from mdr_core.errors import InputError, Notice
 from mdr_core.profiles.resolved_table import resolve_table

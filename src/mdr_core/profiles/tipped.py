@@ -3,7 +3,6 @@
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf, pi
 from typing import ClassVar, Final
 
@@ -12,6 +11,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
+from mdr_core.cached import cached_property
 from mdr_core.elementwise import number, piecewise, piecewise_pair, some, where
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral

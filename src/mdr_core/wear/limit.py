@@ -1,7 +1,6 @@
 """Limiting state of fretting wear in partial slip: shape, pressure, radii and forces."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final
 
@@ -9,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
+from mdr_core.cached import cached_property
 from mdr_core.elementwise import some
 from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
