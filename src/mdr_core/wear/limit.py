@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import some
+from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
@@ -69,21 +69,21 @@ class LimitingWear(validity.ContactResults):
     @property
     def stick_radius(self) -> Array:
         """Stick radius c [length]: inside it nothing wears. Source: mdr-5, Eq. (5.80)."""
-        return np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.radius)
+        return where(self.stick_zone.unbounded, 0.0, self.stick_zone.radius)
 
     @cached_property
     def wear_width(self) -> Array:
         """Width of the worn annulus [length], free of cancellation however narrow it is."""
         rests = self.stick_zone.step <= 0
         if self.normal.profile.has_no_partial_slip:
-            worn = np.where(rests, 0.0, self.normal.contact_radius)
+            worn = where(rests, 0.0, self.normal.contact_radius)
         else:
-            target = np.where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
-            start = np.where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
+            target = where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
+            start = where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
             widest = self.stick_zone.annulus.largest_width.reshape(target.shape)
             flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * widest)))
             worn = self.stick_zone.annulus.width_where_worn(*flat).reshape(target.shape)
-        return np.where(self.stick_zone.unbounded, inf, worn)
+        return where(self.stick_zone.unbounded, inf, worn)
 
     @cached_property
     def wear_radius(self) -> Array:
@@ -97,14 +97,14 @@ class LimitingWear(validity.ContactResults):
     def indentation_depth(self) -> Array:
         """Depth d [length]: constant, or g(c) and the step at the stick edge."""
         contact = self.normal
-        depth = np.broadcast_to(contact.indentation_depth, self.stick_zone.step.shape)
+        depth = broadcast(contact.indentation_depth, self.stick_zone.step.shape)
         if self._holds_depth:
             return depth
         profile, sticks = contact.profile, self.stick_zone.radius > 0
         # g(c), and zero in full slip.
-        edge = np.where(sticks, self.stick_zone.coordinate, profile.first_coordinate)
-        grown = np.where(sticks, profile.depth(edge), 0.0) + self.stick_zone.step
-        return np.where(self.stick_zone.unbounded, inf, grown)
+        edge = where(sticks, self.stick_zone.coordinate, profile.first_coordinate)
+        grown = where(sticks, profile.depth(edge), 0.0) + self.stick_zone.step
+        return where(self.stick_zone.unbounded, inf, grown)
 
     @cached_property
     def normal_force(self) -> Array:
@@ -114,11 +114,11 @@ class LimitingWear(validity.ContactResults):
         """
         contact, profile = self.normal, self.normal.profile
         if not self._holds_depth:
-            return np.broadcast_to(contact.normal_force, self.stick_zone.step.shape)
-        edge = np.where(
+            return broadcast(contact.normal_force, self.stick_zone.step.shape)
+        edge = where(
             self.stick_zone.separated, profile.first_coordinate, self.stick_zone.coordinate
         )
-        inside = np.where(self.stick_zone.separated, 0.0, profile.reduced_force(edge))
+        inside = where(self.stick_zone.separated, 0.0, profile.reduced_force(edge))
         return contact.e_star * (inside + 2 * self.stick_zone.radius * self.stick_zone.step)
 
     @cached_property
@@ -127,20 +127,20 @@ class LimitingWear(validity.ContactResults):
         contact, stick_zone = self.tangential_contact, self.stick_zone
         displacement = contact.tangential_displacement
         if contact.control == "tangential_displacement":
-            return np.broadcast_to(displacement, stick_zone.step.shape)
+            return broadcast(displacement, stick_zone.step.shape)
         if not self.normal.profile.has_no_partial_slip:
             displacement = contact.displacement_ratio * stick_zone.step
-        return np.where(stick_zone.unbounded, inf, displacement)
+        return where(stick_zone.unbounded, inf, displacement)
 
     @cached_property
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
         contact = self.tangential_contact
         if contact.control == "tangential_force" or self.normal.profile.has_no_partial_slip:
-            return np.where(self.stick_zone.separated, 0.0, contact.tangential_force)
+            return where(self.stick_zone.separated, 0.0, contact.tangential_force)
         modulus = contact.friction_coefficient * self.normal.e_star
         carried = 2 * modulus * self.stick_zone.radius * self.stick_zone.step
-        return np.where(self.stick_zone.unbounded, contact.limiting_force, carried)
+        return where(self.stick_zone.unbounded, contact.limiting_force, carried)
 
     @cached_property
     def worn_volume(self) -> Array:
@@ -154,13 +154,14 @@ class LimitingWear(validity.ContactResults):
         worn = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
         step = np.ravel(self.stick_zone.step)[worn]
         volume[worn] = self.stick_zone.annulus.chosen(worn).worn_volume(flat[worn], step)
-        return np.where(unbounded, inf, volume.reshape(width.shape))
+        return where(unbounded, inf, volume.reshape(width.shape)[()])
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Slip regime: "stick" (nothing wears), "partial_slip" or "full_slip"."""
-        wearing = np.where(self.stick_zone.step > 0, "partial_slip", "stick").astype("U12")
-        return np.where(self.stick_zone.unbounded | self.stick_zone.separated, "full_slip", wearing)
+        wearing = where(self.stick_zone.step > 0, np.str_("partial_slip"), np.str_("stick"))
+        slides = self.stick_zone.unbounded | self.stick_zone.separated
+        return where(slides, np.str_("full_slip"), wearing)
 
     def initial_profile(self, radius: ArrayLike) -> Array:
         """Return the profile before wear, f(r) [length], (m,).
@@ -325,8 +326,8 @@ def _require_room(wear: LimitingWear) -> None:
     # Next to a pole of g' there is no room.
     beyond = wearing & (largest <= 0).reshape(wearing.shape)
     if not beyond.any():
-        width = np.ravel(np.where(wearing, wear.wear_width, 0.0))
-        step = np.ravel(np.where(wearing, stick_zone.step, 0.0))
+        width = np.ravel(where(wearing, wear.wear_width, 0.0))
+        step = np.ravel(where(wearing, stick_zone.step, 0.0))
         # Without a root the search for the width ends there.
         if (width > _AT_END * largest).any():
             beyond = (annulus.mean_rise(largest) < step).reshape(wearing.shape)

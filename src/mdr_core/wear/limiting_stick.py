@@ -12,6 +12,7 @@ import numpy as np
 
 from mdr_core import equivalent_1d
 from mdr_core.cached import cached_property
+from mdr_core.elementwise import broadcast, full, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
@@ -59,7 +60,7 @@ def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     Source: mdr-5, Eq. (5.80).
     """
     depth = contact.normal.indentation_depth
-    step = np.where(contact.full_slip, depth, amplitude / contact.displacement_ratio)
+    step = where(contact.full_slip, depth, amplitude / contact.displacement_ratio)
     return _from(contact, step, separated=contact.full_slip)
 
 
@@ -70,7 +71,7 @@ def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     """
     step = _step_of_force(contact, amplitude, contact.stick_radius)
     before = contact.tangential_displacement / contact.displacement_ratio
-    grown = np.maximum(step, before) / np.where(before > 0, before, 1.0)
+    grown = np.maximum(step, before) / where(before > 0, before, 1.0)
     moved = contact.stick_coordinate, contact.stick_radius, grown * contact.slip_width
     return _from(contact, step, unbounded=contact.full_slip, moved=moved)
 
@@ -82,12 +83,12 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     grows. Source: mdr-5, Eq. (5.90), for any profile.
     """
     normal, profile = contact.normal, contact.normal.profile
-    step = np.broadcast_to(amplitude / contact.displacement_ratio, contact.width.shape)
+    step = broadcast(amplitude / contact.displacement_ratio, contact.width.shape)
     unbounded = contact.full_slip
     if profile.has_no_partial_slip:
         return _from(contact, step, unbounded=unbounded)
-    top = np.broadcast_to(normal.coordinate, step.shape)
-    target = np.where(unbounded | (contact.width <= 0), 0.0, step)
+    top = broadcast(normal.coordinate, step.shape)
+    target = where(unbounded | (contact.width <= 0), 0.0, step)
 
     def step_by_force(width: Array) -> tuple[Array, Array]:
         """Return (F_N(a) - F_N(c))/(2 E* c), and its logarithmic slope."""
@@ -97,17 +98,17 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
         return value, width * (profile.depth_slope(edge) / value + profile.radius_slope(edge) / c)
 
     # The stick edge before wear lies further in: there the annulus outside carries load as well.
-    widest = np.where(target > 0, contact.width, 1.0)
+    widest = where(target > 0, contact.width, 1.0)
     width = invert(
         step_by_force,
         target,
         widest / 2,
-        np.zeros_like(target),
+        full(0.0, target),
         widest,
         f"{profile.kind}'s stick edge under a constant force",
     )
-    moved = np.where(unbounded, contact.stick_coordinate, top - width)
-    radius = np.where(width > 0, profile.contact_radius(moved), contact.stick_radius)
+    moved = where(unbounded, contact.stick_coordinate, top - width)
+    radius = where(width > 0, profile.contact_radius(moved), contact.stick_radius)
     slip_width = profile.radius_width(top, width)
     return _from(contact, step, unbounded=unbounded, moved=(moved, radius, slip_width))
 
@@ -122,11 +123,11 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     """
     normal, profile = contact.normal, contact.normal.profile
     target = _step_of_force(contact, amplitude, np.ones(()))
-    target = np.broadcast_to(target, contact.width.shape)
+    target = broadcast(target, contact.width.shape)
     if profile.has_no_partial_slip:
         _reject_overload(amplitude, contact.full_slip, contact.limiting_force)
-        return _from(contact, np.zeros_like(target))
-    top = np.broadcast_to(normal.coordinate, target.shape)
+        return _from(contact, full(0.0, target))
+    top = broadcast(normal.coordinate, target.shape)
 
     def carried(width: Array) -> tuple[Array, Array]:
         """Return c (d - g(c)), and its logarithmic slope, `width` below the contact's edge."""
@@ -142,13 +143,13 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     width = invert(
         carried,
         target,
-        np.where(target > 0, (low + high) / 2, 1.0),
+        where(target > 0, (low + high) / 2, 1.0),
         low,
-        np.where(target > 0, high, 2.0),
+        where(target > 0, high, 2.0),
         f"{profile.kind}'s stick edge at a constant depth",
     )
     edge = top - width
-    radius = np.where(width > 0, profile.contact_radius(edge), normal.contact_radius)
+    radius = where(width > 0, profile.contact_radius(edge), normal.contact_radius)
     moved = edge, radius, profile.radius_width(top, width)
     return _from(contact, _step_of_force(contact, amplitude, radius), moved=moved)
 
@@ -210,7 +211,7 @@ def find(contact: TangentialContact, amplitude: Array) -> LimitingStick:
 def _step_of_force(contact: TangentialContact, force: Array, radius: Array) -> Array:
     """Return the step F_x/(2 mu E* c) at a stick radius c, zero for c = 0 [length]."""
     resistance = 2 * contact.friction_coefficient * contact.normal.e_star * radius
-    return np.where(resistance > 0, force / np.where(resistance > 0, resistance, 1.0), 0.0)
+    return where(resistance > 0, force / where(resistance > 0, resistance, 1.0), 0.0)
 
 
 def _from(
@@ -226,16 +227,16 @@ def _from(
     coordinate, radius, slip_width = moved or unworn
     normal = contact.normal
     # Without a normal load nothing wears.
-    loaded = np.asarray(normal.coordinate > normal.profile.first_coordinate)
+    loaded = normal.coordinate > normal.profile.first_coordinate
     # A flat punch either sticks or is in full slip.
     rests = (slip_width <= 0) | ~loaded
     parts = (
-        np.where(rests, normal.coordinate, coordinate),
-        np.where(rests, normal.contact_radius, radius),
-        np.where(rests, 0.0, step),
-        np.where(rests, 0.0, slip_width),
+        where(rests, normal.coordinate, coordinate),
+        where(rests, normal.contact_radius, radius),
+        where(rests, 0.0, step),
+        where(rests, 0.0, slip_width),
         separated & loaded,
         unbounded & loaded,
     )
-    spread = (np.broadcast_to(part, contact.width.shape) for part in parts)
+    spread = (broadcast(part, contact.width.shape) for part in parts)
     return LimitingStick(normal.profile, *spread)
