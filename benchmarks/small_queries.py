@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 RADII, LOAD_STEPS, POINTS, END = 1000, 10, 200, 1.25
-SECONDS, ROUNDS = 0.1, 5
+# Short rounds in turn: the speed of a virtual machine changes within a second.
+SECONDS, ROUNDS = 0.06, 15
 FRICTION, SHARE = 0.3, 0.6
 CLOSED = ("paraboloid", "cone", "flat_punch")
 AGAIN, FIRST = "the same table", "a new table"
