@@ -9,7 +9,7 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
     from functools import cached_property
 else:
 
-    class cached_property:  # noqa: N801
+    class cached_property:  # noqa: N801 -- the name in the standard library
         """`functools.cached_property` as of Python 3.12.
 
         That of Python 3.11 takes a lock, which costs a tenth of the time of a small query.

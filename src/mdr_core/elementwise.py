@@ -75,25 +75,22 @@ def piecewise(
 
 
 def piecewise_pair(
-    place: Any, start: Any, below: Callable[[Any], Any], beyond: Callable[[Any], Any]
+    place: Any,
+    start: Any,
+    below: Callable[[Any], tuple[Any, Any]],
+    beyond: Callable[[Any], tuple[Any, Any]],
 ) -> tuple[Any, Any]:
     """Return the two values of below(place) up to `start`, and those of beyond(place) from there.
 
     Parameters: see `piecewise`.
     """
-    if is_number(place) and is_number(start):
-        found = below(place) if place < start else beyond(place)
-    else:
-        first = place < start
-        if every(first):
-            found = below(place)
-        elif not some(first):
-            found = beyond(place)
-        else:
-            sides = below(np.minimum(place, start)), beyond(np.maximum(place, start))
-            found = [np.where(first, *values) for values in zip(*sides, strict=True)]
-    value, other = found
-    return value, other
+    first = place < start
+    if every(first):
+        return below(place)
+    if not some(first):
+        return beyond(place)
+    within, outside = below(np.minimum(place, start)), beyond(np.maximum(place, start))
+    return np.where(first, within[0], outside[0]), np.where(first, within[1], outside[1])
 
 
 def common_shape(*values: Any) -> tuple[int, ...]:

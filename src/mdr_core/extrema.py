@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
-from mdr_core.elementwise import full, is_number, some, where
+from mdr_core.elementwise import every, full, is_number, some, where
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
 
@@ -91,9 +91,7 @@ def largest_stress(
     if not some(unknown):
         return result
     if is_number(edge):
-        if slip is None and profile.falls_from_axis(edge):
-            return profile.axis_stress(edge, _RTOL)
-        return _search(profile, *(np.array([part]) for part in (edge, *(slip or ()))))[0]
+        return _largest(profile, edge, *(slip or ()))
     finite, result = np.atleast_1d(unknown), np.atleast_1d(result)
     parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
@@ -107,16 +105,17 @@ def largest_stress(
 
 
 def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
-    """The largest stress of contacts with one profile, where it is finite; shape (loads,)."""
-    at_axis = profile.falls_from_axis(edge)
-    if slip or not at_axis.any():
-        return _search(profile, edge, *slip)
-    if at_axis.all():
-        return profile.axis_stress(edge, _RTOL)
-    result = np.empty_like(edge)
-    result[at_axis] = profile.axis_stress(edge[at_axis], _RTOL)
-    result[~at_axis] = _search(profile, edge[~at_axis])
-    return result
+    """The largest stress of contacts with one profile, where it is finite; shape of `edge`."""
+    if not slip:
+        at_axis = profile.falls_from_axis(edge)
+        if every(at_axis):
+            return profile.axis_stress(edge, _RTOL)
+        if some(at_axis):
+            result = np.empty_like(edge)
+            result[at_axis] = profile.axis_stress(edge[at_axis], _RTOL)
+            result[~at_axis] = _search(profile, edge[~at_axis])
+            return result
+    return _search(profile, *map(np.atleast_1d, (edge, *slip))).reshape(edge.shape)[()]
 
 
 def _on_curve(profile: RoundedPunch, edge: Array) -> Array:

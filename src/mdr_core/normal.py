@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import validity
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import some, where
+from mdr_core.elementwise import broadcast, common_shape, some, where
 from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -223,19 +223,18 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
 
 def _over_cases(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
     """Load of every case of a sweep; shapes that do not agree are rejected."""
-    shapes = [
-        part.shape
-        for part in (e_star, *profile.parameters.values())
-        if isinstance(part, np.ndarray)
+    parts = [
+        part for part in (e_star, *profile.parameters.values()) if isinstance(part, np.ndarray)
     ]
-    if not shapes:
+    if not parts:
         return load
     try:
-        shape = np.broadcast_shapes(load.shape, *shapes)
+        shape = common_shape(load, *parts)
     except ValueError:
+        shapes = ", ".join(str(part.shape) for part in parts)
         raise InputError(
             ("load", name),
             f"the shape {load.shape} of the load does not agree with the shapes of the parameters, "
-            f"{', '.join(map(str, shapes))}",
+            f"{shapes}",
         ) from None
-    return load if shape == load.shape else np.broadcast_to(load, shape)
+    return broadcast(load, shape)

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from mdr_core.elementwise import full, number, some, where
+from mdr_core.elementwise import common_shape, full, number, some, where
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
@@ -60,7 +60,7 @@ def solve(
 def _in_blocks(name: str, profile: Profile, columns: tuple[Any, ...]) -> StickZone:
     """Results of `_by_load`, solved in blocks; a number that is that of every block stays one."""
     swept = {key: profile.parameters[key] for key in profile.swept}
-    shape = np.broadcast_shapes(*map(np.shape, (*swept.values(), *columns)))
+    shape = common_shape(*swept.values(), *columns)
 
     def flat(column: Any) -> Any:
         return np.broadcast_to(column, shape).reshape(-1) if np.ndim(column) else column

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import broadcast, common_shape, indices
+from mdr_core.elementwise import indices
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
@@ -172,8 +172,7 @@ def build(
             ("history", "tangential", tangential[0]),
             f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}",
         )
-    shape = common_shape(normal_points, tangential_points)
-    points = broadcast(normal_points, shape), broadcast(tangential_points, shape)
+    points = np.broadcast_arrays(normal_points, tangential_points)
     first, second = (_along(each, samples_per_step) for each in points)
     return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step)
 

@@ -162,12 +162,6 @@ class TippedCone(Profile):
 
         return piecewise_pair(coordinate, start, self._tip.force_and_slope, beyond)
 
-    def force_slope(self, coordinate: Array) -> Array:
-        rate = self._flank_rate
-        return self._split(
-            coordinate, self._tip.force_slope, lambda x, s: 2 * x * self._flank_slope(x, s) * rate
-        )
-
     def reduced_energy(self, coordinate: Array) -> Array:
         b, start, rate = self.tangent_radius, self.scale, self._flank_rate
 
