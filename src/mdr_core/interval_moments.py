@@ -59,14 +59,13 @@ class Moments(NamedTuple):
     def joined(self, upper: "Moments") -> "Moments":
         """Return the moments over each interval and its upper neighbour together."""
         span = self.span + upper.span
-        low = np.divide(self.span, span, where=span > 0, out=np.ones_like(span))
-        high = np.divide(upper.span, span, where=span > 0, out=np.zeros_like(span))
+        # Two plateaus have no length: the lower end is the common one.
+        plateau = span == 0
+        low, high = (self.span + plateau) / (span + plateau), upper.span / (span + plateau)
         a, b = self.weights, upper.weights
-        weights = [
-            a[0] + high * a[1] + high * high * (a[2] + b[0]),
-            low * a[1] + 2 * low * high * (a[2] + b[0]) + high * b[1],
-            low * low * (a[2] + b[0]) + low * b[1] + b[2],
-        ]
+        middle = a[2] + b[0]
+        left, right = a[1] + high * middle, low * middle + b[1]
+        weights = [a[0] + high * left, low * left + high * right, low * right + b[2]]
         return Moments(span, np.array(weights))
 
     def at(self, index: Indices | slice) -> "Moments":
@@ -126,21 +125,22 @@ class IntervalMoments:
         first = np.searchsorted(normal_at_breaks, low, side="right")
         last = np.searchsorted(normal_at_breaks, low + span, side="left")
         first, last = next_breaks(self.profile, breaks, ends, np.array([first, last]))
-        base = np.append(0.0, breaks)[first]
-        crossed = indices(last > first)
+        base, crossed = np.append(0.0, breaks)[first], indices(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
-        next_break = first[crossed]
-        stop[crossed] = breaks[next_break]
-        length[crossed] = np.maximum(normal_at_breaks[next_break] - low[crossed], 0.0)
-        found = self.over_smooth(low, length, np.array([start, stop]), base)
-        if not crossed.size:
-            return found
-        between = self._chained(found.at(crossed), next_break, last[crossed] - 1)
-        top = np.maximum(span[crossed] - between.span, 0.0)
-        base, at_base = breaks[last[crossed] - 1], normal_at_breaks[last[crossed] - 1]
-        upper = self.over_smooth(at_base, top, np.maximum([base, ends[1][crossed]], base), base)
-        found.weights[:, crossed] = between.joined(upper).weights
-        return Moments(span, found.weights)
+        low_break, high_break = first[crossed], last[crossed] - 1
+        bottom, top = normal_at_breaks[[low_break, high_break]]
+        stop[crossed] = breaks[low_break]
+        length[crossed] = np.maximum(bottom - low[crossed], 0.0)
+        rest = np.maximum(span[crossed] - length[crossed] - (top - bottom), 0.0)
+        # The parts above the highest break are further cases.
+        edge = breaks[high_break]
+        above = [edge, np.maximum(ends[1][crossed], edge)]
+        cases = np.append(low, top), np.append(length, rest), np.hstack([[start, stop], above])
+        found = self.over_smooth(*cases, np.append(base, edge))
+        lower, upper = found.at(slice(span.size)), found.at(slice(span.size, None))
+        between = self._chained(lower.at(crossed), low_break, high_break)
+        lower.weights[:, crossed] = between.joined(upper).weights
+        return Moments(span, lower.weights)
 
     def _by_break(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments for a profile with one break at most, or one in each case."""

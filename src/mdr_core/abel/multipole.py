@@ -25,7 +25,7 @@ FAR: Final = 0.5
 # the latter to |2 u - 1| >= 2 + sqrt(3), as far from it as possible.
 _POLE: Final = float(np.sqrt(FAR + FAR * FAR)) - FAR
 # Pairs of a block and a point that are processed at once: their arrays stay in cache.
-_PAIRS: Final = 4096
+_PAIRS: Final = 8192
 
 
 @lru_cache(maxsize=4)

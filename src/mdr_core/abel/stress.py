@@ -143,15 +143,16 @@ class StressPanels:
         """
         a, inner, _ = annulus
         width, c = (a, np.zeros(1)) if inner is None else inner[:2]
-        annuli = np.stack([np.ravel(part) for part in np.broadcast_arrays(a, c, width, *roots)])
-        if annuli.shape[1] == 1:
-            return self._over(_RadialEnds(*annuli[:, 0].tolist()), r, beyond)
+        ends = a, c, width, *roots
+        if all(end.size == 1 for end in ends):
+            return self._over(_RadialEnds(*(end.item() for end in ends)), r, beyond)
+        annuli = np.stack([np.ravel(end) for end in np.broadcast_arrays(*ends)])
         different, number = np.unique(annuli, axis=1, return_inverse=True)
         result = np.empty_like(r)
-        for i, ends in enumerate(different.T.tolist()):
+        for i, annulus_ends in enumerate(different.T.tolist()):
             points = np.flatnonzero(number == i)
             there = None if beyond is None else beyond[points]
-            result[points] = self._over(_RadialEnds(*ends), r[points], there)
+            result[points] = self._over(_RadialEnds(*annulus_ends), r[points], there)
         return result
 
     def _over(self, ends: _RadialEnds, radius: Array, beyond: Array | None) -> Array:
@@ -255,6 +256,10 @@ def _nonzero(rows: Array) -> Indices:
 def _panel_integral(rows: Array, length: float, above: Array, to_right: Array) -> Array:
     """Integral over one panel at ascending radii, in the far and the near field."""
     begin = int(np.searchsorted(-above, -FAR * length * length, side="right"))
-    every = np.repeat(rows[:, None], above.size - begin, axis=1)
-    parts = far(rows, length, above[:begin]), near(every, length, above[begin:], to_right[begin:])
-    return np.concatenate(parts)
+    total = np.empty_like(above)
+    if begin:
+        total[:begin] = far(rows, length, above[:begin])
+    if begin < above.size:
+        every = np.repeat(rows[:, None], above.size - begin, axis=1)
+        total[begin:] = near(every, length, above[begin:], to_right[begin:])
+    return total
