@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from mdr_core.cached import cached_property
+from mdr_core.elementwise import every
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Flags, Indices
 
@@ -258,18 +259,18 @@ class Subpanels:
         low, high, done = np.zeros_like(u), np.ones_like(u), ~positive
         terms = rows[panel]
         rises = terms * self._degrees
-        for _ in range(_STEPS):
-            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            for _ in range(_STEPS):
                 powers = _powers(u, rows.shape[1])
-                value = np.einsum("ij,ij->i", terms, powers)
-                step = np.log(goal / value) * value / np.einsum("ij,ij->i", rises, powers)
-                moved = u * np.exp(step)
-            low, high = np.where(value < goal, u, low), np.where(value < goal, high, u)
-            moved = np.where((moved >= low) & (moved <= high), moved, (low + high) / 2)
-            done |= np.abs(moved - u) <= _LAST_STEP * u
-            u = moved
-            if done.all():
-                break
+                value = np.vecdot(terms, powers)
+                moved = u * np.exp(np.log(goal / value) * value / np.vecdot(rises, powers))
+                below = value < goal
+                low, high = np.where(below, u, low), np.where(below, high, u)
+                moved = np.where((moved >= low) & (moved <= high), moved, (low + high) / 2)
+                done |= np.abs(moved - u) <= _LAST_STEP * u
+                u = moved
+                if every(done):
+                    break
         return panel, np.where(positive, u, 0.0 * above) * self.length[panel]
 
 
@@ -279,7 +280,7 @@ def _sum(rows: Array, panel: Indices, u: Array, factors: Array | None = None) ->
         blocks = [slice(i, i + _BLOCK) for i in range(0, u.size, _BLOCK)]
         return np.concatenate([_sum(rows, panel[part], u[part], factors) for part in blocks])
     terms = rows[panel] if factors is None else rows[panel] * factors
-    return np.asarray(np.einsum("ij,ij->i", terms, _powers(u, terms.shape[1])))
+    return np.asarray(np.vecdot(terms, _powers(u, terms.shape[1])))
 
 
 def _powers(u: Array, count: int) -> Array:
