@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.subpanels import fit_points
+from mdr_core.cached import cached_property
 from mdr_core.typing import Array, Indices
 
 # Least distance of a block from the points in its far field, over its length, both in x^2.
@@ -99,18 +100,25 @@ class Multipoles:
         place : points, ascending [length], shape (m,).
         first, last : of blocks that are not of the panels first <= i < last the range is empty.
         """
-        other = (self.first < first) | (self.last > last)
-        bound = self.edge * self.edge
+        index = place.searchsorted(self._reach, side="left" if self.above else "right")
+        own = index[:-1]
+        own[(self.first < first) | (self.last > last)] = place.size if self.above else 0
+        of_parent = index[self.parent]
         if self.above:
-            index = np.searchsorted(place, np.sqrt(bound + FAR * self.length))
-            index[other] = place.size
-            index = np.append(index, place.size)
-            return index[:-1], np.maximum(index[self.parent], index[:-1])
-        bound -= FAR * self.length
-        index = np.searchsorted(place, np.sqrt(np.maximum(bound, 0.0)), side="right")
-        index[other | (bound < 0)] = 0
-        index = np.append(index, 0)
-        return np.minimum(index[self.parent], index[:-1]), index[:-1]
+            return own, np.maximum(of_parent, own)
+        return np.minimum(of_parent, own), own
+
+    @cached_property
+    def _reach(self) -> Array:
+        """Place from which, or up to which, points are far from each block [length].
+
+        No point is far from a block next to the axis, nor from a parent that does not exist, the
+        last one.
+        """
+        if self.above:
+            return np.append(np.sqrt(self.edge * self.edge + FAR * self.length), np.inf)
+        square = np.append(self.edge * self.edge - FAR * self.length, -1.0)
+        return np.where(square < 0, -1.0, np.sqrt(np.maximum(square, 0.0)))
 
     def sums(self, base: Array, offset: Array | None, low: Indices, high: Indices) -> Array:
         """Return the sums over all blocks at the points of each block's range, shape (m,).
@@ -141,7 +149,7 @@ def pairs(low: Indices, high: Indices) -> Iterator[tuple[slice, Indices, Indices
 
     Each portion is a slice of blocks, the number of points of each, and the points (pairs,).
     """
-    ends = np.cumsum(high - low)
+    ends = (high - low).cumsum()
     shift = high - ends
     total = int(ends[-1]) if ends.size else 0
     starts = np.arange(0, total, _PAIRS)

@@ -56,13 +56,12 @@ def near(rows: Array, length: Array | float, above: Array, to_right: Array) -> A
     for n in range(len(c) - 4, -1, -2):
         np.multiply(k, c[n + 2 : n + 4], out=step)
         c[n : n + 2] -= step
-    with np.errstate(divide="ignore", invalid="ignore"):
-        arc = np.where(t < _SMALL, np.arctanh(np.minimum(t, _SMALL)), np.log1p(t) - np.log(root))
-        # At the left end itself the integral is infinite only if the weight is not zero.
-        arc = np.where(c[0] == 0, 0.0, c[0] * arc)
-        return np.asarray(
-            arc + c[1] * np.where(k > 0, 1 / (t + root), t) + t * (_OF_ROOT[: len(c)] @ c)
-        )
+    arc = np.where(t < _SMALL, np.arctanh(np.minimum(t, _SMALL)), np.log1p(t) - np.log(root))
+    # At the left end itself the integral is infinite only if the weight is not zero.
+    arc = np.where(c[0] == 0, 0.0, c[0] * arc)
+    return np.asarray(
+        arc + c[1] * np.where(k > 0, 1 / (t + root), t) + t * (_OF_ROOT[: len(c)] @ c)
+    )
 
 
 def far(rows: Array, length: float, above: Array, start: float = 0.0, part: float = 1.0) -> Array:

@@ -164,9 +164,11 @@ class StressPanels:
             r = np.maximum(r, _AXIS * min(self.length[0], a))
         last = min(int(np.searchsorted(self.edges[1:], a)), self.length.size - 1)
         first = max(int(np.searchsorted(self.edges, c)), int(ends.inner_root > 0))
-        total = self._whole(first, last, r) if first < last else np.zeros_like(r)
-        for panel in {last, first - 1} - {-1}:
-            total += self._cut(panel, ends, r, s)
+        # Next to an edge of a panel its integral may be infinite.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            total = self._whole(first, last, r) if first < last else np.zeros_like(r)
+            for panel in {last, first - 1} - {-1}:
+                total += self._cut(panel, ends, r, s)
         result = np.empty_like(r)
         result[order] = total
         return result
