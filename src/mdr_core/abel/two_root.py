@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
-from mdr_core.elementwise import some, where
+from mdr_core.elementwise import indices, some, where
 from mdr_core.quadrature import DEFAULT, Analytic, integrate
 from mdr_core.typing import Array, Chosen, Parameter
 
@@ -135,10 +135,16 @@ def two_root_integral(
     else:
         signed2, on_break = -beyond * beyond, beyond == 0
         edge2 = (upper - beyond) * (upper + beyond)
-    any_on_break = some(on_break)
+    base2, infinite, any_on_break = b * b, None, some(on_break)
     if any_on_break:
-        # A radius on the break takes the rule of one just above it.
+        # Infinite where F ~ 1/s and the annulus begins at the break.
+        begins = True if inner is None else (width >= upper) | (lower <= 0)
+        index = indices(on_break & begins)
+        pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)), index)[0] != 0
+        infinite = index[pole]
+        # Any other radius on the break takes the rule of one just above it.
         signed2 = np.where(on_break, -np.square(_NEXT_TO_BREAK * np.minimum(least, b)), signed2)
+        signed2[infinite] = base2
     above = signed2 < 0
     epsilon = np.sqrt(np.abs(signed2))
     if inner is None:
@@ -153,7 +159,7 @@ def two_root_integral(
         roots = np.sqrt(edge2) * np.where(root > 0, lower, epsilon) + root * upper
         length = np.arcsinh(gap2 / np.maximum(roots, _TINY))
         start = np.arcsinh(np.minimum(root, lower) / epsilon)
-    shift, base2 = np.maximum(-signed2, 0.0), b * b
+    shift = np.maximum(-signed2, 0.0)
 
     def h(y: Array, index: Chosen) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
@@ -165,10 +171,6 @@ def two_root_integral(
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
     result = integrate(h, length, rtol, start, even=odd or above, analytic=analytic)
-    if any_on_break:
-        # Infinite where F ~ 1/s and the annulus begins at the break.
-        begins = True if inner is None else (width >= upper) | (lower <= 0)
-        index = np.flatnonzero(on_break & begins)
-        pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)), index)[0] != 0
-        result[index[pole]] = np.inf
+    if infinite is not None:
+        result[infinite] = np.inf
     return result

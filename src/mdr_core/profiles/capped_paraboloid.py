@@ -11,7 +11,7 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.power_moments import root_step
 from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import where
+from mdr_core.elementwise import every, some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral
@@ -211,8 +211,10 @@ class CappedParaboloid(Profile):
             beyond = InnerEnd(where(past, inner.width / self._ratio, s), inner.radius)
         total = root_step(self.radial(annulus), radius)
         total *= 2 / (pi * self.tip_radius)
-        flank = np.full(radius.shape, s > 0)
-        if flank.any():
-            annulus = Annulus(s, beyond, edge).at(flank)
-            total[flank] += self._flank.pressure_kernel(annulus, radius[flank], rtol)
+        annulus, flank = Annulus(s, beyond, edge), s > 0
+        if every(flank):
+            total += self._flank.pressure_kernel(annulus, radius, rtol)
+        elif some(flank):
+            at = annulus.at(flank), radius[flank]
+            total[flank] += self._flank.pressure_kernel(*at, rtol)
         return total

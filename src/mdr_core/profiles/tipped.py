@@ -12,7 +12,7 @@ from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import number, piecewise, piecewise_pair, some, where
+from mdr_core.elementwise import every, number, piecewise, piecewise_pair, some, where
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.profiles.powers import Paraboloid
@@ -197,8 +197,7 @@ class TippedCone(Profile):
         """Parts of the tip, from max(r, c) to b, and of the flank. Parameters: see `Profile`."""
         annulus, b = self.radial(annulus), float(self.tangent_radius)
         a, inner, _ = annulus
-        total, tip, ends = np.zeros(radius.shape), radius < b, None
-        flank = np.full(radius.shape, a > b)
+        total, tip, ends, flank = np.zeros(radius.shape), radius < b, None, a > b
         if inner is not None:
             # A narrow annulus that ends on b lies in the tip, even if rounding moves c onto b.
             tip &= (inner.radius < b) | ~flank
@@ -209,7 +208,9 @@ class TippedCone(Profile):
                 part = where(width < b / 2, width - (a - top), top - c)
                 ends = InnerEnd(np.maximum(part, 0.0), np.minimum(c, b))
             total[tip] = self._tip_kernel(Annulus(top, ends).at(tip), radius[tip], rtol)
-        if some(flank):
+        if every(flank):
+            total += self._flank_kernel(annulus, b, radius, rtol)
+        elif some(flank):
             total[flank] += self._flank_kernel(annulus.at(flank), b, radius[flank], rtol)
         return total
 
