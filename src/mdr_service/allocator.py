@@ -3,13 +3,11 @@
 import ctypes
 from typing import Final
 
-# Parameters of mallopt in glibc's malloc.h.
-_TRIM_THRESHOLD: Final = -1
-_MMAP_THRESHOLD: Final = -3
-# The largest threshold that glibc adapts itself to, and the trim threshold that it then sets
-# [bytes]. Source: man 3 mallopt.
+# Numbers of M_TRIM_THRESHOLD and M_MMAP_THRESHOLD. Source: glibc's malloc.h.
+_TRIM, _MMAP = -1, -3
+# The largest size from which arrays are mapped that glibc adapts itself to [bytes]; it then trims
+# the heap at twice that. Source: man 3 mallopt.
 _LARGEST: Final = 32 * 2**20
-_TRIM: Final = 2 * _LARGEST
 
 
 def keep_freed_memory() -> None:
@@ -21,5 +19,5 @@ def keep_freed_memory() -> None:
     """
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt:
-        mallopt(_MMAP_THRESHOLD, _LARGEST)
-        mallopt(_TRIM_THRESHOLD, _TRIM)
+        mallopt(_MMAP, _LARGEST)
+        mallopt(_TRIM, 2 * _LARGEST)
