@@ -10,7 +10,7 @@ from contextlib import asynccontextmanager
 from fastapi import FastAPI
 
 from mdr_core import __version__
-from mdr_service import allocator, health, middleware, openapi
+from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, queries
 from mdr_service.settings import SETTINGS
 from mdr_service.transfers import Transfers
@@ -19,7 +19,6 @@ from mdr_service.workers import WorkerPool
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    allocator.keep_freed_memory()
     if supervisor := multiprocessing.parent_process():
         # A terminal signals all processes; the supervisor then ends the workers.
         signal.signal(signal.SIGHUP, signal.SIG_IGN)

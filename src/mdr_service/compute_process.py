@@ -21,7 +21,7 @@ from typing import Any, Final, Self, TypeVar, cast
 from anyio import CancelScope
 
 from mdr_core.errors import DefectError
-from mdr_service import allocator, problems
+from mdr_service import problems
 from mdr_service.problems import ServiceError
 
 _Result = TypeVar("_Result")
@@ -149,7 +149,6 @@ def serve() -> None:
     for each in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.SIG_IGN)
     os.nice(_NICENESS)
-    allocator.keep_freed_memory()
     threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     calls, outcomes = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     # The pipe is for outcomes alone: printed text goes to standard error.
