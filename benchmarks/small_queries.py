@@ -34,8 +34,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 RADII, LOAD_STEPS, POINTS, END = 1000, 10, 200, 1.25
-# Short rounds in turn: the speed of a virtual machine changes within a second.
-SECONDS, ROUNDS = 0.06, 15
+# Short rounds in turn: the speed of a virtual machine changes within a second. After a pause the
+# first requests take up to twice as long, on either server, and a query that runs more code takes
+# longer to recover.
+SECONDS, WARM_UP = 0.1, 0.05
+# Rounds with one connection, and with several.
+ROUNDS, CROWDED_ROUNDS = 13, 5
 FRICTION, SHARE = 0.3, 0.6
 CLOSED = ("paraboloid", "cone", "flat_punch")
 AGAIN, FIRST = "the same table", "a new table"
@@ -126,19 +130,21 @@ def rows(chosen: list[str] | None = None) -> list[measure.Row]:
 
 
 def _rounds(
-    texts: Iterator[str], targets: tuple[str, str], connections: int
+    texts: Iterator[str], targets: tuple[str, str], connections: int, count: int
 ) -> Iterator[tuple[float, float]]:
     for target in targets:
         wire_ratio.check(target, next(texts))
-        wire_ratio.rate(target, texts, SECONDS, connections)
-    for _ in range(ROUNDS):
-        ours, theirs = (wire_ratio.rate(target, texts, SECONDS, connections) for target in targets)
+    for _ in range(count):
+        ours, theirs = (
+            wire_ratio.rate(target, texts, SECONDS, connections, WARM_UP) for target in targets
+        )
         yield ours, theirs
 
 
 def _row(kind: str, query: str, targets: tuple[str, str]) -> measure.Row:
     texts = bodies(kind, query)
-    rounds, crowded = (list(_rounds(texts, targets, n)) for n in (1, wire_ratio.CONNECTIONS))
+    rounds = list(_rounds(texts, targets, 1, ROUNDS))
+    crowded = list(_rounds(texts, targets, wire_ratio.CONNECTIONS, CROWDED_ROUNDS))
     target = TARGETS[query][2 if kind == AGAIN else 0 if kind in CLOSED else 1]
     rates = " / ".join(f"{median(column):.0f}" for column in zip(*rounds, strict=True))
     other = "the wire alone" if query == "stress" else "bare FastAPI endpoint"

@@ -143,29 +143,37 @@ def load_generator(body: str) -> Iterator[Load]:
 
 
 def rate(
-    target: str, bodies: Iterator[str], seconds: float, connections: int = CONNECTIONS
+    target: str,
+    bodies: Iterator[str],
+    seconds: float,
+    connections: int = CONNECTIONS,
+    warm_up: float = 0.0,
 ) -> float:
-    """Requests per second of a client in this process that sends the bodies in turn."""
-    return asyncio.run(_drive(target, bodies, seconds, connections))
+    """Requests per second of a client in this process that sends the bodies in turn.
+
+    Each connection first sends requests for `warm_up` seconds, which do not count.
+    """
+    return asyncio.run(_drive(target, bodies, seconds, connections, warm_up))
 
 
-async def _drive(target: str, bodies: Iterator[str], seconds: float, connections: int) -> float:
-    start = time.perf_counter()
-    end = start + seconds
-    counts = await asyncio.gather(*(_send(target, bodies, end) for _ in range(connections)))
-    return sum(counts) / (time.perf_counter() - start)
+async def _drive(
+    target: str, bodies: Iterator[str], seconds: float, connections: int, warm_up: float
+) -> float:
+    sent = (_send(target, bodies, seconds, warm_up) for _ in range(connections))
+    return sum(await asyncio.gather(*sent))
 
 
-async def _send(target: str, bodies: Iterator[str], end: float) -> int:
+async def _send(target: str, bodies: Iterator[str], seconds: float, warm_up: float) -> float:
     port, _ = target.split("/", 1)
     reader, writer = await asyncio.open_connection(HOST, int(port))
-    count = 0
-    while time.perf_counter() < end:
-        writer.write(_request(target, next(bodies))[1])
-        head = await reader.readuntil(b"\r\n\r\n")
-        length = head.lower().split(b"content-length:", 1)[1].split(b"\r\n", 1)[0]
-        await reader.readexactly(int(length))
-        count += 1
+    for duration in (warm_up, seconds):
+        count, start = 0, time.perf_counter()
+        while (now := time.perf_counter()) < start + duration:
+            writer.write(_request(target, next(bodies))[1])
+            head = await reader.readuntil(b"\r\n\r\n")
+            length = head.lower().split(b"content-length:", 1)[1].split(b"\r\n", 1)[0]
+            await reader.readexactly(int(length))
+            count += 1
     writer.close()
     await writer.wait_closed()
-    return count
+    return count / (now - start)
