@@ -35,8 +35,7 @@ if TYPE_CHECKING:
 
 RADII, LOAD_STEPS, POINTS, END = 1000, 10, 200, 1.25
 # Short rounds in turn: the speed of a virtual machine changes within a second. After a pause the
-# first requests take up to twice as long, on either server, and a query that runs more code takes
-# longer to recover.
+# first requests take up to twice as long, on either server, and longer if they run more code.
 SECONDS, WARM_UP = 0.1, 0.05
 # Rounds with one connection, and with several.
 ROUNDS, CROWDED_ROUNDS = 13, 5
@@ -112,49 +111,69 @@ def requests(kind: str) -> dict[str, dict[str, Any]]:
 
 
 def rows(chosen: list[str] | None = None) -> list[measure.Row]:
-    """The ratios of every query and kind."""
-    found = []
+    """The ratios of every query and kind.
+
+    Each round asks all of them, so that a slow phase of the machine moves a few rounds of every
+    row and not all rounds of a few rows.
+    """
+    cases = [Case(kind, query) for kind in chosen or kinds() for query in TARGETS]
     with ExitStack() as stack:
         service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
         ours, theirs = (
             stack.enter_context(wire_ratio.server(command)) for command in (service, bare)
         )
-        for kind in chosen or kinds():
-            for query in TARGETS:
-                path = query.replace("cycle", "tangential/history")
-                other = "stress" if query == "stress" else "small"
-                targets = f"{ours}/v1/{path}", f"{theirs}/{other}"
-                found.append(_row(kind, query, targets))
-    return found
+        for case in cases:
+            case.begin(ours, theirs)
+        for number in range(ROUNDS):
+            for case in cases:
+                case.measure(number < CROWDED_ROUNDS)
+    return [case.row() for case in cases]
 
 
-def _rounds(
-    texts: Iterator[str], targets: tuple[str, str], connections: int, count: int
-) -> Iterator[tuple[float, float]]:
-    for target in targets:
-        wire_ratio.check(target, next(texts))
-    for _ in range(count):
+class Case:
+    """Rates of one query of one kind, by rounds."""
+
+    def __init__(self, kind: str, query: str) -> None:
+        self.kind, self.query, self.texts = kind, query, bodies(kind, query)
+        self.rounds: list[tuple[float, float]] = []
+        self.crowded: list[tuple[float, float]] = []
+
+    def begin(self, ours: int, theirs: int) -> None:
+        """Raise unless both servers respond."""
+        path = self.query.replace("cycle", "tangential/history")
+        other = "stress" if self.query == "stress" else "small"
+        self.targets = f"{ours}/v1/{path}", f"{theirs}/{other}"
+        for target in self.targets:
+            wire_ratio.check(target, next(self.texts))
+
+    def measure(self, crowded: bool) -> None:
+        """Measure one round, with several connections as well if it is `crowded`."""
+        self.rounds.append(self._rates(1))
+        if crowded:
+            self.crowded.append(self._rates(wire_ratio.CONNECTIONS))
+
+    def _rates(self, connections: int) -> tuple[float, float]:
         ours, theirs = (
-            wire_ratio.rate(target, texts, SECONDS, connections, WARM_UP) for target in targets
+            wire_ratio.rate(target, self.texts, SECONDS, connections, WARM_UP)
+            for target in self.targets
         )
-        yield ours, theirs
+        return ours, theirs
 
-
-def _row(kind: str, query: str, targets: tuple[str, str]) -> measure.Row:
-    texts = bodies(kind, query)
-    rounds = list(_rounds(texts, targets, 1, ROUNDS))
-    crowded = list(_rounds(texts, targets, wire_ratio.CONNECTIONS, CROWDED_ROUNDS))
-    target = TARGETS[query][2 if kind == AGAIN else 0 if kind in CLOSED else 1]
-    rates = " / ".join(f"{median(column):.0f}" for column in zip(*rounds, strict=True))
-    other = "the wire alone" if query == "stress" else "bare FastAPI endpoint"
-    return measure.Row(
-        f"/v1/{query}, {kind} / {other}",
-        "asyncio client",
-        *measure.spread(rounds),
-        "" if kind == FIRST else f">= {target}",
-        f"{rates} requests/s; {wire_ratio.CONNECTIONS} at once {measure.spread(crowded)[0]:.3f}",
-    )
+    def row(self) -> measure.Row:
+        """The row of the table."""
+        kind, query = self.kind, self.query
+        target = TARGETS[query][2 if kind == AGAIN else 0 if kind in CLOSED else 1]
+        rates = " / ".join(f"{median(column):.0f}" for column in zip(*self.rounds, strict=True))
+        crowded = measure.spread(self.crowded)[0]
+        other = "the wire alone" if query == "stress" else "bare FastAPI endpoint"
+        return measure.Row(
+            f"/v1/{query}, {kind} / {other}",
+            "asyncio client",
+            *measure.spread(self.rounds),
+            "" if kind == FIRST else f">= {target}",
+            f"{rates} requests/s; {wire_ratio.CONNECTIONS} at once {crowded:.3f}",
+        )
 
 
 if __name__ == "__main__":
