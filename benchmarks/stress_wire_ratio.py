@@ -1,7 +1,8 @@
 """Requests per second of `/v1/stress` with many radii against a bare endpoint.
 
-The bare endpoint validates the same body with the same model and serialises the two precomputed
-arrays of the result with the same library. Servers and load are those of `wire_ratio`.
+The bare endpoint validates the same body with the same model and serialises arrays of the same size
+with the same library: the radii of the request, and two precomputed fields. Servers and load are
+those of `wire_ratio`.
 """
 
 from __future__ import annotations
