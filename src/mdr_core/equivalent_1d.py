@@ -222,7 +222,7 @@ def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
     """
     scale = number(1.0) * profile.scale
     with np.errstate(all="ignore"):
-        at_scale, slope = load_and_slope(profile, of_force=of_force)(scale)
+        at_scale, slope = profile.force_at_scale if of_force else profile.depth_at_scale
         height = np.log(target / at_scale)
         if not profile.similar:
             start = scale * np.exp(height * (at_scale / (scale * slope)))

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.subpanels import fit_points
+from mdr_core.abel.interpolation import fit_points
 from mdr_core.cached import cached_property
 from mdr_core.typing import Array, Indices
 

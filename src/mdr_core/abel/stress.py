@@ -11,9 +11,10 @@ from numpy.polynomial import polynomial
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch, Kernel
+from mdr_core.abel.interpolation import fit_points, fitted
 from mdr_core.abel.multipole import FAR, Multipoles, add, multipoles, pairs, panel_sums
 from mdr_core.abel.panel_moments import far, near, scaled
-from mdr_core.abel.subpanels import LONGEST, fit_points, fitted
+from mdr_core.abel.subpanels import LONGEST
 from mdr_core.cached import cached_property
 from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.typing import Array, Chosen, Indices

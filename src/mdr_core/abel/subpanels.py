@@ -7,12 +7,11 @@ Source: notes, §5.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
+from mdr_core.abel.interpolation import fit_points
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import every
 from mdr_core.quadrature import gauss_legendre
@@ -26,8 +25,6 @@ LONGEST: Final = 1.2
 FEW: Final = 12
 # Gauss nodes in a subpanel where the root lies as near as that: they leave 4.3^-32.
 _AXIS_NODES: Final = 16
-# Rounding errors of a Chebyshev coefficient, over the largest value.
-_ROUNDING: Final = 4 * float(np.finfo(float).eps)
 # Newton's method in log u converges quadratically: a step this short is the last one.
 _LAST_STEP: Final = 1e-9
 # Maximum number of steps: bisection alone needs no more.
@@ -38,40 +35,6 @@ _DIP: Final = 1e-12
 _BISECTIONS: Final = 48
 # Points evaluated at once: their arrays stay in cache.
 _BLOCK: Final = 2048
-
-
-@lru_cache(maxsize=8)
-def fit_points(count: int) -> tuple[Array, Array, Array]:
-    """Return points in [0, 1], and the matrices to Chebyshev coefficients and on to powers of u.
-
-    Each row of the last matrix holds the powers of u in one Chebyshev polynomial.
-    """
-    x = np.asarray(chebyshev.chebpts1(count), dtype=float)
-    to_chebyshev = np.linalg.inv(chebyshev.chebvander(x, count - 1))
-    powers = np.zeros((count, count))
-    for degree in range(count):
-        # T_n(2u - 1) = T_2n(sqrt(u)).
-        powers[degree, : degree + 1] = chebyshev.cheb2poly(np.eye(2 * degree + 1)[-1])[::2]
-    return (1 + x) / 2, to_chebyshev, powers
-
-
-def fitted(values: Array) -> Array:
-    """Return the coefficients of the powers of u of polynomials through values (m, count).
-
-    Coefficients of Chebyshev polynomials within rounding are left out from the last: as powers they
-    would grow.
-
-    Examples
-    --------
-    >>> points, _, _ = fit_points(3)
-    >>> (fitted(2 * points**2 - points).round(12) + 0.0).tolist()
-    [0.0, -1.0, 2.0]
-    """
-    _, to_chebyshev, powers = fit_points(values.shape[-1])
-    coefficients = values @ to_chebyshev.T
-    real = np.abs(coefficients) > _ROUNDING * np.abs(values).max(axis=-1, keepdims=True)
-    needed = np.logical_or.accumulate(real[..., ::-1], axis=-1)[..., ::-1]
-    return np.asarray(np.where(needed, coefficients, 0.0) @ powers)
 
 
 class Dips(NamedTuple):

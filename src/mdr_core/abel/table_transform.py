@@ -6,8 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.abel.interpolation import fit_points, fitted
 from mdr_core.abel.piecewise_quadratic import PiecewiseQuadratic, slope_source
-from mdr_core.abel.subpanels import FEW, LONGEST, Subpanels, fit_points, fitted
+from mdr_core.abel.subpanels import FEW, LONGEST, Subpanels
 from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.typing import Array
 

@@ -11,14 +11,16 @@ Source: notes, §5.
 """
 
 from collections.abc import Callable
-from typing import Final
+from math import inf
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
-from mdr_core.elementwise import indices, some, where
+from mdr_core.abel.interpolation import Interpolation
+from mdr_core.elementwise import every, indices, is_number, number, some, where
 from mdr_core.quadrature import DEFAULT, Analytic, integrate
-from mdr_core.typing import Array, Chosen, Parameter
+from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 
 # weight(x, s, index) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b. x and s have
 # shape (nodes, k); index (k,) selects their integrals.
@@ -28,8 +30,48 @@ _TINY: Final = float(np.finfo(float).tiny)
 # Root of |r^2 - b^2| of a radius on the break, over b and the least s of the annulus: its square is
 # rounding error.
 _NEXT_TO_BREAK: Final = 1e-8
+# Longest interval whose integral is interpolated: few points lie nearer to a root.
+_LONGEST: Final = 4.6
 # Rounding error of a difference of contact coordinates.
 _ROUNDING: Final = 4 * float(np.finfo(float).eps)
+
+
+class _Ends(NamedTuple):
+    """Ends of annuli m <= x <= a, m = max(b, c), each a number or an array (m,)."""
+
+    upper: Array
+    """sqrt(a^2 - b^2) [length]."""
+    lower: Array
+    """sqrt(m^2 - b^2) [length]."""
+    gap2: Array
+    """a^2 - m^2 [length^2]."""
+    begin: Array
+    """m [length]."""
+    at_break: Flags | bool
+    """True if m = b up to rounding."""
+    root_c: Array | None
+    """`lower` as accurate as c where c is given; None if there is no c."""
+
+
+class _Distances(NamedTuple):
+    """Differences of squares between points r and the ends of their annuli, each (m,)."""
+
+    break2: Array
+    """b^2 - r^2 [length^2]."""
+    outer2: Array
+    """a^2 - r^2 [length^2]."""
+    root: Array | None
+    """sqrt(c^2 - r^2), zero for r >= c; None if there is no c [length]."""
+
+    def at(self, chosen: Indices) -> "_Distances":
+        """Those of the chosen points."""
+        root = None if self.root is None else self.root[chosen]
+        return _Distances(self.break2[chosen], self.outer2[chosen], root)
+
+
+# Integrals of points with b^2 - r^2, from the start of the interval of y, None for zero, and its
+# length.
+_Integrals = Callable[[Array, Array | None, Array], Array]
 
 
 def inverse_hypot(x: Array, b: Parameter) -> Array:
@@ -80,6 +122,7 @@ def two_root_integral(
     rtol: float,
     analytic: Analytic = DEFAULT,
     beyond: Array | None = None,
+    many: float = inf,
 ) -> Array:
     """Return the integrals of F(x)/sqrt(x^2 - r^2) over x from max(r, b, c) to a.
 
@@ -98,6 +141,7 @@ def two_root_integral(
     analytic : strip in which the integrand is analytic in y, and its growth.
     beyond : sqrt(r^2 - b^2), if all radii lie beyond the break and it has more digits [length].
         The inner end then has its coordinate.
+    many : number of ascending points from which interpolation between few of them takes less time.
 
     Returns
     -------
@@ -113,64 +157,147 @@ def two_root_integral(
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
-    upper, inner, edge = annulus
-    upper2, least, start = upper * upper, upper, None
-    if inner is not None:
-        width, c = inner.width, np.maximum(inner.radius, b)
-        lower = upper - width
-        if inner.coordinate is None:
-            # Next to the break a given radius is accurate, but one from a load no more than
-            # b^2/lower: the difference is as accurate as upper.
-            error = _ROUNDING * upper
-            root_c = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
-        else:
-            root_c = inner.coordinate
-        # In a narrow annulus its width is accurate.
-        lower = where(width > upper / 2, root_c, lower)
-        least = where(lower > 0, lower, upper)
-    if beyond is None:
-        signed2, on_break = (b - r) * (b + r), r == b
-        # a^2 - r^2, from the radius where that is exact.
-        edge2 = np.maximum(upper2 + signed2, 0.0) if edge is None else (edge - r) * (edge + r)
-    else:
-        signed2, on_break = -beyond * beyond, beyond == 0
-        edge2 = (upper - beyond) * (upper + beyond)
-    base2, infinite, any_on_break = b * b, None, some(on_break)
-    if any_on_break:
+    ends = _ends(b, annulus)
+    distances, on_break = _distances(b, r, beyond, ends, annulus)
+    infinite = None
+    if some(on_break):
         # Infinite where F ~ 1/s and the annulus begins at the break.
-        begins = True if inner is None else (width >= upper) | (lower <= 0)
-        index = indices(on_break & begins)
+        index = indices(on_break & ends.at_break)
         pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)), index)[0] != 0
         infinite = index[pole]
-        # Any other radius on the break takes the rule of one just above it.
-        signed2 = np.where(on_break, -np.square(_NEXT_TO_BREAK * np.minimum(least, b)), signed2)
-        signed2[infinite] = base2
-    above = signed2 < 0
-    epsilon = np.sqrt(np.abs(signed2))
-    if inner is None:
-        length = np.arcsinh(np.sqrt(np.minimum(edge2, upper2)) / epsilon)
+        # Their integrals, which are not used, are short there.
+        distances.break2[infinite] = -b * b
+
+    def integrals(break2: Array, start: Array | None, length: Array) -> Array:
+        above, shift = break2 < 0, np.maximum(-break2, 0.0)
+        epsilon = np.sqrt(np.abs(break2))
+
+        def h(y: Array, index: Chosen) -> Array:
+            # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
+            s = np.sinh(y, out=y)
+            s *= epsilon[index]
+            s *= s
+            s += shift[index]
+            x = s + b * b
+            return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
+
+        return integrate(h, length, rtol, start, even=odd or above, analytic=analytic)
+
+    single = is_number(ends.upper) and is_number(ends.gap2)
+    if r.size >= many and single and beyond is None and every(r[1:] >= r[:-1]):
+        split = int(r.searchsorted(ends.begin))
+        result = _interpolated(distances, split, ends, integrals, (rtol, analytic.growth))
     else:
-        # Zero at c itself.
-        root = inverse_hypot(c, r) if beyond is None else inverse_hypot(root_c, beyond)
-        if any_on_break:
-            root = np.where(on_break, lower, root)
-        # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
-        gap2 = np.minimum(edge2, width * (upper + lower))
-        roots = np.sqrt(edge2) * np.where(root > 0, lower, epsilon) + root * upper
-        length = np.arcsinh(gap2 / np.maximum(roots, _TINY))
-        start = np.arcsinh(np.minimum(root, lower) / epsilon)
-    shift = np.maximum(-signed2, 0.0)
-
-    def h(y: Array, index: Chosen) -> Array:
-        # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
-        s = np.sinh(y, out=y)
-        s *= epsilon[index]
-        s *= s
-        s += shift[index]
-        x = s + base2
-        return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
-
-    result = integrate(h, length, rtol, start, even=odd or above, analytic=analytic)
+        result = integrals(distances.break2, *_interval(distances, ends))
     if infinite is not None:
         result[infinite] = np.inf
+    return result
+
+
+def _ends(b: float, annulus: Annulus) -> _Ends:
+    """Ends of annuli, in the forms that are free of cancellation."""
+    upper, inner, _ = annulus
+    if inner is None:
+        return _Ends(upper, number(0.0), upper * upper, number(b), at_break=True, root_c=None)
+    width, c = inner.width, np.maximum(inner.radius, b)
+    lower = upper - width
+    if inner.coordinate is None:
+        # Next to the break a given radius is accurate, but one from a load no more than b^2/lower:
+        # the difference is as accurate as upper.
+        error = _ROUNDING * upper
+        root_c = np.minimum(np.maximum(inverse_hypot(c, b), lower - error), lower + error)
+    else:
+        root_c = inner.coordinate
+    # In a narrow annulus its width is accurate.
+    lower = where(width > upper / 2, root_c, lower)
+    at_break = (width >= upper) | (lower <= 0)
+    return _Ends(upper, lower, width * (upper + lower), c, at_break, root_c)
+
+
+def _distances(
+    b: float, r: Array, beyond: Array | None, ends: _Ends, annulus: Annulus
+) -> tuple[_Distances, Flags]:
+    """Distances of the points, and whether they lie on the break.
+
+    Points on the break take the rule of one just above it.
+    """
+    upper, edge, root = ends.upper, annulus.outer_radius, None
+    if beyond is None:
+        break2, on_break = (b - r) * (b + r), r == b
+        # a^2 - r^2, from the radius where that is exact.
+        outer2 = (
+            np.maximum(upper * upper + break2, 0.0) if edge is None else (edge - r) * (edge + r)
+        )
+    else:
+        break2, on_break = -beyond * beyond, beyond == 0
+        outer2 = (upper - beyond) * (upper + beyond)
+    if ends.root_c is not None:
+        # Zero at c itself.
+        root = (
+            inverse_hypot(ends.begin, r) if beyond is None else inverse_hypot(ends.root_c, beyond)
+        )
+    if some(on_break):
+        least = where(ends.lower > 0, ends.lower, upper)
+        break2 = np.where(on_break, -np.square(_NEXT_TO_BREAK * np.minimum(least, b)), break2)
+        root = None if root is None else np.where(on_break, ends.lower, root)
+    return _Distances(break2, outer2, root), on_break
+
+
+def _interval(distances: _Distances, ends: _Ends) -> tuple[Array | None, Array]:
+    """Start of the interval of y, None for zero, and its length."""
+    break2, outer2, root = distances
+    upper, epsilon = ends.upper, np.sqrt(np.abs(break2))
+    if root is None:
+        return None, np.arcsinh(np.sqrt(np.minimum(outer2, ends.gap2)) / epsilon)
+    # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
+    roots = np.sqrt(outer2) * np.where(root > 0, ends.lower, epsilon) + root * upper
+    covered2 = np.where(root > 0, ends.gap2, outer2)
+    length = np.arcsinh(covered2 / np.maximum(roots, _TINY))
+    return np.arcsinh(np.minimum(root, ends.lower) / epsilon), length
+
+
+def _interpolated(
+    distances: _Distances,
+    split: int,
+    ends: _Ends,
+    integrals: _Integrals,
+    tolerance: tuple[float, float],
+) -> Array:
+    """Return the integrals over one annulus at many ascending radii, interpolated between few.
+
+    They are odd functions of y, analytic for |Im y| < pi/2:
+
+        sinh y = sqrt(a^2 - m^2)/sqrt(m^2 - r^2) for the `split` radii r < m,
+        sinh y = sqrt(a^2 - r^2)/sqrt(r^2 - b^2) for the others.
+
+    Source: notes, §5.
+    """
+    break2, outer2, root = distances
+    gap = np.sqrt(ends.gap2)
+    to_begin = np.sqrt(break2[:split]) if root is None else root[:split]
+    sinh = np.concatenate([gap / to_begin, np.sqrt(outer2[split:] / -break2[split:])])
+    y, first = np.arcsinh(sinh), float(np.arcsinh(gap / ends.begin))
+    few = indices(y > _LONGEST)
+    y[few] = first
+    interpolation = Interpolation([(y[:split], first), (y[split:], 0.0)], *tolerance)
+    within, past = interpolation.nodes
+    root2 = np.square(gap / np.sinh(within))
+    below = _Distances(
+        root2 - ends.lower * ends.lower,
+        ends.gap2 + root2,
+        None if root is None else np.sqrt(root2),
+    )
+    above2 = -np.square(ends.upper / np.cosh(past))
+    # Points next to a root have no piece of their own.
+    rest = distances.at(few)
+    (start, length), (start_of_rest, length_of_rest) = (_interval(d, ends) for d in (below, rest))
+    values = integrals(
+        np.concatenate([below.break2, above2, rest.break2]),
+        None
+        if start is None or start_of_rest is None
+        else np.concatenate([start, np.zeros(past.size), start_of_rest]),
+        np.concatenate([length, past, length_of_rest]),
+    )
+    result = interpolation(values[: within.size + past.size])
+    result[few] = values[within.size + past.size :]
     return result

@@ -266,6 +266,16 @@ class Profile(ABC):
         """`reduced_force` and `force_slope`, which share parts of their formulas."""
         return self.reduced_force(coordinate), self.force_slope(coordinate)
 
+    @cached_property
+    def depth_at_scale(self) -> tuple[Array, Array]:
+        """`depth_and_slope` at the `scale`."""
+        return self.depth_and_slope(number(1.0) * self.scale)
+
+    @cached_property
+    def force_at_scale(self) -> tuple[Array, Array]:
+        """`force_and_slope` at the `scale`."""
+        return self.force_and_slope(number(1.0) * self.scale)
+
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)

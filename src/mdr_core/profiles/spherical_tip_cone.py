@@ -41,6 +41,7 @@ class SphericalTipCone(TippedCone):
     formula: ClassVar[str] = (
         "sphere of tip_radius for r ≤ b = tip_radius·slope/√(1 + slope²), then its tangent cone"
     )
+    many_radii: ClassVar[int] = 700
 
     @cached_property
     def tangent_radius(self) -> Parameter:

@@ -60,7 +60,13 @@ def profile(model: Profile) -> profiles.Profile:
     given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
-    return profiles.KINDS[model.kind](**given)
+    return _by_parameters(model.kind, **given)
+
+
+# Keeps what a profile computes on first use, such as its break and the contact coordinate there.
+@lru_cache(maxsize=64)
+def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
+    return profiles.KINDS[kind](**given)
 
 
 def body(query: Query) -> Arguments:
