@@ -282,22 +282,19 @@ def _interpolated(
     interpolation = Interpolation([(y[:split], first), (y[split:], 0.0)], *tolerance)
     within, past = interpolation.nodes
     root2 = np.square(gap / np.sinh(within))
-    below = _Distances(
-        root2 - ends.lower * ends.lower,
-        ends.gap2 + root2,
-        None if root is None else np.sqrt(root2),
-    )
-    above2 = -np.square(ends.upper / np.cosh(past))
     # Points next to a root have no piece of their own.
     rest = distances.at(few)
-    (start, length), (start_of_rest, length_of_rest) = (_interval(d, ends) for d in (below, rest))
-    values = integrals(
-        np.concatenate([below.break2, above2, rest.break2]),
-        None
-        if start is None or start_of_rest is None
-        else np.concatenate([start, np.zeros(past.size), start_of_rest]),
-        np.concatenate([length, past, length_of_rest]),
+    below = _Distances(
+        np.concatenate([root2 - ends.lower * ends.lower, rest.break2]),
+        np.concatenate([ends.gap2 + root2, rest.outer2]),
+        None if rest.root is None else np.concatenate([np.sqrt(root2), rest.root]),
     )
-    result = interpolation(values[: within.size + past.size])
-    result[few] = values[within.size + past.size :]
+    start, length = _interval(below, ends)
+    values = integrals(
+        np.concatenate([below.break2, -np.square(ends.upper / np.cosh(past))]),
+        None if start is None else np.concatenate([start, np.zeros(past.size)]),
+        np.concatenate([length, past]),
+    )
+    result = interpolation(np.concatenate([values[: within.size], values[length.size :]]))
+    result[few] = values[within.size : length.size]
     return result
