@@ -5,10 +5,11 @@ near full slip, the rounding of the load is part of their error, whatever the me
 """
 
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
+from mdr_core.breaks import has_many_breaks
 from mdr_core.elementwise import full, some, where
 from mdr_core.equivalent_1d import load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
@@ -132,9 +133,15 @@ def beyond_break(contact: NormalContact) -> Array:
         return full(0.0, contact.coordinate)
     at = where(contact.coordinate > 0, contact.coordinate, np.nan)
     with np.errstate(all="ignore"):
-        sides = [(1 - _STEP) * at, (1 + _STEP) * at]
-        depth_slopes = [profile.depth_slope(side) for side in sides]
-        radius_slopes = [profile.radius_slope(side) for side in sides]
+        sides: Any = [(1 - _STEP) * at, (1 + _STEP) * at]
+        if has_many_breaks(profile):
+            # Tables take arrays alone: one call takes half of the time of two.
+            depth_slopes, radius_slopes = (
+                [*slope(np.stack(sides))] for slope in (profile.depth_slope, profile.radius_slope)
+            )
+        else:
+            depth_slopes = [profile.depth_slope(side) for side in sides]
+            radius_slopes = [profile.radius_slope(side) for side in sides]
         # g'(a) is their ratio.
         low, high = (np.log(d / a) for d, a in zip(depth_slopes, radius_slopes, strict=True))
         # The smaller slope gives the larger estimate.

@@ -80,5 +80,6 @@ def far(rows: Array, length: float, above: Array, start: float = 0.0, part: floa
     past = part * (1 + nodes) / 2
     powers = (start + past) ** np.arange(len(rows))[:, None]
     masses = (rows / _SCALES[: len(rows)]) @ powers * (weights / 2) * (part * length)
-    root = np.sqrt(np.add.outer(above, length * length * past * (2 * start + past)))
-    return np.asarray((1 / root) @ masses)
+    kernel = np.add.outer(length * length * past * (2 * start + past), above)
+    np.divide(1.0, np.sqrt(kernel, out=kernel), out=kernel)
+    return np.asarray(masses @ kernel)
