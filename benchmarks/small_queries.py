@@ -2,7 +2,8 @@
 
 The bare endpoint takes the same body by a model of its own, which looks no further than the names
 of its members, and returns a constant; for `/v1/stress` it validates the body as the service does
-and writes arrays of the answer's size. Both are asked in turn, by a client that sends one request
+and writes arrays of the answer's size. The service runs with its own settings, the polling after a
+small query among them (`MDR_IDLE_POLL_SECONDS`). Both are asked in turn, by a client that sends one request
 after the other; the last column is the ratio with four connections at once. A table is asked for
 the first time in every request, or again and again.
 
@@ -127,7 +128,7 @@ def rows(chosen: list[str] | None = None) -> list[measure.Row]:
             case.begin(ours, theirs)
         for number in range(ROUNDS):
             for case in cases:
-                case.measure(number < CROWDED_ROUNDS)
+                case.measure(crowded=number < CROWDED_ROUNDS)
     return [case.row() for case in cases]
 
 
@@ -147,7 +148,7 @@ class Case:
         for target in self.targets:
             wire_ratio.check(target, next(self.texts))
 
-    def measure(self, crowded: bool) -> None:
+    def measure(self, *, crowded: bool) -> None:
         """Measure one round, with several connections as well if it is `crowded`."""
         self.rounds.append(self._rates(1))
         if crowded:

@@ -1,6 +1,5 @@
 """Time, memory and disk space of a sweep, extrapolated from a sample of its cases."""
 
-import os
 import resource
 import sys
 from collections.abc import Iterator
@@ -11,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
+from mdr_service.settings import cores
 from mdr_sweep import tables, vectorized
 from mdr_sweep.spec import Spec
 
@@ -72,9 +72,9 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     tables.write(pa.BufferOutputStream(), ".parquet", [rows], {})
     writing = (process_time() - start) / part.num_rows
     solving /= part.num_rows
-    cores = _cores()
-    saved = source.rows * solving * (1 - 1 / cores)
-    processes = workers or (cores if saved > START_SECONDS else 1)
+    processors = cores()
+    saved = source.rows * solving * (1 - 1 / processors)
+    processes = workers or (processors if saved > START_SECONDS else 1)
     processes = 0 if processes == 1 else processes
     start_up = START_SECONDS if processes else 0.0
     # In KiB on Linux, in bytes on macOS.
@@ -88,10 +88,3 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
         memory=own * (1 + processes),
         disk=2 * source.rows * rows.nbytes / part.num_rows,
     )
-
-
-def _cores() -> int:
-    """Processors that this process may use; macOS has no affinity."""
-    if sys.platform == "darwin":
-        return os.cpu_count() or 1
-    return len(os.sched_getaffinity(0))
