@@ -3,9 +3,9 @@
 The bare endpoint takes the same body by a model of its own, which looks no further than the names
 of its members, and returns a constant; for `/v1/stress` it validates the body as the service does
 and writes arrays of the answer's size. The service runs with its own settings, the polling after a
-small query among them (`MDR_IDLE_POLL_SECONDS`). Both are asked in turn, by a client that sends one request
-after the other; the last column is the ratio with four connections at once. A table is asked for
-the first time in every request, or again and again.
+small query among them (`MDR_IDLE_POLL_SECONDS`). Both are asked in turn, by a client that sends one
+request after the other; the last column is the ratio with four connections at once. A table is
+asked for the first time in every request, or again and again.
 
 `python small_queries.py [KIND ...]` prints the rows of some kinds; `ratios.py` has all of them.
 """

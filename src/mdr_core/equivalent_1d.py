@@ -224,19 +224,23 @@ def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
     with np.errstate(all="ignore"):
         at_scale, slope = profile.force_at_scale if of_force else profile.depth_at_scale
         height = np.log(target / at_scale)
-        if not profile.similar:
+        if not profile.curves:
             start = scale * np.exp(height * (at_scale / (scale * slope)))
             return where((start > 0) & (start < inf), start, scale)
-    return scale * np.exp(np.interp(height, *_curve(type(profile), of_force=of_force)))
+    place = sum(
+        weight * np.interp(height, *_curve(kind, of_force=of_force))
+        for kind, weight in profile.curves
+    )
+    return scale * np.exp(place)
 
 
 @lru_cache(maxsize=32)
 def _curve(kind: type[Profile], *, of_force: bool) -> tuple[Array, Array]:
     """Logarithms of the load and of the contact coordinate, over those at the scale."""
     unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
-    function = unit.reduced_force if of_force else unit.depth
+    function, scale = unit.reduced_force if of_force else unit.depth, number(1.0) * unit.scale
     places = np.concatenate([[-_MAX_LOG], np.arange(-_CURVED, _CURVED, _SPACING), [_MAX_LOG]])
-    return np.log(function(np.exp(places)) / function(number(1.0))), places
+    return np.log(function(scale * np.exp(places)) / function(scale)), places
 
 
 def _step(

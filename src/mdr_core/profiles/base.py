@@ -187,6 +187,15 @@ class Profile(ABC):
         raise NotImplementedError(f"a {self.kind} has no scale, because its inverses are closed")
 
     @property
+    def curves(self) -> tuple[tuple[type["Profile"], Parameter], ...]:
+        """Kinds at unit parameters whose loads are about those of this profile, with weights.
+
+        The curves are those of the logarithms of load and contact coordinate, over the values at
+        the `scale`. None are known of a profile without any.
+        """
+        return ((type(self), 1.0),) if self.similar else ()
+
+    @property
     def coordinate_breaks(self) -> Array:
         """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
         return _NO_BREAKS

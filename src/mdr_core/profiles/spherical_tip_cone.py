@@ -8,9 +8,10 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import piecewise, where
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroids import Sphere, artanh_ratio, artanh_ratio_difference, sphere_kernel
-from mdr_core.profiles.tipped import TippedCone
+from mdr_core.profiles.tipped import RoundedCone, TippedCone
 from mdr_core.typing import Array, Flags, Parameter
 
 # Slope up to which the curvature of the tip rises too little to move the largest pressure.
@@ -51,6 +52,12 @@ class SphericalTipCone(TippedCone):
     def scale(self) -> Parameter:
         """v_b = artanh(b/R) [1]."""
         return np.arcsinh(self.slope)
+
+    @cached_property
+    def curves(self) -> tuple[tuple[type[Profile], Parameter], ...]:
+        """The tip of a flat cone is a paraboloid up to the square of the slope. See `Profile`."""
+        square = np.minimum(self.slope * self.slope, 1.0)
+        return (RoundedCone, 1.0 - square), (SphericalTipCone, square)
 
     @cached_property
     def _tip(self) -> Sphere:
