@@ -3,9 +3,9 @@
 Source: notes, §5.
 """
 
+import itertools
 from collections.abc import Sequence
 from functools import lru_cache
-from itertools import count
 from math import ceil, floor, log10
 from typing import Final
 
@@ -22,7 +22,7 @@ _ROUNDING: Final = 4 * float(np.finfo(float).eps)
 _LONGER: Final = 1 + 1e-12
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def fit_points(count: int) -> tuple[Array, Array, Array]:
     """Return points in [0, 1], and the matrices to Chebyshev coefficients and on to powers of u.
 
@@ -63,7 +63,8 @@ def _points_of_piece(decade: int, growth: float) -> int:
     They are twice those of a Gauss rule with the same error.
     """
     analytic = Analytic(growth=growth)
-    return 2 * next(n for n in count(1) if error_bound(n, 0.5, analytic) < 10.0**decade)
+    rules = itertools.count(1)
+    return 2 * next(n for n in rules if error_bound(n, 0.5, analytic) < 10.0**decade)
 
 
 class Interpolation:
