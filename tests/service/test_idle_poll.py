@@ -3,50 +3,62 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
+import selectors
+
+import pytest
 
 from mdr_service import app as application
 from mdr_service.idle_poll import IdlePoll
 from mdr_service.settings import SETTINGS
 
-if TYPE_CHECKING:
-    import pytest
-
 SECONDS = 0.05
 
 
-def turns(poll: IdlePoll, seconds: float) -> int:
-    """Number of turns of a loop within a time after a query, which sleeps if nothing polls."""
+class Waits(selectors.DefaultSelector):
+    """Selector that records for how long a loop would wait for events, None for ever."""
 
-    async def count() -> int:
-        loop, number = asyncio.get_running_loop(), 0
-        select = loop._selector.select  # type: ignore[attr-defined]
+    def __init__(self) -> None:
+        super().__init__()
+        self.waits: list[float | None] = []
 
-        def counting(timeout: float | None = None) -> object:
-            nonlocal number
-            number += 1
-            return select(timeout)
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        self.waits.append(timeout)
+        return super().select(timeout)
 
-        loop._selector.select = counting  # type: ignore[attr-defined]
+
+def waits(poll: IdlePoll) -> list[float | None]:
+    """Waits of a loop after two queries, until long after both."""
+    selector = Waits()
+
+    async def queries() -> list[float | None]:
         poll.extend()
         poll.extend()
-        await asyncio.sleep(seconds)
-        return number
+        await asyncio.sleep(3 * SECONDS)
+        return list(selector.waits)
 
-    return asyncio.run(count())
+    with asyncio.Runner(loop_factory=lambda: asyncio.SelectorEventLoop(selector)) as runner:
+        return runner.run(queries())
+
+
+def polls(found: list[float | None]) -> int:
+    return found.count(0)
 
 
 def test_loop_polls_for_the_time_and_then_sleeps() -> None:
     poll = IdlePoll(SECONDS, lambda: False)
-    assert turns(poll, SECONDS) > 100
-    assert not turns(IdlePoll(0.0, lambda: False), SECONDS) > 5
-    asyncio.run(asyncio.sleep(0))
-    # The time has passed: the next query starts it again.
-    assert turns(poll, SECONDS) > 100
+    for _ in range(2):
+        found = waits(poll)
+        assert polls(found) > 100
+        # One sleep for the rest.
+        assert [wait for wait in found if wait] == [pytest.approx(2 * SECONDS, rel=0.5, abs=0)]
+
+
+def test_loop_sleeps_at_once_without_a_time() -> None:
+    assert polls(waits(IdlePoll(0.0, lambda: False))) <= 5
 
 
 def test_loop_sleeps_while_the_core_is_needed() -> None:
-    assert turns(IdlePoll(SECONDS, lambda: True), SECONDS) <= 5
+    assert polls(waits(IdlePoll(SECONDS, lambda: True))) <= 5
 
 
 def test_single_core_is_left_to_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
