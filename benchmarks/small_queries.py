@@ -117,15 +117,13 @@ def rows(chosen: list[str] | None = None) -> list[measure.Row]:
     Each round asks all of them, so that a slow phase of the machine moves a few rounds of every
     row and not all rounds of a few rows.
     """
-    cases = [Case(kind, query) for kind in chosen or kinds() for query in TARGETS]
     with ExitStack() as stack:
         service = [sys.executable, "-m", "mdr_command", "serve", "--port"]
         bare = [sys.executable, str(Path(__file__).with_name("bare_endpoint.py"))]
         ours, theirs = (
             stack.enter_context(wire_ratio.server(command)) for command in (service, bare)
         )
-        for case in cases:
-            case.begin(ours, theirs)
+        cases = [Case(kind, query, ours, theirs) for kind in chosen or kinds() for query in TARGETS]
         for number in range(ROUNDS):
             for case in cases:
                 case.measure(crowded=number < CROWDED_ROUNDS)
@@ -135,15 +133,13 @@ def rows(chosen: list[str] | None = None) -> list[measure.Row]:
 class Case:
     """Rates of one query of one kind, by rounds."""
 
-    def __init__(self, kind: str, query: str) -> None:
+    def __init__(self, kind: str, query: str, ours: int, theirs: int) -> None:
+        """Take the ports of both servers; raise unless they respond."""
         self.kind, self.query, self.texts = kind, query, bodies(kind, query)
         self.rounds: list[tuple[float, float]] = []
         self.crowded: list[tuple[float, float]] = []
-
-    def begin(self, ours: int, theirs: int) -> None:
-        """Raise unless both servers respond."""
-        path = self.query.replace("cycle", "tangential/history")
-        other = "stress" if self.query == "stress" else "small"
+        path = query.replace("cycle", "tangential/history")
+        other = "stress" if query == "stress" else "small"
         self.targets = f"{ours}/v1/{path}", f"{theirs}/{other}"
         for target in self.targets:
             wire_ratio.check(target, next(self.texts))
