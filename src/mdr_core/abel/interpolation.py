@@ -93,6 +93,8 @@ class Interpolation:
     def __call__(self, values: Array) -> Array:
         """Return the values at all points, shape (sum of m_i,), from those at all nodes."""
         scaled = (values / np.concatenate(self.nodes)).reshape(self._pieces.size - 1, -1)
+        # Not `fitted`, which takes four times as long: coefficients within rounding may stay,
+        # because their powers cancel wherever a point lies on its piece.
         rows = scaled @ self._to_chebyshev.T @ self._powers
         polynomials = PPoly.construct_fast(rows.T[::-1], self._pieces)
         return np.asarray(polynomials(self._places) * self._y)

@@ -191,7 +191,7 @@ class Profile(ABC):
         """Kinds at unit parameters whose loads are about those of this profile, with weights.
 
         The curves are those of the logarithms of load and contact coordinate, over the values at
-        the `scale`. None are known of a profile without any.
+        the `scale`. Empty where no such curve is known.
         """
         return ((type(self), 1.0),) if self.similar else ()
 

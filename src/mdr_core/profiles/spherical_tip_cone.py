@@ -42,6 +42,7 @@ class SphericalTipCone(TippedCone):
     formula: ClassVar[str] = (
         "sphere of tip_radius for r ≤ b = tip_radius·slope/√(1 + slope²), then its tangent cone"
     )
+    # By measurement: its dg/ds takes twice the time of the others.
     many_radii: ClassVar[int] = 700
 
     @cached_property

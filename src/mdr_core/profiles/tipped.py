@@ -10,7 +10,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
+from mdr_core.abel.two_root import MANY, inverse_hypot, root_difference, two_root_integral
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import every, number, piecewise, piecewise_pair, some, where
 from mdr_core.profiles.base import Profile
@@ -37,8 +37,8 @@ class TippedCone(Profile):
 
     slope: Parameter
     tip_radius: Parameter
-    # Radii from which interpolation takes less time than the integrals, by measurement.
-    many_radii: ClassVar[int] = 1500
+    # Radii from which interpolation takes less time than the integrals of the flank.
+    many_radii: ClassVar[int] = MANY
 
     @property
     @abstractmethod

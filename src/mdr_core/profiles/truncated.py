@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from dataclasses import dataclass
 from math import pi
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import first_index
-
-# Radii from which interpolation takes less time than the integrals, by measurement.
-_MANY: Final = 1500
 
 
 class FlatEnded(Profile):
@@ -120,7 +117,6 @@ class Truncated(FlatEnded):
             rtol=rtol,
             analytic=self.analytic,
             beyond=beyond,
-            many=_MANY,
         )
         return integral / pi
 
