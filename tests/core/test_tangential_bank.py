@@ -8,7 +8,14 @@ import pytest
 
 from mdr_core import normal, tangential
 from tests.core.batches import batched
-from tests.core.comparison import allowance, assert_each, overstated, profile_from, wrong
+from tests.core.comparison import (
+    LARGEST_ALLOWANCE,
+    allowance,
+    assert_each,
+    overstated,
+    profile_from,
+    wrong,
+)
 from tests.oracles import bank
 
 BOUND = 1e-12
@@ -16,6 +23,10 @@ BOUND = 1e-12
 TABLE = 1e-11
 #: Largest ratio of estimate to largest admissible error: for powers up to 60, and tables.
 OVERSTATED, OVERSTATED_TABLE = 150.0, 3000.0
+#: Largest allowance where F_N is computed before F_x is compared with mu F_N: three roundings, of
+#: a(d), F_N(a) and their ratio, at the largest condition number, 1.2e13. Next to full slip, the
+#: stick radius has no more digits than that, and which of them are right depends on the processor.
+COMPUTED_FORCE = 8e-3
 
 
 def solved(case: dict[str, Any]) -> tangential.TangentialContact:
@@ -33,6 +44,9 @@ def solved(case: dict[str, Any]) -> tangential.TangentialContact:
 def failures_of(case: dict[str, Any]) -> list[str]:
     result = solved(case)
     table = case["profile"]["kind"] == "tabulated"
+    controls = (case["control"], case["tangential_control"])
+    computed = controls[0] != "normal_force" and controls[1] == "tangential_force"
+    largest = COMPUTED_FORCE if computed else LARGEST_ALLOWANCE
     bound = TABLE if table else BOUND
     failures, allowed = [], [bound]
     for name, row in case["expected"].items():
@@ -40,7 +54,7 @@ def failures_of(case: dict[str, Any]) -> list[str]:
         assert values.shape == (len(row),)
         for index, expected in enumerate(row):
             conditions = (case["condition"][name][index], case["condition_load"][name][index])
-            by_inputs = allowance(*conditions)
+            by_inputs = allowance(*conditions, largest=largest)
             allowed.append(bound + by_inputs)
             failures += wrong(
                 f"{name} at {case['given'][index]!r}",
