@@ -1,5 +1,5 @@
 # Every target but the charts runs in .venv, made from the locks by the first supported Python that is found (or
-# PYTHON=). Hashes are checked, so that results are the same on every machine.
+# PYTHON=). Hashes are checked: the same packages, and results that agree to rounding error, on every machine.
 HOST ?= 127.0.0.1
 PORT ?= 8000
 PYTHONS := python3.11 python3.12 python3.13 python3.14

@@ -230,7 +230,8 @@ class WearEvolution(validity.ContactResults, WornSurface):
             found.append(
                 Notice(
                     "limit_reached",
-                    f"wear stops after about {self.settled_at:.2g} cycles: the profile is the "
+                    # The approach is asymptotic: rtol and resolution change the second digit.
+                    f"wear stops after about {self.settled_at:.1g} cycles: the profile is the "
                     "limiting one from there on",
                 )
             )

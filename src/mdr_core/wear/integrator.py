@@ -105,9 +105,9 @@ def _unresolved(state: AnnulusState, scaled: float) -> AccuracyError:
     passed = jumps[np.abs(jumps - stick) < _AT_BREAK * stick]
     if initial.stick_moves and passed.size:
         detail = (
-            f"after {scaled * initial.cycle_unit:.3g} cycles the stick edge moves past radius "
-            f"{passed[0]:.6g}, where a jump of the profile's slope is not resolved: request fewer "
-            "cycles, or round the profile there"
+            f"after about {scaled * initial.cycle_unit:.2g} cycles the stick edge moves past "
+            f"radius {passed[0]:.6g}, where a jump of the profile's slope is not resolved: request "
+            "fewer cycles, or round the profile there"
         )
         return AccuracyError(detail, ("cycles",))
     detail = "the wear over the cycles is not resolved: more nodes may resolve it"
@@ -129,13 +129,13 @@ def _require_all_cycles(
             raise AccuracyError(detail, ("cycles",))
         raise InputError(
             ("cycles", int(np.searchsorted(cycles, profile_end_at))),
-            f"after {profile_end_at:.3g} cycles the worn contact reaches radius "
+            f"after about {profile_end_at:.2g} cycles the worn contact reaches radius "
             f"{initial.domain:.6g}, where the profile ends or is no longer admissible",
         )
     if isfinite(full_slip_at):
         raise InputError(
             ("cycles", int(np.searchsorted(cycles, full_slip_at))),
-            f"after {full_slip_at:.3g} cycles full slip begins: wear at this depth reduces "
+            f"after about {full_slip_at:.2g} cycles full slip begins: wear at this depth reduces "
             "the normal force until it no longer carries the tangential force",
         )
 
