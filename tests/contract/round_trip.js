@@ -28,7 +28,7 @@ async (count) => {
         if (inputs.kind === "tabulated") inputs.table.f = inputs.table.f.map((f) => f * (1 + Math.random() / 1e4));
         if (Math.random() < 0.3) inputs.e2 = "rigid";
         const url = new URL(toAddress(inputs), document.baseURI);
-        const [first, second] = [await requestsOf(inputs), await requestsOf(fromAddress(url.search, url.hash))];
+        const [first, second] = [await requestsOf(inputs), await requestsOf(fromAddress(url.search, url.hash).inputs)];
         results.push({ url: url.href, first: first.made, second: second.made, solved: first.solved });
     }
     return results;

@@ -11,10 +11,12 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 
 from tests.contract.conftest import Visit, needs_chromium
+from tests.contract.forged_addresses import forged
 
 pytestmark = [pytest.mark.long, needs_chromium]
 TABS = ["press", "push", "cycle", "stress", "wear"]
 SCENES = 60
+ADDRESSES = 2_000
 
 
 def test_first_visit_shows_results_and_charts(visit: Visit) -> None:
@@ -188,3 +190,41 @@ def test_url_restores_the_case_with_identical_requests(visit: Visit) -> None:
     assert all(each["first"] for each in results)
     solved = sum(each["solved"] for each in results)
     assert solved >= 0.8 * SCENES
+
+
+FORGED = Path(__file__).with_name("forged_addresses.js").read_text("utf-8")
+
+
+def test_forged_addresses_cause_no_error_and_no_markup(visit: Visit) -> None:
+    visit.open()
+    result = visit.page.evaluate(FORGED, list(forged(ADDRESSES, seed=1)))
+    assert result["found"] == []
+    assert result["cases"] >= 0.2 * ADDRESSES
+
+
+@pytest.mark.parametrize(
+    ("member", "link"),
+    [
+        ("ul", "?ul=<a href=https://evil.example>mm</a>"),
+        ("kind", "?kind=constructor"),
+        ("control", "?control=foo"),
+        ("push", "?push=evil&tab=push"),
+        ("normal", "?normal=evil&tab=cycle"),
+        ("table", "?kind=tabulated#r=0,1e-3&f=0"),
+        # Offered, but not for wear.
+        ("control", "?tab=wear&control=contact_radius"),
+    ],
+)
+def test_unreadable_member_of_a_link_is_named(visit: Visit, member: str, link: str) -> None:
+    visit.open(link)
+    assert visit.page.locator("#unread").inner_text().endswith(f"cannot read: {member}.")
+    assert visit.page.locator("#charts a").count() == 0
+
+
+@pytest.mark.parametrize("kind", ["paraboloid", "sphere", "ellipsoid", "flat_punch", "balls"])
+def test_radius_zero_is_reported_at_its_field(visit: Visit, kind: str) -> None:
+    visit.open(f"?kind={kind}")
+    field = visit.page.locator("#profile-fields .field").first
+    field.locator("[type=text]").fill("0")
+    field.locator(".problem:not(:empty)").wait_for()
+    assert visit.page.locator("#results").get_attribute("data-state") == "refused"

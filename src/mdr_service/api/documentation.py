@@ -8,11 +8,12 @@ from mdr_service.serializers import FORMATS
 
 Responses = dict[int | str, dict[str, Any]]
 
-# The browser connects to no other host, whatever the page shows. Plotly sets styles of elements,
-# and draws a downloaded picture from a blob.
+# The browser connects to no other host, whatever the page shows, and no other host frames the page.
+# Plotly sets styles of elements, and draws a downloaded picture from a blob.
 PAGE_HEADERS: Final = {
     "Content-Security-Policy": (
-        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:"
+        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
     )
 }
 _COMPUTATION: Final = (

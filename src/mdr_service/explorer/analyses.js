@@ -1,10 +1,9 @@
 // The five analyses and the fields that they add to the form.
 
+import { controls, NORMAL, TANGENTIAL } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
 import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
-const NORMAL = ["normal_force", "indentation_depth", "contact_radius"];
-const TANGENTIAL = ["tangential_force", "tangential_displacement"];
 const SHARE = ["Share of µF_N", "1"];
 
 const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);
@@ -20,7 +19,7 @@ export function bodyFields(inputs) {
 /** Return the fields of the load of the inputs. */
 export function loadFields(inputs) {
   if (inputs.tab === "cycle") return [];
-  const choices = choicesOf(inputs.tab === "wear" ? NORMAL.slice(0, 2) : NORMAL);
+  const choices = choicesOf(controls(inputs.tab));
   const [label, dimension] = QUANTITIES[inputs.control];
   return [
     { key: "control", label: "Prescribed", choices },
@@ -56,7 +55,7 @@ export const ANALYSES = {
     lead: "The load follows a path: how much energy is dissipated, and which shear stress remains?",
     fields: (inputs) => [
       FRICTION,
-      { key: "normal", label: "Normal control", choices: choicesOf(NORMAL.slice(0, 2)) },
+      { key: "normal", label: "Normal control", choices: choicesOf(NORMAL) },
       { key: "tangential", label: "Tangential control", choices: choicesOf(TANGENTIAL) },
     ],
     solve: solveCycle,

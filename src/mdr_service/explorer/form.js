@@ -5,12 +5,12 @@ import { read, shown, unit } from "./units.js";
 
 const SPAN = 100;
 
-function sliderOf(field, value, reference) {
+function sliderOf(field, value, reference, scale) {
   const { range, logarithmic } = field;
   if (range && !logarithmic) return { min: range[0], max: range[1], to: (x) => x, from: (x) => x };
-  const [low, high] = range ?? [
-    Math.min(reference / SPAN, value), Math.max(reference * SPAN, value),
-  ];
+  const centre = reference > 0 ? reference : scale;
+  const reach = [centre / SPAN, centre * SPAN, value > 0 ? value : centre];
+  const [low, high] = range ?? [Math.min(...reach), Math.max(...reach)];
   return { min: Math.log10(low), max: Math.log10(high), to: Math.log10, from: (x) => 10 ** x };
 }
 
@@ -29,14 +29,14 @@ export function choiceRow(id, label, choices, chosen, choose) {
  */
 export function numberRow(field, inputs, reference, change) {
   const { key, dimension } = field;
-  const { name } = unit(dimension, inputs);
+  const { name, factor } = unit(dimension, inputs);
   const element = make("div", { className: "field", "data-key": key });
   element.innerHTML = `<label class="row"><span></span><input type="text" inputmode="decimal" id="field-${key}"><span class="unit"></span></label><input type="range" step="any"><p class="problem" role="alert"></p>`;
   const [text, slider] = element.querySelectorAll("input");
   element.querySelector("span").textContent = field.label;
   element.querySelector(".unit").textContent = name;
   slider.setAttribute("aria-label", `${field.label}, slider`);
-  const { min, max, to, from } = sliderOf(field, inputs[key], reference);
+  const { min, max, to, from } = sliderOf(field, inputs[key], reference, factor);
   Object.assign(slider, { min, max, step: (max - min) / 400, value: to(inputs[key]) });
   const tell = (value) => slider.setAttribute("aria-valuetext", `${shown(value, dimension, inputs)} ${name}`);
   text.value = shown(inputs[key], dimension, inputs);

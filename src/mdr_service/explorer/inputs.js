@@ -1,8 +1,11 @@
 // The inputs: one flat object of numbers and words in SI units, and its form in the address.
 
 import { KINDS, measuredBall, wireProfile } from "./shapes.js";
+import { BASE_UNITS, numberOf } from "./units.js";
 
 export const TABS = ["press", "push", "cycle", "stress", "wear"];
+export const NORMAL = ["normal_force", "indentation_depth"];
+export const TANGENTIAL = ["tangential_force", "tangential_displacement"];
 
 const DEFAULTS = {
   tab: "press",
@@ -17,31 +20,57 @@ const DEFAULTS = {
   ul: "mm", ud: "µm", uf: "N", up: "MPa",
 };
 
+// Input that is chosen -> its choices.
+const CHOICES = {
+  tab: TABS, kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
+  normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
+  ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
+};
+
+/** Return the quantities by which the load of an analysis can be prescribed. */
+export function controls(tab) {
+  return tab === "wear" ? NORMAL : [...NORMAL, "contact_radius"];
+}
+
 /** Return the inputs of a first visit. */
 export function defaultInputs() {
   return { ...DEFAULTS, ...KINDS[DEFAULTS.kind].fields, table: measuredBall() };
 }
 
-/** Return the inputs that the query string and the fragment of an address describe. */
+/** Return the value of an input that a text holds, or undefined if it is none that the page offers. */
+function valueOf(key, text, tab) {
+  const choices = key === "control" ? controls(tab) : CHOICES[key];
+  if (choices) return choices.find((choice) => String(choice) === text);
+  if (key === "path") return pathPoints({ path: text }).every(isPoint) ? text : undefined;
+  if (key === "e2" && text === "rigid") return text;
+  const number = numberOf(text);
+  return Number.isNaN(number) ? undefined : number;
+}
+
+const isPoint = (point) => point.length === 2 && !point.some(Number.isNaN);
+
+function tableOf(fragment) {
+  const [r, f] = ["r", "f"].map((name) => fragment.get(name)?.split(",").map(numberOf) ?? []);
+  return r.length === f.length && ![...r, ...f].some(Number.isNaN) ? { r, f } : undefined;
+}
+
+/**
+ * Return the inputs that the query string and the fragment of an address describe, and the names
+ * of the members that hold nothing that the page offers. Anybody may have written the address.
+ */
 export function fromAddress(search, hash) {
-  const inputs = defaultInputs();
   const given = new URLSearchParams(search);
-  if (given.get("kind") in KINDS) inputs.kind = given.get("kind");
+  const fragment = new URLSearchParams(hash.slice(1));
+  const inputs = defaultInputs();
+  const unread = [];
+  const set = (key, value) => (value === undefined ? unread.push(key) : (inputs[key] = value));
+  const take = (key) => given.has(key) && set(key, valueOf(key, given.get(key), inputs.tab));
+  take("tab");
+  take("kind");
   Object.assign(inputs, KINDS[inputs.kind].fields);
-  for (const [key, text] of given) {
-    if (!(key in inputs) || key === "table" || key === "kind") continue;
-    const number = Number(text);
-    const wordAllowed = typeof inputs[key] === "string" || (key === "e2" && text === "rigid");
-    if (wordAllowed) inputs[key] = text;
-    else if (text !== "" && Number.isFinite(number)) inputs[key] = number;
-  }
-  if (!TABS.includes(inputs.tab)) inputs.tab = DEFAULTS.tab;
-  const table = new URLSearchParams(hash.replace(/^#/, ""));
-  if (table.has("r") && table.has("f")) {
-    const numbers = (name) => table.get(name).split(",").map(Number);
-    inputs.table = { r: numbers("r"), f: numbers("f") };
-  }
-  return inputs;
+  Object.keys(inputs).filter((key) => !["tab", "kind", "table"].includes(key)).forEach(take);
+  if (fragment.has("r") || fragment.has("f")) set("table", tableOf(fragment));
+  return { inputs, unread };
 }
 
 /** Return the address of the inputs, with the fields of the chosen profile. */
@@ -59,7 +88,7 @@ export function withKind(inputs, kind) {
 
 /** Return the points of the load path, each `[normal, tangential]`. */
 export function pathPoints(inputs) {
-  return inputs.path.split(";").map((point) => point.split(",").map(Number));
+  return inputs.path.split(";").map((point) => point.split(",").map(numberOf));
 }
 
 /** Return the members that every request shares. */

@@ -13,11 +13,20 @@ import { showSketch } from "./sketch.js";
 import { BASE_UNITS, format, unit } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
-let inputs = fromAddress(location.search, location.hash);
+let inputs;
 let catalogue = {};
 let requests = [];
 let last = null;
 let rowOfTable = [];
+
+/** Show the case of the address. */
+function showAddress() {
+  const { inputs: next, unread } = fromAddress(location.search, location.hash);
+  $("#unread").textContent = unread.length
+    ? `Default values replace members of the link that the page cannot read: ${unread.join(", ")}.`
+    : "";
+  show(next);
+}
 
 /** Show other inputs in the whole page. */
 function show(next) {
@@ -81,7 +90,7 @@ function fill(container, fields, references = inputs) {
 function profileFields() {
   const fields = OWN_FIELDS[inputs.kind] ?? catalogue[inputs.kind]?.fields ?? [];
   return fields
-    .filter(({ name }) => name in KINDS[inputs.kind].fields && name !== "interpolation")
+    .filter(({ name }) => Object.hasOwn(KINDS[inputs.kind].fields, name))
     .map(({ name, dimension, description }) => ({
       key: name, label: description, dimension,
       range: name.startsWith("exponent") ? [0.5, 10] : undefined,
@@ -157,15 +166,23 @@ const SOURCES = {
   "/material/bodies/1/youngs_modulus": "e2", "/material/bodies/1/poissons_ratio": "nu2",
 };
 
+/** Return the key of the input that sets the member of a request at a pointer. */
+function keyOf(pointer) {
+  const member = Object.keys(SOURCES).find((prefix) => pointer.startsWith(prefix));
+  if (member) return SOURCES[member];
+  const [, , name, index, part] = pointer.split("/");
+  if (inputs.kind === "balls" && name === "radius") return inputs.radius_1 > 0 ? "radius_2" : "radius_1";
+  return name === "terms" ? `${part}_${Number(index) + 1}` : pointer.split("/").pop();
+}
+
 function showProblem(error) {
   const box = $("#problem");
   document.querySelectorAll(".field .problem, #table-problem").forEach((each) => (each.textContent = ""));
   document.querySelectorAll("[aria-invalid=true]").forEach((each) => each.setAttribute("aria-invalid", "false"));
-  $("#results").classList.toggle("stale", Boolean(error));
   box.hidden = !error;
   if (!error) return;
-  const { title = "The service cannot be reached", errors = [] } = error instanceof Refusal ? error.problem : {};
-  box.textContent = error instanceof Refusal ? `${title}: ${error.message}` : title;
+  const { title = "The page has an error", errors = [] } = error.problem ?? {};
+  box.textContent = title === error.message ? title : `${title}: ${error.message}`;
   for (const { pointer, detail } of errors) {
     const point = pointer.match(/^\/profile\/[rf](?:\/(\d+))?$/);
     if (inputs.kind === "tabulated" && point) {
@@ -173,9 +190,7 @@ function showProblem(error) {
       $("#table-problem").textContent = line + detail;
       continue;
     }
-    const member = Object.keys(SOURCES).find((prefix) => pointer.startsWith(prefix));
-    const key = member ? SOURCES[member] : pointer.split("/").pop();
-    const field = document.querySelector(`.field[data-key="${key}"]`);
+    const field = document.querySelector(`.field[data-key="${keyOf(pointer)}"]`);
     if (!field) continue;
     field.querySelector(".problem").textContent = detail;
     field.querySelector("input").setAttribute("aria-invalid", "true");
@@ -219,7 +234,7 @@ function showPath() {
 
 const sketch = () => showSketch($("#sketch"), inputs, last?.known?.contact_radius);
 
-const solve = newestWins(async (outdated) => {
+const solve = newestWins(async () => {
   const current = inputs;
   const recorded = [];
   const recording = (name, path, body) => {
@@ -237,9 +252,12 @@ const solve = newestWins(async (outdated) => {
     showRequests();
     await draw($("#charts"), result.charts, current, { showRequest, saveCsv });
     document.body.dataset.drawn = toAddress(current);
+    if (inputs === current) $("#results").dataset.state = "current";
   } catch (error) {
-    if (!outdated()) showProblem(error);
-    if (!(error instanceof Refusal) && !(error instanceof TypeError)) throw error;
+    if (!(error instanceof Refusal)) reportError(error);
+    if (inputs !== current) return;
+    showProblem(error);
+    $("#results").dataset.state = "refused";
   }
 });
 
@@ -259,7 +277,8 @@ function refresh() {
   clearTimeout(refresh.timer);
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(() => history.replaceState(null, "", toAddress(inputs)), 250);
-  if (inputs.kind !== "tabulated" || inputs.table.r.length) sketch();
+  sketch();
+  $("#results").dataset.state = "pending";
   solve();
 }
 
@@ -316,12 +335,12 @@ function connect() {
   addEventListener("beforeprint", () => showForPrint(true));
   addEventListener("afterprint", () => showForPrint(false));
   addEventListener("afterprint", solve);
-  addEventListener("popstate", () => show(fromAddress(location.search, location.hash)));
+  addEventListener("popstate", showAddress);
 }
 
 makeTabs();
 connect();
-show(inputs);
+showAddress();
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   showForm();

@@ -10,7 +10,9 @@ export class Refusal extends Error {
 
 async function post(path, body, accept) {
   const headers = { "content-type": "application/json", accept };
-  const send = () => fetch(path, { method: "POST", headers, body: JSON.stringify(body) });
+  const send = () => fetch(path, { method: "POST", headers, body: JSON.stringify(body) }).catch(() => {
+    throw new Refusal({ title: "The service cannot be reached" });
+  });
   let response = await send();
   if (response.status === 503) {
     // The service is busy and says for how long.
@@ -45,11 +47,14 @@ export function newestWins(work) {
       return;
     }
     running = true;
-    do {
-      waiting = false;
-      await work(() => waiting);
-    } while (waiting);
-    running = false;
+    try {
+      do {
+        waiting = false;
+        await work();
+      } while (waiting);
+    } finally {
+      running = false;
+    }
   };
 }
 

@@ -46,7 +46,7 @@ export const KINDS = {
     "Sum of two powers", { coefficient_1: 50, exponent_1: 2, coefficient_2: 2e8, exponent_2: 4 },
     (r, p) => p.terms.reduce((sum, t) => sum + t.coefficient * r ** t.exponent, 0),
   ),
-  tabulated: kind("Table of measured points", { interpolation: "auto" }),
+  tabulated: kind("Table of measured points", {}),
 };
 
 // Fields that the page adds to those of the wire.
@@ -84,9 +84,7 @@ export function wireProfile(inputs) {
     const term = (i) => ({ coefficient: inputs[`coefficient_${i}`], exponent: inputs[`exponent_${i}`] });
     return { kind, terms: [term(1), term(2)] };
   }
-  if (kind === "tabulated") {
-    return { kind, r: inputs.table.r, f: inputs.table.f, interpolation: inputs.interpolation };
-  }
+  if (kind === "tabulated") return { kind, ...inputs.table };
   return { kind, ...Object.fromEntries(Object.keys(KINDS[kind].fields).map((k) => [k, inputs[k]])) };
 }
 

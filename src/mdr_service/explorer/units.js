@@ -1,5 +1,8 @@
 // Display units. The inputs and the wire are in SI units throughout.
 
+// Largest magnitude of a number in a request.
+const LARGEST = 1e50;
+
 const LENGTHS = { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
 
 // Dimension of a base unit -> its key in the inputs, its label in the form, and its choices.
@@ -67,10 +70,16 @@ export function shown(value, dimension, inputs) {
   return String(Number((value / unit(dimension, inputs).factor).toPrecision(12)));
 }
 
+/** Return the number that a text holds in decimal notation, or NaN. */
+export function numberOf(text) {
+  const cleaned = text.trim().replace("−", "-");
+  const number = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(cleaned) ? Number(cleaned) : NaN;
+  // The service accepts no larger number, and the drawings overflow at larger ones.
+  return Math.abs(number) <= LARGEST ? number : NaN;
+}
+
 /** Return the SI value of a text in its display unit, or NaN. */
 export function read(text, dimension, inputs) {
-  const cleaned = text.trim().replace("−", "-");
-  if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(cleaned)) return NaN;
   // The product of a decimal number and a power of ten, without its rounding error.
-  return Number((Number(cleaned) * unit(dimension, inputs).factor).toPrecision(15));
+  return Number((numberOf(text) * unit(dimension, inputs).factor).toPrecision(15));
 }
