@@ -351,7 +351,12 @@ def test_equilibrium() -> None:
         assert np.abs(balance).max() < 1e-9 * size
 
 
-def test_balance_of_forces_through_a_plane() -> None:
+@pytest.mark.parametrize(("body", "sign"), [(1, 1), (2, -1)])
+def test_balance_of_forces_through_a_plane(body: int, sign: int) -> None:
+    """The tangential force acts on body 1, which pulls body 2 along x.
+
+    The part beyond the plane has the normal -z, and therefore bears -sigma_xz.
+    """
     contact = tangential_contact(Paraboloid(2.0), 0.5)
     nodes, weights = np.polynomial.legendre.leggauss(80)
     angle = 2 * pi * np.arange(16) / 16
@@ -364,13 +369,13 @@ def test_balance_of_forces_through_a_plane() -> None:
         run = ((high - low) / 2 * weights).ravel() * depth / np.cos(t) ** 2
         r = depth * np.tan(t)
         x, y = r[:, None] * np.cos(angle), r[:, None] * np.sin(angle)
-        result = stress(contact, x, y, depth, poissons_ratio=0.3, body=2)
+        result = stress(contact, x, y, depth, poissons_ratio=0.3, body=body)
         area = (r * run)[:, None] * 2 * pi / angle.size
         assert (result.zz * area).sum() == pytest.approx(
             -float(contact.normal.normal_force), rel=1e-9, abs=0
         )
         assert (result.xz * area).sum() == pytest.approx(
-            -float(contact.tangential_force), rel=1e-9, abs=0
+            sign * float(contact.tangential_force), rel=1e-9, abs=0
         )
 
 

@@ -85,7 +85,7 @@ def test_sliding_ball_yields_on_its_surface(nu: float, friction: float, onset: f
     contact = sliding(friction)
     peak = largest(contact, "maximum_shear", poissons_ratio=nu, body=2)
     assert float(contact.normal.maximum_pressure / peak.value) / 2 == pytest.approx(onset, abs=6e-4)
-    assert float(peak.z) == float(peak.y) == 0
+    assert (float(peak.y), float(peak.z)) == pytest.approx((0.0, 0.0), abs=1e-7)
     force = yield_onset_force(contact, STRENGTH, "maximum_shear", poissons_ratio=nu, body=2)
     assert onset_pressure(float(force)) == pytest.approx(onset, abs=6e-4)
 
@@ -199,6 +199,39 @@ def test_friction_moves_the_largest_stress_off_the_axis(measure: str) -> None:
     nearby = getattr(stress(case, x, 0.0, z, poissons_ratio=0.06), measure)
     assert nearby.max() < float(peak.value) * (1 + 1e-6)
     assert float(peak.x) < 0
+
+
+def test_two_peaks_of_one_ridge_after_a_load_history() -> None:
+    """The grid of the search has one maximum, next to the lower one, at x = 0.61 a, z = 0.43 a."""
+    state = load_history.solve(
+        Sphere(0.6865),
+        1.0,
+        0.7097,
+        0.3514,
+        normal_force=[0.006958, 0.009494, 0.009896, 0.015701],
+        tangential_force=[-0.0010631, -0.0014804, 0.0014405, 0.0047343],
+    ).state
+    a, steps = state.contact_radius, np.linspace(-0.01, 0.01, 21)
+    place = a * (0.24 + steps), 0.0, a * (0.51 + steps[:, None])
+    sampled = stress(state, *place, poissons_ratio=0.45, body=2).von_mises.max()
+    peak = largest(state, poissons_ratio=0.45, body=2)
+    assert float(peak.value) == pytest.approx(sampled, rel=1e-5, abs=0)
+
+
+def test_peak_across_the_load_after_a_load_history() -> None:
+    """The surface bears the largest stress at a slip front, in one direction only."""
+    state = load_history.solve(
+        Sphere(0.5982),
+        1.0,
+        0.7762,
+        1.244,
+        normal_force=[0.002191, 0.001795, 0.002206, 0.002069, 0.002348],
+        tangential_force=[0.001496, -0.001301, 0.001265, 0.0004477, 0.001293],
+    ).state
+    sampled = stress(state, 0.0, state.slip_fronts, 0.0, poissons_ratio=0.5, body=2)
+    peak = largest(state, "maximum_shear", poissons_ratio=0.5, body=2)
+    assert float(peak.value) == pytest.approx(sampled.maximum_shear.max(), rel=1e-5, abs=0)
+    assert float(peak.y) == pytest.approx(state.slip_fronts[1], rel=1e-6, abs=0)
 
 
 @pytest.mark.parametrize("profile", [Power(0.4, 1.5), RoundedPunch(0.05, 2.0)])

@@ -80,8 +80,9 @@ def stress(
 ) -> StressTensor:
     """Return the stress tensor of one body at points, of the shape of loads and points [pressure].
 
-    The tangential force acts on body 1, the profile's, which passes it on: the shear stress on the
-    surface of body 2 is that of `fields.shear_stress`, on body 1 its opposite. Source: notes, §14.
+    The tangential force acts on body 1, the profile's, which passes it on: the traction on body 2
+    is tau of `fields.shear_stress`, on body 1 its opposite. As z points into the body, sigma_xz on
+    the surface is the opposite of the traction: -tau in body 2, tau in body 1. Source: notes, §14.
 
     Parameters
     ----------

@@ -9,6 +9,7 @@ from math import ceil, cos, exp, inf, log, sin
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
 from scipy.optimize import brentq
 
@@ -26,16 +27,16 @@ from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
 # the depths lie between these parts of the contact radius.
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
-# Peaks of the grid that are climbed if they reach this part of the highest one that is known.
-_PEAKS, _ALMOST = 6, 0.8
-# Directions of the grid if there is friction: weak friction may lift a peak out of the plane y = 0.
-_ANGLES: Final = np.arange(3) * np.pi / 6
-# Points across a box around a peak, that in the middle, and half of the first box in steps of the
-# grid.
-_ACROSS, _MIDDLE, _STEPS = np.linspace(-1, 1, 5), (2, 2, 2), 1.5
-# Factor by which a box shrinks; part of the stress by which it may vary in the last one, of all
-# peaks and of the highest ones, and that of rounding errors; rounds.
-_SHRINK, _COARSE, _FLAT, _ROUNDING, _ROUNDS = 0.3, 0.01, 4e-6, 1e-11, 100
+# Points of the spline through the grid over those of the grid; part of the highest stress that its
+# peaks reach if they are climbed.
+_FINER, _ALMOST = 4, 0.8
+# Directions of the grid if there is friction: it may lift a peak out of the plane y = 0.
+_ANGLES: Final = np.linspace(0, np.pi / 2, 4)
+# Points across a box around a peak, and half of the first box in steps of the spline.
+_ACROSS, _STEPS = np.linspace(-1, 1, 5), 3.0
+# Factor by which a box shrinks; parts of the stress by which it varies in the last box, and by
+# rounding; rounds.
+_SHRINK, _FLAT, _ROUNDING, _ROUNDS = 0.3, 4e-6, 1e-11, 100
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
 _RESOLVED: Final = 1e-6
@@ -258,12 +259,16 @@ def _peak(
             ("load",),
         )
 
-    def on(angle: Array, r: Array, z: Array) -> Array:
-        """The measure by direction, r of either sign, and z; zero where it is infinite."""
-        x, depth = (part.ravel() for part in np.meshgrid(r, z, indexing="ij"))
-        e = np.exp(1j * angle[:, None]) * np.where(x < 0, -1, 1)
-        values = getattr(on_rings(under, (np.abs(x), depth, e), nu), measure)
-        return np.nan_to_num(values, posinf=0.0).reshape(angle.size, r.size, z.size)
+    def on(*place: Array) -> Array:
+        """The measure by angle, r of either sign and z, which broadcast; zero where infinite.
+
+        Directions are the first axis: r and z are the same in all.
+        """
+        angle, r, z = np.broadcast_arrays(*place)
+        turned = np.exp(1j * angle) * np.where(r < 0, -1, 1)
+        rings = np.abs(r[0]).ravel(), z[0].ravel(), turned.reshape(len(angle), -1)
+        values = getattr(on_rings(under, rings, nu), measure)
+        return np.nan_to_num(values, posinf=0.0).reshape(angle.shape)
 
     # Radii, of either sign if there is a tangential load, and depths.
     a = float(edges[-1])
@@ -274,50 +279,64 @@ def _peak(
     shallow, deep = min(_SHALLOWEST * a, 0.1 * float(np.diff(stops).min())), _DEEPEST * a
     z = np.append(0.0, np.geomspace(shallow, deep, ceil(_PER_E_FOLD * log(deep / shallow))))
     angles = _ANGLES if under.sheared else _ANGLES[:1]
-    values = on(angles, r, z)
-    # On the axis the directions differ by rounding errors.
-    values[1:, r == 0] = values[0, r == 0]
+    values = on(angles[:, None, None], r[:, None], z)
     if limit is not None and values.max() >= limit:
         return (float(values.max()),)
-    high = (values == maximum_filter(values, 3)) & (values >= _ALMOST * values.max())
-    high[1:, r == 0] = False
-    tops = sorted(np.argwhere(high), key=lambda top: -values[*top])[:_PEAKS]
-    steps = [_ANGLES[1] * under.sheared, np.gradient(r), np.gradient(z)]
-    coarse = []
-    for k, i, j in tops:
-        box = _STEPS * np.array([steps[0], steps[1][i], steps[2][j]])
-        coarse.append(_climbed(on, np.array([angles[k], r[i], z[j]]), box, _COARSE))
-    highest = max(value for value, _, _ in coarse)
-    if limit is not None and not highest < limit <= highest * (1 + 2 * _COARSE):
-        return (highest,)
-    last = [each[1:] for each in coarse if each[0] >= highest * (1 - _COARSE)]
-    peaks = [_climbed(on, place, box, _FLAT) for place, box in last]
-    value, (angle, radius, depth), _ = max(peaks, key=lambda peak: peak[0])
+    # Where two peaks share a ridge the grid may have one maximum, but the spline through it has
+    # both.
+    steps = [np.arange(part.size) for part in (r, z)]
+    finer = [np.linspace(0, part[-1], _FINER * part[-1] + 1) for part in steps]
+    fine = CubicSpline(steps[0], values, axis=1)(finer[0])
+    fine = CubicSpline(steps[1], fine, axis=2)(finer[1])
+    r, z = (np.interp(*columns) for columns in zip(finer, steps, (r, z), strict=True))
+    # On the axis the directions differ by rounding errors.
+    fine[1:, r == 0] = fine[0, r == 0]
+    high = (fine == maximum_filter(fine, 3)) & (fine >= _ALMOST * values.max())
+    # One direction stands for all on the axis, and for both beside the plane of the load.
+    high[1:, r == 0] = high[len(_ANGLES) - 1 :, r < 0] = False
+    k, i, j = np.nonzero(high)
+    place = np.stack([angles[k], r[i], z[j]], axis=1)
+    turn = np.full(k.size, _ANGLES[1] / _FINER * under.sheared)
+    box = _STEPS * np.stack([turn, np.gradient(r)[i], np.gradient(z)[j]], axis=1)
+    value, (angle, radius, depth) = _climbed(on, place, box, limit)
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
 
 def _climbed(
-    on: Callable[..., Array], place: Array, box: Array, flat: float
-) -> tuple[float, Array, Array]:
-    """Return the peak next to a place, its own place, and the last of the boxes around it.
+    on: Callable[..., Array], place: Array, box: Array, limit: float | None
+) -> tuple[float, Array]:
+    """Return the highest of the peaks next to some places, and its own place.
 
-    A box moves to its highest point. In each direction it grows if that lies on its boundary and
-    shrinks if it is the middle, so that it takes the shape of the peak, however narrow. In the
-    last one the stress varies by the part `flat`.
+    A box around each place moves to its highest point. In each direction it grows if that lies on
+    its boundary and shrinks if it is the middle, so that it takes the shape of the peak, however
+    narrow. The peak is taken to rise above the middle no more than the middle above the lowest
+    point: a box that stays below the highest peak, or the limit, is left.
+
+    Parameters
+    ----------
+    on, limit : see `_peak`.
+    place, box : angle, r and z of each start, and half the sizes of its box, shape (n, 3).
     """
-    half = box
+    half, highest, top = box, 0.0, place[0]
     for _ in range(_ROUNDS):
-        axes = place[:, None] + half[:, None] * _ACROSS
-        axes[2] = np.abs(axes[2])
-        values = on(*axes)
-        spot = tuple(map(int, np.unravel_index(values.argmax(), values.shape)))
-        if values[spot] > values[_MIDDLE] * (1 + _ROUNDING):
-            place = axes[range(3), spot]
-        else:
-            spot = _MIDDLE
-        if values[spot] - values.min() <= flat * values[spot]:
+        axes = place[..., None] + half[..., None] * _ACROSS
+        axes[:, 2] = np.abs(axes[:, 2])
+        angle, r, z = np.moveaxis(axes, 1, 0)
+        values = on(angle.T[..., None, None], r[..., None], z[:, None])
+        values = values.swapaxes(0, 1).reshape(len(place), -1)
+        rows = np.arange(len(place))
+        spot, middle = values.argmax(axis=1), values.shape[1] // 2
+        spot[values[rows, spot] <= values[:, middle] * (1 + _ROUNDING)] = middle
+        index = np.stack(np.unravel_index(spot, (_ACROSS.size,) * 3), axis=1)
+        place, value = axes[rows[:, None], range(3), index], values[rows, spot]
+        if value.max() > highest:
+            highest, top = float(value.max()), place[value.argmax()]
+        rise, reach = value - values.min(axis=1), np.abs(_ACROSS[index])
+        needed = value + rise > max(highest, limit or 0.0)
+        left = (rise > _FLAT * value) & (needed | (reach == 1).any(axis=1))
+        if not left.any() or (limit is not None and highest >= limit):
             break
-        reach = np.abs(_ACROSS[list(spot)])
         half = half * np.where(reach == 1, 1 / _SHRINK, np.where(reach == 0, _SHRINK, 1.0))
-        half[0] = min(half[0], box[0])
-    return float(values[spot]), place, half
+        half[:, 0] = np.minimum(half[:, 0], box[:, 0])
+        place, half, box = place[left], half[left], box[left]
+    return highest, top

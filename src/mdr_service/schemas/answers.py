@@ -179,7 +179,7 @@ class SubsurfaceAnswer(SolvedAnswer):
         "Normal force at the onset of yield [force], with `yield_strength`."
     )
     search_error_estimate: float = _number(
-        "Relative error of `largest` and `yield_onset_force`, which `error_estimate` leaves out",
+        "Estimate of the relative error of `largest` and `yield_onset_force`, which are searched",
         default=None,
     )
 
