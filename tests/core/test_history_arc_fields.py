@@ -99,7 +99,9 @@ def test_stress_of_one_arc_on_a_paraboloid(control: str) -> None:
             float(MU * E / mpmath.pi * (integral(last, at) - integral(max(first, at), at)))
             for at in map(mpmath.mpf, r.tolist())
         ]
-    np.testing.assert_allclose(fields.shear_stress(way.state, r), expected, rtol=1e-11)
+    # Next to the edge, the rounding of a alone changes the stress by 1e-10 of itself.
+    result = fields.shear_stress(way.state, r)
+    np.testing.assert_allclose(result, expected, rtol=1e-11, atol=1e-12 * max(map(abs, expected)))
     assert np.all(fields.shear_stress(way.state, [last * (1 + 1e-12), 2.0]) == 0)
 
 

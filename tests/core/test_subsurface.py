@@ -273,11 +273,15 @@ def test_end_of_a_monotonic_history_is_the_tangential_contact(profile: Profile) 
 @pytest.mark.parametrize("name", PATHS)
 def test_tractions_at_the_end_of_a_history(name: str) -> None:
     contact, history = at_end(RoundedPunch(0.5, 2.0), name)
-    r = np.concatenate([np.linspace(0, 1.5, 61), [1 - 1e-9], history.slip_fronts])
+    # Not at the edge, where the pressure has a root: its rounding differs from that of the radius.
+    r = np.concatenate([np.linspace(0, 1.5, 62), [1 - 1e-9], history.slip_fronts])
     result = stress(history.state, r, 0.0, 0.0, poissons_ratio=0.3, body=2)
     p, tau = fields.pressure(contact, r), fields.shear_stress(history.state, r)
     assert np.abs(result.zz + p).max() < 1e-9 * p.max()
-    assert np.abs(result.xz + tau).max() < 1e-9 * p.max()
+    error, fronts = np.abs(result.xz + tau), len(history.slip_fronts)
+    assert error[:-fronts].max() < 1e-9 * p.max()
+    # The stress has a root in the distance from a slip front, and so in its rounding error.
+    assert error[-fronts:].max() < 1e-7 * p.max()
 
 
 def test_residual_stress_after_the_tangential_force_is_removed() -> None:
@@ -319,9 +323,13 @@ def test_tractions_on_the_surface(profile: Profile, stick: float) -> None:
     if isinstance(profile, RoundedPunch) and stick == 0:
         stick = 0.7
     contact = tangential_contact(profile, stick)
-    r = np.concatenate([np.linspace(0.01, 2, 60), 1 + np.array([-1e-9, 1e-9]), [stick or 0.5, 1.0]])
-    p, tau = fields.pressure(contact.normal, r), fields.shear_stress(contact, r)
+    # At 1 - 1e-7 a rounding error of the radius changes the pressure by 5e-13 of the largest.
+    r = np.concatenate([np.linspace(0.01, 2, 60), 1 + np.array([-1e-7, 1e-7]), [stick or 0.5, 1.0]])
     for angle in (0.0, 2.1):
+        if angle:
+            # The distance of x and y from the axis is rounded, and tau has a root in that from c.
+            r = r[:-2]
+        p, tau = fields.pressure(contact.normal, r), fields.shear_stress(contact, r)
         x, y = r * np.cos(angle), r * np.sin(angle)
         for body, sign in ((1, -1), (2, 1)):
             result = stress(contact, x, y, 0.0, poissons_ratio=0.3, body=body)

@@ -366,7 +366,8 @@ def test_prescribed_stick_radius_below_a_computed_edge() -> None:
     stick = np.nextafter(few.contact_radius, 0.0)
     whole = tangential.solve(contact, 0.8 * E_STAR, 0.3, stick_radius=np.resize(stick, MANY))
     part = tangential.solve(few, 0.8 * E_STAR, 0.3, stick_radius=stick)
-    expected = few.coordinate - few.profile.coordinate_from_radius(stick)
+    # By rounding error, the coordinate of the smaller radius may be the larger one.
+    expected = np.maximum(few.coordinate - few.profile.coordinate_from_radius(stick), 0.0)
     assert np.array_equal(part.width, expected)
     assert np.array_equal(whole.width[:5], expected)
     assert np.array_equal(whole.tangential_force[:5], part.tangential_force)
