@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 # Without bytecode, each of the hundred processes that the tests start would compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-all random fuzz check bench faults pages sweeps charts figures openapi verification docs dist lock clean
+.PHONY: run test test-portable test-all random fuzz check bench faults pages sweeps charts figures openapi verification docs dist lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -32,6 +32,17 @@ test: .venv/development
 test-all: test
 	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "long and not alone"
 	$(BIN)/python -m pytest -m alone
+
+# The fast tests of numbers as on a processor without wide vector units, for NumPy, glibc and OpenBLAS alike, with the
+# loop of load histories as Python text. Names that do not apply to a processor have no effect.
+NUMBERS := tests/core tests/stability $(addprefix tests/contract/test_,example_answers.py examples.py gallery.py \
+	readme.py subsurface.py)
+UNITS := import numpy; print(*numpy.show_config("dicts").get("SIMD Extensions", {}).get("found", []))
+test-portable: .venv/development
+	rm -rf build/plain && mkdir -p build && cp -R src build/plain && rm -f build/plain/mdr_core/history/*.so
+	PORTABLE_RUN=1 PYTHONPATH=build/plain OPENBLAS_CORETYPE=Nehalem GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA \
+	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(UNITS)')" \
+	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "not long" $(NUMBERS)
 
 check: .venv/development
 	$(BIN)/ruff check

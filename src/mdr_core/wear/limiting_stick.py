@@ -190,7 +190,7 @@ def _reject_overload(force: Array, beyond: Flags, largest: Array) -> None:
     raise InputError(
         ("tangential", "tangential_force", *(first_index(beyond) if force.ndim else ())),
         "wear at this depth reduces the normal force until the whole contact slips: a stick zone "
-        f"remains only under amplitudes below {float(most[beyond][0]):.12g}",
+        f"remains only under amplitudes below {float(most[beyond][0]):.6g}",
     )
 
 
