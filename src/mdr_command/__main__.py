@@ -96,7 +96,10 @@ def _run(given: Sequence[str]) -> int:
         remedy = "run `pip install '.[service]'` in the checkout"
         sys.stderr.write(f"mdr {name}: {error.name} is missing; {remedy}\n")
         return ExitStatus.NOT_INSTALLED
-    arguments = parser.parse_args(given)
+    arguments, unknown = parser.parse_known_args(given)
+    if unknown:
+        sys.stderr.write(f"mdr {name}: there is no {' '.join(unknown)}; see mdr {name} --help\n")
+        return ExitStatus.INVALID_INPUT
     status: int = arguments.run(arguments)
     return status
 

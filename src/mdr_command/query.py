@@ -8,6 +8,7 @@ import argparse
 import logging
 import re
 import sys
+from collections.abc import Container
 from pathlib import Path
 from typing import Final
 
@@ -20,7 +21,8 @@ from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.queries import SCHEMAS
-from mdr_service.serializers import FORMATS, json
+from mdr_service.serializers import FORMATS
+from mdr_service.settings import SETTINGS
 
 _STATUS: Final = {
     problems.INTERNAL: ExitStatus.INTERNAL_ERROR,
@@ -29,6 +31,11 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
+# Options beside the request.
+_OF_OUTPUT: Final = frozenset({"output", "size"})
+# Names of parameters that cannot be words of a sentence.
+_NAME: Final = re.compile(r"\w+_\w+")
+_REQUEST: Final = "a request is a JSON object; see --help for one given by options"
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -42,8 +49,8 @@ def declare(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        metavar="|".join(FORMATS),
-        help="format of the response (default: by the suffix of FILE, else json)",
+        choices=FORMATS,
+        help="format of the response (default: by the suffix of FILE, json without one)",
     )
     parser.add_argument("--size", metavar="WxH", help=content_negotiation.SIZE)
     parser.add_argument(
@@ -65,7 +72,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
                 help=(field.description or "").replace("%", "%%"),
             )
     parser.description = (
-        f"{parser.description}\n\nA problem document goes to standard error, with the exit status "
+        f"{parser.description}\n\nErrors go to standard error, one on a line, with the exit status "
         f"{ExitStatus.INVALID_INPUT},\nor {ExitStatus.ACCURACY_NOT_REACHABLE} if the accuracy "
         "cannot be reached."
     )
@@ -76,34 +83,39 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         content = _content(arguments)
     except OSError as error:
-        return _fail(f"{arguments.file}: {error.strerror}", ExitStatus.INVALID_INPUT)
+        _say(arguments, arguments.file, str(error.strerror))
+        return ExitStatus.INVALID_INPUT
     except problems.FAILURES as error:
-        return _report(problems.to_problem(error))
+        return _report(problems.to_problem(error), arguments)
     except Exception:
         _logger.exception("internal error")
-        return _report(problems.INTERNAL_ERROR)
+        return _report(problems.INTERNAL_ERROR, arguments)
     try:
         _write(content, arguments.output)
     except OSError as error:
         if not arguments.output:
             raise
-        return _fail(f"{arguments.output}: {error.strerror}", ExitStatus.OUTPUT_FAILED)
+        _say(arguments, str(arguments.output), str(error.strerror))
+        return ExitStatus.OUTPUT_FAILED
     return ExitStatus.OK
 
 
 def _content(arguments: argparse.Namespace) -> bytes:
     """Return the response to the request, which a file or options give."""
     name, size = arguments.command, arguments.size
-    suffix = arguments.output.suffix[1:] if arguments.output else ""
-    format_ = arguments.format or (suffix if suffix in FORMATS else "json")
-    media_type = content_negotiation.media_type(format_, "*/*")
+    suffix = arguments.output.suffix[1:].lower() if arguments.output else ""
+    format_ = arguments.format or suffix or "json"
+    if format_ not in FORMATS:
+        detail = f"no format has the suffix .{suffix}; there are .{', .'.join(FORMATS)}; or give "
+        raise InputError(("output",), f"{detail}--format")
+    media_type = FORMATS[format_]
     size = None if size is None else content_negotiation.picture_size(size, media_type)
     given = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
     if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, size=size)
     if arguments.file:
-        raise InputError(("file",), "cannot be combined with options: give one of them")
+        raise InputError((), "give the request by a file or by options, not both")
     parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
         return respond(name, parameters.query(), media_type, parameters.members, size)
@@ -116,11 +128,17 @@ def _options(command: str) -> dict[str, FieldInfo]:
 
 
 def _read(file: str) -> bytes:
-    if file != _STANDARD_INPUT:
-        return Path(file).read_bytes()
-    if sys.stdin.isatty():
-        sys.stderr.write("mdr: reading the request from the terminal; end it with Ctrl-D\n")
-    return sys.stdin.buffer.read()
+    most = SETTINGS.max_body_bytes
+    if file == _STANDARD_INPUT:
+        if sys.stdin.isatty():
+            sys.stderr.write("mdr: reading the request from the terminal; end it with Ctrl-D\n")
+        content = sys.stdin.buffer.read(most + 1)
+    else:
+        with Path(file).open("rb") as stream:
+            content = stream.read(most + 1)
+    if len(content) > most:
+        raise InputError((), f"longer than the {most} bytes of MDR_MAX_BODY_BYTES")
+    return content
 
 
 def _write(content: bytes, file: Path | None) -> None:
@@ -133,11 +151,27 @@ def _write(content: bytes, file: Path | None) -> None:
     sys.stdout.flush()
 
 
-def _report(error: ServiceError) -> int:
-    sys.stderr.write(json.write(problems.document(error)).decode() + "\n")
+def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
+    """Print the errors, each with its option or its place in the file; return the exit status."""
+    names = _options(arguments.command)
+    by_options = any(name in arguments for name in names)
+    file = arguments.file or _STANDARD_INPUT
+    for pointer, detail in error.errors or [("", error.detail)]:
+        place = pointer[1:].replace("/", ".")
+        parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
+        if error.type is problems.MALFORMED_JSON:
+            parts.append(_REQUEST)
+        elif by_options or place in _OF_OUTPUT:
+            renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
+            parts = [_option(place, [place]), detail if place in _TEXTS else renamed]
+        _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
 
 
-def _fail(detail: str, status: int) -> int:
-    sys.stderr.write(f"mdr: {detail}\n")
-    return status
+def _option(name: str, names: Container[str]) -> str:
+    """Return a parameter of the service as the option; other names as they are."""
+    return f"--{name.replace('_', '-')}" if name and name in names else name
+
+
+def _say(arguments: argparse.Namespace, *parts: str) -> None:
+    sys.stderr.write(": ".join(filter(None, (f"mdr {arguments.command}", *parts))) + "\n")

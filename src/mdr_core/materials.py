@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from mdr_core.errors import InputError
-from mdr_core.validation import require_poissons_ratio, require_positive
+from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
 
@@ -67,7 +67,7 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     230.769
     """
     if len(bodies) != 2:
-        raise InputError(("material", "bodies"), "exactly two bodies are needed")
+        raise InputError(("material", "bodies"), BODIES)
     for i, body in enumerate(bodies):
         path = ("material", "bodies", i)
         if isinstance(body, Body):

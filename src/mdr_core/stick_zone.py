@@ -118,7 +118,8 @@ def _by_load(
         if force_prescribed and some(left < 0):
             raise InputError(
                 ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
-                "no equilibrium: the force exceeds friction_coefficient x normal_force",
+                "no equilibrium: the force exceeds friction_coefficient x normal_force; reduce it, "
+                "or prescribe tangential_displacement",
                 left < 0,
             )
         loaded = limit > 0

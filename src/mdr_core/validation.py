@@ -15,6 +15,14 @@ from mdr_core.typing import Array, Flags, Parameter
 _SMALLEST: Final = 1e-290
 # Largest such result.
 _LARGEST: Final = 1e290
+# Sentences about values, which the service uses as well.
+BODIES: Final = "exactly two bodies are needed"
+FINITE: Final = "must be finite"
+POSITIVE: Final = "must be positive"
+_NEGATIVE: Final = {
+    "indentation_depth": ": it counts from first contact, give 0 before it",
+    "normal_force": ": compression is positive",
+}
 TIGHTEST, LOOSEST = 1e-13, 1e-3
 """Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
 
@@ -49,7 +57,12 @@ def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> N
     """Raise InputError at the path unless all of the value is positive and finite."""
     low, high = extremes(value)
     if not (low > 0 and high < inf):
-        raise InputError(path, "must be positive and finite")
+        raise InputError(path, POSITIVE if low <= 0 else FINITE)
+
+
+def not_negative(name: str) -> str:
+    """Return the sentence about a negative value of a field."""
+    return f"must not be negative{_NEGATIVE.get(name, '')}"
 
 
 def require_not_negative(path: tuple[str | int, ...], values: Array) -> None:
@@ -57,8 +70,9 @@ def require_not_negative(path: tuple[str | int, ...], values: Array) -> None:
     low, high = extremes(values)
     if not (low >= 0 and high < inf):
         bad = np.asarray(~((values >= 0) & (values < inf)))
-        detail = "must be finite and not negative"
-        raise InputError((*path, *first_index(bad)), detail, bad)
+        first = first_index(bad)
+        detail = not_negative(str(path[-1])) if values[first] < 0 else FINITE
+        raise InputError((*path, *first), detail, bad)
 
 
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
@@ -71,7 +85,10 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
     for values in results:
         bad |= used & ~((values > _SMALLEST) & (values < _LARGEST))
     if bad.any():
-        detail = "the contact under this load leaves the range of double precision"
+        detail = (
+            "the contact under this load leaves the range of double precision: change the load, or "
+            "the units"
+        )
         raise InputError((*path, *first_index(bad)), detail, bad)
 
 
@@ -93,7 +110,7 @@ def require_inside(name: str, outside: Flags, domain: Parameter) -> None:
 def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:
     """Raise InputError at the path unless -1 < nu <= 1/2."""
     if not -1 < value <= 0.5:
-        raise InputError(path, "must lie in -1 < nu <= 1/2")
+        raise InputError(path, "must be greater than -1 and at most 0.5")
 
 
 def require_tolerance(rtol: float, tightest: float = TIGHTEST) -> None:

@@ -38,9 +38,9 @@ def picture_size(text: str, media_type: str) -> tuple[int, int]:
     size = (int(found[1]), int(found[2])) if found else (0, 0)
     if media_type in PICTURES and min(size) >= _SMALLEST and max(size) <= _LARGEST:
         return size
-    detail = SIZE if media_type in PICTURES else "is valid for pictures only: svg, png and pdf"
-    errors = [("/size", detail)]
-    raise problems.ServiceError(problems.INVALID_REQUEST, "some parameters are invalid", errors)
+    possible = f"must be {SIZE[0].lower()}{SIZE[1:].replace('`', '')}"
+    detail = possible if media_type in PICTURES else "is valid for pictures only: svg, png and pdf"
+    raise problems.invalid([("/size", detail)])
 
 
 def _range(text: str) -> tuple[str, float]:

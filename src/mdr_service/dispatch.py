@@ -62,7 +62,7 @@ def respond(
         if members:
             for member in members:
                 if member not in result:
-                    detail = f"no member {member!r}; there are {', '.join(result)}"
+                    detail = f"there is no such member; there are {', '.join(result)}"
                     raise InputError(("answers",), detail)
             result = {member: result[member] for member in members}
     return WRITE[media_type](result)
@@ -79,7 +79,7 @@ def _require_few_numbers(batch: BatchQuery) -> None:
         if numbers > most:
             detail = f"the responses must not hold more than {most} numbers in total"
             place = problems.pointer(("queries", index))
-            raise ServiceError(problems.INVALID_REQUEST, detail, [(place, detail)])
+            raise problems.invalid([(place, detail)])
 
 
 def _entry(item: BatchItem) -> bytes:

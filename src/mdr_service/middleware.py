@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from mdr_service import observability, problems
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
+from mdr_service.query_parameters import PARAMETERS
 from mdr_service.serializers import json
 from mdr_service.settings import SETTINGS
 from mdr_service.transfers import LONG, Transfers
@@ -228,10 +229,11 @@ async def _failure(_request: Request, error: Exception) -> Response:
     return problem_response(problems.to_problem(error))
 
 
-async def _invalid_parameters(_request: Request, error: RequestValidationError) -> Response:
+async def _invalid_parameters(request: Request, error: RequestValidationError) -> Response:
     # The framework puts the part of the request, `query`, first.
     found: Any = [{**each, "loc": each["loc"][1:]} for each in error.errors()]
-    return problem_response(problems.from_errors(found))
+    name = str(request.scope["route"].operation_id).removeprefix("get_")
+    return problem_response(problems.from_errors(found, PARAMETERS.get(name)))
 
 
 async def _http_exception(request: Request, error: HTTPException) -> Response:

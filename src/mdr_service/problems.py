@@ -1,16 +1,16 @@
 """Problem documents of failed requests (RFC 9457)."""
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import orjson
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from mdr_core.errors import AccuracyError, InputError
-from mdr_service.schemas.contacts import UNION_FIELDS, UNION_ITEMS
+from mdr_service import sentences
 
 MEDIA_TYPE: Final = "application/problem+json"
 # Enough to show a pattern, in a document below 4 kB.
@@ -89,7 +89,7 @@ FAILURES: Final = (ServiceError, InputError, AccuracyError, ValidationError)
 def to_problem(error: Exception) -> ServiceError:
     """Return one of the `FAILURES` as a `ServiceError`."""
     if isinstance(error, InputError):
-        return ServiceError(INVALID_REQUEST, error.detail, [(pointer(error.path), error.detail)])
+        return invalid([(pointer(error.path), error.detail)])
     if isinstance(error, AccuracyError):
         return ServiceError(ACCURACY, str(error), [(pointer(error.path), str(error))])
     if isinstance(error, ValidationError):
@@ -116,20 +116,34 @@ def from_validation(error: ValidationError) -> ServiceError:
     """Return the failure of a request model, without the values sent."""
     count = error.error_count()
     if count > _MAX_BUILT:
-        detail = f"{count} values are invalid, too many to list"
-        return ServiceError(INVALID_REQUEST, detail, [("", detail)])
-    return from_errors(error.errors(include_url=False, include_input=False))
+        return invalid([("", f"{count} values are invalid, too many to list")])
+    model = sentences.request_model(error.title)
+    return from_errors(error.errors(include_url=False, include_input=False), model)
 
 
-def from_errors(found: Sequence[ErrorDetails]) -> ServiceError:
-    """Return the failure with errors of pydantic, whose locations start in the request."""
+def from_errors(found: Sequence[ErrorDetails], model: type[BaseModel] | None) -> ServiceError:
+    """Return the failure with errors of pydantic, whose locations start in the request.
+
+    The members of the model are named in place of unknown ones.
+    """
     if found[0]["type"] == "json_invalid":
-        return ServiceError(MALFORMED_JSON, found[0]["msg"], [("", found[0]["msg"])])
-    return ServiceError(
-        INVALID_REQUEST,
-        "some values are invalid",
-        [(pointer(_location(each)), _sentence(each)) for each in found[:MAX_ERRORS]],
-    )
+        detail = sentences.of_json(found[0]["msg"])
+        return ServiceError(MALFORMED_JSON, detail, [("", detail)])
+    errors = [
+        (pointer(sentences.path(each)), sentences.sentence(each, model))
+        for each in found[:MAX_ERRORS]
+    ]
+    return invalid(errors, len(found))
+
+
+def invalid(errors: Sequence[Error], count: int = 1) -> ServiceError:
+    """Return the failure of a request with some of its `count` errors, the first as its detail."""
+    (where, detail), *_ = errors
+    if place := where[1:].replace("/", ".").replace("~1", "/").replace("~0", "~"):
+        detail = f"{place}: {detail}"
+    if count > 1:
+        detail += f" (and {count - 1} more)"
+    return ServiceError(INVALID_REQUEST, detail, errors)
 
 
 def pointer(path: Iterable[str | int]) -> str:
@@ -152,38 +166,3 @@ def _bounded(errors: Iterable[Error]) -> list[dict[str, str]]:
             break
         listed.append(error)
     return listed
-
-
-def _location(error: ErrorDetails) -> Iterator[str | int]:
-    """Yield the path into the request: the location without the branches of unions."""
-    steps = iter(error["loc"])
-    for step in steps:
-        yield step
-        if step in UNION_FIELDS:
-            next(steps, None)
-        elif step in UNION_ITEMS:
-            yield from itertools.islice(steps, 1)
-            next(steps, None)
-    if error["type"].startswith("union_tag"):
-        yield "kind"
-
-
-# Pydantic's own sentences repeat the value sent, name the tags of its union or, in queries of a
-# batch, the types of Python; it calls a member an input.
-_SENTENCES: Final = {
-    "union_tag_invalid": "there is no such kind of profile; GET /v1/profiles lists them",
-    "union_tag_not_found": "the kind of profile is missing; GET /v1/profiles lists them",
-    "model_type": "Input should be an object",
-    "model_attributes_type": "Input should be an object",
-    "dict_type": "Input should be an object",
-    "list_type": "Input should be a valid array",
-    "extra_forbidden": "there is no such member",
-}
-# Pydantic prints the bounds 1e-50 and 1e50 with all their zeros.
-_BOUNDS: Final = {"greater_than_equal": "ge", "less_than_equal": "le"}
-
-
-def _sentence(error: ErrorDetails) -> str:
-    if bound := _BOUNDS.get(error["type"]):
-        return f"{error['msg'].rpartition(' ')[0]} {error['ctx'][bound]:.15g}"
-    return _SENTENCES.get(error["type"], error["msg"])

@@ -15,34 +15,30 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, SkipValidati
 from pydantic_core import PydanticCustomError
 
 from mdr_core.errors import InputError
+from mdr_core.validation import FINITE
 from mdr_service import problems
 from mdr_service.content_negotiation import FORMAT, SIZE, Format
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
-from mdr_service.schemas.profiles import MODELS
+from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.schemas.quantities import quantity
 from mdr_service.schemas.queries import SCHEMAS
+from mdr_service.sentences import NUMBER
 from mdr_service.settings import SETTINGS
 
 # JSON numbers, and a leading plus, which spreadsheets write.
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _WHOLE: Final = re.compile(r"\d{1,9}", re.ASCII)
 _SPACINGS: Final[Mapping[str, Any]] = {"linear": np.linspace, "log": np.geomspace}
-# Kinds of profile that consist of numbers.
-_KINDS: Final = tuple(
-    kind
-    for kind, model in MODELS.items()
-    if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
-)
 
 
 def _number(text: str) -> float:
     # The framework reads a plus sign in a URL as a space.
     if not _NUMBER.fullmatch(text := text.replace(" ", "+")):
-        raise PydanticCustomError("number", "must be a number, like 0.01 or 1.1e11")
+        raise PydanticCustomError("number", f"{NUMBER}, without a unit or a decimal comma")
     if np.isinf(value := float(text)):
-        raise PydanticCustomError("number", "is out of the range of double precision")
+        raise PydanticCustomError("number", FINITE)
     return value
 
 
@@ -64,6 +60,9 @@ _TEXTS: Final = {
     "profile.kind": "Kind of profile; POST takes series and tables as well",
     "radius": "Radius r of the fields; `radius` is that of the profile [length]",
 }
+_BODIES: Final = (
+    "youngs_modulus_1 and poissons_ratio_1 (and those of body 2, which is rigid without them)"
+)
 _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 
 
@@ -101,6 +100,8 @@ class Parameters(BaseModel):
         named = {body for body in bodies if any(field.startswith(body) for field in values)}
         if named:
             values |= dict.fromkeys(bodies - named, "rigid")
+        elif "material" in self.model.model_fields and "material.e_star" not in values:
+            raise InputError(("material", "e_star"), f"is required, or {_BODIES}")
         if isinstance(values.get("radius"), float):
             values["radius"] = [values["radius"]]
         if "quantities" in values:
@@ -118,10 +119,9 @@ class Parameters(BaseModel):
             yield
         except problems.FAILURES as error:
             found = problems.to_problem(error)
-            errors = [
-                (problems.pointer([self._parameter(place[1:].replace("/", "."))]), detail)
-                for place, detail in found.errors
-            ]
+            errors = [self._error(*each) for each in found.errors]
+            if found.type is problems.INVALID_REQUEST:
+                raise problems.invalid(errors, len(errors)) from None
             raise replace(found, errors=errors) from None
 
     def _join_range(self, given: dict[str, Any]) -> None:
@@ -142,11 +142,19 @@ class Parameters(BaseModel):
                 raise InputError((end,), "must be greater than 0 on a logarithmic scale")
         for part in (start, stop, "n"):
             if part not in self.model_fields_set:
-                raise InputError((part,), f"{part} is required for a range")
+                raise InputError((part,), "is required for a range")
         # Between ends out of bounds numbers can overflow; the ends are then rejected.
         with np.errstate(all="ignore"):
             spaced = _SPACINGS[self.scale or "linear"](given.pop(start), given.pop(stop), self.n)
         given[name] = spaced.tolist()
+
+    def _error(self, pointer: str, detail: str) -> problems.Error:
+        place = pointer[1:].replace("/", ".")
+        name = self._parameter(place)
+        if place in self.fields.values():
+            # It has another name as a parameter: `r` for the radius of fields.
+            detail = re.sub(rf"\b{place.rpartition('.')[2]}\b", name, detail)
+        return problems.pointer([name]), re.sub(r"\bbodies\b", _BODIES, detail)
 
     def _parameter(self, place: str) -> str:
         """Return the parameter that stands for a place in the request.
@@ -183,7 +191,7 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
                 text = f"`{name}` of body {body}, absent for a rigid body {dimension}"
                 yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
         elif field == "profile.kind":
-            yield name, field, Literal[_KINDS], text
+            yield name, field, Literal[OF_NUMBERS], text
         elif field == "quantities":
             text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
             yield name, field, str | None, text

@@ -33,7 +33,7 @@ def test_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == f"mdr {__version__}\n"
 
 
-@pytest.mark.parametrize("given", [[], ["nothing"], ["--nothing"], ["normal", "--nothing"]])
+@pytest.mark.parametrize("given", [[], ["nothing"], ["--nothing"]])
 def test_unknown_command_exits_with_usage(
     given: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -41,6 +41,11 @@ def test_unknown_command_exits_with_usage(
         command.main(given)
     assert ended.value.code == 2
     assert capsys.readouterr().err.startswith("usage: mdr")
+
+
+def test_unknown_option_exits_with_its_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command.main(["normal", "--nothing", "1"]) == 2
+    assert capsys.readouterr().err == "mdr normal: there is no --nothing; see mdr normal --help\n"
 
 
 def test_missing_module_raises(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,31 +37,31 @@ def test_the_suffix_of_the_file_gives_the_format(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "pointer"),
+    ("given", "option"),
     [
-        (["--normal-force", "-1"], "/normal_force"),
-        (["--normal-force", "-1e-3"], "/normal_force"),
-        (["--normal-force", "-.5E+2"], "/normal_force"),
-        (["--normal-force", "ten"], "/normal_force"),
-        (["--normal-force", "1", "--slope", "1"], "/slope"),
-        ([], "/indentation_depth"),
+        (["--normal-force", "-1"], "--normal-force"),
+        (["--normal-force", "-1e-3"], "--normal-force"),
+        (["--normal-force", "-.5E+2"], "--normal-force"),
+        (["--normal-force", "ten"], "--normal-force"),
+        (["--normal-force", "1", "--slope", "1"], "--slope"),
+        ([], "--indentation-depth"),
     ],
 )
-def test_problems_point_at_the_option(given: list[str], pointer: str, capsys: Capture) -> None:
+def test_errors_name_the_option(given: list[str], option: str, capsys: Capture) -> None:
     assert main(["normal", *OPTIONS, *given]) == 2
-    problem = json.loads(capsys.readouterr().err)
-    assert problem["errors"][0]["pointer"] == pointer
+    assert capsys.readouterr().err.startswith(f"mdr normal: {option}: ")
 
 
 def test_a_file_and_options_exclude_each_other(capsys: Capture) -> None:
     assert main(["normal", "request.json", *OPTIONS, "--normal-force", "1"]) == 2
-    assert "/file" in capsys.readouterr().err
+    sentence = "give the request by a file or by options, not both"
+    assert capsys.readouterr().err == f"mdr normal: {sentence}\n"
 
 
 def test_a_response_that_cannot_be_written_is_named(tmp_path: Path, capsys: Capture) -> None:
     target = str(tmp_path / "missing" / "a.json")
     assert main(["normal", *OPTIONS, "--normal-force", "1", "-o", target]) == 4
-    assert capsys.readouterr().err == f"mdr: {target}: No such file or directory\n"
+    assert capsys.readouterr().err == f"mdr normal: {target}: No such file or directory\n"
 
 
 def test_profiles_lists_every_kind(capsys: Capture) -> None:

@@ -21,7 +21,7 @@ from mdr_service.api.documentation import (
 from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
 from mdr_service.dispatch import respond
 from mdr_service.middleware import header, read_body
-from mdr_service.problems import INVALID_REQUEST, ServiceError
+from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import contacts
 from mdr_service.schemas.answers import Answer
@@ -133,8 +133,8 @@ async def url_parameters(request: Request) -> dict[str, str]:
 
 
 def _invalid(errors: dict[str, str]) -> ServiceError:
-    pointers = [(problems.pointer([name]), detail) for name, detail in errors.items()]
-    return ServiceError(INVALID_REQUEST, "some parameters are invalid", pointers)
+    found = [(problems.pointer([name]), detail) for name, detail in errors.items()]
+    return problems.invalid(found, len(found))
 
 
 router = APIRouter(route_class=QueryRoute)

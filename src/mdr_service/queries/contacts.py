@@ -78,8 +78,7 @@ def friction(query: Any) -> Arguments:
     """Return shear modulus and coefficient of friction, as arguments of the core."""
     g_star = query.material.effective.g_star
     if g_star is None:
-        detail = "g_star is needed where there is friction: give it, or bodies"
-        raise InputError(("material", "g_star"), detail)
+        raise InputError(("material", "g_star"), "is needed with friction: give it, or bodies")
     return {"g_star": g_star, "friction_coefficient": query.friction_coefficient}
 
 

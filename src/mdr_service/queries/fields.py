@@ -47,10 +47,9 @@ def require_loads(query: LoadedQuery) -> None:
     if by_path and query.has("tangential"):
         raise InputError(("tangential",), "must be absent: history contains the tangential load")
     if query.has("friction_coefficient") != (by_path or query.has("tangential")):
-        missing = "tangential" if query.has("friction_coefficient") else "friction_coefficient"
-        raise InputError(
-            (missing,), "friction_coefficient is needed with tangential or history, and only then"
-        )
+        names = ["friction_coefficient", "tangential"]
+        given, missing = names if query.has("friction_coefficient") else names[::-1]
+        raise InputError((missing,), f"is needed with {'history' if by_path else given}")
     require_few_samples(query)
 
 

@@ -88,7 +88,7 @@ def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
     if isinstance(known, str):
         raise InputError(("body",), "is rigid: request the stresses of the other body")
     if not known.has("poissons_ratio"):
-        detail = "poissons_ratio is needed for stresses in a body: give it, or bodies"
+        detail = "is needed for stresses in a body: give it, or bodies"
         raise InputError(("material", "poissons_ratio"), detail)
     return {"poissons_ratio": known.poissons_ratio, "body": query.body}
 

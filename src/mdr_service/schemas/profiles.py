@@ -193,3 +193,9 @@ MODELS: Final[Mapping[str, type[Strict]]] = {
     for model in get_args(get_args(Profile)[0])
 }
 """Models by kind."""
+OF_NUMBERS: Final = tuple(
+    kind
+    for kind, model in MODELS.items()
+    if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
+)
+"""Kinds that consist of numbers."""

@@ -1,0 +1,203 @@
+"""Errors of pydantic in the sentences of the core: what is wrong, and what to do.
+
+Pydantic's own sentences repeat the value sent, name the tags of its unions and the types of
+Python, and print the bound 1e50 with all its zeros.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import Any, Final, get_args
+
+from pydantic import BaseModel
+from pydantic_core import ErrorDetails
+
+from mdr_core.validation import BODIES, FINITE, POSITIVE, not_negative
+from mdr_service.schemas.batch import BatchQuery
+from mdr_service.schemas.contacts import UNION_FIELDS, UNION_ITEMS, Choice
+from mdr_service.schemas.profiles import MODELS, OF_NUMBERS
+from mdr_service.schemas.queries import SCHEMAS
+
+Path = tuple[str | int, ...]
+_Model = type[BaseModel]
+
+NUMBER: Final = "must be a number such as 0.01 or 1.1e11"
+_KINDS: Final = ", ".join(MODELS)
+_NUMBERS: Final = ", ".join(OF_NUMBERS)
+_BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
+_BODIES: Final = f"bodies (two, each {_BODY})"
+_PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
+# By the type of the error, and by its type and field.
+_SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
+    "dict_type": "must be an object",
+    "finite_number": FINITE,
+    "float_type": f"{NUMBER}, without quotes or a unit",
+    "int_from_float": "must be a whole number",
+    "int_type": "must be a whole number",
+    "list_type": "must be a list in square brackets",
+    "string_type": "must be a text in double quotes",
+    "union_tag_invalid": f"there is no such kind; there are {_KINDS}",
+    "union_tag_not_found": f"is required, one of {_KINDS}",
+    ("dict_type", "profile"): f"must be {_PROFILE}",
+    ("model_attributes_type", "profile"): f"must be {_PROFILE}",
+    ("literal_error", "bodies"): f"must be {_BODY}",
+    ("literal_error", "kind"): f"must be {_NUMBERS}; series and tables need a request in JSON",
+    ("missing", "e_star"): f"is required, or {_BODIES}",
+    ("missing", "kind"): f"is required, one of {_NUMBERS}",
+    ("missing", "profile"): f"is required, {_PROFILE}",
+    ("too_long", "bodies"): BODIES,
+    ("too_short", "bodies"): BODIES,
+}
+_BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
+# Numbers that have to be positive have a lower bound, which no unit system reaches.
+_TINY: Final = 1e-15
+_MODELS: Final[Sequence[_Model]] = (BatchQuery, *(query.model for query in SCHEMAS.values()))
+_REQUESTS: Final = {model.__name__: model for model in _MODELS}
+
+
+def request_model(name: str) -> _Model | None:
+    """Return the model of a request by its name, which is the title of a ValidationError."""
+    return _REQUESTS.get(name)
+
+
+def path(error: ErrorDetails) -> Path:
+    """Return the path into the request: the location without the branches of unions."""
+    steps, found = iter(error["loc"]), []
+    for step in steps:
+        found.append(step)
+        if step in UNION_FIELDS:
+            next(steps, None)
+        elif step in UNION_ITEMS:
+            found += islice(steps, 1)
+            next(steps, None)
+    if error["type"].startswith("union_tag"):
+        found.append("kind")
+    return tuple(found)
+
+
+def _field(place: Path) -> str:
+    """Return the name of the field at a place, or of the list of which the place is an item."""
+    return next((step for step in reversed(place) if isinstance(step, str)), "")
+
+
+def of_json(message: str) -> str:
+    """Return why a text is not JSON, and what to do, from the message of pydantic."""
+    reason = message.removeprefix("Invalid JSON: ")
+    remedies = {"key must be": "put names in double quotes", "EOF": "it is empty or cut off"}
+    remedy = next((f"; {text}" for start, text in remedies.items() if reason.startswith(start)), "")
+    return f"not valid JSON: {reason}{remedy}"
+
+
+def sentence(error: ErrorDetails, model: _Model | None) -> str:
+    """Return what is wrong with a request of the model, and what to do.
+
+    Parameters
+    ----------
+    error : error of pydantic, whose location starts in the request.
+    model : model of the request, whose members are named in place of an unknown one.
+    """
+    kind, place = error["type"], path(error)
+    if found := _SENTENCES.get((kind, _field(place))) or _SENTENCES.get(kind):
+        return found
+    write = _WRITERS.get(kind)
+    return write(error, place, model) if write else error["msg"]
+
+
+def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
+    names = _members(_models(error, place[:-1], model))
+    # A range is described by the parameter without `_from` and `_to`.
+    listed = ", ".join(name for name in names if not name.endswith(("_from", "_to")))
+    return f"there is no such member; there are {listed}"
+
+
+def _missing(error: ErrorDetails, place: Path, model: _Model | None) -> str:
+    described = _described(_models(error, place, model))
+    words = [part for part in _annotated(error, place, model) if isinstance(part, str)]
+    listed = f", {described}" if described else f"; it can be {', '.join(words)}" if words else ""
+    return f"is required{listed}"
+
+
+def _no_object(error: ErrorDetails, place: Path, model: _Model | None) -> str:
+    return f"must be {_described(_models(error, place, model)) or 'an object'}"
+
+
+def _other_word(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
+    return f"must be {str(error['ctx']['expected']).replace(chr(39), '')}"
+
+
+def _length(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
+    if error["type"] == "too_long":
+        return f"at most {error['ctx']['max_length']} values are allowed"
+    least = error["ctx"]["min_length"]
+    return f"at least {'one value is' if least == 1 else f'{least} values are'} needed"
+
+
+def _range(error: ErrorDetails, place: Path, model: _Model | None) -> str:
+    bounds: dict[str, float] = dict(error["ctx"])
+    least = bounds.get("ge")
+    if least is not None and 0 <= least <= _TINY:
+        return f"{POSITIVE}, at least {least:g}" if least else not_negative(_field(place))
+    for owner in _models(error, place[:-1], model):
+        if field := owner.model_fields.get(str(place[-1])):
+            # The other end of the range.
+            parts = [(part, end) for part in field.metadata for end in _BOUNDS]
+            bounds |= {end: getattr(part, end) for part, end in parts if hasattr(part, end)}
+    if bounds.keys() == {"ge", "le"}:
+        return f"must lie from {bounds['ge']:.15g} to {bounds['le']:.15g}"
+    texts = [f"{text} {bounds[name]:.15g}" for name, text in _BOUNDS.items() if name in bounds]
+    return f"must be {' and '.join(texts)}"
+
+
+_Writer = Callable[[ErrorDetails, Path, _Model | None], str]
+_WRITERS: Final[Mapping[str, _Writer]] = {
+    "extra_forbidden": _unknown,
+    "literal_error": _other_word,
+    "missing": _missing,
+    "too_long": _length,
+    "too_short": _length,
+    **dict.fromkeys(("model_type", "model_attributes_type"), _no_object),
+    **dict.fromkeys(("greater_than", "greater_than_equal", "less_than", "less_than_equal"), _range),
+}
+
+
+def _models(error: ErrorDetails, place: Path, model: _Model | None) -> list[_Model]:
+    """Return the models of the object at a place, several where it is a union."""
+    if not place:
+        return [model] if model else []
+    # The location names the kind of the profile next.
+    kinds = [MODELS[str(tag)] for tag in error["loc"] if tag in MODELS][:1]
+    if place[-1] == "profile":
+        return list[_Model](kinds)
+    parts = _annotated(error, place, model)
+    return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
+
+
+def _annotated(error: ErrorDetails, place: Path, model: _Model | None) -> list[Any]:
+    """Return the types of a field, or of the items of a list, and the words that it can be."""
+    *inside, field = (step for step in place if isinstance(step, str))
+    owners = _models(error, tuple(inside), model)
+    fields = [owner.model_fields[field] for owner in owners if field in owner.model_fields]
+    return [part for field_ in fields for part in _parts(field_.annotation)]
+
+
+def _parts(annotation: Any) -> Iterator[Any]:
+    inner = get_args(annotation)
+    if not inner:
+        yield annotation
+    for part in inner:
+        yield from _parts(part)
+
+
+def _members(models: Sequence[_Model]) -> list[str]:
+    """Return the names of the members, required ones first."""
+    fields = {name: field for model in models for name, field in model.model_fields.items()}
+    names = sorted(fields, key=lambda name: not fields[name].is_required())
+    return [_BODIES if name == "bodies" else name for name in names]
+
+
+def _described(models: Sequence[_Model]) -> str:
+    """Return what an object consists of, empty for other values."""
+    names = _members(models)
+    if len(models) == 1 and issubclass(models[0], Choice):
+        controls = [name for name in names if name not in models[0].optional]
+        return f"an object of exactly one of {', '.join(controls)}"
+    return f"an object of {', '.join(names)}" if names else ""
