@@ -75,7 +75,7 @@ class Client:
 def running_client() -> Iterator[Client]:
     """Run the application in process."""
     app = create_app()
-    app.state.workers = WorkerPool(PATIENT, app.state.transfers)
+    app.state.workers = WorkerPool(PATIENT)
     lifespan = app.router.lifespan_context(app)
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(lifespan):
         client = Client(portal, app)

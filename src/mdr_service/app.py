@@ -56,7 +56,7 @@ def create_app() -> FastAPI:
         lifespan=_lifespan,
     )
     app.state.transfers = Transfers(SETTINGS.max_transfer_bytes)
-    app.state.workers = WorkerPool(SETTINGS, app.state.transfers)
+    app.state.workers = WorkerPool(SETTINGS)
     workers = app.state.workers
     # On a single core the client could not prepare its next request.
     seconds = SETTINGS.idle_poll_seconds if cores() > 1 else 0.0

@@ -20,6 +20,7 @@ import psutil
 from mdr_service.settings import SETTINGS
 from tests.faults.attacks import SMALL, tangential
 from tests.faults.figures import MEBIBYTE, Row, say, table
+from tests.faults.kills import kills
 from tests.faults.load import Response, clients, percentile
 from tests.faults.mixed_requests import memory, mutated, parallel, schema
 from tests.faults.server import free_port, running, service
@@ -201,6 +202,7 @@ CAMPAIGNS: dict[str, Campaign] = {
     "expensive": small_beside("expensive queries, 20 clients"),
     "hostile": hostile,
     "overload": overload,
+    "kills": kills,
     "parallel": parallel,
     "schema": schema,
     "mutated": mutated,

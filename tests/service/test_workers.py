@@ -2,6 +2,7 @@
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -17,9 +18,9 @@ from anyio.from_thread import start_blocking_portal
 
 from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_service import observability, problems, workers
+from mdr_service.compute_process import ComputeProcess
 from mdr_service.problems import ServiceError
 from mdr_service.settings import Settings
-from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
 
 pytestmark = [pytest.mark.long, pytest.mark.alone]
@@ -31,6 +32,7 @@ ONE = Settings(
     budget_seconds=60.0,
     shutdown_seconds=121,
 )
+HASTY = ONE.model_copy(update={"queue_seconds": 0.2})
 PATIENCE = 30.0
 
 Test = Callable[[WorkerPool], Awaitable[None]]
@@ -104,7 +106,7 @@ def run(
     warm_up: Callable[[], object] = own_process,
 ) -> None:
     async def main() -> None:
-        pool = WorkerPool(settings, Transfers(2**20))
+        pool = WorkerPool(settings)
         async with pool.started(warm_up):
             await test(pool)
 
@@ -114,7 +116,7 @@ def run(
 @pytest.fixture(scope="module")
 def shared() -> Iterator[Shared]:
     """Run a test in the pool of one process that several tests share."""
-    pool = WorkerPool(ONE, Transfers(2**20))
+    pool = WorkerPool(ONE)
     started = pool.started(own_process)
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(started):
         yield lambda test: portal.call(test, pool)
@@ -134,6 +136,15 @@ async def error_of(awaited: Awaitable[object]) -> ServiceError:
     with pytest.raises(ServiceError) as caught:
         await awaited
     return caught.value
+
+
+def lost_processes() -> float:
+    (metric,) = observability.RESTARTS.collect()
+    return sum(
+        sample.value
+        for sample in metric.samples
+        if sample.name.endswith("_total") and sample.labels["reason"] == "lost"
+    )
 
 
 def ready_processes() -> float:
@@ -176,22 +187,6 @@ def test_errors_return_from_the_process(shared: Shared) -> None:
     shared(test)
 
 
-def test_large_result_needs_room_in_memory(shared: Shared) -> None:
-    async def test(pool: WorkerPool) -> None:
-        record = start_record()
-        # A single result may have any size.
-        assert await pool.run_in_process(bytes, 2**22) == bytes(2**22)
-        assert record.response == 2**22
-        start_record()
-        result = await error_of(pool.run_in_process(bytes, 2**18))
-        assert (result.type, result.retry_after) == (problems.BUSY, 1)
-        # The process is not affected, and small results need no room in memory.
-        assert await pool.run_in_process(bytes, 2**15) == bytes(2**15)
-        assert ready_processes() == 1
-
-    shared(test)
-
-
 def test_standard_output_of_the_process_is_not_mistaken_for_a_result(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
         assert await pool.run_in_process(print_something) == await pool.run_in_process(own_process)
@@ -215,7 +210,7 @@ def test_process_stopped_while_idle_is_detected_by_the_next_query(shared: Shared
         stopped = await pool.run_in_process(own_process)
         os.kill(stopped, signal.SIGSTOP)
         assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
-        assert not process_exists(stopped)
+        await wait_for(lambda: not process_exists(stopped))
         assert await pool.run_in_process(own_process) != stopped
 
     shared(test)
@@ -259,7 +254,7 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
         result = await error_of(pool.run_in_process(sleep_for, 60.0))
         assert time.monotonic() - began < PATIENCE
         assert result.type == problems.TIME_EXCEEDED
-        assert not process_exists(first)
+        await wait_for(lambda: not process_exists(first))
         assert await pool.run_in_process(own_process) != first
         assert ready_processes() == 1
 
@@ -280,18 +275,63 @@ def test_process_stopped_while_idle_is_detected_without_a_query(
     run(test)
 
 
+def test_process_killed_while_idle_is_replaced_and_counted() -> None:
+    async def test(pool: WorkerPool) -> None:
+        counted, killed = lost_processes(), await pool.run_in_process(own_process)
+        os.kill(killed, signal.SIGKILL)
+        await wait_for(lambda: lost_processes() == counted + 1 and ready_processes() == 1)
+        assert await pool.run_in_process(own_process) != killed
+
+    run(test)
+
+
+@pytest.mark.parametrize("error", [RuntimeError, struct.error, EOFError, MemoryError])
+@pytest.mark.parametrize("found_by", ["a query", "the check of idle processes"])
+def test_any_failure_of_an_exchange_loses_that_process_only(
+    monkeypatch: pytest.MonkeyPatch, error: type[Exception], found_by: str
+) -> None:
+    call = ComputeProcess.call
+
+    async def fail(_process: ComputeProcess, *_: object) -> None:
+        monkeypatch.setattr(ComputeProcess, "call", call)
+        raise error("of a child")
+
+    async def test(pool: WorkerPool) -> None:
+        first, counted = await pool.run_in_process(own_process), lost_processes()
+        monkeypatch.setattr(ComputeProcess, "call", fail)
+        if found_by == "a query":
+            assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
+        await wait_for(lambda: not process_exists(first))
+        assert await pool.run_in_process(own_process) != first
+        assert lost_processes() == counted + 1
+
+    monkeypatch.setattr(workers, "_BEAT_INTERVAL", 60.0 if found_by == "a query" else 0.1)
+    run(test)
+
+
+def test_pool_without_supervision_is_not_ready() -> None:
+    async def main() -> ServiceError:
+        pool = WorkerPool(ONE)
+        async with pool.started(own_process):
+            await pool.check()
+        return await error_of(pool.check())
+
+    assert anyio.run(main).type == problems.LOST
+
+
 def test_process_stopped_while_computing_is_replaced_after_the_time_limit() -> None:
     async def test(pool: WorkerPool) -> None:
         stopped = await pool.run_in_process(own_process)
         async with anyio.create_task_group() as tasks:
 
-            async def expect_loss() -> None:
-                assert (await error_of(pool.run_in_process(sleep_for, 60.0))).type == problems.LOST
+            async def expect_end() -> None:
+                result = await error_of(pool.run_in_process(sleep_for, 60.0))
+                assert result.type == problems.TIME_EXCEEDED
 
-            tasks.start_soon(expect_loss)
+            tasks.start_soon(expect_end)
             await anyio.sleep(0.3)
             os.kill(stopped, signal.SIGSTOP)
-        assert not process_exists(stopped)
+        await wait_for(lambda: not process_exists(stopped))
         assert await pool.run_in_process(own_process) != stopped
 
     run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
@@ -306,7 +346,7 @@ def test_process_that_fails_to_start_is_restarted(tmp_path: Path) -> None:
         await wait_for(lambda: ready_processes() == 1)
         assert await pool.run_in_process(own_process) != os.getpid()
 
-    run(test, warm_up=partial(die_unless, tmp_path / "live"))
+    run(test, HASTY, warm_up=partial(die_unless, tmp_path / "live"))
 
 
 def test_process_that_fails_its_self_test_is_not_used() -> None:
@@ -314,7 +354,7 @@ def test_process_that_fails_its_self_test_is_not_used() -> None:
         assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
         assert ready_processes() == 0
 
-    run(test, warm_up=broken)
+    run(test, HASTY, warm_up=broken)
 
 
 def test_query_that_waits_too_long_is_rejected(tmp_path: Path) -> None:
@@ -322,7 +362,7 @@ def test_query_that_waits_too_long_is_rejected(tmp_path: Path) -> None:
         async with occupied(pool, tmp_path / "go"):
             assert (await error_of(pool.run_in_process(own_process))).type == problems.BUSY
 
-    run(test, ONE.model_copy(update={"queue_seconds": 0.2}))
+    run(test, HASTY)
 
 
 def test_queue_is_served_in_order_and_waiting_does_not_count_as_computing(tmp_path: Path) -> None:
@@ -384,12 +424,11 @@ def test_compute_process_at_work_ends_with_its_server(tmp_path: Path) -> None:
     code = f"""
 import anyio, pathlib, os
 from mdr_service.settings import SETTINGS
-from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
 from tests.service.test_workers import own_process, sleep_for
 
 async def main():
-    pool = WorkerPool(SETTINGS.model_copy(update={{"compute_processes": 1}}), Transfers(0))
+    pool = WorkerPool(SETTINGS.model_copy(update={{"compute_processes": 1}}))
     async with pool.started(own_process):
         number = await pool.run_in_process(own_process)
         pathlib.Path({str(tmp_path / "number")!r}).write_text(str(number))
