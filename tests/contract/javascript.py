@@ -12,22 +12,27 @@ import mdr_service
 EXPLORER = Path(mdr_service.__file__).with_name("explorer")
 
 
-def evaluated(module: str, function: str, arguments: list[Any]) -> list[Any]:
-    """Return the result of a function of a module for each list of its arguments."""
+def evaluated(module: str, expression: str, calls: list[Any]) -> list[Any]:
+    """Return the value of a JavaScript expression of `module` and `call` for each of the calls.
+
+    The value of a call that throws an exception is its message, as the member `error`.
+    """
     script = f"""
         import {{ readFileSync }} from "node:fs";
-        import {{ {function} }} from "{(EXPLORER / module).as_uri()}";
-        const calls = JSON.parse(readFileSync(0, "utf-8"));
+        import * as module from "{(EXPLORER / module).as_uri()}";
         const result = (call) => {{
-            try {{ return {function}(...call); }}
-            catch (error) {{ return {{ error: error.message }}; }}
+            try {{
+                return {expression};
+            }} catch (error) {{
+                return {{ error: error.message }};
+            }}
         }};
-        console.log(JSON.stringify(calls.map(result)));
+        console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf-8")).map(result)));
     """
     node = compute_driver_executable()[0]
     done = subprocess.run(
         [node, "--input-type=module", "--eval", script],
-        input=json.dumps(arguments),
+        input=json.dumps(calls),
         capture_output=True,
         text=True,
         check=True,
