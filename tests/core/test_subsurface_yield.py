@@ -21,6 +21,7 @@ from mdr_core.profiles import (
     Profile,
     RoundedPunch,
     Sphere,
+    SphericalTipCone,
     Tabulated,
     TruncatedCone,
 )
@@ -278,6 +279,45 @@ def test_slope_discontinuity_yields_when_the_contact_reaches_it() -> None:
     at_break = normal.solve(profile, 3.0, contact_radius=0.05)
     force = yield_onset_force(contact, 1.0, poissons_ratio=0.3)
     assert float(force) == pytest.approx(float(at_break.normal_force), rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("radius", [0.02, 0.0501, 0.2])
+def test_slip_yields_at_once_at_a_slope_discontinuity_of_an_incompressible_body(
+    radius: float,
+) -> None:
+    """Slip starts at the edge, and therefore at the discontinuity when the contact reaches it."""
+    profile = CappedParaboloid(0.05, 20.0, 1.0)
+    at_break = normal.solve(profile, 3.0, contact_radius=0.05)
+    contact = normal.solve(profile, 3.0, contact_radius=radius)
+    push = 0.2 * contact.normal_force
+    pushed = tangential.solve(contact, 2.5, 0.3, tangential_force=push)
+    force = yield_onset_force(pushed, 1.0, poissons_ratio=0.5)
+    assert float(force) == pytest.approx(float(at_break.normal_force), rel=1e-12, abs=0)
+    assert np.isfinite(largest(pushed, poissons_ratio=0.5).value) == (radius != 0.0501)
+
+
+@pytest.mark.parametrize(
+    ("profile", "searches"),
+    [(Paraboloid(2.0), 2), (RoundedPunch(0.05, 2.0), 4), (SphericalTipCone(0.3, 1e-3), 6)],
+)
+@pytest.mark.parametrize("share", [0.2, 3.0])
+def test_onset_takes_few_searches(
+    monkeypatch: pytest.MonkeyPatch, profile: Profile, searches: int, share: float
+) -> None:
+    """Each takes a tenth of a second."""
+    counted: list[float] = []
+
+    def peak(*case: Any) -> tuple[float, ...]:
+        counted.append(searched(*case)[0])
+        return searched(*case)
+
+    contact = normal.solve(profile, 3.0, normal_force=1e-3)
+    pushed = tangential.solve(contact, 2.5, 0.4, tangential_force=2e-4)
+    strength = share * float(largest(pushed, poissons_ratio=0.3).value)
+    searched = yielding._peak
+    monkeypatch.setattr(yielding, "_peak", peak)
+    assert float(yield_onset_force(pushed, strength, poissons_ratio=0.3)) > 0
+    assert len(counted) <= searches
 
 
 def test_incompressible_cone() -> None:

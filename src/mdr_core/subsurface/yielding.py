@@ -4,8 +4,8 @@ Source: notes, §14; johnson, section 4.2.
 """
 
 from collections.abc import Callable
-from functools import cache, lru_cache
-from math import ceil, cos, exp, inf, log, sin
+from functools import cache, lru_cache, partial
+from math import atan2, ceil, cos, exp, hypot, inf, log, sin
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -40,8 +40,9 @@ _SHRINK, _FLAT, _ROUNDING, _ROUNDS = 0.3, 4e-6, 1e-11, 100
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
 _RESOLVED: Final = 1e-6
-# Decimals of the logarithm of the stress at the onset; accuracy and range of that of the force.
-_DIGITS, _XTOL, _REACH = 5, 1e-5, 60.0
+# Logarithms of the force at the onset: accuracy under a fixed place, step after which the search is
+# complete, and range.
+_XTOL, _AGREED, _REACH = 1e-6, 1e-4, 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
 
@@ -114,17 +115,13 @@ def yield_onset_force(
     if not np.all(contact.normal.loaded):
         raise InputError(("load",), "the onset of yield needs a load that is not zero")
     limit = yield_strength if measure == "von_mises" else yield_strength / 2
-
-    def excess(one: _Loaded) -> float:
-        """Logarithm of the measure over the limit."""
-        peak = largest(one, measure, poissons_ratio=poissons_ratio, body=body)
-        # Next to the equator the distance from it may round to zero, and the peak with it.
-        return round(float(np.clip(np.log(peak.value / limit), -_REACH, _REACH)), _DIGITS)
-
     # Loads in one ratio of the forces share the onset.
     _, first, which = np.unique(columns[1:], axis=1, return_index=True, return_inverse=True)
     with np.errstate(all="ignore"):
-        onset = [_onset(profile, columns[:, i].tolist(), excess, poissons_ratio) for i in first]
+        onset = [
+            _onset(profile, columns[:, i].tolist(), measure, limit, poissons_ratio, body)
+            for i in first
+        ]
     return np.array(onset)[which].reshape(shape)
 
 
@@ -204,13 +201,19 @@ def _under(profile: Profile, *case: float) -> tangential.TangentialContact:
 
 
 def _onset(
-    profile: Profile, case: list[float], excess_of: Callable[[_Loaded], float], nu: float
+    profile: Profile, case: list[float], measure: str, limit: float, nu: float, body: int
 ) -> float:
-    """Normal force at which an excess is zero, in the ratio of the forces of a case."""
+    """Normal force at which the largest stress is `limit`, in the ratio of the forces of a case.
+
+    The body is searched under one load; the next load is that under which the stress is `limit` at
+    the place of the largest one. Since the largest stress is never less than that at a place, the
+    loads approach the onset from above, from the second one on.
+    """
     force, ratio, _, e_star, *_ = case
-    at = cache(lambda place: _under(profile, exp(place), *case[1:]))
-    excess = cache(lambda place: excess_of(at(place)))
-    one, slips_from = at(log(force)).normal.profile, 0.0 if ratio >= 1 else inf
+    at = cache(lambda load: _under(profile, exp(load), *case[1:]))
+    under = cache(lambda load: foundations(at(load), body)[0][0])
+    # Slip begins at the contact edge: it reaches every radius that the contact reaches.
+    one, slips_from = at(log(force)).normal.profile, 0.0 if ratio > 0 else inf
     # The stress becomes infinite when the contact reaches one of these radii.
     radii = [b for b in one.infinite_pressure_radii if one.first_radius < b < inf]
     radii = [b for b in radii if infinite_deviator(one, b, (nu,), slips_from)]
@@ -219,16 +222,59 @@ def _onset(
     last = inf if one.last_coordinate is None else one.reduced_force(np.array(one.last_coordinate))
     lowest = log(force) - _REACH
     highest = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
-    before = place = min(log(force), highest)
-    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
-    means = [at(each).normal.mean_pressure for each in (place, place - _XTOL)]
-    sign, step = np.sign(excess(place)), 1 / max(log(means[0] / means[1]) / _XTOL, 1 / _REACH)
-    while sign * excess(place) > 0:
-        if place in (lowest, highest):
-            return 0.0 if sign > 0 else singular
-        before, place = place, min(max(place - step * excess(place), lowest), highest)
+    load = min(log(force), highest)
+
+    def excess(start: Foundation, place: list[float], other: float) -> float:
+        """Logarithm of the stress over the limit."""
+        stress = _stress_at(start, place, under(other), measure, nu)
+        return float(np.clip(np.log(stress / limit), -_REACH, _REACH))
+
+    while True:
+        value, *place = _peak(under(load), measure, nu)
+        if value == inf:
+            return 0.0
+        # The first step takes the stress to grow like the mean pressure, which is exact for powers.
+        means = [at(each).normal.mean_pressure for each in (load, load - _XTOL)]
+        step = 1 / max(log(means[0] / means[1]) / _XTOL, 1 / _REACH)
+        followed = partial(excess, under(load), place)
+        before, load = load, _zero(followed, load, step, lowest, highest)
+        if load == lowest:
+            return 0.0
+        if load == before == highest:
+            return singular
+        if abs(load - before) <= _AGREED:
+            return exp(load)
+
+
+def _stress_at(
+    start: Foundation, place: list[float], under: Foundation, measure: str, nu: float
+) -> float:
+    """Stress at the place of a peak under another load, kept or moved with the edges."""
+    if not under.loaded:
+        return 0.0
+    x, y, z = place
+    ends = [np.array([0.0, *each.load.radius, 2 * each.load.radius[-1]]) for each in (start, under)]
+    if ends[0].size != ends[1].size:
+        ends = [each[[0, -1]] for each in ends]
+    r, first = hypot(x, y), under.load.profile.first_radius
+    width, other = (each.load.radius[-1] - first for each in (start, under))
+    rings = np.array([r, np.interp(r, ends[0], ends[1])]), np.array([z, z * other / width])
+    values = getattr(on_rings(under, (*rings, np.exp(1j * np.full(2, atan2(y, x)))), nu), measure)
+    return float(values.max())
+
+
+def _zero(
+    excess: Callable[[float], float], start: float, step: float, lowest: float, highest: float
+) -> float:
+    """Place at which a growing excess is zero, or the end of the range if there is none."""
+    before = after = start
+    sign = np.sign(excess(start))
+    while sign * (found := excess(after)) > 0:
+        if after == (lowest if sign > 0 else highest):
+            return after
+        before, after = after, min(max(after - step * found, lowest), highest)
         step *= 2
-    return exp(brentq(excess, before, place, xtol=_XTOL))
+    return after if before == after else float(brentq(excess, before, after, xtol=_XTOL))
 
 
 @lru_cache(maxsize=256)
