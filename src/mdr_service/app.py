@@ -12,8 +12,7 @@ from fastapi import FastAPI
 from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, queries
-from mdr_service.idle_poll import IdlePoll
-from mdr_service.settings import SETTINGS, cores
+from mdr_service.settings import SETTINGS
 from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
 
@@ -57,10 +56,6 @@ def create_app() -> FastAPI:
     )
     app.state.transfers = Transfers(SETTINGS.max_transfer_bytes)
     app.state.workers = WorkerPool(SETTINGS)
-    workers = app.state.workers
-    # On a single core the client could not prepare its next request.
-    seconds = SETTINGS.idle_poll_seconds if cores() > 1 else 0.0
-    app.state.idle_poll = IdlePoll(seconds, lambda: workers.is_computing)
     middleware.install(app)
     openapi.extend(app)
     app.mount("/docs/swagger", explorer.Pages(packages=[("fastapi_swagger", "resources")]))

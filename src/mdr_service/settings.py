@@ -5,7 +5,6 @@ and of the OpenAPI document. They are therefore fixed when the service starts.
 """
 
 import os
-import sys
 from collections.abc import Mapping
 from typing import Annotated, Final, Self
 
@@ -76,13 +75,6 @@ class Settings(BaseModel):
         description="Maximum time for requests in flight after SIGTERM; more than "
         "MDR_BUDGET_SECONDS and MDR_QUEUE_SECONDS together [s].",
     )
-    idle_poll_seconds: float = Field(
-        0.0003,
-        ge=0,
-        le=0.01,
-        description="Time for which the event loop polls after a small query, if a second core is "
-        "there and nothing is computed; 0 to sleep at once [s].",
-    )
     cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
         (), description="Origins allowed by CORS, separated by commas."
     )
@@ -94,13 +86,6 @@ class Settings(BaseModel):
                 "shutdown", "must be more than MDR_BUDGET_SECONDS and MDR_QUEUE_SECONDS together"
             )
         return self
-
-
-def cores() -> int:
-    """Return the number of processors that this process may use; macOS has no affinity."""
-    if sys.platform == "darwin":
-        return os.cpu_count() or 1
-    return len(os.sched_getaffinity(0))
 
 
 def from_environment(environment: Mapping[str, str]) -> Settings:

@@ -155,11 +155,6 @@ class WorkerPool:
         else:
             self._idle.append(process)
 
-    @property
-    def is_computing(self) -> bool:
-        """True while a process computes."""
-        return bool(self._running)
-
     async def run_in_process(self, function: Callable[..., _Result], *arguments: Any) -> _Result:
         """Return the result of a function of a module, computed in a process.
 

@@ -1,5 +1,6 @@
 """Time, memory and disk space of a sweep, extrapolated from a sample of its cases."""
 
+import os
 import resource
 import sys
 from collections.abc import Iterator
@@ -10,7 +11,6 @@ from typing import Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from mdr_service.settings import cores
 from mdr_sweep import tables, vectorized
 from mdr_sweep.spec import Spec
 
@@ -51,6 +51,13 @@ class Estimate(NamedTuple):
         yield f"disk     at most {self.disk / 1024**2:,.0f} MiB during the sweep"
 
 
+def _cores() -> int:
+    """Return the number of processors that this process may use; macOS has no affinity."""
+    if sys.platform == "darwin":
+        return os.cpu_count() or 1
+    return len(os.sched_getaffinity(0))
+
+
 def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate:
     """Return the estimated resources of a sweep by solving samples of increasing size.
 
@@ -72,7 +79,7 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     tables.write(pa.BufferOutputStream(), ".parquet", [rows], {})
     writing = (process_time() - start) / part.num_rows
     solving /= part.num_rows
-    processors = cores()
+    processors = _cores()
     saved = source.rows * solving * (1 - 1 / processors)
     processes = workers or (processors if saved > START_SECONDS else 1)
     processes = 0 if processes == 1 else processes

@@ -60,7 +60,6 @@ class Responder:
             self.media_type = media_type(format_, accept, self.formats)
         self.size = None if size is None else picture_size(size, self.media_type)
         self.workers = request.app.state.workers
-        self.idle_poll = request.app.state.idle_poll
         self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 
     async def __call__(
@@ -72,7 +71,6 @@ class Responder:
             cost.require_feasible(query, self.media_type), len(self.tasks)
         ):
             content = respond(*arguments)
-            self.idle_poll.extend()
         else:
             content = await self.workers.run_in_process(respond, *arguments)
         return Response(content, media_type=self.media_type)
