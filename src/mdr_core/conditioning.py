@@ -5,23 +5,22 @@ near full slip, the rounding of the load is part of their error, whatever the me
 """
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from mdr_core.breaks import has_many_breaks
 from mdr_core.elementwise import full, some, where
 from mdr_core.equivalent_1d import load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array, Flags, Parameter
 
-# Relative step of the difference quotient of the slope next to a break.
-_STEP: Final = 4e-11
 _EPS: Final = float(np.finfo(float).eps)
-# Rounding errors of the contact coordinate over those that are assumed of the load.
-_COORDINATE: Final = 1 / 8
+# Relative rounding error of a load, and of a contact coordinate.
+_LOAD, _COORDINATE = 8 * _EPS, 2 * _EPS
 _TINY: Final = float(np.finfo(float).tiny)
+# Factor that splits a double into halves.
+_SPLIT: Final = 2.0**27 + 1
 # Exponent of the width of a narrow annulus in the dissipated energy.
 _CUBE: Final = 3.0
 # Part of full slip up to which all condition numbers are small.
@@ -121,37 +120,52 @@ def of_excess_displacement(displacement: Array, excess: Array) -> Array:
     return where(slides, np.abs(displacement) / where(slides, excess, 1.0), 0.0)
 
 
-def beyond_break(contact: NormalContact) -> Array:
-    """Return |d log g'(a) / d log(load)| [1] of each load, large just beyond a break.
+def of_edge_slope(contact: NormalContact) -> Array:
+    """Return the relative error of g'(a) by the rounding of the contact coordinate [1].
 
-    The width of the first slip annulus is inversely proportional to g' at the edge. The contact
-    coordinate of a is rounded as well, and just beyond a knot of a table it does not resolve the
-    distance from it.
+    The width of the first slip annulus is inversely proportional to g'(a), which changes rapidly
+    just beyond a break, and where it falls to zero.
     """
-    profile = contact.profile
-    if not profile.coordinate_breaks.size:
-        return full(0.0, contact.coordinate)
-    at = where(contact.coordinate > 0, contact.coordinate, np.nan)
+    profile, at = contact.profile, contact.coordinate
+    if not (profile.coordinate_breaks.size or profile.flattens):
+        return full(0.0, at)
+    at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
-        sides: Any = [(1 - _STEP) * at, (1 + _STEP) * at]
-        if has_many_breaks(profile):
-            # Tables take arrays alone: one call takes half of the time of two.
-            depth_slopes, radius_slopes = (
-                [*slope(np.stack(sides))] for slope in (profile.depth_slope, profile.radius_slope)
-            )
-        else:
-            depth_slopes = [profile.depth_slope(side) for side in sides]
-            radius_slopes = [profile.radius_slope(side) for side in sides]
-        # g'(a) is their ratio.
-        low, high = (np.log(d / a) for d, a in zip(depth_slopes, radius_slopes, strict=True))
-        # The smaller slope gives the larger estimate.
         if contact.control == "contact_radius":
-            load, slope = contact.contact_radius, np.minimum(*radius_slopes)
-        elif contact.control == "normal_force":
-            load = contact.normal_force / contact.e_star
-            slope = 2 * contact.contact_radius * np.minimum(*depth_slopes)
+            load, slope, rounding = contact.contact_radius, profile.radius_slope(at), _COORDINATE
         else:
-            load, slope = contact.indentation_depth, np.minimum(*depth_slopes)
-        share = np.maximum(load / (at * slope), _COORDINATE)
-        condition = np.abs(high - low) * share / (2 * _STEP)
-    return where(np.isfinite(condition), condition, 0.0)
+            of_force, rounding = contact.control == "normal_force", _LOAD
+            load, slope = load_and_slope(profile, of_force=of_force)(at)
+        error = np.maximum(rounding * load / (at * slope), _COORDINATE)
+        if profile.flattens:
+            error = np.maximum(error, contact.edge_errors)
+        # A radius that is the coordinate itself does not move onto a break that it has not reached.
+        exact = (contact.control == "contact_radius") & (at == load)
+        sides = np.stack([(1 - error) * at, where(exact, at, (1 + error) * at)])
+        # g'(a) is their ratio.
+        slopes = profile.depth_slope(sides) / profile.radius_slope(sides)
+        change = np.abs(np.log(slopes[1] / slopes[0]))[()]
+    return where(np.isfinite(change), change, 0.0)
+
+
+def of_coordinate_width(profile: Profile, ends: tuple[Array, Array], width: Array) -> Array:
+    """Return the relative error of a - c by the rounding of a coordinate far larger than a [1].
+
+    That of a capped paraboloid is beyond the break, from which a coordinate within it is taken.
+
+    Parameters
+    ----------
+    profile : parameters broadcast with the loads.
+    ends : a and c in the contact coordinate.
+    width : a - c [length].
+    """
+    with np.errstate(all="ignore"):
+        excess = ends[0] * profile.radius_slope(ends[1]) - 2 * profile.contact_radius(ends[0])
+        lost = _EPS * excess / width
+    return where((width > 0) & (lost > 0), lost, 0.0)
+
+
+def product_remainder(x: Parameter, y: Parameter) -> Parameter:
+    """Return x y less its rounded value, exactly, by Dekker's product."""
+    (a, b), (c, d) = ((high := _SPLIT * z - (_SPLIT * z - z), z - high) for z in (x, y))
+    return ((a * c - x * y) + a * d + b * c) + b * d

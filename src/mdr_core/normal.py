@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from mdr_core import validity
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, common_shape, some, where
-from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius
+from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.profiles import Profile
@@ -29,6 +29,11 @@ _CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
 # Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
 # representable beside factors of the accepted magnitudes.
 _DECADES: Final = 150.0
+# Relative rounding error of a contact radius that follows from a load.
+EDGE_ERROR: Final = 2.0**-48
+# Distance from a root of g', over the root of the rounding error, up to which its slope is that at
+# the distance: there the error of the contact radius is of second order.
+_NEAR_ROOT: Final = 0.25
 
 
 @dataclass(frozen=True, repr=False)
@@ -109,10 +114,25 @@ class NormalContact(validity.ContactResults):
         """Most expensive method among the results for this profile."""
         return self.profile.normal_method
 
-    @property
+    @cached_property
     def error_estimates(self) -> Parameter:
         """Upper bound of the relative error of each case, a single number if all have the same."""
-        return self.profile.rounding
+        profile, rounding = self.profile, self.profile.rounding
+        if self.control == "contact_radius" or not profile.flattens:
+            return rounding
+        # Where g' falls to zero, the contact radius changes more than the load.
+        inside = self.coordinate * (1 - _NEAR_ROOT * np.sqrt(rounding))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            load, slope = load_and_slope(profile, of_force=self.control == "normal_force")(inside)
+            condition = load / (inside * slope)
+        return rounding * where(condition > 1, condition, 1.0)
+
+    @property
+    def edge_errors(self) -> Parameter:
+        """Relative error of the contact radius of each case."""
+        if self.control == "contact_radius" or self.profile.has_no_partial_slip:
+            return 0.0
+        return self.error_estimates if self.profile.flattens else EDGE_ERROR
 
     @property
     def error_estimate(self) -> float:

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
+from mdr_core.elementwise import broadcast, common_shape, full, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
-from mdr_core.normal import NormalContact, not_reached
+from mdr_core.normal import EDGE_ERROR, NormalContact, not_reached
 from mdr_core.profiles import Profile
 from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
@@ -21,10 +21,9 @@ from mdr_core.validation import extremes, only_one, require_positive
 
 # Rounding error of steps over the annulus, relative to that of the profile's closed forms.
 _STEP_ERROR: Final = 40.0
-# Relative rounding error of a load.
-_LOAD_ERROR: Final = 8 * 2.0**-52
-# Relative rounding error of an edge that follows from a load.
-EDGE_ERROR: Final = 2 * _LOAD_ERROR
+# Relative rounding error of the load at full slip, where the normal load is prescribed: that of up
+# to three products.
+_LIMIT_ERROR: Final = 3 * 2.0**-53
 
 # Step of depth or force between two contact coordinates.
 _Step = Callable[[Profile, Array, Array, Array], Array]
@@ -218,20 +217,75 @@ class TangentialContact(validity.ContactResults):
         return self.normal.profile.tangential_method
 
     @cached_property
-    def load_rounding(self) -> Array:
-        """Relative error of each load's results by the rounding of that load [1]."""
-        error = _LOAD_ERROR * conditioning.beyond_break(self.normal)
-        if self.control != "stick_radius":
-            # The distance from full slip has the error of the limiting force or displacement.
-            error = error + self.normal.error_estimates * self._load_condition
-        elif self.normal.control != "contact_radius":
-            error = error + EDGE_ERROR * conditioning.narrow_annulus(self._coordinate, self.width)
+    def _width_rounding(self) -> Array:
+        """Relative error of a - c by the rounding of the edges [1]."""
+        normal, profile = self.normal, self.normal.profile
+        error = conditioning.of_edge_slope(normal)
+        if self.control == "stick_radius":
+            narrow = conditioning.narrow_annulus(self._coordinate, self.width)
+            error = error + normal.edge_errors * narrow
+        if profile.coordinate_breaks.size:
+            ends, width = (self._coordinate, self.stick_coordinate), self.slip_width
+            lost = conditioning.of_coordinate_width(profile, ends, width)
+            error = error + where(self.full_slip, 0.0, lost)
         return error
+
+    @cached_property
+    def _limit_rounding(self) -> Parameter:
+        """Relative error of results by the rounding of the load at full slip [1].
+
+        In full slip that of the stick radius, relative to the contact radius.
+        """
+        if self.control == "stick_radius":
+            return 0.0
+        error = self.limit_error * self._load_condition
+        return error + self._concealed if some(self.full_slip) else error
+
+    @property
+    def stick_error(self) -> Array:
+        """Rounding error of a stick radius that follows from a load [length]."""
+        if self.control == "stick_radius" or self.normal.profile.has_no_partial_slip:
+            return 0 * self.stick_radius
+        error = self.stick_radius * (EDGE_ERROR + self._limit_rounding)
+        return error + self.slip_width * self._width_rounding
+
+    @property
+    def limit_error(self) -> Parameter:
+        """Relative error of the load at full slip, and of the distance from it over that load."""
+        normal = self.normal
+        return _LIMIT_ERROR if normal.control == CONTROLS[self.control] else normal.error_estimates
+
+    @property
+    def _concealed(self) -> Array:
+        """Stick radius over a in full slip, if the load at full slip exceeds its rounded value.
+
+        A force of this rounded value counts as full slip, as it would be without rounding.
+        """
+        normal, left = self.normal, full(0.0, self.width) + self.limit_error
+        limit = self._full_slip_displacement
+        if self.control == "tangential_force":
+            limit = self.limiting_force
+            if normal.control == "normal_force":
+                left = conditioning.product_remainder(
+                    self.friction_coefficient, normal.normal_force
+                ) / where(limit > 0, limit, 1.0)
+        near = self.full_slip & (limit > 0) & (left > 0) & (self.excess <= self.limit_error * limit)
+        if not some(near):
+            return full(0.0, self.width)
+        if normal.profile.has_no_partial_slip:
+            return where(near, 1.0, 0.0)
+        left = where(near, left, 0.5)
+        of_force = self.control == "tangential_force"
+        ends = self._coordinate, 1 - left, left
+        edge, _ = equivalent_1d.stick_edge(normal.profile, *ends, of_force=of_force)
+        c, a = normal.profile.contact_radius(edge), normal.contact_radius
+        return where(near, c / where(near, a, 1.0), 0.0)
 
     @cached_property
     def error_estimates(self) -> Array:
         """Upper bound of the relative error of each case, rounding of its loads included [1]."""
-        return _STEP_ERROR * self.normal.error_estimates + self.load_rounding
+        own = _STEP_ERROR * self.normal.error_estimates
+        return own + self._width_rounding + self._limit_rounding
 
     @property
     def error_estimate(self) -> float:

@@ -6,12 +6,14 @@ errors of a flat. The estimate must cover the rounding error of the loads under 
 
 from __future__ import annotations
 
+from math import nextafter
 from typing import Any
 
 import pytest
-from mpmath import mpf
+from mpmath import mp, mpf
 
 from mdr_core import normal, tangential
+from mdr_core.profiles import CappedParaboloid, Power
 from tests.core.comparison import profile_from
 from tests.oracles.slip_reference import Material, setting, solve
 
@@ -27,6 +29,11 @@ TIP: dict[str, Any] = {
 }
 PUNCH: dict[str, Any] = {"kind": "rounded_punch", "flat_radius": 1.0, "rounding_radius": 2.0}
 TRUNCATED: dict[str, Any] = {"kind": "truncated_cone", "flat_radius": 1.0, "slope": 0.3}
+#: g' falls to zero.
+SERIES: dict[str, Any] = {
+    "kind": "series",
+    "terms": [{"coefficient": 1.0, "exponent": 2.0}, {"coefficient": -0.25, "exponent": 3.0}],
+}
 CASES = {
     "cap 1e8, outside": (CAP | {"tip_radius": 1e8}, 1.5),
     "cap 1e8, next to the edge": (CAP | {"tip_radius": 1e8}, 1 + 1e-14),
@@ -57,3 +64,100 @@ def test_error_within_estimate(name: str, control: str) -> None:
             for answer, truth in exact.items():
                 error = abs(mpf(float(getattr(result, answer))) / truth - 1)
                 assert error <= result.error_estimate, (push, part, answer)
+
+
+#: Ratio of the radii of a cap, contact radius and stick radius.
+CAPS = [(1e5, 1.7, 0.3), (1e9, 1.7, 0.3), (1e9, 1 + 1e-7, 1 - 1e-4)]
+
+
+@pytest.mark.parametrize("control", ["contact_radius", "indentation_depth", "normal_force"])
+@pytest.mark.parametrize(("ratio", "a", "c"), CAPS)
+def test_stick_radius_within_a_flat_cap(ratio: float, a: float, c: float, control: str) -> None:
+    """The contact coordinate of a is far larger than a itself."""
+    shape = CAP | {"tip_radius": ratio}
+    load = float(getattr(normal.solve(profile_from(shape), 1.0, contact_radius=a), control))
+    contact = normal.solve(profile_from(shape), 1.0, rtol=1e-13, **{control: load})
+    result = tangential.solve(contact, 1.0, MU, stick_radius=c)
+    exact = solve(setting(shape, control, load, MATERIAL), "stick_radius", c, energy=False).values
+    errors = [abs(mpf(float(getattr(result, key))) / truth - 1) for key, truth in exact.items()]
+    assert max(errors) <= result.error_estimate <= 1e-11 + 1e-14 * ratio
+
+
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+@pytest.mark.parametrize("part", [0.5, 0.99, 0.998, 1 - 1e-5, 1 - 1e-7])
+def test_contact_radius_where_the_slope_of_g_vanishes(part: float, control: str) -> None:
+    """Its condition number is inversely proportional to g'."""
+    profile = profile_from(SERIES)
+    a = part * float(profile.domain)
+    load = float(getattr(normal.solve(profile, 1.0, contact_radius=a), control))
+    contact = normal.solve(profile, 1.0, rtol=1e-13, **{control: load})
+    given = float(contact.contact_radius) * (1 - 2e-5)
+    result = tangential.solve(contact, 1.0, MU, stick_radius=given)
+    with mp.workdps(40):
+        # F_N/E* and d are sums of terms C_n x^(n + 1) and C_n x^n.
+        of_force = control == "normal_force"
+        kappa = [
+            (n, mp.sqrt(mp.pi) * mp.gamma(n / 2 + 1) / mp.gamma((n + 1) / 2))
+            for n in (mpf(2), mpf(3))
+        ]
+        terms = [
+            (n, k * mpf(each["coefficient"]))
+            for (n, k), each in zip(kappa, SERIES["terms"], strict=True)
+        ]
+
+        def force(x: mpf) -> mpf:
+            return mp.fsum(2 * n / (n + 1) * k * x ** (n + 1) for n, k in terms)
+
+        def depth(x: mpf) -> mpf:
+            return mp.fsum(k * x**n for n, k in terms)
+
+        end = terms[0][0] * terms[0][1] / (-terms[1][0] * terms[1][1])
+        loaded = force if of_force else depth
+        exact, high = mpf(a) / 2, end
+        while high - exact > 1e-35:
+            middle = (exact + high) / 2
+            exact, high = (middle, high) if loaded(middle) < load else (exact, middle)
+        truths = {
+            "slip_width": exact - mpf(given),
+            "tangential_force": mpf(MU) * (force(exact) - force(mpf(given))),
+        }
+        error = abs(mpf(float(contact.contact_radius)) / exact - 1)
+        errors = [
+            abs(mpf(float(getattr(result, key))) / truth - 1) for key, truth in truths.items()
+        ]
+        condition = 1 + load / (exact * mp.diff(loaded, exact))
+    assert error <= contact.error_estimate <= 1e-12 * condition
+    # a/(a - c) = 5e4.
+    assert max(errors) <= result.error_estimate <= 1e-5 * condition
+
+
+@pytest.mark.parametrize("exponent", [2.0, 10.0, 100.0])
+def test_full_slip_by_the_rounding_of_the_limit(exponent: float) -> None:
+    """A force that is mu F_N in double precision counts as full slip, and exact c is small."""
+    friction, force = 0.4563097552438412, 7.493860291067043
+    contact = normal.solve(Power(0.1, exponent), 1.0, normal_force=force)
+    for push in (friction * force, nextafter(friction * force, 0.0)):
+        with mp.workdps(40):
+            left = 1 - mpf(push) / (mpf(friction) * mpf(force))
+            exact = left ** (1 / mpf(exponent + 1))
+        result = tangential.solve(contact, 0.9, friction, tangential_force=push)
+        c = float(result.stick_radius / contact.contact_radius)
+        error = abs(c - exact) / (exact if c else 1)
+        assert left > 0
+        assert error <= result.error_estimate <= 2
+
+
+def test_full_slip_without_rounding_is_exact() -> None:
+    for friction, force in ((0.5, 3.0), (0.3, 10.0)):
+        # 0.3 x 10 rounds upwards: the force exceeds friction by less than its rounding.
+        contact = normal.solve(Power(0.1, 10.0), 1.0, normal_force=force)
+        result = tangential.solve(contact, 0.9, friction, tangential_force=friction * force)
+        assert str(result.regime) == "full_slip"
+        assert result.error_estimate < 1e-11
+
+
+@pytest.mark.parametrize("gap", [1e-6, 1e-12, 1e-14, 0.0])
+def test_contact_within_the_edge_of_a_cap_is_exact(gap: float) -> None:
+    """g' jumps at the edge, but a prescribed radius has not reached it."""
+    contact = normal.solve(CappedParaboloid(1.0, 1000.0, 10.0), 1.0, contact_radius=1 - gap)
+    assert tangential.solve(contact, 0.9, 0.3, stick_radius=0.9).error_estimate < 1e-11

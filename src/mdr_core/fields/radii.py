@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from mdr_core.elementwise import broadcast, some
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
-from mdr_core.normal import NormalContact
-from mdr_core.tangential import EDGE_ERROR, TangentialContact
+from mdr_core.normal import EDGE_ERROR, NormalContact, solve
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 
 _EPS: Final = float(np.finfo(float).eps)
@@ -44,22 +44,18 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
         radius = np.append(contact.slip_fronts, contact.contact_radius)
         gaps = np.diff(radius, prepend=0.0)
         scale = np.minimum(gaps, np.append(gaps[1:], gaps[-1])) / contact.profile.steepness
-        rounding = 0.0 if contact.profile.has_no_partial_slip else EDGE_ERROR
-        return Edges(radius, rounding * radius, scale)
+        depth = max(contact.indentation_depth, 0.0)
+        end = solve(contact.profile, contact.e_star, indentation_depth=depth)
+        return Edges(radius, end.edge_errors * radius, scale)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
     beyond = a - profile.first_radius
-    exact = normal.control == "contact_radius" or profile.has_no_partial_slip
-    error, scale = beyond * (0.0 if exact else EDGE_ERROR), beyond / profile.steepness
+    error, scale = beyond * normal.edge_errors, beyond / profile.steepness
     if not isinstance(contact, TangentialContact):
         return Edges(*map(np.ravel, (a, error, scale)))
-    exact = contact.control == "stick_radius" or profile.has_no_partial_slip
     c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
-    # Near full slip the condition number of c amplifies the rounding error of the load.
-    condition = 1 + contact.load_rounding / normal.error_estimates
-    error_c = c * (0.0 if exact else EDGE_ERROR * condition)
-    parts = (a, c), (error, error_c), (scale, scale)
+    parts = (a, c), (error, contact.stick_error), (scale, scale)
     return Edges(*(np.ravel([broadcast(part, c.shape) for part in pair]) for pair in parts))
 
 

@@ -155,6 +155,11 @@ class Profile(ABC):
         return False
 
     @property
+    def flattens(self) -> bool:
+        """True if g' may fall towards zero, where the contact radius is ill-conditioned."""
+        return False
+
+    @property
     def steepness(self) -> float:
         """Highest power that g resembles over part of the contact, which sets the resolution."""
         return 3.5

@@ -158,6 +158,10 @@ class Series(Profile):
         return inf if n < 1 else c / 2 if n == 1 else 0.0
 
     @property
+    def flattens(self) -> bool:
+        return not self._positive
+
+    @property
     def steepness(self) -> float:
         return max(3.5, *(n for _, n in self._powers))
 
