@@ -35,7 +35,7 @@ def position(state: ContactState) -> np.ndarray:
 
 def bounce(degrees: float, step: float = 2e-7) -> tuple[float, float]:
     """Return the tangential restitution, and the relative error of the energy."""
-    state = unloaded(mdr.Paraboloid(RADIUS), MATERIAL.e_star, MATERIAL.g_star or 0, FRICTION)
+    state = unloaded(mdr.Paraboloid(RADIUS), MATERIAL, MATERIAL, FRICTION)
     start = velocity = SPEED * np.array([cos(radians(degrees)), sin(radians(degrees))])
     dissipated = 0.0
     while velocity[0] > 0 or state.in_contact:

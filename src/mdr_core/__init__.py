@@ -1,13 +1,13 @@
 """Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
 
-Pass a profile and effective moduli to `normal.solve`, and the contact that it returns to
+Pass a profile and a material to `normal.solve`, and the contact that it returns to
 `tangential.solve`, `fields`, `subsurface` or `wear`. `history` follows load paths and steps through
 time. Use one consistent system of units.
 
 >>> import mdr_core as mdr
 >>> steel = mdr.Body(youngs_modulus=210e9, poissons_ratio=0.3)
 >>> pair = mdr.from_bodies([steel, steel])
->>> contact = mdr.normal.solve(mdr.Paraboloid(radius=0.01), pair.e_star, normal_force=10.0)
+>>> contact = mdr.normal.solve(mdr.Paraboloid(radius=0.01), pair, normal_force=10.0)
 >>> round(float(contact.contact_radius) * 1e6, 3)
 86.624
 """

@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final, Literal, TypeVar
 
 from mdr_core.errors import InputError
+from mdr_core.typing import Parameter
 from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
@@ -16,6 +17,10 @@ class Body:
 
     youngs_modulus: float
     poissons_ratio: float
+
+    def __post_init__(self) -> None:
+        require_positive(("youngs_modulus",), self.youngs_modulus)
+        require_poissons_ratio(("poissons_ratio",), self.poissons_ratio)
 
     @property
     def shear_modulus(self) -> float:
@@ -42,6 +47,38 @@ class Material:
                 require_positive(("material", name), value)
 
 
+# One number, or an array over the cases of a sweep.
+_Number = TypeVar("_Number", bound=Parameter)
+
+
+def normal_modulus(e_star: _Number | Material) -> _Number | float:
+    """Return E* [pressure], that of a material or the number itself; raise InputError if it is not.
+
+    Its value is not checked.
+    """
+    value = e_star.e_star if isinstance(e_star, Material) else e_star
+    _require_both_bodies("e_star", value)
+    return value
+
+
+def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
+    """Return G* [pressure], that of a material or the number itself; raise InputError if it is not.
+
+    Its value is not checked.
+    """
+    value = g_star.g_star if isinstance(g_star, Material) else g_star
+    _require_both_bodies("g_star", value)
+    if value is None:
+        raise InputError(("material", "g_star"), "is needed with friction: give it, or bodies")
+    return value
+
+
+def _require_both_bodies(name: str, value: object) -> None:
+    if isinstance(value, Body):
+        detail = "depends on both bodies: combine them by from_bodies([body, other])"
+        raise InputError(("material", name), detail)
+
+
 def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     """Return the effective moduli and Dundurs' beta of two bodies in contact.
 
@@ -58,7 +95,7 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
 
     Raises
     ------
-    InputError : not two bodies, both rigid, or constants outside 0 < E, -1 < nu <= 1/2.
+    InputError : not two bodies, or both rigid.
 
     Examples
     --------
@@ -66,15 +103,11 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     >>> round(from_bodies([steel, RIGID]).e_star / 1e9, 3)
     230.769
     """
-    if len(bodies) != 2:
+    if isinstance(bodies, Body) or len(bodies) != 2:
         raise InputError(("material", "bodies"), BODIES)
     for i, body in enumerate(bodies):
-        path = ("material", "bodies", i)
-        if isinstance(body, Body):
-            require_positive((*path, "youngs_modulus"), body.youngs_modulus)
-            require_poissons_ratio((*path, "poissons_ratio"), body.poissons_ratio)
-        elif body != RIGID:
-            raise InputError(path, 'must be a Body or "rigid"')
+        if not (isinstance(body, Body) or body == RIGID):
+            raise InputError(("material", "bodies", i), 'must be a Body or "rigid"')
     parts = [body for body in bodies if isinstance(body, Body)]
     if not parts:
         raise InputError(("material", "bodies"), "at least one body must be elastic")

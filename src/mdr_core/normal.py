@@ -13,6 +13,7 @@ from mdr_core.elementwise import broadcast, common_shape, some, where
 from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
+from mdr_core.materials import Material, normal_modulus
 from mdr_core.profiles import Profile
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.typing import Array, Flags, Parameter
@@ -23,6 +24,7 @@ from mdr_core.validation import (
     require_positive,
     require_representable,
     require_tolerance,
+    require_type,
 )
 
 _CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
@@ -51,6 +53,8 @@ class NormalContact(validity.ContactResults):
     rtol: float = 1e-10
     control: str = "contact_radius"
     """Name of the prescribed load, which is exact."""
+    material: Material | None = None
+    """Material on which the warnings depend; None where only E* is known."""
     quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
     g_star: ClassVar[None] = None
     """No shear modulus, as there is no friction."""
@@ -164,7 +168,7 @@ def not_reached(rtol: float) -> Notice:
 
 def solve(
     profile: Profile,
-    e_star: Parameter,
+    e_star: Parameter | Material,
     *,
     indentation_depth: ArrayLike | None = None,
     normal_force: ArrayLike | None = None,
@@ -181,7 +185,7 @@ def solve(
     Parameters
     ----------
     profile : any kind; array parameters broadcast with the load.
-    e_star : effective modulus [pressure], > 0.
+    e_star : effective modulus [pressure], > 0, or the material that has it.
     indentation_depth, normal_force, contact_radius : exactly one, >= 0
         [length], [force], [length]; a number or an array.
     rtol : accuracy required of the results, 1e-13 to 1e-3. They are computed to rounding error
@@ -202,14 +206,18 @@ def solve(
     >>> [float(f"{a:.6g}") for a in contact.contact_radius]
     [9.0856e-05, 0.000181712]
     """
+    require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     require_tolerance(rtol)
+    material = e_star if isinstance(e_star, Material) else None
+    # A plain number is by far the most frequent case.
+    e_star = e_star if isinstance(e_star, float) else normal_modulus(e_star)
     loads = (indentation_depth, normal_force, contact_radius)
     name, load = only_one(("load",), dict(zip(_CONTROLS, loads, strict=True)))
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
     coordinate = _coordinate(name, profile, e_star, spread)
-    contact = NormalContact(profile, e_star, coordinate, rtol, name)
+    contact = NormalContact(profile, e_star, coordinate, rtol, name, material)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread
     return contact

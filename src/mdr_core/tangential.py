@@ -12,12 +12,13 @@ from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, common_shape, full, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
+from mdr_core.materials import Material, shear_modulus
 from mdr_core.normal import EDGE_ERROR, NormalContact, not_reached
 from mdr_core.profiles import Profile
 from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import extremes, only_one, require_positive
+from mdr_core.validation import extremes, only_one, require_positive, require_type
 
 # Rounding error of steps over the annulus, relative to that of the profile's closed forms.
 _STEP_ERROR: Final = 40.0
@@ -320,7 +321,7 @@ class TangentialContact(validity.ContactResults):
 
 def solve(
     contact: NormalContact,
-    g_star: Parameter,
+    g_star: Parameter | Material | None,
     friction_coefficient: Parameter,
     *,
     tangential_force: ArrayLike | None = None,
@@ -338,7 +339,7 @@ def solve(
     Parameters
     ----------
     contact : the normal contact, from `mdr_core.normal.solve`.
-    g_star : effective shear modulus [pressure], > 0.
+    g_star : effective shear modulus [pressure], > 0, or the material that has it.
     friction_coefficient : mu > 0 [1].
     tangential_force, tangential_displacement, stick_radius : exactly one; the first two of
         either sign [force], [length], [length]. Arrays broadcast with the normal loads.
@@ -359,6 +360,8 @@ def solve(
     >>> [float(f"{c:.6g}") for c in partial.stick_radius / contact.contact_radius]
     [1.0, 0.5]
     """
+    require_type("contact", contact, NormalContact, "a contact from normal.solve")
+    g_star = shear_modulus(g_star)
     require_positive(("material", "g_star"), g_star)
     require_positive(("friction_coefficient",), friction_coefficient)
     loads = (tangential_force, tangential_displacement, stick_radius)

@@ -1,8 +1,9 @@
 """Bounds of inputs and of results, cheap enough for a sweep over millions of cases."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from math import inf
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +26,28 @@ _NEGATIVE: Final = {
 }
 TIGHTEST, LOOSEST = 1e-13, 1e-3
 """Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
+
+
+def require_type(name: str, value: object, types: Any, needed: str) -> None:
+    """Raise InputError unless a value is of one of the types, which `needed` describes."""
+    if not isinstance(value, types):
+        raise InputError((name,), f"must be {needed}, not {type(value).__name__}")
+
+
+def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
+    """Return numbers as an array or a single double, or raise InputError at the path."""
+    numbers: Any = None
+    if isinstance(values, (float, int)):
+        numbers = np.float64(values)
+    else:
+        with suppress(TypeError, ValueError):
+            array = np.asarray(values)
+            # NumPy would convert text as well.
+            numbers = array.astype(float, copy=False) if array.dtype.kind in "fiubO" else None
+    if numbers is None:
+        detail = f"must be a number or an array of numbers, not {type(values).__name__}"
+        raise InputError(path, detail)
+    return numbers[()]
 
 
 def extremes(values: float | ArrayLike) -> tuple[float, float]:
@@ -50,12 +73,13 @@ def only_one(
     named = [(name, values) for name, values in given.items() if values is not None]
     if len(named) != 1:
         raise InputError(path, f"exactly one of {', '.join(given)} is needed")
-    return named[0][0], np.asarray(named[0][1], dtype=float)[()]
+    name, values = named[0]
+    return name, as_numbers((*path, name), values)
 
 
 def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
     """Raise InputError at the path unless all of the value is positive and finite."""
-    low, high = extremes(value)
+    low, high = extremes(value if isinstance(value, (float, int)) else as_numbers(path, value))
     if not (low > 0 and high < inf):
         raise InputError(path, POSITIVE if low <= 0 else FINITE)
 
@@ -130,7 +154,7 @@ def checked_radii(radius: ArrayLike, end: float = inf) -> Array:
 
     Raises InputError if there is none, or one that is negative, not finite or beyond the end.
     """
-    r = np.atleast_1d(np.asarray(radius, dtype=float))
+    r = np.atleast_1d(as_numbers(("radius",), radius))
     if not r.size:
         raise InputError(("radius",), "at least one radius is needed")
     require_not_negative(("radius",), r)

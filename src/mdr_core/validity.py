@@ -60,6 +60,8 @@ class LoadedContact(Protocol):
     def contact_radius(self) -> Array: ...
     @property
     def loaded(self) -> Flags: ...
+    @property
+    def material(self) -> Material | None: ...
 
 
 class SolvedContact(Protocol):
@@ -72,6 +74,8 @@ class SolvedContact(Protocol):
     @property
     def slips_from(self) -> Parameter: ...
     @property
+    def solved(self) -> "SolvedContact": ...
+    @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]: ...
 
 
@@ -79,9 +83,15 @@ class ContactResults(Results):
     """Results of a contact, with its warnings."""
 
     @property
+    def solved(self: SolvedContact) -> SolvedContact:
+        """Contact on which the validity depends."""
+        return self
+
+    @property
     def warnings(self: SolvedContact) -> tuple[Notice, ...]:
-        """Warnings; those of unknown bodies are for Poisson's ratio 0.3 on a rigid body."""
-        return (*notices(of_normal_contact(self.normal)), *self.warnings_without_bodies)
+        """Warnings; where the bodies are unknown, for Poisson's ratio 0.3 on a rigid body."""
+        found = findings(self.solved, self.solved.normal.material)
+        return (*notices(found), *self.warnings_without_bodies)
 
 
 def notices(findings: Iterable[Finding]) -> list[Notice]:
@@ -89,7 +99,7 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
     return [Notice(code, message()) for code, where, message in findings if some(where)]
 
 
-def findings(contact: SolvedContact, material: Material) -> list[Finding]:
+def findings(contact: SolvedContact, material: Material | None) -> list[Finding]:
     """Return the findings that depend on the bodies in contact, without `yield`.
 
     Poisson's ratio 0.3 is assumed where they are unknown.
@@ -97,11 +107,12 @@ def findings(contact: SolvedContact, material: Material) -> list[Finding]:
     Parameters
     ----------
     contact : contact with or without friction, or load history; for wear the one before wear.
-    material : effective moduli, as from `from_bodies`.
+    material : effective moduli, as from `from_bodies`; None where they are unknown.
     """
     found = of_normal_contact(contact.normal, material, contact.slips_from)
     if contact.g_star is not None:
-        found.append(of_moduli(contact.normal.e_star, contact.g_star, material.dundurs_beta))
+        beta = None if material is None else material.dundurs_beta
+        found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
     return found
 
 
@@ -172,7 +183,9 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
 
     Source: mdr-5, Eq. (5.3); notes, §8.
     """
-    if beta is not None:
+    ratio = number(1.0) * e_star / g_star
+    impossible = (ratio < _MODULI[0]) | (ratio > _MODULI[1])
+    if beta is not None and not some(impossible):
         coupled = number(abs(beta)) > _SIMILARITY
         message = (
             f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): normal and "
@@ -180,8 +193,6 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
             "order"
         )
         return Finding("elastic_similarity", coupled, lambda: message)
-    ratio = number(1.0) * e_star / g_star
-    impossible = (ratio < _MODULI[0]) | (ratio > _MODULI[1])
 
     def unphysical() -> str:
         return (

@@ -127,6 +127,16 @@ def test_python_examples_print_their_output() -> None:
             same_text(output.getvalue(), shown)
 
 
+@pytest.mark.long
+def test_python_examples_are_typed(tmp_path: Path) -> None:
+    files = [tmp_path / f"example_{i}.py" for i, _ in enumerate(examples("python", "text"))]
+    for file, (code, _) in zip(files, examples("python", "text"), strict=True):
+        file.write_text(code, "utf-8")
+    mypy = [sys.executable, "-m", "mypy", "--strict", "--config-file", os.devnull]
+    done = subprocess.run([*mypy, *files], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
 def test_every_setting_is_listed_with_its_default() -> None:
     for name, field in Settings.model_fields.items():
         row = f"| `{PREFIX}{name.upper()}` | {field.default or 'none'} |"

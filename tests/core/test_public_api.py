@@ -107,6 +107,63 @@ def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
         assert energy_error < 1e-13
 
 
+@pytest.mark.parametrize("kind", mdr.KINDS)
+def test_completion_of_a_profile_offers_what_a_user_needs(kind: str) -> None:
+    names = {"radius": 1.0, "tip_radius": 2.0, "terms": (mdr.PowerTerm(1.0, 2.0),)}
+    names |= {"r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}
+    cls = mdr.KINDS[kind]
+    needed = inspect.signature(cls).parameters.values()
+    given = {p.name: names.get(p.name, 0.5) for p in needed if p.default is p.empty}
+    profile = cls(**given)
+    offered = [name for name in dir(profile) if not name.startswith("_")]
+    assert {"kind", "formula", "f", "df", "g", "dg", *profile.parameters} <= set(offered)
+    assert len(offered) <= 25
+
+
+def test_every_exported_object_has_a_readable_form() -> None:
+    for value in (BALL, PAIR, mdr.Body(1.0, 0.3), mdr.PowerTerm(1.0, 2.0), mdr.Notice("a", "b")):
+        assert repr(value).startswith(f"{type(value).__name__}(")
+
+
+def test_material_stands_for_its_moduli() -> None:
+    wear = {"wear_coefficient": 1e-14, "cycles": [0.0], "resolution": 8, "tangential_force": 2.0}
+    forces = {"normal_force": 10.0, "tangential_force": 2.0}
+    for solve in (
+        lambda e, _g: mdr.normal.solve(BALL, e, normal_force=10.0),
+        lambda _e, g: mdr.tangential.solve(CONTACT, g, 0.3, tangential_force=2.0),
+        lambda e, g: mdr.history.solve(BALL, e, g, 0.3, **forces),
+        lambda e, g: mdr.history.cycles(BALL, e, g, 0.3, **forces),
+        lambda e, g: unloaded(BALL, e, g, 0.3),
+        lambda _e, g: mdr.wear.limit.solve(CONTACT, g, 0.3, tangential_force=2.0),
+        lambda _e, g: mdr.wear.evolution.solve(CONTACT, g, 0.3, **wear),
+    ):
+        by_material, by_numbers = solve(PAIR, PAIR), solve(PAIR.e_star, PAIR.g_star)
+        assert repr(by_material) == repr(by_numbers)
+
+
+def test_warnings_are_those_of_the_given_bodies() -> None:
+    """Equal bodies have no radial displacement: 0.18 t + t^2 > 0.01 for steel on rigid alone."""
+
+    def codes(material: mdr.Material | float) -> list[str]:
+        g_star = material if isinstance(material, mdr.Material) else PAIR
+        contact = mdr.normal.solve(mdr.Paraboloid(1.0), material, indentation_depth=0.06**2)
+        partial = mdr.tangential.solve(contact, g_star, 0.3, tangential_displacement=0.0)
+        worn = mdr.wear.limit.solve(contact, g_star, 0.3, tangential_force=0.0)
+        found = {notice.code for result in (contact, partial, worn) for notice in result.warnings}
+        return sorted(found - {"no_wear"})
+
+    assert codes(PAIR) == []
+    assert codes(PAIR.e_star) == ["half_space"]
+    one_elastic = mdr.from_bodies([mdr.Body(210e9, 0.3), mdr.RIGID])
+    assert codes(one_elastic) == ["elastic_similarity", "half_space"]
+
+
+def test_fields_of_the_pressure_take_a_contact_with_friction() -> None:
+    partial = mdr.tangential.solve(CONTACT, PAIR, 0.3, tangential_force=2.0)
+    for field in (mdr.fields.pressure, mdr.fields.normal_displacement, mdr.fields.foundation_load):
+        np.testing.assert_array_equal(field(partial, [1e-5]), field(CONTACT, [1e-5]))
+
+
 def documented() -> list[tuple[str, Callable[..., Any]]]:
     """Functions of the reference page that take more than one argument."""
     page = (ROOT / "docs" / "reference.md").read_text("utf-8")

@@ -168,6 +168,7 @@ def test_elastic_similarity_warning() -> None:
     alike, unlike = bodies(0.3, 0.3), bodies(0.2)
     contact = normal.solve(Paraboloid(1.0), alike.e_star, contact_radius=0.01)
     assert warnings_of(sticking(contact, alike.g_star), alike) == {}
+    contact = normal.solve(Paraboloid(1.0), unlike.e_star, contact_radius=0.01)
     assert list(warnings_of(sticking(contact, unlike.g_star), unlike)) == ["elastic_similarity"]
     # Without friction there is no coupling.
     assert warnings_of(contact, unlike) == {}

@@ -24,7 +24,7 @@ def application(monkeypatch: pytest.MonkeyPatch, origins: str) -> FastAPI:
     app = create_app()
     # Without a compute process or a queue, queries that need one are rejected.
     none = SETTINGS.model_copy(update={"queue_length": 0})
-    app.state.workers = WorkerPool(none, app.state.transfers)
+    app.state.workers = WorkerPool(none)
     return app
 
 

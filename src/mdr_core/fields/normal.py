@@ -15,9 +15,17 @@ from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import every, number
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import checked_radii, require_single_profile, require_tolerance
+from mdr_core.validation import (
+    checked_radii,
+    require_single_profile,
+    require_tolerance,
+    require_type,
+)
 
+Contact = NormalContact | TangentialContact
+"""A contact, whose tangential load does not change the fields of the normal one."""
 # Values of a field under the load of this index, at some radii.
 Field = Callable[[int, Array], Array]
 
@@ -25,7 +33,7 @@ Field = Callable[[int, Array], Array]
 _BLOCK: Final = 131_072
 
 
-def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
     """Return p(r) = (E*/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx [pressure].
 
     Positive in compression, zero outside the contact, infinite at sharp tips, slope
@@ -35,7 +43,7 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
 
     Parameters
     ----------
-    contact : normal contact of one profile, under any number of loads.
+    contact : contact of one profile, with or without friction, under any number of loads.
     radius : radii [length], >= 0, shape (m,). The pressure has a root at the contact radius: its
         relative error grows without bound within a few units in the last place of it.
     rtol : relative accuracy, 1e-13 to 1e-3.
@@ -59,6 +67,7 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
+    contact = _pressed(contact)
     require_tolerance(rtol)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
@@ -71,7 +80,7 @@ def pressure(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) 
     return fill(shape, values, radius)
 
 
-def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+def normal_displacement(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
     """Return the normal displacement of the surface, positive into the body [length].
 
     d - f(r) in the contact, (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx outside it.
@@ -80,7 +89,7 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
 
     Parameters
     ----------
-    contact : normal contact of one profile, under any number of loads.
+    contact : contact of one profile, with or without friction, under any number of loads.
     radius : radii [length], >= 0, shape (m,).
     rtol : relative accuracy, 1e-13 to 1e-3.
 
@@ -93,6 +102,7 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
     InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
         parameter of the profile.
     """
+    contact = _pressed(contact)
     require_tolerance(rtol)
     profile, shape = contact.profile, contact.contact_radius.shape
     columns = contact.contact_radius, contact.coordinate, contact.indentation_depth
@@ -111,14 +121,14 @@ def normal_displacement(contact: NormalContact, radius: ArrayLike, *, rtol: floa
     return fill(shape, values, radius)
 
 
-def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
+def foundation_load(contact: Contact, radius: ArrayLike) -> Array:
     """Return q(x) = E* (d - g(x)) of the one-dimensional foundation [force/length].
 
     Zero outside the contact. Source: mdr-5, Eqs. (5.8), (5.23).
 
     Parameters
     ----------
-    contact : normal contact of one profile, under any number of loads.
+    contact : contact of one profile, with or without friction, under any number of loads.
     radius : radii [length], >= 0, shape (m,).
 
     Returns
@@ -129,6 +139,7 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
     ------
     InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
+    contact = _pressed(contact)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
 
@@ -136,6 +147,13 @@ def foundation_load(contact: NormalContact, radius: ArrayLike) -> Array:
         return contact.e_star * _depth_left(contact.profile, a[load], coordinate[load], r)
 
     return fill(shape, values, radius)
+
+
+def _pressed(contact: Contact) -> NormalContact:
+    """Return the normal contact; raise InputError if there is none."""
+    needed = "a contact from normal.solve or tangential.solve"
+    require_type("contact", contact, (NormalContact, TangentialContact), needed)
+    return contact.normal
 
 
 def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:

@@ -16,6 +16,7 @@ from mdr_core.history import ContactState
 from mdr_core.normal import EDGE_ERROR, NormalContact, solve
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
+from mdr_core.validation import require_type
 
 _EPS: Final = float(np.finfo(float).eps)
 # Units in the last place of an edge within which the error of a field is not estimated.
@@ -47,6 +48,8 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
         depth = max(contact.indentation_depth, 0.0)
         end = solve(contact.profile, contact.e_star, indentation_depth=depth)
         return Edges(radius, end.edge_errors * radius, scale)
+    needed = "a contact, or the state of a load history"
+    require_type("contact", contact, (NormalContact, TangentialContact), needed)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
@@ -118,8 +121,8 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     ------
     InputError : fewer points than such radii.
     """
-    profile = (contact.normal if isinstance(contact, TangentialContact) else contact).profile
     known = edges(contact)
+    profile = (contact.normal if isinstance(contact, TangentialContact) else contact).profile
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
     end = _BEYOND * float(np.max(known.radius)) or 1.0
     if not profile.has_no_partial_slip:

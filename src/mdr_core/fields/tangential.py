@@ -22,7 +22,7 @@ from mdr_core.history import ContactState
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import require_tolerance
+from mdr_core.validation import require_tolerance, require_type
 
 # An edge that differs from the contact radius by rounding belongs to the contact.
 _EDGE: Final = 1 + 4 * float(np.finfo(float).eps)
@@ -230,6 +230,8 @@ def tractions(
     contact: TangentialContact | ContactState,
 ) -> tuple[tuple[int, ...], Callable[[int], Traction]]:
     """Return the shape of the loads, and the traction under the load of an index."""
+    needed = "a contact from tangential.solve, or the state of a load history"
+    require_type("contact", contact, (TangentialContact, ContactState), needed)
     if isinstance(contact, ContactState):
         traction = _at_end(contact)
         return (), lambda _load: traction

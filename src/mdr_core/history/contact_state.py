@@ -13,10 +13,11 @@ from mdr_core.history.dissipation import Dissipation
 from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
 from mdr_core.history.traction_vertices import TractionVertices, widths
 from mdr_core.interval_moments import IntervalMoments, interval_moments
+from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
 from mdr_core.typing import Array
-from mdr_core.validation import require_positive, require_single_profile
+from mdr_core.validation import require_positive, require_single_profile, require_type
 
 
 class TractionSegments(NamedTuple):
@@ -187,14 +188,17 @@ def read_only(values: Array) -> Array:
 
 
 def unloaded(
-    profile: Profile, e_star: float, g_star: float, friction_coefficient: float
+    profile: Profile,
+    e_star: float | Material,
+    g_star: float | Material | None,
+    friction_coefficient: float,
 ) -> ContactState:
     """Return the state of bodies before first contact, at zero depth and displacement.
 
     Parameters
     ----------
     profile : profile of any kind, with single numbers as parameters.
-    e_star, g_star : effective moduli [pressure], > 0.
+    e_star, g_star : effective moduli [pressure], > 0, or the material that has them, for each.
     friction_coefficient : mu [1], > 0.
 
     Returns
@@ -206,7 +210,9 @@ def unloaded(
     InputError : a modulus or a friction coefficient that is not positive and finite, or an array as
         a parameter of the profile.
     """
+    require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     require_single_profile(profile.swept)
+    e_star, g_star = normal_modulus(e_star), shear_modulus(g_star)
     require_positive(("material", "e_star"), e_star)
     require_positive(("material", "g_star"), g_star)
     require_positive(("friction_coefficient",), friction_coefficient)
@@ -252,6 +258,7 @@ def advance(
     >>> round(state.tangential_force / (0.5 * normal_force), 12)
     0.75
     """
+    require_type("state", state, ContactState, "a state, as from history.unloaded")
     depth, displacement = np.array([indentation_depth]), np.array([tangential_displacement])
     if not (np.isfinite(depth[0]) and np.isfinite(displacement[0])):
         raise InputError(("history",), "must be finite")

@@ -8,6 +8,7 @@ import numpy as np
 from mdr_core.cached import cached_property
 from mdr_core.errors import InputError
 from mdr_core.history.solver import LoadHistory, solve
+from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
@@ -46,8 +47,8 @@ class LoadCycles(LoadHistory):
 
 def cycles(
     profile: Profile,
-    e_star: float,
-    g_star: float,
+    e_star: float | Material,
+    g_star: float | Material | None,
     friction_coefficient: float,
     *,
     indentation_depth: float | None = None,

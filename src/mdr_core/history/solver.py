@@ -16,6 +16,7 @@ from mdr_core.history.load_path import SampledPath
 from mdr_core.history.nonlinear_steps import ExtrapolatedResults
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
+from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
@@ -201,8 +202,8 @@ class LoadHistory(validity.ContactResults):
 
 def solve(
     profile: Profile,
-    e_star: float,
-    g_star: float,
+    e_star: float | Material,
+    g_star: float | Material | None,
     friction_coefficient: float,
     *,
     indentation_depth: ArrayLike | None = None,
@@ -228,7 +229,7 @@ def solve(
     Parameters
     ----------
     profile : profile of any kind, with single numbers as parameters.
-    e_star, g_star : effective moduli [pressure], > 0.
+    e_star, g_star : effective moduli [pressure], > 0, or the material that has them, for each.
     friction_coefficient : mu [1], > 0.
     indentation_depth, normal_force : exactly one, the points [length], [force], shape (n,).
     tangential_displacement, tangential_force : exactly one, the points [length], [force] of either
@@ -267,7 +268,7 @@ def solve(
     pressed = only_one(("history", "normal"), normal_load)
     pushed = only_one(("history", "tangential"), tangential_load)
     path = load_path.build(start, pressed, pushed, samples_per_step)
-    contact = _normal_contact(path, rtol)
+    contact = _normal_contact(path, e_star, rtol)
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if path.nonlinear.any() and not profile.has_no_partial_slip:
         return LoadHistory(path, contact, nonlinear_steps.results(path, rtol), rtol)
@@ -275,14 +276,14 @@ def solve(
     return LoadHistory(path, contact, steps, rtol)
 
 
-def _normal_contact(path: SampledPath, rtol: float) -> NormalContact:
+def _normal_contact(path: SampledPath, e_star: float | Material, rtol: float) -> NormalContact:
     """Return the normal contact, raising InputError if a load is beyond the end of the profile."""
     name, load = path.normal_name, np.maximum(path.normal, 0.0)
     least, most = extremes(load)
     # A single load takes less time than several.
     given = {name: number(most) if least == most else load}
     try:
-        return normal.solve(path.start.profile, path.start.e_star, **given, rtol=rtol)
+        return normal.solve(path.start.profile, e_star, **given, rtol=rtol)
     except InputError as error:
         if error.path[:1] != ("load",):
             raise

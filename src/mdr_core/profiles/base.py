@@ -4,7 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import inf
 from typing import Any, ClassVar, Final, Self
 
@@ -19,7 +19,7 @@ from mdr_core.errors import Notice
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import require_positive
+from mdr_core.validation import as_numbers, require_positive
 
 # Quantities of a normal contact, as `Profile.closed_forms` names them.
 NORMAL_QUANTITIES: Final = (
@@ -33,6 +33,9 @@ NORMAL_QUANTITIES: Final = (
 )
 # Fields of a contact, likewise.
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
+# Attributes that completion offers, beside the parameters and those of a table.
+_SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
+_FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
 _NO_PLATEAUS: Final = np.empty((0, 2))
 
@@ -63,7 +66,14 @@ class Profile(ABC):
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
         for name, value in self.parameters.items():
-            require_positive(("profile", name), value)
+            if isinstance(value, (list, tuple)):
+                vars(self)[name] = as_numbers(("profile", name), value)
+            require_positive(("profile", name), getattr(self, name))
+
+    def __dir__(self) -> Iterable[str]:
+        """Return the names for users; those of the solver are left out of completion."""
+        shown = {*self.parameters, *_FOR_USERS}
+        return [name for name in super().__dir__() if name in shown or name.startswith("__")]
 
     @property
     def parameters(self) -> dict[str, Any]:

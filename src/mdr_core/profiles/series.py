@@ -67,6 +67,8 @@ class Series(Profile):
         if not self.terms:
             raise InputError(path, "at least one term is needed")
         for i, term in enumerate(self.terms):
+            if not isinstance(term, PowerTerm):
+                raise InputError((*path, i), "must be a PowerTerm(coefficient, exponent)")
             if not (isfinite(term.coefficient) and term.coefficient != 0):
                 raise InputError((*path, i, "coefficient"), "must be finite and not zero")
             if not 0 < term.exponent < inf:

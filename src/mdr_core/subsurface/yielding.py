@@ -21,7 +21,7 @@ from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import on_rings
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import require_poissons_ratio, require_positive
+from mdr_core.validation import require_poissons_ratio, require_positive, require_type
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
@@ -110,6 +110,7 @@ def yield_onset_force(
     InputError : another measure, no load, or a yield strength that is not positive.
     AccuracyError : see `largest`.
     """
+    require_type("contact", contact, _Loaded, "a contact under loads")
     require_positive(("yield_strength",), yield_strength)
     profile, (columns, shape) = contact.normal.profile, _columns(contact)
     if not np.all(contact.normal.loaded):

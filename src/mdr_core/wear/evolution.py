@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from mdr_core import tangential, validity
 from mdr_core.cached import cached_property
 from mdr_core.errors import AccuracyError, InputError, Notice
+from mdr_core.materials import Material, shear_modulus
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags, Indices
@@ -19,6 +20,7 @@ from mdr_core.validation import (
     require_not_negative,
     require_positive,
     require_tolerance,
+    require_type,
 )
 from mdr_core.wear import limit
 from mdr_core.wear.arguments import grid, one_amplitude
@@ -218,6 +220,11 @@ class WearEvolution(validity.ContactResults, WornSurface):
         return self.initial.tangential_contact
 
     @property
+    def solved(self) -> TangentialContact:
+        """Contact on which the validity depends."""
+        return self.tangential_contact
+
+    @property
     def normal(self) -> NormalContact:
         """Normal contact before any wear."""
         return self.initial.normal
@@ -240,7 +247,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
 def solve(
     contact: NormalContact,
-    g_star: float,
+    g_star: float | Material | None,
     friction_coefficient: float,
     *,
     wear_coefficient: float,
@@ -261,7 +268,7 @@ def solve(
     Parameters
     ----------
     contact : normal contact before wear, under a single load.
-    g_star : effective shear modulus [pressure], > 0.
+    g_star : effective shear modulus [pressure], > 0, or the material that has it.
     friction_coefficient : mu > 0 [1].
     wear_coefficient : K > 0, worn volume per dissipated energy [1/pressure].
     cycles : numbers of cycles >= 0, ascending, (k,).
@@ -293,6 +300,8 @@ def solve(
     >>> [float(f"{volume:.4g}") for volume in worn.worn_volume]
     [3.667e-07, 0.7593]
     """
+    require_type("contact", contact, NormalContact, "a contact from normal.solve")
+    g_star = shear_modulus(g_star)
     name, size = one_amplitude(tangential_displacement, tangential_force)
     require_positive(("wear_coefficient",), wear_coefficient)
     require_tolerance(rtol, TIGHTEST_INTEGRATION)

@@ -11,10 +11,11 @@ from mdr_core import tangential, validity
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError, Notice
+from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
-from mdr_core.validation import checked_radii, first_index, require_single_profile
+from mdr_core.validation import checked_radii, first_index, require_single_profile, require_type
 from mdr_core.wear import limit_fields, limiting_stick
 from mdr_core.wear.arguments import grid, one_amplitude
 
@@ -56,6 +57,11 @@ class LimitingWear(validity.ContactResults):
         "worn_volume",
         "regime",
     )
+
+    @property
+    def solved(self) -> TangentialContact:
+        """Contact on which the validity depends."""
+        return self.tangential_contact
 
     @property
     def normal(self) -> NormalContact:
@@ -255,7 +261,7 @@ class LimitingWear(validity.ContactResults):
 
 def solve(
     contact: NormalContact,
-    g_star: Parameter,
+    g_star: Parameter | Material | None,
     friction_coefficient: Parameter,
     *,
     tangential_displacement: ArrayLike | None = None,
@@ -273,7 +279,7 @@ def solve(
     Parameters
     ----------
     contact : from `mdr_core.normal.solve`, of one profile under a depth or a normal force.
-    g_star : effective shear modulus [pressure], > 0.
+    g_star : effective shear modulus [pressure], > 0, or the material that has it.
     friction_coefficient : mu > 0 [1].
     tangential_displacement, tangential_force : exactly one, the amplitude, >= 0
         [length], [force]. Arrays broadcast with the normal loads.
@@ -296,6 +302,7 @@ def solve(
     >>> [float(f"{r:.5g}") for r in worn.wear_radius]
     [1.2298, 1.4142]
     """
+    require_type("contact", contact, NormalContact, "a contact from normal.solve")
     if contact.control == "contact_radius":
         raise InputError(
             ("load", "contact_radius"),

@@ -76,10 +76,8 @@ def body(query: Query) -> Arguments:
 
 def friction(query: Any) -> Arguments:
     """Return shear modulus and coefficient of friction, as arguments of the core."""
-    g_star = query.material.effective.g_star
-    if g_star is None:
-        raise InputError(("material", "g_star"), "is needed with friction: give it, or bodies")
-    return {"g_star": g_star, "friction_coefficient": query.friction_coefficient}
+    effective = query.material.effective
+    return {"g_star": effective.g_star, "friction_coefficient": query.friction_coefficient}
 
 
 def control(given: Choice) -> Arguments:
