@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Container, Sequence
 from importlib import import_module
+from io import TextIOWrapper
 from typing import Any, Final, NamedTuple
 
 from mdr_command import ExitStatus
@@ -71,6 +72,10 @@ COMMANDS: Final = {
 
 def main(given: Sequence[str] | None = None) -> int:
     """Run a command line and return the exit status."""
+    _open_streams()
+    if isinstance(sys.stdout, TextIOWrapper):
+        # Formulas and symbols of texts are shown on every terminal.
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         status = _run(sys.argv[1:] if given is None else given)
         sys.stdout.flush()
@@ -84,6 +89,17 @@ def main(given: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"mdr: {error}\n")
         return ExitStatus.OUTPUT_FAILED
     return status
+
+
+def _open_streams() -> None:
+    """Open the standard streams that the caller closed: on the null device, which is not written.
+
+    The next file or socket would otherwise take the place of standard output.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            access = os.O_WRONLY if name == "stderr" else os.O_RDONLY
+            setattr(sys, name, os.fdopen(os.open(os.devnull, access), mode))
 
 
 def _run(given: Sequence[str]) -> int:

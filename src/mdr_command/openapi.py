@@ -9,6 +9,7 @@ from mdr_service.app import create_app
 
 def run(_arguments: argparse.Namespace) -> int:
     """Print the document, indented so that versions can be compared by line."""
-    json.dump(create_app().openapi(), sys.stdout, indent=2, ensure_ascii=False)
-    sys.stdout.write("\n")
+    text = json.dumps(create_app().openapi(), indent=2, ensure_ascii=False)
+    # JSON is UTF-8, whatever the terminal is.
+    sys.stdout.buffer.write(f"{text}\n".encode())
     return 0

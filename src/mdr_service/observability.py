@@ -1,12 +1,17 @@
 """Observability: request log and Prometheus metrics. Neither contains queries or results."""
 
+import atexit
 import logging
-import sys
+import os
+from collections import deque
 from collections.abc import Mapping
+from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache
+from select import PIPE_BUF
+from threading import Event, Thread
 from time import perf_counter
 from typing import Any, Final
 
@@ -45,7 +50,63 @@ RESTARTS: Final = Counter(
     ("reason",),
     registry=REGISTRY,
 )
+LOST_LINES: Final = Counter(
+    "mdr_log_lines_lost", "Log lines lost because standard error was not read.", registry=REGISTRY
+)
+# Some megabytes of lines.
+_MAX_LINES: Final = 10_000
+_WRITE_INTERVAL: Final = 0.1
+# Time for the last lines at the end of the process.
+_FLUSH_SECONDS: Final = 1.0
+_STANDARD_ERROR: Final = 2
 _requests: Final = logging.getLogger("mdr_service.requests")
+
+
+class LogStream:
+    """Standard error, written by a thread.
+
+    A reader that stops reading must not stop the service: while nobody reads, the oldest lines are
+    lost.
+    """
+
+    def __init__(self, max_lines: int = _MAX_LINES) -> None:
+        self._lines: deque[bytes] = deque(maxlen=max_lines)
+        self._ended = Event()
+        self._thread = Thread(target=self._run, daemon=True)
+
+    def write(self, text: str) -> None:
+        """Write a line soon."""
+        if not self._thread.ident:
+            self._thread.start()
+            atexit.register(self._end)
+        if len(self._lines) == self._lines.maxlen:
+            LOST_LINES.inc()
+        self._lines.append(text.encode())
+
+    def flush(self) -> None:
+        """Do nothing: the lines are written soon."""
+
+    def _run(self) -> None:
+        while not self._ended.wait(_WRITE_INTERVAL):
+            self._write_lines()
+        self._write_lines()
+
+    def _write_lines(self) -> None:
+        while self._lines:
+            block = self._lines.popleft()
+            # Lines of several processes are not mixed in a pipe up to this length.
+            while self._lines and len(block) + len(self._lines[0]) <= PIPE_BUF:
+                block += self._lines.popleft()
+            with suppress(OSError):
+                while block:
+                    block = block[os.write(_STANDARD_ERROR, block) :]
+
+    def _end(self) -> None:
+        self._ended.set()
+        self._thread.join(_FLUSH_SECONDS)
+
+
+LOG: Final = LogStream()
 
 
 @dataclass(slots=True)
@@ -89,7 +150,7 @@ def end(record: RequestRecord, route: str | None) -> None:
         }
         # A log record of the standard library takes a tenth of the time of a small request, so the
         # logger determines only whether the line is written.
-        sys.stderr.write(orjson.dumps(line, option=orjson.OPT_APPEND_NEWLINE).decode())
+        LOG.write(orjson.dumps(line, option=orjson.OPT_APPEND_NEWLINE).decode())
 
 
 # The client library takes a few per cent of the time of a small request to look them up.
@@ -119,9 +180,13 @@ LOGGING: Final[Mapping[str, Any]] = {
     "version": 1,
     "disable_existing_loggers": False,
     "formatters": {"lines": {"()": "mdr_service.observability.JsonLines"}},
-    "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "lines"}},
-    "loggers": {
-        name: {"handlers": ["stderr"], "level": "INFO", "propagate": False}
-        for name in ("mdr_service", "uvicorn")
+    "handlers": {
+        "stderr": {
+            "class": "logging.StreamHandler",
+            "formatter": "lines",
+            "stream": "ext://mdr_service.observability.LOG",
+        }
     },
+    "root": {"handlers": ["stderr"], "level": "WARNING"},
+    "loggers": {name: {"level": "INFO"} for name in ("mdr_service", "uvicorn")},
 }

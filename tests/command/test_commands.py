@@ -1,5 +1,7 @@
 """Commands of `mdr`: arguments, help, and lazy imports."""
 
+import json
+import os
 import subprocess
 import sys
 
@@ -75,3 +77,45 @@ def test_help_imports_no_numerical_module() -> None:
         "finally:\n    assert not {'numpy', 'pydantic', 'mdr_service'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, timeout=PATIENCE)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+@pytest.mark.parametrize("given", ["--help", "profiles", "normal --help", "completion zsh"])
+def test_text_is_shown_on_any_terminal(encoding: str, given: str) -> None:
+    process = run(given, PYTHONIOENCODING=encoding)
+    assert (process.returncode, process.stderr) == (0, b"")
+    assert ("\\u" in process.stdout.decode(encoding)) == (encoding != "utf-8" and given != "--help")
+
+
+@pytest.mark.long
+def test_openapi_document_is_utf8_on_any_terminal() -> None:
+    document = json.loads(run("openapi", PYTHONIOENCODING="ascii").stdout.decode())
+    assert document["info"]["title"] == "MDR"
+    assert "µ" in json.dumps(document, ensure_ascii=False)
+
+
+@pytest.mark.parametrize(
+    ("given", "status", "message"),
+    [
+        ("profiles >&-", 4, b"mdr: [Errno 9] Bad file descriptor\n"),
+        ("profiles >&- 2>&-", 4, b""),
+        ("profiles <&-", 0, b""),
+        ("normal - <&-", 2, b"mdr normal: "),
+    ],
+)
+def test_closed_stream_is_no_internal_error(given: str, status: int, message: bytes) -> None:
+    process = run(given)
+    assert process.returncode == status
+    assert message in process.stderr
+    assert b"Traceback" not in process.stderr
+
+
+def run(given: str, **environment: str) -> "subprocess.CompletedProcess[bytes]":
+    """Run `mdr` with the arguments and redirections of a shell."""
+    return subprocess.run(
+        ["sh", "-c", f"exec {sys.executable} -m mdr_command {given}"],
+        env=os.environ | environment,
+        capture_output=True,
+        check=False,
+        timeout=PATIENCE,
+    )

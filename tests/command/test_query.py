@@ -145,6 +145,16 @@ def test_missing_file_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     )
 
 
+@pytest.mark.parametrize("name", ["/dev/zero", "-"])
+def test_endless_request_is_rejected(
+    name: str, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Path("/dev/zero").open() as zeros:
+        monkeypatch.setattr(sys, "stdin", zeros)
+        assert main(["normal", name]) == 2
+    assert "MDR_MAX_BODY_BYTES" in capfd.readouterr().err
+
+
 @pytest.mark.long
 def test_query_imports_no_server(tmp_path: Path) -> None:
     file = tmp_path / "request.json"

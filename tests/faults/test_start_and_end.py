@@ -3,6 +3,7 @@
 import http.client
 import json
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -92,6 +94,57 @@ def test_second_interrupt_completes_the_request_in_flight_at_once() -> None:
         process.communicate(timeout=PATIENCE)
         assert time.monotonic() - signalled < 5
     assert process.returncode == 0
+
+
+def connected(port: int) -> "closing[http.client.HTTPConnection]":
+    return closing(http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE))
+
+
+def test_standard_error_that_nobody_reads_does_not_stop_the_service() -> None:
+    port = free_port()
+    with running(service(port), port, **FEW) as process:
+        with connected(port) as client:
+            # A pipe holds some 400 lines.
+            for _ in range(2_000):
+                client.request("GET", "/health")
+                assert client.getresponse().read()
+        process.send_signal(signal.SIGTERM)
+        signalled = time.monotonic()
+        assert process.wait(PATIENCE) == 0
+        assert time.monotonic() - signalled < 5
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&- <&-", "| true"])
+def test_closed_stream_does_not_stop_the_service(closed: str) -> None:
+    port = free_port()
+    command = ["sh", "-c", f"{shlex.join(service(port))} {closed}"]
+    with (
+        running(command, port, subprocess.DEVNULL, **FEW) as process,
+        connected(port) as client,
+    ):
+        for _ in range(3):
+            client.request("GET", "/health/ready")
+            response = client.getresponse()
+            assert (response.status, response.read()) == (200, b'{"status":"ok"}')
+        os.killpg(process.pid, signal.SIGTERM)
+        wait_for(lambda: not is_served(port))
+
+
+def test_log_is_whole_lines_of_json() -> None:
+    port = free_port()
+    with running([*service(port), "--workers", "2"], port, **FEW) as process:
+        for _ in range(200):
+            with connected(port) as client:
+                client.request("GET", "/health")
+                client.getresponse().read()
+        process.send_signal(signal.SIGTERM)
+        output, _ = process.communicate(timeout=PATIENCE)
+    first, *lines = output.splitlines()
+    assert first.startswith("MDR: ")
+    messages = [json.loads(line)["message"] for line in lines]
+    # The last lines are written at the end; the start of the test has sent a request as well.
+    assert messages.count("request") == 201
+    assert messages[-1].startswith("Stopping parent process")
 
 
 def failed(*commands: list[str], **environment: str) -> list[subprocess.CompletedProcess[str]]:
