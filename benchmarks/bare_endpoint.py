@@ -65,7 +65,7 @@ if __name__ == "__main__":
         app,
         host="127.0.0.1",
         port=int(sys.argv[1]),
-        loop="uvloop",
+        loop="asyncio",
         http="httptools",
         log_level="warning",
         server_header=False,

@@ -13,7 +13,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 
 import psutil
 
@@ -21,12 +21,14 @@ from mdr_service.settings import SETTINGS
 from tests.faults.attacks import SMALL, tangential
 from tests.faults.figures import MEBIBYTE, Row, say, table
 from tests.faults.kills import kills
-from tests.faults.load import Response, clients, percentile
+from tests.faults.load import HOST, Response, clients, percentile
 from tests.faults.mixed_requests import memory, mutated, parallel, schema
 from tests.faults.server import free_port, running, service
 
 # Some hundredths of a second of a core: it needs a compute process.
 LONGER = tangential(8_000)
+# As load balancers and orchestrators ask: a connection for each probe.
+LIVE = f"HEAD /health/live HTTP/1.1\r\nHost: {HOST}\r\nConnection: close\r\n\r\n".encode()
 
 Campaign = Callable[[int, psutil.Process], Awaitable[list[Row]]]
 
@@ -123,6 +125,45 @@ def small_beside(attack: str, *, seconds: float = 14.0, bounded: bool = True) ->
     return campaign
 
 
+async def new_connections(port: int, seconds: float) -> list[float]:
+    """Return the times of a liveness probe, each on a connection of its own."""
+    times = []
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        start = time.perf_counter()
+        # A probe without a response counts with the time for which it waited.
+        with suppress(TimeoutError, ConnectionError):
+            async with asyncio.timeout(20.0):
+                reader, writer = await asyncio.open_connection(HOST, port)
+                writer.write(LIVE)
+                assert (await reader.readline()).startswith(b"HTTP/1.1 200 ")
+                writer.close()
+        times.append(time.perf_counter() - start)
+        await asyncio.sleep(0.05)
+    return times
+
+
+def connections_beside(attack: str) -> Campaign:
+    """Return the campaign of liveness probes beside clients that keep their connections."""
+
+    async def campaign(port: int, _server: psutil.Process) -> list[Row]:
+        async with beside(attack, port, 16.0) as found:
+            times = await new_connections(port, 12.0)
+        p99 = percentile(times, 0.99)
+        median = 1e3 * percentile(times, 0.5)
+        return [
+            Row(
+                f"{attack}: p99 of probes on new connections",
+                f"{1e3 * p99:.1f} ms",
+                "<= 250 ms",
+                p99 <= 0.25,
+                f"median {median:.1f} ms of {len(times)}; the others were answered {dict(found)}",
+            )
+        ]
+
+    return campaign
+
+
 async def hostile(port: int, _server: psutil.Process) -> list[Row]:
     """Two connections with the most expensive queries, beside four with long and short ones."""
     counts: Counter[tuple[str, int]] = Counter()
@@ -200,6 +241,9 @@ CAMPAIGNS: dict[str, Campaign] = {
     "bodies": small_beside("100 long bodies without an end"),
     "headers": small_beside("500 slow headers"),
     "expensive": small_beside("expensive queries, 20 clients"),
+    "queries": connections_beside("200 clients of small queries"),
+    "readme": connections_beside("50 readers of /readme"),
+    "openapi": connections_beside("50 readers of /openapi.json"),
     "hostile": hostile,
     "overload": overload,
     "kills": kills,

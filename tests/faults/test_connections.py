@@ -34,7 +34,7 @@ def port() -> Iterator[int]:
     """Serve from a thread of this process, where a test can inject an error."""
     number = free_port()
     config = uvicorn.Config(
-        create_app(), port=number, loop="uvloop", http=BoundedProtocol, lifespan="on", ws="none"
+        create_app(), port=number, loop="asyncio", http=BoundedProtocol, lifespan="on", ws="none"
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)

@@ -122,7 +122,7 @@ def is_closed(client: socket.socket) -> bool:
 def served() -> Iterator[Served]:
     number = free_port()
     app = create_app()
-    config = uvicorn.Config(app, port=number, loop="uvloop", http=BoundedProtocol, ws="none")
+    config = uvicorn.Config(app, port=number, loop="asyncio", http=BoundedProtocol, ws="none")
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
     thread.start()
