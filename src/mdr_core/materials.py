@@ -40,6 +40,8 @@ class Material:
     """Dundurs' beta [1], None where the bodies are unknown."""
     poissons_ratios: tuple[float, ...] = ()
     """Poisson's ratios of the elastic bodies [1], empty where they are unknown."""
+    profile_share: float | None = None
+    """Share of the first body, which has the profile, in 1/E* [1]; None where it is unknown."""
 
     def __post_init__(self) -> None:
         for name, value in (("e_star", self.e_star), ("g_star", self.g_star)):
@@ -91,7 +93,7 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
 
     Parameters
     ----------
-    bodies : two of `Body` or "rigid", at least one of them elastic.
+    bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
 
     Raises
     ------
@@ -112,13 +114,15 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     if not parts:
         raise InputError(("material", "bodies"), "at least one body must be elastic")
     # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
-    normal = sum(
+    compliances = [
         (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus
         for body in parts
-    )
+    ]
+    normal = sum(compliances)
+    share = compliances[0] / normal if isinstance(bodies[0], Body) else 0.0
     shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
-    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios)
+    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios, share)
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

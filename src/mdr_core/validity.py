@@ -28,6 +28,11 @@ _RADIAL: Final = 0.63
 # Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta with it.
 ASSUMED_RATIO: Final = 0.3
 _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
+# Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
+# length 6 b is L/(pi E b^2).
+_WALL: Final = 3.0
+# Part of an error that a warning does not mention.
+_NO_PART: Final = 5e-4
 # Radii that a warning lists, so that it stays one sentence.
 _LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
@@ -138,7 +143,8 @@ def of_normal_contact(
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
     of first order in the slope by the neglected radial displacement, and of second order by the
-    geometry. `plastic`: the deviatoric stress is infinite somewhere, which no material can bear.
+    geometry; the side wall of an elastic punch adds to it. `plastic`: the deviatoric stress is
+    infinite somewhere, which no material can bear.
 
     `slips_from` is the least radius with slip in each case [length].
 
@@ -147,17 +153,26 @@ def of_normal_contact(
     beta = None if material is None else material.dundurs_beta
     radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
     slope = _edge_slope(contact)
-    error = slope * (radial + slope)
+    wall = _wall_error(contact, None if material is None else material.profile_share)
+    error = slope * (radial + slope) + wall
 
     def size() -> str:
-        steepest = extremes(slope)[1]
-        square = steepest * steepest
+        steepest, total = extremes(slope)[1], extremes(error)[1]
         assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if beta is None else ""
+        parts = {
+            f"from the neglected radial displacement{assumed}": radial * steepest,
+            f"from the slope {steepest:.2g} at the contact edge": steepest * steepest,
+            "from the side wall of the elastic punch": extremes(wall)[1],
+        }
+        largest = max(parts, key=lambda cause: parts[cause])
+        said = [f"{_per_cent(part)} {cause}" for cause, part in parts.items() if part > _NO_PART]
+        several = f"{_per_cent(total)}: {', '.join(said)}" if said[1:] else said[0]
+        size = several if total < 1 else f"over 100 %, mainly {largest}"
+        wall_counts = parts[largest] == extremes(wall)[1]
+        remedy = "take a far stiffer punch as rigid" if wall_counts else "reduce the slope there"
         return (
-            f"the half-space approximation has an estimated error of "
-            f"{_per_cent(extremes(error)[1])}: {_per_cent(radial * steepest)} from the neglected "
-            f"radial displacement{assumed}, and about {_per_cent(square)} from the slope "
-            f"{steepest:.2g} at the contact edge"
+            f"the half-space approximation has an estimated error of {size}; {remedy}, or use "
+            "finite elements"
         )
 
     ratios = () if material is None else material.poissons_ratios
@@ -168,7 +183,7 @@ def of_normal_contact(
     def places() -> str:
         return (
             f"the elastic pressure is infinite at radius {listed_infinite_radii(contact, yields)}: "
-            "a real material yields there under any load"
+            "a real material yields there under any load; round the tip or edge"
         )
 
     steep = Finding("half_space", error > _HALF_SPACE_ERROR, size)
@@ -197,7 +212,8 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     def unphysical() -> str:
         return (
             f"e_star/g_star = {np.extract(impossible, ratio)[0]:.4g} is impossible for isotropic "
-            "bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's ratio is negative"
+            "bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's ratio is "
+            "negative; correct the moduli, or give the bodies"
         )
 
     return Finding("impossible_moduli", impossible, unphysical)
@@ -255,9 +271,9 @@ def listed_infinite_radii(
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the first of many names, and the number of the others."""
-    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return ", ".join(names[:_LISTED]) + more
+    """Return ascending radii as text, of many the first, the last and their number."""
+    many = len(names) > _LISTED
+    return f"{names[0]} to {names[-1]} ({len(names)} radii)" if many else ", ".join(names)
 
 
 def _edge_slope(contact: LoadedContact) -> Array:
@@ -270,5 +286,20 @@ def _edge_slope(contact: LoadedContact) -> Array:
     return where(loaded, contact.profile.df(inside), 0.0)
 
 
+def _wall_error(contact: LoadedContact, share: float | None) -> Parameter:
+    """Estimated error by the side wall of an elastic body with a flat end, which carries no stress.
+
+    The flank beyond the contact edge counts as far as it is steeper than at the edge, up to the
+    slope 1, and the body by its `share` in the compliance. [1]
+    """
+    profile, a = contact.profile, contact.contact_radius
+    if not share or not some(contact.loaded & (profile.first_radius > 0)):
+        return 0.0
+    reach = np.minimum(2 * a, profile.domain)
+    flank = (profile.f(reach) - profile.f(a)) / a
+    steeper = np.minimum(np.square(flank), 1.0) - np.square(_edge_slope(contact))
+    return where(contact.loaded, _WALL * share * np.maximum(steeper, 0.0), 0.0)
+
+
 def _per_cent(part: float) -> str:
-    return f"{100 * part:.2g} %" if part < 1 else "over 100 %"
+    return f"{100 * part:.2g} %"

@@ -57,9 +57,10 @@ def test_infinite_deviatoric_stress() -> None:
             slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=c)
             assert set(warnings_of(slips, rubber)) == codes_
         assert set(warnings_of(contact, steel)) == {"plastic"}
+    beneath_rigid = from_bodies([RIGID, Body(1.0, 0.5)])
     for profile in (Power(1e-3, 0.9), FlatPunch(1.0)):
         sharper = normal.solve(profile, rubber.e_star, normal_force=1e-3)
-        assert set(warnings_of(sharper, rubber)) == {"plastic"}
+        assert set(warnings_of(sharper, beneath_rigid)) == {"plastic"}
 
 
 def test_warning_lists_the_radii_of_infinite_deviatoric_stress_only() -> None:
@@ -147,6 +148,44 @@ def test_contact_without_material_assumes_the_worst_case() -> None:
     assert codes(steep) == ["half_space"]
     assert "0.3 assumed" in steep.warnings[0].message
     assert codes(normal.solve(FlatPunch(1.0), 1.0, normal_force=1.0)) == ["plastic", "singular"]
+
+
+STEEL, POLYMER = Body(210e9, 0.3), Body(2.1e9, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("given", "profile", "error"),
+    [
+        # 3 x the share of the punch; none if it is rigid, unknown, or far stiffer.
+        ([STEEL, RIGID], FlatPunch(1e-3), "over 100 %"),
+        ([STEEL, STEEL], FlatPunch(1e-3), "over 100 %"),
+        ([STEEL, POLYMER], FlatPunch(1e-3), "3 %"),
+        ([RIGID, STEEL], FlatPunch(1e-3), None),
+        ([STEEL, Body(2.1e6, 0.3)], FlatPunch(1e-3), None),
+        (None, FlatPunch(1e-3), None),
+        ([STEEL, STEEL], RoundedPunch(1e-3, 1e-5), "over 100 %"),
+        # The mean slope between a and 2a is a/(2R) = 1/10.
+        ([STEEL, STEEL], RoundedPunch(1e-3, 5e-3), "1.5 %"),
+        ([RIGID, STEEL], RoundedPunch(1e-3, 1e-5), None),
+        ([STEEL, STEEL], RoundedPunch(1e-3, 1.0), None),
+        ([STEEL, STEEL], TruncatedCone(1e-3, 0.09), None),
+    ],
+)
+def test_side_wall_of_an_elastic_punch(
+    given: Any, profile: normal.Profile, error: str | None
+) -> None:
+    material = from_bodies(given) if given else Material(115e9)
+    contact = normal.solve(profile, material, normal_force=1e-3)
+    found = [notice.message for notice in contact.warnings if notice.code == "half_space"]
+    assert len(found) == (error is not None)
+    assert not error or f"an estimated error of {error}" in found[0]
+    assert not error or "rigid" in found[0]
+
+
+def test_error_above_100_per_cent_is_not_split() -> None:
+    steep = normal.solve(Cone(3.0), bodies(0.3), normal_force=1.0)
+    (message,) = [each.message for each in steep.warnings if each.code == "half_space"]
+    assert message.count("%") == 1
 
 
 @pytest.mark.parametrize("nu", [-0.999, -0.5, 0.0, 0.3, 0.5])
