@@ -172,11 +172,11 @@ def _parts(make: Callable[[], tuple[Shape, ...]]) -> tuple[Shape, ...]:
 B, EDGE = 0.3, 0.25
 
 SMOOTH = {
-    "sphere": Body(_kind("sphere", radius=1.0), 0.8),
+    "sphere": Body(_kind("sphere", radius=1.0), 0.7),
     "flat sphere": Body(_kind("sphere", radius=20.0), 1.0),
     "paraboloid": Body(_kind("paraboloid", radius=1.0), 1.0),
     "ellipsoid": Body(_kind("ellipsoid", radius=1.25, height=0.5), 1.0),
-    "hyperboloid": Body(_kind("hyperboloid", slope=1.0, tip_radius=1.0), 1.0),
+    "hyperboloid": Body(_kind("hyperboloid", slope=1.0, tip_radius=1.0), 0.8),
     "blunted cone": Body(_kind("hyperboloid", slope=0.3, tip_radius=0.3), 1.0),
     "tip of an area function": Body(lambda: (AreaFunction(24.5, 2.0, 0.0),), 1.0),
     "tanh^2": Body(
@@ -203,7 +203,9 @@ SMOOTH = {
         ),
         0.7,
     ),
-    "cosh": Body(_smooth(lambda r: 2 * mp.sinh(r / 2) ** 2, mp.sinh, lambda r: r * mp.cosh(r)), 1.0),
+    "cosh": Body(
+        _smooth(lambda r: 2 * mp.sinh(r / 2) ** 2, mp.sinh, lambda r: r * mp.cosh(r)), 1.0
+    ),
     "cosine": Body(_smooth(lambda r: 2 * mp.sin(r / 2) ** 2, mp.sin, lambda r: r * mp.cos(r)), 1.0),
     **{f"r^{n}": Body(_power(n), 1.0) for n in (2.5, 3.0, 4.0, 6.0)},
 }

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.oracles.bodies import BODIES, Body
+from tests.oracles.bodies import BODIES, AreaFunction, Body
 
 if TYPE_CHECKING:
     from numpy.random import Generator
@@ -114,18 +114,61 @@ RECORDS = {
     "noise 1 %": 2,
     "waviness": 2,
 }
+DIGITAL = ("decimals", "significant digits", "float32", "resolution")
 
 
 def drawn(seed: int, name: str | None = None, most: int = 2000) -> InstrumentTable:
     """Return a table of a body (any, if not given) with habits of its own."""
     random = np.random.default_rng(seed)
     name = name or str(random.choice(list(BODIES)))
-    body = BODIES[name]
-    record = str(random.choice(list(RECORDS), p=np.array(list(RECORDS.values())) / 25))
+    body, shares = BODIES[name], np.array(list(RECORDS.values()))
+    record = str(random.choice(list(RECORDS), p=shares / shares.sum()))
     count = int(np.exp(random.uniform(np.log(16), np.log(400 if random.random() < 0.9 else most))))
+    habits = [name, f"{count} points", record]
+    breaks = body.kinks if body.kinks and random.random() < 0.5 else ()
+    r = _places(random, body, count, breaks, habits)
+    f, rise = body.f(r), float(body.f(np.array(body.end)))
+    r, f, single_disc = _surroundings(random, body, r, f, habits)
+    # Units of the file, and how steep the body is.
+    length = 1.0 if random.random() < 0.5 else float(10 ** random.uniform(-9, 3))
+    height = length * float(10 ** random.uniform(-2, 0.3))
+    r, f, rise = length * r, height * f, height * rise
+    exact_r, exact_f = r, f
+    f, known = _measured(random, record, f, r, rise)
+    offset = float(random.choice([0.0, 0.0, 0.3, -1.0, 20.0])) * rise
+    habits += ["offset"] if offset else []
+    r, f = _written(random, record, r, f + offset, rise)
+    error = known
+    if record in DIGITAL:
+        steepest = body.df(0.9 * body.end) * height / length
+        moved = np.hypot(f - offset - exact_f, steepest * (r - exact_r))
+        error = float(np.sqrt(np.mean(moved**2)))
+    index = _order(random, r.size, habits)
+    # A break is the radius as the file has it.
+    declared = tuple(float(r[np.argmin(np.abs(r - length * b))]) for b in breaks)
+    return InstrumentTable(
+        name=", ".join(habits),
+        kind=next((habit for habit in habits if habit in {"wall", "ledge"}), record),
+        r=r[index],
+        f=f[index],
+        body=body,
+        length=length,
+        height=height,
+        end=body.end,
+        error=error,
+        breaks=declared,
+        uncertainty=known if known and random.random() < 0.7 else None,
+        single_disc=single_disc,
+    )
+
+
+def _places(
+    random: Generator, body: Body, count: int, breaks: tuple[float, ...], habits: list[str]
+) -> Array:
+    """Radii of the points, negative on the other side of the axis."""
     spacing = str(random.choice(["uniform"] * 4 + ["graded", "coarse tip", "geometric", "random"]))
+    habits.append(spacing)
     r = radii(random, count, body.end, spacing)
-    habits = [name, f"{count} points", spacing, record]
     if random.random() < 0.25:
         r = np.append(random.uniform(0.1, 0.9) * r[1], r[1:])
         habits.append("first radius above 0")
@@ -133,82 +176,72 @@ def drawn(seed: int, name: str | None = None, most: int = 2000) -> InstrumentTab
         other = r if random.random() < 0.5 else radii(random, count, body.end, "random")
         r = np.append(-other[::-1], r)
         habits.append("both sides")
-    breaks = body.kinks if body.kinks and random.random() < 0.5 else ()
     if breaks:
-        r = np.sort(np.append(r, breaks))
         habits.append("declared breaks")
-    near = random.random() if not breaks else 1.0
-    if near < 0.2:
+        return np.sort(np.append(r, breaks))
+    habits += ["undeclared kink"] if body.kinks else []
+    if random.random() < 0.2:
         some = random.choice(r, max(1, count // 8))
         gap = float(random.choice([0.0, 1e-7, 1e-6, 1e-4]))
         r = np.append(r, some * (1 + gap * random.uniform(-1, 1, some.size)))
         habits.append("near radii" if gap else "repeated radii")
-    f = body.f(r)
-    rise, kind = float(body.f(np.array(body.end))), record
-    if body.kinks and not breaks:
-        habits.append("undeclared kink")
-    shoulder = random.random()
-    single_disc = True
-    if shoulder < 0.12:
-        beyond = body.end * np.linspace(1.02, random.uniform(1.3, 3.0), max(5, count // 5))
-        last = float(body.f(np.array(body.end)))
-        steep = 3 * body.df(body.end) if shoulder < 0.08 else 0.0
-        r = np.append(r, beyond)
-        f = np.append(f, last + (beyond - body.end) * steep)
-        kind = "wall" if steep else "ledge"
-        single_disc = bool(steep)
-        habits.append(kind)
-    scale, height = 10 ** random.uniform(-9, 3), 10 ** random.uniform(-2, 0.3)
-    scale = 1.0 if random.random() < 0.5 else float(scale)
-    r, f = scale * r, height * scale * f
-    rise *= height * scale
-    steepest = body.df(0.9 * body.end) * height
-    error, digits, known = 0.0, int(random.integers(3, 8)), None
-    exact_r, exact_f = r, f
+    return r
+
+
+def _surroundings(
+    random: Generator, body: Body, r: Array, f: Array, habits: list[str]
+) -> tuple[Array, Array, bool]:
+    """Add what a file shows beyond the body: a wall, or a ledge, which is no single disc."""
+    draw = random.random()
+    if draw > 0.12:
+        return r, f, True
+    beyond = body.end * np.linspace(1.02, random.uniform(1.3, 3.0), max(5, r.size // 5))
+    slope = 3 * body.df(body.end) if draw < 0.08 else 0.0
+    last = float(body.f(np.array(body.end)))
+    habits.append("wall" if slope else "ledge")
+    return np.append(r, beyond), np.append(f, last + slope * (beyond - body.end)), slope > 0
+
+
+def _measured(
+    random: Generator, record: str, f: Array, r: Array, rise: float
+) -> tuple[Array, float]:
+    """Heights with the errors of the instrument, and the standard deviation that it states."""
     if record.startswith("noise"):
-        error = rise * (0.01 if record == "noise 1 %" else 0.001)
-        f = f + error * random.standard_normal(f.size)
-        known = error
-    elif record == "waviness":
-        error = rise * 10 ** random.uniform(-4, -2)
-        f = f + waviness(random, r, error, scale * body.end * random.uniform(0.02, 0.2))
-        known = error
-    elif record == "resolution":
-        f = quantised(f, rise / float(random.integers(50, 5000)))
-    offset = float(random.choice([0.0, 0.0, 0.3, -1.0, 20.0])) * rise
-    f = f + offset
+        size = rise * (0.01 if record == "noise 1 %" else 0.001)
+        return f + size * random.standard_normal(f.size), size
+    if record == "waviness":
+        size = rise * float(10 ** random.uniform(-4, -2))
+        waves = float(np.abs(r).max() * random.uniform(0.02, 0.2))
+        return f + waviness(random, r, size, waves), size
+    if record == "resolution":
+        return quantised(f, rise / float(random.integers(50, 5000))), 0.0
+    return f, 0.0
+
+
+def _written(
+    random: Generator, record: str, r: Array, f: Array, rise: float
+) -> tuple[Array, Array]:
+    """Numbers as the file has them."""
+    digits = int(random.integers(3, 8))
     if record == "decimals":
         # Digits of the rise, whatever the offset.
-        places = digits - int(np.floor(np.log10(rise)))
-        r, f = rounded(r, digits), np.round(f, places)
-    elif record == "significant digits":
-        r, f = significant(r, digits + 1), significant(f, digits + 2 if offset else digits)
-    elif record == "float32":
-        r, f = (np.array(each, dtype=np.float32).astype(float) for each in (r, f))
-    if record in {"decimals", "significant digits", "float32", "resolution"}:
-        moved = np.hypot(f - offset - exact_f, steepest * (r - exact_r))
-        error = float(np.sqrt(np.mean(moved**2)))
+        return rounded(r, digits), np.round(f, digits - int(np.floor(np.log10(rise))))
+    if record == "significant digits":
+        # As many as a careful user writes: an offset takes two.
+        more = 2 if abs(f[0]) > rise else 0
+        return significant(r, digits + 1), significant(f, digits + more)
+    if record == "float32":
+        return r.astype(np.float32).astype(float), f.astype(np.float32).astype(float)
+    return r, f
+
+
+def _order(random: Generator, count: int, habits: list[str]) -> Array:
     order = str(random.choice(["ascending"] * 4 + ["descending", "shuffled"]))
-    index = np.arange(r.size)
-    index = index[::-1] if order == "descending" else index
-    index = random.permutation(index) if order == "shuffled" else index
-    if breaks:
-        # A break is the radius as the file has it.
-        breaks = tuple(float(r[np.argmin(np.abs(r - scale * b))]) for b in breaks)
-    return InstrumentTable(
-        name=", ".join([*habits, order, *(["offset"] if offset else [])]),
-        kind=kind,
-        r=r[index],
-        f=f[index],
-        body=body,
-        length=scale,
-        height=height * scale,
-        end=body.end,
-        error=error,
-        breaks=breaks,
-        uncertainty=known if known and random.random() < 0.7 else None,
-        single_disc=single_disc,
-    )
+    habits.append(order)
+    index = np.arange(count)
+    if order == "shuffled":
+        return random.permutation(index)
+    return index if order == "ascending" else index[::-1]
 
 
 def noisy(name: str, count: int, noise: float, seed: int) -> InstrumentTable:
@@ -248,10 +281,10 @@ def ball_of_a_stylus(points: int = 801, radius: float = 5000.0) -> InstrumentTab
 
 
 def rough_ball(seed: int = 0, points: int = 401, radius: float = 5000.0) -> InstrumentTable:
-    """Ball with waves of 9 nm and 10 µm [µm]."""
+    """Ball with waves of 3 nm and 20 µm: 1.5 % of the depth under the loads of the tests [µm]."""
     r = 0.5 * np.arange(points)
-    f = r * r / (2 * radius) + waviness(np.random.default_rng(seed), r, 9e-3, 20.0)
-    return _table("ball, rough", r, f, BODIES["paraboloid"], radius, radius, 9e-3)
+    f = r * r / (2 * radius) + waviness(np.random.default_rng(seed), r, 3e-3, 20.0)
+    return _table("ball, rough", r, f, BODIES["paraboloid"], radius, radius, 3e-3)
 
 
 def mesh_of_a_ball(around: int = 1, seed: int = 0) -> InstrumentTable:
@@ -268,11 +301,12 @@ def mesh_of_a_ball(around: int = 1, seed: int = 0) -> InstrumentTable:
     )
 
 
-def area_function(points: int = 590, step: float = 0.714, pixel: float = 15.3) -> tuple[Array, ...]:
-    """Depths and areas of a blunt tip as an image of it counts them: in pixels, at least one [nm].
+#: Tip of A = 0.9 h² + 1100 h [nm].
+TIP = Body(lambda: (AreaFunction(0.9, 1100.0, 0.0),), 440.0)
 
-    The tip is that of A = 0.9 h² + 1100 h, a hyperboloid.
-    """
+
+def area_function(points: int = 590, step: float = 0.714, pixel: float = 15.3) -> tuple[Array, ...]:
+    """Depths and areas of a blunt tip as counted in pixels of an image, at least one [nm]."""
     h = step * np.arange(points)
     area = 0.9 * h * h + 1100 * h
     return h, pixel * np.maximum(np.round(area / pixel), 1.0)

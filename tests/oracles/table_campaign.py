@@ -29,16 +29,22 @@ from tests.oracles.bodies import KINKED, SHARP
 from tests.oracles.instrument_tables import InstrumentTable, drawn, noisy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     Array = np.ndarray
 
+#: A relative error that must not pass without a word.
 SILENT = 0.05
 #: Median errors of depth and force that a noise of the heights may leave, and the coverage wanted.
 NOISE = {0.001: 0.003, 0.01: 0.02}
 COVERAGE = 0.9
 #: Seconds for a table of so many points.
 BUILD = {200: 0.03, 2000: 0.3}
+
+
+def say(text: str) -> None:
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
 
 
 @dataclass
@@ -76,9 +82,6 @@ def data_error(contact: Any) -> Array:
     """Estimate of the relative error that the table's points leave in depth and force."""
     estimate = getattr(contact, "data_error", None)
     return np.zeros(np.shape(contact.contact_radius)) if estimate is None else np.asarray(estimate)
-
-
-Solver = "Callable[[InstrumentTable, Array, Array, Array], Answers]"
 
 
 @dataclass
@@ -159,26 +162,24 @@ def campaign(tables: int, first: int, solver: Any) -> bool:
         for habit in ("undeclared kink", "declared breaks", "near radii", "repeated radii",
                       "both sides", "first radius above 0"):  # fmt: skip
             names += [f"· {habit}"] if habit in table.name.split(", ") else []
-        body = table.name.split(", ")[0]
-        names.append(
-            "· sharp bodies" if body in SHARP else "· kinked bodies" if body in KINKED else "· smooth bodies"
-        )
+        sharp, kinked = (table.body in each.values() for each in (SHARP, KINKED))
+        names.append(f"· {'sharp' if sharp else 'kinked' if kinked else 'smooth'} bodies")
         verdict = judge(table, solver, [classes[name] for name in names])
         if verdict:
             wrong.append(f"seed {seed}: {table.name}\n    {verdict.strip()}")
-    print("\n".join(wrong))
-    print(HEAD)
+    say("\n".join(wrong))
+    say(HEAD)
     for name in sorted(classes, key=lambda n: (n != "all", n.startswith("·"), n)):
-        print(classes[name].row(name))
+        say(classes[name].row(name))
     for name in sorted(classes):
-        print(f"worst of {name:30} {classes[name].worst[0]:9.2e}  {classes[name].worst[1]}")
+        say(f"worst of {name:30} {classes[name].worst[0]:9.2e}  {classes[name].worst[1]}")
     return not wrong
 
 
 def noise_study(seeds: int, solver: Any) -> bool:
     """Print errors and coverage of noisy tables; return True if they meet `NOISE`."""
     good = True
-    print(f"\n{'noisy tables':32}{'d(a) median':>12}{'F(d) median':>12}{'90 %':>9}{'covered':>9}")
+    say(f"\n{'noisy tables':32}{'d(a) median':>12}{'F(d) median':>12}{'90 %':>9}{'covered':>9}")
     total: dict[float, list[bool]] = defaultdict(list)
     for noise, bound in NOISE.items():
         for name in ("sphere", "cone", "rounded punch"):
@@ -206,13 +207,14 @@ def noise_study(seeds: int, solver: Any) -> bool:
                 total[noise] += covered
                 failed = max(middle) > bound or bool(faults)
                 good &= not failed
-                print(
-                    f"{name + f', {count} points, {noise:.1%}':32}{middle[0]:12.2e}{middle[1]:12.2e}"
-                    f"{most:9.1e}{share:9.0%}{'  ABOVE' if failed else ''} {dict(faults) or ''}"
+                say(
+                    f"{f'{name}, {count} points, {noise:.1%}':32}"
+                    f"{middle[0]:12.2e}{middle[1]:12.2e}{most:9.1e}{share:9.0%}"
+                    f"{'  ABOVE' if failed else ''} {dict(faults) or ''}"
                 )
         share = float(np.mean(total[noise])) if total[noise] else 0.0
         good &= share >= COVERAGE
-        print(f"coverage at {noise:.1%} noise: {share:.1%} (wanted {COVERAGE:.0%})")
+        say(f"coverage at {noise:.1%} noise: {share:.1%} (wanted {COVERAGE:.0%})")
     return good
 
 
@@ -230,9 +232,8 @@ def times(solver: Any) -> bool:
                 taken.append(time.perf_counter() - started)
             middle = float(np.median(taken))
             good &= middle <= bound
-            print(
-                f"{count:5} points, noise {noise:5.1%}: {1e3 * middle:7.1f} ms, bound {1e3 * bound:g}"
-            )
+            most = f"{1e3 * middle:7.1f} ms, bound {1e3 * bound:g}"
+            say(f"{count:5} points, noise {noise:5.1%}: {most}")
     return good
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from tests.oracles.bodies import B, BODIES, Body
+from tests.oracles.bodies import BODIES, B, Body
 from tests.oracles.reference import QUAD_DIGITS, quad_force, quad_g
 
 #: Digits that depth and force keep from `bodies.DIGITS`.
