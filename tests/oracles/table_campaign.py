@@ -155,7 +155,7 @@ def judge(table: InstrumentTable, solver: Any, classes: Iterable[Class]) -> str:
 def campaign(tables: int, first: int, solver: Any) -> bool:
     """Judge random tables; return True if none is refused, silently wrong or an exception."""
     classes: dict[str, Class] = defaultdict(Class)
-    wrong: list[str] = []
+    wrong: dict[str, list[str]] = defaultdict(list)
     for seed in range(first, first + tables):
         table = drawn(seed)
         names = ["all", table.kind]
@@ -166,8 +166,11 @@ def campaign(tables: int, first: int, solver: Any) -> bool:
         names.append(f"· {'sharp' if sharp else 'kinked' if kinked else 'smooth'} bodies")
         verdict = judge(table, solver, [classes[name] for name in names])
         if verdict:
-            wrong.append(f"seed {seed}: {table.name}\n    {verdict.strip()}")
-    say("\n".join(wrong))
+            wrong[verdict].append(f"seed {seed}: {table.name}")
+    for verdict, names in wrong.items():
+        # An exception and the first tables that raise it; the others can be found by their seeds.
+        say("\n".join([*names[:3], *([f"and {len(names) - 3} more"] if names[3:] else [])]))
+        say(f"    {verdict.strip()}")
     say(HEAD)
     for name in sorted(classes, key=lambda n: (n != "all", n.startswith("·"), n)):
         say(classes[name].row(name))
