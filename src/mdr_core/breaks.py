@@ -6,7 +6,7 @@ import numpy as np
 
 from mdr_core.elementwise import full, where
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array
 
 # A gap between breaks longer than twice this many times the one before is divided in such ratios.
 _GROWTH: Final = 4.0
@@ -38,25 +38,6 @@ def divided_breaks(profile: Profile) -> Array:
         count = int(np.log(gaps[i + 1] / (2 * gaps[i])) / np.log(_GROWTH))
         added.append(breaks[i + 1] + gaps[i] * _GROWTH ** np.arange(1, count + 1))
     return np.sort(np.concatenate(added))
-
-
-def next_breaks(profile: Profile, breaks: Array, coordinate: Array, index: Indices) -> Indices:
-    """Return the indices of the next breaks, corrected where rounding moves a place off a plateau.
-
-    All places on a plateau of g have one depth. Their contact coordinates are those of its ends.
-
-    Parameters
-    ----------
-    profile, breaks : a table and its `divided_breaks`.
-    coordinate : contact coordinates of the places.
-    index : indices of the breaks above their depths, of the same shape.
-    """
-    plateaus = profile.coordinate_plateaus
-    if not plateaus.size:
-        return index
-    start, stop = np.searchsorted(breaks, plateaus.T)
-    above = np.searchsorted(plateaus.mean(axis=1), coordinate)
-    return np.clip(index, np.append(0, stop + 1)[above], np.append(start, breaks.size)[above])
 
 
 def has_many_breaks(profile: Profile) -> bool:

@@ -73,20 +73,13 @@ def _closed_inverse(profile: Profile, load: Array, *, of_force: bool) -> Array |
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
-    """Return the contact coordinate of a contact radius; on a plateau of g, that of its inner end.
+    """Return the contact coordinate of a contact radius.
 
-    The springs on a plateau carry no load. Raises InputError beyond the end of the profile, and
-    for a flat punch.
+    Raises InputError beyond the end of the profile, and for a flat punch.
     """
     if not every(profile.domain == inf):
         require_inside("contact_radius", contact_radius > profile.domain, profile.domain)
-    coordinate = profile.coordinate_from_radius(contact_radius)
-    plateaus = profile.coordinate_plateaus
-    if not plateaus.size:
-        return coordinate
-    below = np.maximum(np.searchsorted(plateaus[:, 0], coordinate) - 1, 0)
-    low, high = plateaus[below, 0], plateaus[below, 1]
-    return where((low < coordinate) & (coordinate <= high), low, coordinate)
+    return profile.coordinate_from_radius(contact_radius)
 
 
 def depth_step(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:

@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.breaks import break_below, divided_breaks, has_many_breaks, next_breaks
+from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import every, indices, number, some
 from mdr_core.equivalent_1d import coordinate_from_load
@@ -59,9 +59,7 @@ class Moments(NamedTuple):
     def joined(self, upper: "Moments") -> "Moments":
         """Return the moments over each interval and its upper neighbour together."""
         span = self.span + upper.span
-        # Two plateaus have no length: the lower end is the common one.
-        plateau = span == 0
-        low, high = (self.span + plateau) / (span + plateau), upper.span / (span + plateau)
+        low, high = self.span / span, upper.span / span
         a, b = self.weights, upper.weights
         middle = a[2] + b[0]
         left, right = a[1] + high * middle, low * middle + b[1]
@@ -124,7 +122,6 @@ class IntervalMoments:
         breaks, normal_at_breaks = self._breaks
         first = np.searchsorted(normal_at_breaks, low, side="right")
         last = np.searchsorted(normal_at_breaks, low + span, side="left")
-        first, last = next_breaks(self.profile, breaks, ends, np.array([first, last]))
         base, crossed = np.append(0.0, breaks)[first], indices(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         low_break, high_break = first[crossed], last[crossed] - 1
@@ -189,10 +186,7 @@ class IntervalMoments:
         # A break that no load reaches may have no normal coordinate in doubles.
         with np.errstate(over="ignore", invalid="ignore"):
             normal_at_breaks = _from_below(self.normal, breaks)
-        # Where the slope is zero the normal coordinate is constant, and does not round.
-        plateau = np.append(False, self._slope((breaks[:-1] + breaks[1:]) / 2) == 0)
-        start = np.maximum.accumulate(np.where(plateau, 0, np.arange(breaks.size)))
-        return breaks, normal_at_breaks[start]
+        return breaks, normal_at_breaks
 
     def _slope(self, s: Array) -> Array:
         """Derivative of the normal coordinate with respect to the contact coordinate."""
@@ -204,11 +198,6 @@ class IntervalMoments:
         breaks, normal = self._breaks
         ends = np.array([breaks[:-1], breaks[1:]])
         chains, size = [self.over_smooth(normal[:-1], np.diff(normal), ends, ends[0])], 1
-        # On a plateau the measure is concentrated at one normal coordinate.
-        plateau = normal[:-1] == normal[1:]
-        twice = 2 * self.profile.contact_radius(ends[:, plateau])
-        step = np.diff(1 / twice if self.over_forces else twice, axis=0)
-        chains[0].weights[2, plateau] = np.abs(step)
         while chains[-1].span.size > size:
             last = chains[-1]
             chains.append(last.at(slice(None, -size)).joined(last.at(slice(size, None))))
@@ -313,8 +302,6 @@ class IntervalMoments:
             rise, measure = rise * twice, measure / np.square(twice)
         # Both scale with the width, which has fewer digits than the span.
         total = in_order(weights, rise)
-        # Where g is constant between the breaks of a table, the span is rounding error.
-        total = np.where(total > 0, total, inf)
         t = in_order(cumulative, rise[:, None]) / total
         measure = measure * (span / total)
         parts = np.array([np.square(1 - t), 2 * t * (1 - t), t * t])

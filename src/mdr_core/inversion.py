@@ -99,8 +99,7 @@ def invert(
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-            # On a plateau of a rough table the residual would creep.
-            usable = ((proposed > low) & (proposed < high) & (slope != 0)) | last
+            usable = ((proposed > low) & (proposed < high)) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), inf)
             # A converged root stays: it does not depend on how long the others take.

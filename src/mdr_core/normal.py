@@ -14,7 +14,7 @@ from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius,
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.materials import Material, normal_modulus
-from mdr_core.profiles import Profile
+from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
@@ -113,6 +113,27 @@ class NormalContact(validity.ContactResults):
         """E* int_0^a (d - g)^2 dx = int_0^d F_N dd [force length]."""
         return self.e_star * self.profile.reduced_energy(self.coordinate)
 
+    @cached_property
+    def data_error(self) -> Array | None:
+        """Relative error of depth and force that the points of a table leave open [1].
+
+        An estimate, of the larger of both; None for profiles that are known. Under a prescribed
+        depth or force that one is exact, and F_N/(2E*) = a d - int_0^a g dx is stationary in a.
+        Source: notes, §5.
+        """
+        if not isinstance(self.profile, Tabulated):
+            return None
+        of_depth, of_moment, of_integral = self.profile.fit.spread_at(self.contact_radius)
+        depth, half_force = self.indentation_depth, self.normal_force / (2 * self.e_star)
+        if self.control == "contact_radius":
+            parts = (of_depth, depth), (of_moment, half_force)
+        else:
+            parts = (of_integral, half_force), (of_integral, self.contact_radius * depth)
+        errors = [
+            where(whole > 0, part / where(whole > 0, whole, 1.0), 0.0) for part, whole in parts
+        ]
+        return np.maximum(*errors)
+
     @property
     def method(self) -> str:
         """Most expensive method among the results for this profile."""
@@ -147,8 +168,8 @@ class NormalContact(validity.ContactResults):
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         found = list(self.profile.notices)
-        if self.profile.kind == "tabulated":
-            found += validity.notices([validity.table_end(self)])
+        if isinstance(self.profile, Tabulated):
+            found += validity.notices([validity.table_end(self), validity.smoothed(self)])
         if not isfinite(extremes(self.mean_pressure)[1]):
             message = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
             found.append(Notice("singular", message))

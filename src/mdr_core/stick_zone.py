@@ -153,10 +153,6 @@ def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":
-        if profile.coordinate_plateaus.size:
-            # Beyond it the springs of a plateau of g carry no load.
-            a = np.minimum(a, profile.contact_radius(contact.coordinate))
-            c = np.minimum(c, a)
         width = profile.coordinate_width(a, c, contact.coordinate, edge)
     else:
         # The coordinate of an edge that follows from a load is accurate, its radius may not be.

@@ -73,15 +73,6 @@ class TangentialContact(validity.ContactResults):
     def _coordinate(self) -> Array:
         return broadcast(self.normal.coordinate, self.width.shape)
 
-    @property
-    def _beyond_load(self) -> Flags | None:
-        """True where the contact radius is prescribed on a plateau of g, which carries no load."""
-        profile = self.normal.profile
-        if self.normal.control != "contact_radius" or not profile.coordinate_plateaus.size:
-            return None
-        loaded = profile.contact_radius(self._coordinate)
-        return np.asarray(self.normal.contact_radius > loaded * (1 + 2.0**-50))
-
     @cached_property
     def limiting_force(self) -> Array:
         """mu F_N [force]."""
@@ -142,8 +133,6 @@ class TangentialContact(validity.ContactResults):
         if self.normal.profile.has_no_partial_slip:
             return where(self.full_slip, a, 0 * self.width)
         width = self.normal.profile.radius_width(self._coordinate, self.width)
-        if self._beyond_load is not None:
-            width = where(self._beyond_load, a - self.stick_radius, width)
         return where(self.full_slip, a, width) if some(self.full_slip) else width
 
     @cached_property
@@ -154,7 +143,7 @@ class TangentialContact(validity.ContactResults):
             a = broadcast(self.normal.contact_radius, self.width.shape)
             return where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self.stick_coordinate)
-        if c is not self.stick_coordinate or self._beyond_load is not None:
+        if c is not self.stick_coordinate:
             # By rounding error c may exceed a. Without slip both are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)

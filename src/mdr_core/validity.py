@@ -1,7 +1,8 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `half_space`, `plastic`, `elastic_similarity` and `impossible_moduli`;
-`singular` and `accuracy` come with the results, and `yield` from `mdr_core.subsurface`.
+The codes are `table_end`, `smoothed`, `half_space`, `plastic`, `elastic_similarity` and
+`impossible_moduli`; `singular` and `accuracy` come with the results, and `yield` from
+`mdr_core.subsurface`.
 
 Source: notes, §8.
 """
@@ -14,7 +15,7 @@ import numpy as np
 from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice
 from mdr_core.materials import Material
-from mdr_core.profiles import Profile
+from mdr_core.profiles import Profile, Tabulated
 from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes
@@ -39,6 +40,9 @@ _LISTED: Final = 5
 _INCOMPRESSIBLE: Final = 0.5
 # Part of a table's length from which its end is near; a judgement.
 _NEAR_END: Final = 0.95
+# Deviation of a table's profile from its points, over the depth, from which it is reported; a
+# judgement.
+_DEVIATION: Final = 1e-3
 # |beta| from which normal and tangential contact are noticeably coupled, by a relative error of
 # order beta; a judgement.
 _SIMILARITY: Final = 0.05
@@ -134,6 +138,25 @@ def table_end(contact: LoadedContact) -> Finding:
         )
 
     return Finding("table_end", near, message)
+
+
+def smoothed(contact: LoadedContact) -> Finding:
+    """Return `smoothed`: depths that are not large against a table's deviation from its points."""
+    profile, a = contact.profile, contact.contact_radius
+    if not isinstance(profile, Tabulated) or profile.meets_points:
+        return Finding("smoothed", full(0.0, a) > 0, lambda: "")
+    depth = profile.g(a)
+    rms, (largest, radius) = profile.fit.rms, profile.fit.largest
+    part = where(depth > 0, largest / where(depth > 0, depth, 1.0), 0.0)
+
+    def message() -> str:
+        return (
+            f"no smooth admissible profile meets the points: it deviates by {largest:.2g} at "
+            f"radius {radius:.3g}, {rms:.2g} in the root mean square. The largest deviation is "
+            f"{100 * extremes(part)[1]:.2g} % of the depth: see data_error"
+        )
+
+    return Finding("smoothed", part > _DEVIATION, message)
 
 
 def of_normal_contact(

@@ -429,7 +429,7 @@ REFUSED = {
     "upside down, cone": (R, 5 - 0.1 * R),
     "upside down, both sides": (np.append(-R, R), np.append(-R * R, -R * R)),
     "two points": ([0, 1], [0, 1]),
-    "two radii": ([0, 1, 1, -1], [0, 1, 1, 1]),
+    "two radii": ([0, 1, 1], [0, 1, 1]),
     "zero": (R, 0 * R),
     "constant": (R, 0 * R + 3),
     # The rim of a crater touches first.

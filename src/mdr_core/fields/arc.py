@@ -13,7 +13,6 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch, arccosine, slope_integral
-from mdr_core.abel.subpanels import FEW
 from mdr_core.abel.two_root import inverse_hypot, two_root_integral
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import Analytic
@@ -24,10 +23,10 @@ from mdr_core.typing import Array, Chosen
 _NEAR_AXIS: Final = 1e-8
 # The same for an arc that starts on the axis, as a part of the radius at which it ends.
 _NEXT_TO_AXIS: Final = 1e-120
-# Nodes on every piece: a subpanel of a table is a polynomial through up to 22 points.
+# Nodes on every piece.
 _NODES: Final = 24
-# Least power to integrate: the polynomial of a spline's subpanel, times x of the factor and of dx.
-_DEGREE: Final = FEW + 2.0
+# Least power to integrate: the quintic of a table's piece, times x of the factor and of dx.
+_DEGREE: Final = 7.0
 # Tolerance of the foundation's load, for which no tolerance is requested.
 _RTOL: Final = 1e-13
 

@@ -77,8 +77,7 @@ class TractionVertices:
         tree, radius = self.tree, self.radius
         below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
         ends = self.coordinate[np.array([below, own])]
-        # No depth lies between the ends of a plateau.
-        some = indices((tree.parent >= 0) & ((self.depth_step > 0) | (ends[1] > ends[0])))
+        some = indices((tree.parent >= 0) & (self.depth_step > 0))
         moments = interval_moments(self.moments.profile, over_forces=False)
         given = self.depth[below], np.maximum(self.depth_step, 0.0), ends
         # The measure of the moments is 2 dx.

@@ -4,21 +4,27 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
 from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
-from mdr_core.abel.displacement import Branch, arccosine, arcsine, slope_integral
-from mdr_core.abel.stress import StressPanels
+from mdr_core.abel.displacement import (
+    Branch,
+    Kernel,
+    annulus_integrals,
+    arccosine,
+    arcsine,
+    slope_integral,
+)
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import full, number
 from mdr_core.errors import Notice
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import as_numbers, require_positive
 
 # Quantities of a normal contact, as `Profile.closed_forms` names them.
@@ -37,7 +43,6 @@ FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
 _FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
-_NO_PLATEAUS: Final = np.empty((0, 2))
 
 
 class Profile(ABC):
@@ -215,11 +220,6 @@ class Profile(ABC):
         """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
         return _NO_BREAKS
 
-    @property
-    def coordinate_plateaus(self) -> Array:
-        """Intervals of the contact coordinate in which g is constant, ascending, (m, 2)."""
-        return _NO_PLATEAUS
-
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         """Contact coordinate of a contact radius."""
         return contact_radius
@@ -364,10 +364,27 @@ class Profile(ABC):
         tip, steepness = self.tip_exponent, self.steepness
         return (Branch(0.0, lambda x, _s, _: self.dg(x), tip=tip, steepness=steepness),)
 
-    @property
-    def panels(self) -> StressPanels | None:
-        """Panels of g' for a profile given by panels, else None."""
-        return None
+    def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
+        """Weights g'(x) s/x at places (n, m) of the branches `owner` (m,)."""
+        found = np.empty_like(x)
+        for i, branch in enumerate(self.branches):
+            own = owner == i
+            found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
+        return found
+
+    def annulus_integrals(
+        self,
+        low: Array,
+        width: Array,
+        below: Callable[[float], Array],
+        kernels: Sequence[Kernel],
+        rtol: float,
+    ) -> Array:
+        """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, for each K (k, m).
+
+        Parameters: see `displacement.annulus_integrals`.
+        """
+        return annulus_integrals(self.branches, low, width, below, kernels, rtol)
 
     def slip_integral(self, c: Array, root: Array) -> Array | None:
         """Integral int_c^r g'(x) arccos(x/r) dx where it is closed, else None [length].

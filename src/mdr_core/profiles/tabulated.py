@@ -1,78 +1,132 @@
-"""Profile through the points of a table."""
+"""Profile through, or near, the points of a table."""
 
-from typing import ClassVar, Final
+from collections.abc import Callable, Sequence
+from typing import ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.abel.annulus import Annulus
-from mdr_core.abel.displacement import Branch
-from mdr_core.abel.stress import StressPanels
+from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
+from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import full, number
-from mdr_core.errors import InputError, Notice
-from mdr_core.profiles.resolved_table import resolve_table
-from mdr_core.profiles.table_interpolation import Interpolation, checked_heights
-from mdr_core.profiles.truncated import FlatEnded
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.errors import InputError
+from mdr_core.inversion import invert
+from mdr_core.profiles.base import Profile
+from mdr_core.profiles.table_fit import fit_table
+from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
+from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 from mdr_core.validation import require_inside
 
-# Bound on the error of the sums over the panels: several times the largest in the bank of tables.
+# Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 1e-12
-# The increase of g'(x)/x is found at a dozen points of each panel, and may be larger between them.
-_MARGIN: Final = 1.5
+# The increase of g'(x)/x is found at some points of each piece, and may be larger between them.
+_SAMPLES, _MARGIN = 8, 1.5
+# Deviation that is within a standard uncertainty.
+_MET: Final = 1.1
+# Points of a tip from the coefficients of its area function.
+_POINTS_OF_AREA: Final = 200
 
 
-class Tabulated(FlatEnded):
-    """Profile through (r_i, f_i), interpolated, never extrapolated.
+class Tabulated(Profile):
+    """The smoothest admissible profile through the points of a table, never extrapolated.
+
+    The equivalent profile has a slope g' >= 0 that is a spline, with the closed images of jumps of
+    slope and curvature at declared breaks. Heights with many digits are met. From noise, rounding
+    or steps of an instrument the profile deviates by no more than their scatter, which is estimated
+    from the points unless it is given.
 
     Parameters
     ----------
-    r, f : radii from 0 on, increasing, and the profile there, f(0) = 0 [length], shape (k,).
-    interpolation : "cubic" (not-a-knot spline), "pchip", "linear" or "auto": "cubic", or
-        "pchip" with the warning `interpolation` if the spline decreases between the points by more
-        than that of a smooth body.
-    breaks : radii of the table where slope or curvature jumps; polynomials end there.
+    r, f : radii, in any order, on one or both sides of the axis, and heights, which rise away from
+        the axis, with any offset [length], shape (k,). Radii may be repeated.
+    breaks : radii where slope or curvature jumps [length].
+    uncertainty : standard uncertainty of the heights [length]; 0 to meet the points, None to
+        estimate it from their scatter.
 
     Raises
     ------
-    InputError : not a table of a profile that rises from f(0) = 0, or a spline that falls.
+    InputError : points of no body whose contact area is a single disc.
 
     Source: notes, §5.
+
+    Examples
+    --------
+    >>> from mdr_core.normal import solve
+    >>> ball = Tabulated([-0.2, -0.1, 0.0, 0.1, 0.2], [0.02, 0.005, 0.0, 0.005, 0.02])
+    >>> round(float(solve(ball, 1.0, contact_radius=0.1).normal_force), 9)
+    0.001333333
     """
 
     kind: ClassVar[str] = "tabulated"
-    formula: ClassVar[str] = "through the points (r, f): auto, cubic (not-a-knot), pchip or linear"
+    formula: ClassVar[str] = "the smoothest admissible profile through, or near, the points (r, f)"
     closed_forms: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_stiffness")
 
     def __init__(
         self,
         r: ArrayLike,
         f: ArrayLike,
-        interpolation: Interpolation = "auto",
-        breaks: tuple[float, ...] = (),
+        breaks: Sequence[float] = (),
+        uncertainty: float | None = None,
     ) -> None:
-        self.r = np.array(r, dtype=float)
-        self.values = checked_heights(self.r, np.array(f, dtype=float))
-        # A resolved table may be kept and used again.
-        self.r.flags.writeable = self.values.flags.writeable = False
-        self.interpolation = interpolation
-        self._breaks = tuple(float(b) for b in breaks)
-        for i, b in enumerate(self._breaks):
-            if b not in self.r[1:-1]:
-                raise InputError(("profile", "breaks", i), "must be an inner radius of the table")
-        self.flat_radius = float(self.r[self.values == 0][-1])
-        self.resolved = resolve_table(self.r, self.values, interpolation, self._breaks)
-        self.rounding = max(_ROUNDING, self.resolved.panels.error)
+        self.r, self.values = _checked(np.array(r, dtype=float), np.array(f, dtype=float))
+        self._end = float(np.abs(self.r).max())
+        self._breaks = tuple(sorted(float(b) for b in breaks))
+        for i, b in enumerate(breaks):
+            if not 0 < b < self._end:
+                detail = f"must lie between the axis and the last radius, {self._end:.6g}"
+                raise InputError(("profile", "breaks", i), detail)
+        if uncertainty is not None and not 0 <= uncertainty < np.inf:
+            detail = "must be a standard uncertainty of the heights, positive or 0"
+            raise InputError(("profile", "uncertainty"), detail)
+        self.fit = fit_table(self.r, self.values, self._breaks, uncertainty)
+        self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
+        """True if the profile deviates from the points by no more than their uncertainty."""
+        self._spline = SlopePieces(self.fit.edges, self.fit.rows)
+        self.rounding = _ROUNDING
+
+    @classmethod
+    def from_area_function(
+        cls, height: ArrayLike, area: ArrayLike, *, uncertainty: float | None = None
+    ) -> Self:
+        """Return the profile of a tip with the cross-section A(h) at the distance h from its end.
+
+        Parameters
+        ----------
+        height : h [length], shape (k,).
+        area : A(h) [length^2], shape (k,).
+        uncertainty : see `Tabulated`.
+        """
+        section = np.asarray(area, dtype=float)
+        if np.any(section < 0):
+            raise InputError(("profile", "area"), "must not be negative")
+        return cls(np.sqrt(section / np.pi), height, uncertainty=uncertainty)
+
+    @classmethod
+    def from_area_coefficients(cls, coefficients: Sequence[float], largest_height: float) -> Self:
+        """Return the profile of a tip with A(h) = C0 h^2 + C1 h + C2 h^(1/2) + C3 h^(1/4) + ...
+
+        Source: oliver-pharr.
+
+        Parameters
+        ----------
+        coefficients : C0, C1, ...; Ci has the dimension length^(2 - 2^(1 - i)).
+        largest_height : height up to which the tip is described [length].
+        """
+        if not 0 < largest_height < np.inf:
+            raise InputError(("profile", "largest_height"), "must be positive")
+        h = largest_height * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
+        area = sum(c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients))
+        return cls.from_area_function(h, area)
+
+    def __repr__(self) -> str:
+        breaks = f", breaks={list(self._breaks)}" if self._breaks else ""
+        return f"Tabulated({self.r.size} points up to radius {self._end:.6g}{breaks})"
 
     @property
     def normal_method(self) -> str:
-        return "panel_moments"
-
-    @property
-    def notices(self) -> tuple[Notice, ...]:
-        return self.resolved.notices
+        return "piecewise_moments"
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -80,172 +134,292 @@ class Tabulated(FlatEnded):
 
     @property
     def domain(self) -> float:
-        return self.resolved.domain
+        return self._end
 
-    @cached_property
+    @property
     def last_coordinate(self) -> float:
-        return float(inverse_hypot(number(self.domain), self.flat_radius))
+        return self._end
 
     @property
     def scale(self) -> float:
-        return self.last_coordinate / 2
+        return self._end / 2
 
     @cached_property
     def coordinate_breaks(self) -> Array:
-        return inverse_hypot(self.resolved.breaks, self.flat_radius)
-
-    @property
-    def coordinate_plateaus(self) -> Array:
-        return inverse_hypot(self.resolved.plateaus, self.flat_radius)
+        """Knots and breaks, at which a derivative of g' jumps."""
+        return np.union1d(self.fit.edges[1:-1], self._breaks)
 
     @cached_property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        panels = self.resolved.panels
-        radii = panels.edges[:-1][panels.depth[:, 0] > 0]
-        return tuple(radii[radii > 0].tolist() if self.resolved.smooth_tip else radii.tolist())
+        tip = () if self._spline.smooth_tip else (0.0,)
+        return (*tip, *(b for b, slope, _ in self.fit.flanks if slope != 0))
 
     @property
     def tip_pressure(self) -> float:
-        return float(self.resolved.rows[1, 0]) / 2
+        return float(self.fit.rows[0, 0] / np.pi)
 
-    def contact_radius(self, coordinate: Array) -> Array:
-        if self.flat_radius == 0:
-            return coordinate
-        return np.minimum(super().contact_radius(coordinate), self.domain)
+    @cached_property
+    def _flanks(self) -> tuple[tuple[float, Truncated], ...]:
+        """Profiles that are added beyond the breaks, with their coefficients."""
+        return tuple(
+            (factor, shape)
+            for b, slope, bend in self.fit.flanks
+            for factor, shape in ((slope, TruncatedCone(b, 1.0)), (bend, RoundedPunch(b, 1.0)))
+            if factor != 0
+        )
 
-    def radius_slope(self, coordinate: Array) -> Array:
-        return super().radius_slope(coordinate) if self.flat_radius > 0 else full(1.0, coordinate)
-
-    # The shape, by its polynomials between the points.
-
-    def f(self, radius: Array) -> Array:
-        u, (c0, c1, c2, c3) = self._polynomial(radius)
-        return c0 + u * (c1 + u * (c2 + u * c3))
-
-    def df(self, radius: Array) -> Array:
-        u, (_, c1, c2, c3) = self._polynomial(radius)
-        return c1 + u * (2 * c2 + u * (3 * c3))
-
-    def _polynomial(self, radius: Array) -> tuple[Array, Array]:
-        """Distance from the point below, and the coefficients (4, ...) of f."""
-        self._require_inside(radius)
-        panel = np.searchsorted(self.r[1:-1], radius, side="right")
-        return radius - self.r[panel], self.resolved.rows[:, panel]
+    def _with_flanks(
+        self, spline: Array, x: Array, of_flank: Callable[[Truncated, Array], Array]
+    ) -> Array:
+        """Sum of a quantity of the spline and of those of the flanks, by contact coordinate."""
+        for factor, shape in self._flanks:
+            spline = spline + factor * of_flank(shape, inverse_hypot(x, shape.flat_radius))
+        return spline
 
     def _require_inside(self, radius: Array) -> None:
-        if np.any(radius > self.r[-1]):
-            raise InputError(("profile", "r"), f"the table ends at radius {self.r[-1]:.12g}")
+        if np.any(radius > self._end):
+            raise InputError(("profile", "r"), f"the table ends at radius {self._end:.12g}")
 
-    # The equivalent profile, by its polynomials in s = sqrt(x^2 - b^2), b the radius below.
+    # The shape.
+
+    def f(self, radius: Array) -> Array:
+        return self._under_radius(radius, arccosine) + sum(
+            factor * shape.f(radius) for factor, shape in self._flanks
+        )
+
+    def df(self, radius: Array) -> Array:
+        slope = self._under_radius(radius, _growth)
+        tip = 2 / np.pi * self.fit.rows[0, 0]
+        return np.where(radius > 0, slope, tip)[()] + sum(
+            factor * shape.df(radius) for factor, shape in self._flanks
+        )
+
+    def _under_radius(self, radius: Array, kernel: Kernel) -> Array:
+        """(2/pi) int_0^r g' K dx of the spline."""
+        self._require_inside(radius)
+        r, value = np.ravel(radius), np.zeros(np.size(radius))
+        value[r > 0] = self._spline.under(0.0, self._end, r[r > 0], kernel)
+        return (2 / np.pi * value).reshape(np.shape(radius))[()]
 
     def g(self, x: Array) -> Array:
         self._require_inside(x)
-        place = _located(self.resolved.panels.edges, x)
-        return self.resolved.panels.depth_at(*place).reshape(np.shape(x))
+        return self._with_flanks(self._spline.depth(x), x, lambda shape, s: shape.depth(s))
 
     def dg(self, x: Array) -> Array:
         self._require_inside(x)
-        place = np.ravel(x)
-        panel, s = _located(self.resolved.panels.edges, place)
-        jump, rest = self.resolved.panels.slope_at(panel, s)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.where((panel == 0) & (self.flat_radius == 0), 1.0, place / s)
-            slope = np.where(jump == 0, 0.0, jump * ratio) + place * rest
-        return np.where(place < self.flat_radius, 0.0, slope).reshape(np.shape(x))
+        slope = self._spline.slope(x)
+        return slope + sum(factor * shape.dg(x) for factor, shape in self._flanks)
 
-    def depth(self, coordinate: Array) -> Array:
-        place = _located(self._edges, coordinate)
-        return self.resolved.panels.depth_at(*place).reshape(np.shape(coordinate))
+    # The normal contact.
 
     def reduced_force(self, coordinate: Array) -> Array:
-        place = _located(self._edges, coordinate)
-        half = self.resolved.panels.half_force_at(*place)
-        return 2 * half.reshape(np.shape(coordinate))
+        spline = 2 * self._spline.half_force(coordinate)
+        return self._with_flanks(spline, coordinate, lambda shape, s: shape.reduced_force(s))
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        place = _located(self._edges, coordinate)
-        return self.resolved.panels.energy_at(*place).reshape(np.shape(coordinate))
-
-    def depth_slope(self, coordinate: Array) -> Array:
-        panel, s = _located(self._edges, coordinate)
-        slope = self._slope_at_coordinate(np.ravel(coordinate), panel, s)
-        return slope.reshape(np.shape(coordinate))
-
-    def depth_slope_beyond(self, coordinate: Array, start: Array, past: Array) -> Array:
-        """Parameters: see `Profile`."""
-        place, start, past = map(np.ravel, np.broadcast_arrays(coordinate, start, past))
-        panel, s = _located(self._edges, place)
-        # Beside a slope discontinuity s follows from the distance: the coordinate is too coarse.
-        s = np.where(self._edges[panel] == start, np.sqrt(past * (2 * start + past)), s)
-        return self._slope_at_coordinate(place, panel, s).reshape(np.shape(coordinate))
-
-    def _slope_at_coordinate(self, coordinate: Array, panel: Indices, s: Array) -> Array:
-        """Slope of the depth; where it is infinite, at a discontinuity, its limit from below."""
-        jump, rest = self.resolved.panels.slope_at(panel, s)
-        # In the first subpanel s is the coordinate itself.
-        ratio = np.where(panel == 0, 1.0, coordinate / np.where(s > 0, s, np.inf))
-        return jump * ratio + coordinate * rest
-
-    @cached_property
-    def _edges(self) -> Array:
-        """Contact coordinates of the subpanels' edges."""
-        return inverse_hypot(self.resolved.panels.edges, self.flat_radius)
+        return (
+            self._spline.energy(coordinate)
+            if not self._flanks
+            else super().reduced_energy(coordinate)
+        )
 
     def coordinate_from_depth(self, depth: Array) -> Array:
-        return self._inverse(0, depth, "indentation_depth")
+        return self._inverse(depth, "indentation_depth", of_force=False)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        return self._inverse(1, reduced_force / 2, "normal_force")
-
-    def _inverse(self, quantity: int, target: Array, load: str) -> Array:
-        require_inside(load, target > self._limits[quantity], self.domain)
-        panel, s = self.resolved.panels.inverse(quantity, np.ravel(target))
-        found = np.minimum(np.hypot(self._edges[panel], s), self.last_coordinate)
-        return found.reshape(np.shape(target))
+        return self._inverse(reduced_force, "normal_force", of_force=True)
 
     @cached_property
-    def _limits(self) -> tuple[float, float]:
-        """Depth and half force of the largest contact."""
-        panels, place = self.resolved.panels, _located(self._edges, np.array(self.last_coordinate))
-        return float(panels.depth_at(*place)[0]), float(panels.half_force_at(*place)[0])
+    def _at_breaks(self) -> tuple[Array, Array, Array]:
+        """Radii of knots and breaks, with depth and reduced force there."""
+        radii = np.concatenate([self.coordinate_breaks, [self._end]])
+        return radii, self.depth(radii), self.reduced_force(radii)
+
+    def _inverse(self, target: Array, load: str, *, of_force: bool) -> Array:
+        radii, depths, forces = self._at_breaks
+        loads = forces if of_force else depths
+        require_inside(load, target > loads[-1], self._end)
+        goal = np.ravel(target)
+        piece = np.minimum(loads.searchsorted(goal), radii.size - 1)
+        high, low = radii[piece], np.append(0.0, radii)[piece]
+        function = self.force_and_slope if of_force else self.depth_and_slope
+
+        def sloped(s: Array) -> tuple[Array, Array]:
+            value, slope = function(s)
+            return value, s * slope / value
+
+        # From the power that rises as the load does at the upper end.
+        top, slope = function(high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            start = high * (goal / top) ** (top / (high * slope))
+        inside = (start > low) & (start < high)
+        start = np.where(inside, start, (low + high) / 2)
+        found = invert(sloped, goal, start, low * 0.0, high, self.kind, smooth=not self._flanks)
+        return found.reshape(np.shape(target))[()]
+
+    # Fields.
+
+    @cached_property
+    def branches(self) -> tuple[Branch, ...]:
+        edges = np.concatenate([[0.0], self._at_breaks[0]])
+        return tuple(map(self._branch, edges[:-1], edges[1:]))
+
+    def _branch(self, start: float, stop: float) -> Branch:
+        base = max((b for b in self._breaks if b <= start), default=0.0)
+
+        def weight(x: Array, s: Array, _index: Chosen) -> Array:
+            return self._weight(base, x, s)
+
+        return Branch(float(base), weight, float(stop), float(start))
+
+    def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
+        """g'(x) s/x at places (n, m) of the branches `owner` (m,)."""
+        if not self._flanks:
+            return np.asarray(self._spline.slope(x))
+        return super().branch_weights(x, s, owner)
+
+    def _weight(self, base: float, x: Array, s: Array) -> Array:
+        """g'(x) s/x beyond the last break below, `base`."""
+        if base == 0:
+            return np.asarray(self._spline.slope(x))
+        slope = self._spline.slope(x) * s / x
+        for factor, shape in self._flanks:
+            b = shape.flat_radius
+            if b == base:
+                slope = slope + factor * shape.weight(x, s)
+            elif b < base:
+                own = np.sqrt(s * s + (base - b) * (base + b))
+                slope = slope + factor * shape.weight(x, own) * s / own
+        return np.asarray(slope)
+
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        value = 2 / np.pi * self._grouped(c, r, arccosine)
+        for factor, shape in self._flanks:
+            past = r > shape.flat_radius
+            inner = np.maximum(c[past], shape.flat_radius)
+            value[past] += factor * shape.slip_kernel(inner, r[past], rtol)
+        return value
+
+    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        value = (
+            2
+            / np.pi
+            * np.concatenate([[0.0], self._spline.under(0.0, float(a[0]), r, arcsine)])[1:]
+        )
+        for factor, shape in self._flanks:
+            if a[0] > shape.flat_radius:
+                s = float(inverse_hypot(a[0], shape.flat_radius))
+                value += factor * shape.outer_displacement(a, r, rtol, s)
+        return value
+
+    def _grouped(self, c: Array, r: Array, kernel: Kernel) -> Array:
+        """Integrals int_c^r g' K dx of the spline, those with one c together."""
+        value = np.zeros_like(r)
+        for low in np.unique(c).tolist():
+            own = (c == low) & (r > low)
+            if own.any():
+                value[own] = self._spline.under(low, self._end, r[own], kernel)
+        return value
+
+    def annulus_integrals(
+        self,
+        low: Array,
+        width: Array,
+        below: Callable[[float], Array],
+        kernels: Sequence[Kernel],
+        rtol: float,
+    ) -> Array:
+        """Parameters: see `Profile`."""
+        if self._flanks:
+            return super().annulus_integrals(low, width, below, kernels, rtol)
+        found = [
+            self._spline.annulus(c, w, kernels)
+            for c, w in zip(low.tolist(), width.tolist(), strict=True)
+        ]
+        return np.array(found).T.reshape(len(kernels), low.size)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        """By an upper bound of the increase of g'(x)/x on the panels. See `Profile`."""
-        if self.flat_radius > 0:
+        """By an upper bound of the increase of h = g'(x)/x on the pieces. See `Profile`."""
+        first = min(self._breaks, default=np.inf)
+        if not self._spline.smooth_tip:
             return coordinate < 0
-        panels, (panel, s) = self.resolved.panels, _located(self._edges, coordinate)
-        _, height = panels.slope_at(panel, s)
-        return (height > 0) & (_MARGIN * panels.increase(panel, coordinate) <= height)
+        piece = self.fit.edges[1:-1].searchsorted(coordinate, side="right")
+        height = self._spline.slope(coordinate) / np.where(coordinate > 0, coordinate, 1.0)
+        next_to_axis, beyond = self._increase
+        rise = next_to_axis * coordinate + beyond[piece] * np.square(coordinate)
+        return (coordinate < first) & (height > 0) & (_MARGIN * rise <= height)
+
+    @cached_property
+    def _increase(self) -> tuple[float, Array]:
+        """Largest h' on the first piece, and largest h'/x beyond it up to each piece, >= 0."""
+        edges = self.fit.edges
+        length, share = np.diff(edges), (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+        x = edges[:-1, None] + length[:, None] * share
+        h = self._spline.slope(x) / x
+        steps = np.diff(h, axis=1) / np.diff(x, axis=1)
+        beyond = np.maximum(steps / x[:, :-1], 0.0).max(axis=1)
+        beyond[0] = 0.0
+        return max(float(steps[0].max()), 0.0), np.maximum.accumulate(beyond)
 
     def axis_stress(self, coordinate: Array, rtol: float) -> Array:
         """Stress integral at the axis, in closed form. Parameters: see `Profile`."""
-        del rtol
-        place = _located(self._edges, coordinate)
-        stress = self.resolved.panels.over_axis_at(*place) / np.pi
-        return stress.reshape(coordinate.shape)[()]
+        if self._flanks:
+            return super().axis_stress(coordinate, rtol)
+        return self._spline.over_axis(coordinate) / np.pi
 
-    @property
-    def branches(self) -> tuple[Branch, ...]:
-        return self.resolved.stress.branches
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """Source: notes, §5. Parameters: see `Profile`."""
+        outer, inner, edge = annulus
+        a = outer if edge is None else edge
+        width, c = (a, np.zeros_like(a)) if inner is None else inner[:2]
+        total = _of_each(self._spline.stress, (c, a, width), radius) / np.pi
+        for factor, shape in self._flanks:
+            b = shape.flat_radius
+            s_a = inverse_hypot(np.maximum(a, b), b)
+            beyond = None
+            if inner is not None:
+                s_c = inverse_hypot(np.maximum(c, b), b)
+                gap = np.where(c > b, width * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0), s_a)
+                beyond = InnerEnd(gap, np.maximum(c, b))
+            on = np.broadcast_to(s_a > 0, radius.shape)
+            if on.any():
+                part = Annulus(s_a, beyond, edge).at(on)
+                total[on] += factor * shape.pressure_kernel(part, radius[on], rtol)
+        return total
 
-    @property
-    def panels(self) -> StressPanels:
-        return self.resolved.stress
 
-    def _kernel(
-        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
-    ) -> Array:
-        del rtol
-        outer, inner, _ = annulus
-        if inner is None or inner.coordinate is None:
-            roots = outer, outer - (outer if inner is None else inner.width)
-        else:
-            roots = outer, inner.coordinate
-        return self.resolved.stress.kernel(self.radial(annulus), roots, radius, beyond) / np.pi
+def _of_each(
+    function: Callable[..., Array], ends: tuple[Array, Array, Array], radius: Array
+) -> Array:
+    """Values at radii (m,) of a function of single annuli, those of one annulus together."""
+    if all(end.size == 1 for end in ends):
+        return function(*(end.item() for end in ends), radius)
+    annuli = np.stack([np.ravel(end) for end in np.broadcast_arrays(*ends)])
+    different, number = np.unique(annuli, axis=1, return_inverse=True)
+    result = np.empty_like(radius)
+    for i, annulus in enumerate(different.T.tolist()):
+        points = np.flatnonzero(number == i)
+        result[points] = function(*annulus, radius[points])
+    return result
 
 
-def _located(edges: Array, place: Array) -> tuple[Indices, Array]:
-    """Subpanel of each place and s there, shape (m,)."""
-    place = np.asarray(place).ravel()
-    panel = edges[1:-1].searchsorted(place, side="right")
-    return panel, inverse_hypot(place, edges[panel])
+def _growth(x: Array, root: Array) -> Array:
+    """d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2))."""
+    return np.asarray(x / (np.maximum(root, 1e-300) * np.hypot(x, root)))
+
+
+def _checked(r: Array, f: Array) -> tuple[Array, Array]:
+    """Return the points; InputError unless they are some, finite and not all alike."""
+    if r.ndim != 1 or f.shape != r.shape:
+        raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
+    for name, values in (("r", r), ("f", f)):
+        bad = ~np.isfinite(values)
+        if bad.any():
+            raise InputError(("profile", name, int(np.argmax(bad))), "must be finite")
+    if np.unique(r).size < 3:
+        raise InputError(("profile", "r"), "give at least three points with different radii")
+    if np.ptp(f) == 0:
+        detail = "all heights are equal: extend the table beyond the flat"
+        raise InputError(("profile", "f"), detail)
+    r.flags.writeable = f.flags.writeable = False
+    return r, f

@@ -15,7 +15,7 @@ from math import ceil, inf, log2, prod
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.polynomial import legendre, polynomial
+from numpy.polynomial import legendre
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
@@ -134,14 +134,7 @@ class Foundation:
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Numbers:
         """(1 + i k) dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,)."""
-        owner, profile, found = self._owner[index], self.load.profile, np.empty_like(x)
-        if profile.panels is not None:
-            u = np.minimum(s / profile.panels.length[owner], 1.0)
-            found[:] = polynomial.polyval(u, profile.panels.weight.T[:, owner], tensor=False)
-        else:
-            for number, branch in enumerate(profile.branches):
-                own = owner == number
-                found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
+        found = self.load.profile.branch_weights(x, s, self._owner[index])
         if not self.sheared:
             return found
         slope, rate = self._anchors[:, self._part[index]]

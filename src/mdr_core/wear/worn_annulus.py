@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from mdr_core.abel.displacement import Kernel, annulus_integrals, arccosine
+from mdr_core.abel.displacement import Kernel, arccosine
 from mdr_core.cached import cached_property
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
@@ -144,15 +144,7 @@ class WornAnnulus:
         """Return int_c^r g'(x) K dx for each kernel K, shape (k, m)."""
         if self.profile.has_no_partial_slip:
             return np.zeros((len(kernels), width.size))
-        panels = self.profile.panels
-        if panels is not None:
-            result = np.empty((len(kernels), width.size))
-            for i, (c, w) in enumerate(zip(self.stick.tolist(), width.tolist(), strict=True)):
-                below = self.chosen(np.array([i])).below
-                result[:, i] = panels.annulus_integrals(c, w, below, kernels)
-            return result
-        branches = self.profile.branches
-        return annulus_integrals(branches, self.stick, width, self.below, kernels, RTOL)
+        return self.profile.annulus_integrals(self.stick, width, self.below, kernels, RTOL)
 
 
 def _rate(x: Array, root: Array) -> Array:

@@ -21,13 +21,12 @@ from mdr_service.schemas.wear import WearQuery
 
 Arguments = dict[str, Any]
 
-# Resolving a table of 200 points takes several times as long as a contact. One of 2000 points, the
-# most that a query may have by default, takes 4 MB.
+# Fitting a table of 200 points takes several times as long as a contact.
 _tabulated: Final = lru_cache(maxsize=16)(profiles.Tabulated)
 observability.TABLES.set_function(lambda: _tabulated.cache_info().currsize)
 
-_NORMAL: Final = members(NormalAnswer)
-_PARTIAL_SLIP: Final = members(TangentialAnswer, _NORMAL)
+_NORMAL: Final = members(NormalAnswer, ["data_error"])
+_PARTIAL_SLIP: Final = members(TangentialAnswer, [*_NORMAL, "data_error"])
 
 
 def solve_normal(query: NormalQuery | LoadedQuery | WearQuery) -> NormalContact:
@@ -56,7 +55,8 @@ def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Res
 def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
     if model.kind == "tabulated":
-        return _tabulated(tuple(model.r), tuple(model.f), model.interpolation, tuple(model.breaks))
+        points = tuple(model.r), tuple(model.f)
+        return _tabulated(*points, tuple(model.breaks), model.uncertainty)
     given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
@@ -98,6 +98,8 @@ def _result(
     query: NormalQuery, source: NormalContact | TangentialContact, values: Result
 ) -> Result:
     warnings = notices(query, source)
+    if source.normal.data_error is not None:
+        values |= by_load(source.normal, ["data_error"], query.loads)
     singular = any(notice.code == "singular" for notice in warnings)
     infinite = dict.fromkeys(("mean_pressure", "maximum_pressure"), singular)
     found = checked(query, values, infinite)

@@ -43,7 +43,7 @@ class SolvedAnswer(Answer):
 
     method: str = Field(
         description="Most expensive method among the results: `closed_form`, `quadrature` "
-        "(numerical integration) or `panel_moments` (closed integrals over a table's panels)."
+        "(numerical integration) or `piecewise_moments` (sums over the pieces of a table)."
     )
     error_estimate: float = _number(
         "Bound on the numerical error: of scalars relative to their values, of fields, histories "
@@ -62,6 +62,10 @@ class NormalAnswer(SolvedAnswer):
     maximum_pressure: list[float | None] = _pressure(f"Largest pressure p(r); {_NULL}")
     normal_stiffness: list[float] = _stiffness("Normal stiffness dF_N/dd = 2 E* a")
     elastic_energy: list[float] = _energy("Elastic energy of the contact")
+    data_error: list[float] = _number(
+        "Estimate of the relative error of depth and force that the points of a table leave open",
+        default=None,
+    )
 
 
 class HistoryAnswer(SolvedAnswer):

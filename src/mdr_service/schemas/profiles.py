@@ -136,36 +136,36 @@ class CappedParaboloidProfile(Strict):
 
 
 class TabulatedProfile(Strict):
-    """A measured profile through points; it is never extrapolated."""
+    """A measured profile, the smoothest through or near its points; never extrapolated."""
 
     kind: Literal["tabulated"]
-    r: list[Size] = quantity(
+    r: list[Signed] = quantity(
         "length",
-        "Radii of the points, from 0, strictly increasing",
-        min_length=2,
+        "Radii of the points, at least three different ones, in any order, on one or both sides "
+        "of the axis; radii may be repeated",
+        min_length=3,
         max_length=SETTINGS.max_table_points,
         fail_fast=True,
     )
     f: list[Signed] = quantity(
         "length",
-        "Heights of the profile at the points, from 0, non-decreasing",
-        min_length=2,
+        "Heights of the profile at the points, rising away from the axis, with any offset",
+        min_length=3,
         max_length=SETTINGS.max_table_points,
         fail_fast=True,
-    )
-    interpolation: Literal["auto", "cubic", "pchip", "linear"] = quantity(
-        "text",
-        "Curve through the points: cubic (not-a-knot spline), pchip, linear, or auto: cubic with "
-        "its slopes limited where it falls slightly, and pchip where it falls further, with the "
-        "warning `interpolation` that names the radius",
-        default="auto",
     )
     breaks: list[Size] = quantity(
         "length",
-        "Radii of the table where slope or curvature jumps; nothing is interpolated across them",
+        "Radii where slope or curvature jumps",
         default=[],
         max_length=SETTINGS.max_table_points,
         fail_fast=True,
+    )
+    uncertainty: Size | None = quantity(
+        "length",
+        "Standard uncertainty of the heights; 0: the profile meets the points. Without it, the "
+        "scatter of the points, as rounding or noise cause it",
+        default=None,
     )
 
 
