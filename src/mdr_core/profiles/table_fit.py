@@ -9,7 +9,7 @@ Source: notes, §5.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -50,9 +50,9 @@ _LEAST_ERROR: Final = 1e-2
 _WEIGHTS: Final = 10.0 ** np.arange(-16, 16.1, 0.25)
 # Weight of the points against the roughness of an interpolant.
 _HEAVY: Final = 1e6
-# Factor by which a sharp tip has to lower the roughness of an interpolant to be believed, and
-# variances of the noise by which it has to lower the sum of squares.
-_SHARPER, _SHARPER_MEASURED = 10.0, 12.0
+# Factor by which a sharp tip has to lower the roughness of an interpolant at the first knots to be
+# believed, and variances of the noise by which it has to lower the sum of squares.
+_SHARPER, _TIP_KNOTS, _SHARPER_MEASURED = 10.0, 4, 12.0
 # Gaps between radii that are merged, over their mean spacing at equal radii.
 _SAME: Final = 1e-2
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
@@ -115,6 +115,8 @@ class _Points:
     """True if the first point lies on the axis."""
     rounded: bool
     """True if radii or heights show that they are rounded; the weights are those of that error."""
+    scale: tuple[float, float]
+    """Last radius and height [length]."""
 
 
 def fit_table(
@@ -132,43 +134,31 @@ def fit_table(
     ------
     InputError : points of no body whose contact area is a single disc.
     """
-    end, height = float(np.abs(r).max()), float(f.max() - f.min())
-    points = _cleaned(np.abs(r) / end, (f - f.min()) / height, tuple(b / end for b in breaks))
-    found = None
+    points = _cleaned(np.abs(r), f, breaks)
     if uncertainty is None:
         exact = points.x.size <= _FEW or _has_no_noise(points)
     else:
         exact = uncertainty == 0
     if exact:
         found = _interpolated(points)
-    if found is None:
-        stated = uncertainty / height if uncertainty else 0.0 if exact else None
-        found = _Measured(points, stated).fit()
-    if found.rms > _NO_DISC:
-        place = found.largest[1] * end
+    else:
+        found = _measured(points, uncertainty and uncertainty / points.scale[1])
+    if found.rms > _NO_DISC * points.scale[1]:
+        largest, radius = found.largest
         raise InputError(
             ("profile", "f"),
-            f"no body with a contact area that is a single disc comes near the points: they "
-            f"deviate by {100 * found.largest[0]:.2g} % of their height at radius {place:.3g}; "
+            "no body with a contact area that is a single disc comes near the points: they deviate "
+            f"by {100 * largest / points.scale[1]:.2g} % of their height at radius {radius:.3g}; "
             "give the part about the highest point alone, or remove a ring, a hole or outliers",
         )
-    powers = (height / end) * end ** -np.arange(float(len(found.rows)))[:, None]
-    jumps = [(b * end, s * height / end, c * height / end**2) for b, s, c in found.flanks if s or c]
-    return TableFit(
-        found.edges * end,
-        found.rows * powers,
-        tuple(jumps),
-        found.rms * height,
-        (found.largest[0] * height, found.largest[1] * end),
-        found.spread,
-        (end, height),
-    )
+    return found
 
 
-def _cleaned(x: Array, y: Array, breaks: tuple[float, ...]) -> _Points:
+def _cleaned(r: Array, f: Array, breaks: Sequence[float]) -> _Points:
     """Sort the points and merge those whose radii differ by less than the spacing resolves."""
+    end, height = float(r.max()), float(f.max() - f.min())
+    x, y = given = r / end, (f - f.min()) / height
     order = np.argsort(x, kind="stable")
-    given = x, y
     x, y = x[order], y[order]
     new = np.append(True, np.diff(x) > _SAME * x[1:] / x.size)
     group = np.cumsum(new) - 1
@@ -188,19 +178,8 @@ def _cleaned(x: Array, y: Array, breaks: tuple[float, ...]) -> _Points:
         error = np.hypot(of_radius * np.gradient(y, x), of_height)
         typical = float(np.median(error))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
-    return _Points(x, y, weight, breaks, bool(x[0] == 0), rounded)
-
-
-@dataclass(frozen=True, eq=False)
-class _Fit:
-    """`TableFit` over the last radius and the height."""
-
-    edges: Array
-    rows: Array
-    flanks: tuple[tuple[float, float, float], ...]
-    rms: float
-    largest: tuple[float, float]
-    spread: tuple[BSpline, BSpline]
+    scaled = tuple(b / end for b in breaks)
+    return _Points(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
 
 
 class _Basis:
@@ -239,51 +218,65 @@ class _Basis:
         rest = np.zeros((len(splines), self.heights.shape[1] - self.size))
         return np.hstack([splines[:, 1:], rest, splines[:, :1]])
 
-    def derivative(self, order: int) -> Array:
-        """Coefficients of a derivative of the splines, weighted by the root of their support."""
+    def _differences(self, order: int) -> Array:
+        """Coefficients of a derivative of the splines."""
         k, t, rows = self.degree, self.t, np.eye(self.size)
         for o in range(1, order + 1):
             span = t[k + 1 : k + 1 + self.size - o] - t[o : self.size]
             rows = np.diff(rows, axis=0) * ((k - o + 1) / span)[:, None]
-        inner = t[order : t.size - order]
-        support = (inner[k - order + 1 :] - inner[: self.size - order]) / (k - order + 1)
-        return self.padded(rows * np.sqrt(support)[:, None])
+        return rows
+
+    def derivative(self, order: int) -> Array:
+        """Coefficients of a derivative, weighted by the root of the support of its splines."""
+        inner, degree = self.t[order : self.t.size - order], self.degree - order
+        support = (inner[degree + 1 :] - inner[: self.size - order]) / (degree + 1)
+        return self.padded(self._differences(order) * np.sqrt(support)[:, None])
 
     def jumps(self) -> Array:
         """Jumps of the last derivative at the inner knots, times its power of their spacing."""
-        k, t, rows = self.degree, self.t, np.eye(self.size)
-        for o in range(1, k + 1):
-            span = t[k + 1 : k + 1 + self.size - o] - t[o : self.size]
-            rows = np.diff(rows, axis=0) * ((k - o + 1) / span)[:, None]
         spacing = (self.knots[2:] - self.knots[:-2]) / 2
-        return self.padded(np.diff(rows, axis=0) * spacing[:, None] ** k)
+        steps = np.diff(self._differences(self.degree), axis=0)
+        return self.padded(steps * spacing[:, None] ** self.degree)
 
     def spline(self, coefficients: Array) -> BSpline:
         """Slope, or several, of coefficients over all columns."""
         splines = np.concatenate([coefficients[-1:], coefficients[: self.size - 1]])
         return BSpline(self.t, splines, self.degree)
 
-    def scatter(self, coefficients: Array) -> float:
-        """Root mean square of the deviation from the points."""
-        off = self.heights @ coefficients - self.points.y
-        return float(np.sqrt(np.mean(np.square(off * np.minimum(self.points.weight, 1.0)))))
+    def deviation(self, coefficients: Array) -> Array:
+        """Heights less those of the points."""
+        return self.heights @ coefficients - self.points.y
 
-    def fit(self, coefficients: Array, spread: Array) -> _Fit:
+    def fit(self, coefficients: Array, spread: Array) -> TableFit:
         """Return the fit of coefficients; `spread` are possible deviations of them."""
+        end, height = self.points.scale
         polynomials: Any = PPoly.from_spline(self.spline(coefficients).tck)
-        inside = np.diff(polynomials.x) > 0
-        rows = np.ascontiguousarray(polynomials.c[::-1, inside])
+        rows = polynomials.c[::-1, np.diff(polynomials.x) > 0]
         rows[0, 0] = coefficients[-1]
-        jumps = coefficients[self.size - 1 : -2].reshape(-1, 2).tolist()
+        powers = height / end * end ** -np.arange(float(len(rows)))[:, None]
+        jumps = coefficients[self.size - 1 : -2].reshape(-1, 2) * [height / end, height / end**2]
         flanks = tuple(
-            (b, slope, bend) for b, (slope, bend) in zip(self.points.breaks, jumps, strict=True)
+            (b * end, slope, bend)
+            for b, (slope, bend) in zip(self.points.breaks, jumps.tolist(), strict=True)
+            if slope or bend
         )
-        off = self.heights @ coefficients - self.points.y
+        off = self.deviation(coefficients)
         worst = int(np.argmax(np.abs(off)))
-        largest = float(abs(off[worst])), float(self.points.x[worst])
         possible = self.spline(spread)
-        integrals = possible.antiderivative(), possible.antiderivative(2)
-        return _Fit(self.knots, rows, flanks, self.scatter(coefficients), largest, integrals)
+        return TableFit(
+            self.knots * end,
+            rows * powers,
+            flanks,
+            height * _mean(off * np.minimum(self.points.weight, 1.0)),
+            (height * float(abs(off[worst])), end * float(self.points.x[worst])),
+            (possible.antiderivative(), possible.antiderivative(2)),
+            self.points.scale,
+        )
+
+
+def _mean(off: Array) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(off))))
 
 
 def _knots(points: _Points, most: int) -> Array:
@@ -294,31 +287,24 @@ def _knots(points: _Points, most: int) -> Array:
     return x
 
 
-def _interpolated(points: _Points) -> _Fit | None:
-    """Return the interpolant of least roughness, None if it is not admissible."""
+def _interpolated(points: _Points) -> TableFit:
+    """Return the interpolant of least roughness, or the nearest fit if that is not admissible."""
     basis = _Basis(points, _knots(points, _KNOTS))
-    coefficients = _least_roughness(basis, slice(None))
+    coefficients = _least_roughness(basis)
     # A flat is flat up to rounding errors: g increases there too.
     splines, largest = coefficients[: basis.size - 1], np.abs(coefficients).max()
     rounded = (splines <= 0) & (splines > -_NEGATIVE * largest)
     splines[rounded] = _TINY * largest * basis.places[1:][rounded]
     if _slopes(basis, coefficients).min() <= 0:
-        return None
+        return _measured(points, 0.0, sharp=coefficients[-1] > 0)
     # The error of every second point, which is larger than that of all.
     half = np.zeros(points.x.size, dtype=bool)
     half[:: max(2, points.x.size // (_KNOTS // 2))] = half[-1] = True
     spread = np.zeros_like(coefficients)
     if half.sum() > 2:
-        coarse = _Points(
-            points.x[half],
-            points.y[half],
-            points.weight[half],
-            points.breaks,
-            points.offset_known,
-            rounded=False,
-        )
+        coarse = replace(points, x=points.x[half], y=points.y[half], weight=points.weight[half])
         other = _Basis(coarse, _knots(coarse, _KNOTS))
-        found = _least_roughness(other, slice(None))
+        found = _least_roughness(other)
         spread = _between(basis, other, found) - coefficients
     return basis.fit(coefficients, spread)
 
@@ -330,16 +316,15 @@ def _between(basis: _Basis, other: _Basis, coefficients: Array) -> Array:
     return np.concatenate([splines[1:], coefficients[other.size - 1 : -1], splines[:1]])
 
 
-def _least_roughness(basis: _Basis, chosen: Any) -> Array:
+def _least_roughness(basis: _Basis) -> Array:
     """Return the coefficients of the interpolant whose last derivative jumps least."""
-    points = basis.points
-    rows = basis.heights[chosen]
-    inner = points.x[chosen] > 0
+    points, rows = basis.points, basis.heights
+    inner = points.x > 0
     # A height at a small radius is met as accurately, relatively.
-    weight = _HEAVY / points.x[chosen][inner]
+    weight = _HEAVY / points.x[inner]
     largest = float(np.abs(basis.heights[:, : basis.size - 1]).max())
     jumps = largest * basis.jumps()
-    goal = points.y[chosen]
+    goal = points.y
     used = np.ones(rows.shape[1], dtype=bool)
     if points.offset_known:
         goal = goal - points.y[0]
@@ -352,18 +337,23 @@ def _least_roughness(basis: _Basis, chosen: Any) -> Array:
         rest = np.eye(size)
         rest[range(basis.size - 1, size - 2, 2)] = 0.0
         system, right = np.vstack([system, _FEWEST * rest]), np.append(right, np.zeros(size))
-    triangle = _triangle(np.column_stack([system, right]))
-    # The last column is the slope on the axis: the roughness without it and with it.
-    gain, rest = (*np.abs(triangle[size - 1 :, size]), 0.0)[:2]
-    rough = float(np.hypot(gain, rest))
-    keep = size if rough > max(_SHARPER * rest, _ROUNDED * largest) else size - 1
-    found = np.zeros(size)
-    found[:keep] = solve_triangular(triangle[:keep, :keep], triangle[:keep, size])
-    # The points outweigh the roughness: one step of refinement gives their digits back.
-    used_triangle, used_system = triangle[:keep, :keep], system[:, :keep]
-    gradient = used_system.T @ (right - used_system @ found[:keep])
-    half = solve_triangular(used_triangle, gradient, trans="T")
-    found[:keep] += solve_triangular(used_triangle, half)
+    triangle = _triangle(system)
+
+    def solved(count: int) -> Array:
+        """Solution by the first columns; the last one is the slope on the axis."""
+        own, part = triangle[:count, :count], system[:, :count]
+        # The points outweigh the roughness: a step of refinement gives their digits back.
+        found = np.zeros(size)
+        for _ in range(2):
+            gradient = part.T @ (right - part @ found[:count])
+            found[:count] += solve_triangular(own, solve_triangular(own, gradient, trans="T"))
+        return found
+
+    smooth, sharp = solved(size - 1), solved(size)
+    next_to_tip = jumps[:_TIP_KNOTS, used]
+    roughness = [float(np.linalg.norm(next_to_tip @ each)) for each in (smooth, sharp)]
+    is_sharp = roughness[0] > max(_SHARPER * roughness[1], _ROUNDED * largest)
+    found = sharp if is_sharp else smooth
     result = np.zeros(rows.shape[1])
     result[used] = found
     if points.offset_known:
@@ -392,52 +382,41 @@ def _slopes(basis: _Basis, coefficients: Array) -> Array:
     return slope
 
 
-class _Measured:
-    """Least squares with a penalty on the roughness, over all weights of it at once."""
+def _measured(points: _Points, uncertainty: float | None, *, sharp: bool | None = None) -> TableFit:
+    """Return the smoothest admissible fit within the uncertainty, or the scatter."""
+    basis = _Basis(points, _knots(points, _KNOTS_OF_MEASURED))
+    rough = basis.derivative(min(_ROUGH, basis.degree))
+    without, with_tip = (_Spectrum(basis, rough, uncertainty, sharp=tip) for tip in (False, True))
+    if sharp is None:
+        sharp = with_tip.score * (1 + _SHARPER_MEASURED / points.x.size) < without.score
+    chosen = with_tip if sharp else without
+    coefficients, spread = chosen.coefficients, chosen.deviations()
+    used = ~basis.free
+    used[-1] = chosen.sharp
+    if coefficients[used].min() < _FLOOR:
+        coefficients = _not_negative(basis, rough, chosen)
+        scatter = _mean(points.weight * basis.deviation(coefficients))
+        spread = spread * max(scatter / chosen.sigma, 1.0)
+    return basis.fit(coefficients, spread)
 
-    def __init__(self, points: _Points, uncertainty: float | None) -> None:
-        self.points, self.uncertainty = points, uncertainty
-        self.basis = _Basis(points, _knots(points, min(_KNOTS_OF_MEASURED, points.x.size)))
-        self.rough = self.basis.derivative(min(_ROUGH, self.basis.degree))
 
-    def fit(self) -> _Fit:
-        """Return the smoothest admissible fit within the uncertainty, or the scatter."""
-        smooth, sharp = self._spectrum(sharp=False), self._spectrum(sharp=True)
-        needed = 1 + _SHARPER_MEASURED / self.points.x.size
-        chosen = sharp if sharp.score * needed < smooth.score else smooth
-        coefficients = chosen.coefficients
-        spread = chosen.deviations()
-        used = ~self.basis.free
-        used[-1] = chosen.sharp
-        if coefficients[used].min() < _FLOOR:
-            coefficients = self._not_negative(chosen)
-            off = self.points.weight * (self.basis.heights @ coefficients - self.points.y)
-            spread = spread * max(float(np.sqrt(np.mean(np.square(off)))) / chosen.sigma, 1.0)
-        return self.basis.fit(coefficients, spread)
-
-    def _spectrum(self, *, sharp: bool) -> "_Spectrum":
-        return _Spectrum(self.basis, self.rough, self.uncertainty, sharp=sharp)
-
-    def _not_negative(self, chosen: "_Spectrum") -> Array:
-        """Return the fit of the same weight with g' >= the floor."""
-        basis, points = self.basis, self.points
-        floor = np.zeros(basis.heights.shape[1])
-        floor[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
-        used = np.ones(floor.size, dtype=bool)
-        used[-1] = chosen.sharp
-        goal = points.y - basis.heights @ floor
-        system = np.vstack(
-            [basis.heights * points.weight[:, None], np.sqrt(chosen.weight) * self.rough]
-        )[:, used]
-        right = np.concatenate([goal * points.weight, -np.sqrt(chosen.weight) * self.rough @ floor])
-        reduced = _triangle(np.column_stack([system, right]))
-        free = basis.free[used]
-        columns = np.hstack([reduced[:, :-1], -reduced[:, :-1][:, free]])
-        found, _ = nnls(columns, reduced[:, -1], maxiter=100 * columns.shape[1])
-        found[: free.size][free] -= found[free.size :]
-        result = floor
-        result[used] += found[: free.size]
-        return result
+def _not_negative(basis: _Basis, rough: Array, chosen: "_Spectrum") -> Array:
+    """Return the fit of the same weight of roughness with g' above the floor."""
+    points = basis.points
+    result = np.zeros(basis.heights.shape[1])
+    result[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
+    used = np.ones(result.size, dtype=bool)
+    used[-1] = chosen.sharp
+    rough = np.sqrt(chosen.weight) * rough
+    system = np.vstack([basis.heights * points.weight[:, None], rough])[:, used]
+    right = np.concatenate([-basis.deviation(result) * points.weight, -rough @ result])
+    reduced = _triangle(np.column_stack([system, right]))
+    free = basis.free[used]
+    columns = np.hstack([reduced[:, :-1], -reduced[:, :-1][:, free]])
+    found, _ = nnls(columns, reduced[:, -1], maxiter=100 * columns.shape[1])
+    found[: free.size][free] -= found[free.size :]
+    result[used] += found[: free.size]
+    return result
 
 
 class _Spectrum:
