@@ -39,6 +39,7 @@ _BLOCK: Final = 16
 _RATIO: Final = 2.0
 # Least denominator.
 _LEAST: Final = float(np.finfo(float).tiny)
+# Least denominator.
 # Distance from the axis, over the first piece, within which a smooth stress is constant.
 _AXIS: Final = 1e-8
 
@@ -213,7 +214,7 @@ class SlopePieces:
         root_x, root_right = np.sqrt((x - r) * (x + r)), np.sqrt((right - r) * (right + r))
         from_axis = left == 0
         span = np.arcsinh(
-            length * (right + x) / np.maximum(root_right * x + root_x * right, 1e-300)
+            length * (right + x) / np.maximum(root_right * x + root_x * right, _LEAST)
         )
         y = _NEAR_NODES[:, None] * np.where(from_axis, 0.0, span)
         half = np.sinh(y / 2)
@@ -223,12 +224,14 @@ class SlopePieces:
         if from_axis.any():
             # Closed moments int x^n/sqrt(x^2 - r^2) dx: sums of positive terms.
             a, s, r2 = right[from_axis], root_right[from_axis], np.square(r[from_axis])
-            with np.errstate(divide="ignore"):
-                moments = [np.log((a + s) / r[from_axis]), s]
+            moments = [np.log((a + s) / np.maximum(r[from_axis], _LEAST)), s]
             for n in range(2, len(self.rows)):
                 moments.append((a ** (n - 1) * s + (n - 1) * r2 * moments[n - 2]) / n)
-            used = [row * m for row, m in zip(self.rows[:, 0], moments, strict=False) if row != 0]
-            result[from_axis] = sum(used)
+            result[from_axis] = sum(
+                row * m for row, m in zip(self.rows[:, 0], moments, strict=True)
+            )
+            if not self.smooth_tip:
+                result[from_axis & (r == 0)] = np.inf
         return result
 
     def under(self, low: float, high: float, r: Array, kernel: Kernel) -> Array:
@@ -311,7 +314,7 @@ class SlopePieces:
 
 def _pairs(ranges: Sequence[tuple[int, int, int]], size: int) -> tuple[Indices, Indices]:
     """Return the pairs of points and parts of blocks that share the parts first <= i < last."""
-    points, parts = [], []
+    points, parts = [np.empty(0, dtype=int)], [np.empty(0, dtype=int)]
     for start, first, last in ranges:
         block = np.arange(start, min(start + _BLOCK, size))
         points.append(np.repeat(block, max(last - first, 0)))
