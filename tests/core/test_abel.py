@@ -23,14 +23,10 @@ B = 0.7
 repeatable = settings(derandomize=True, deadline=None, max_examples=60)
 
 
-def two_root_integral(
-    weight: Callable[[Array, Array], Array], r: Array, a: float, *, odd: bool = False
-) -> Array:
+def two_root_integral(weight: Callable[[Array, Array], Array], r: Array, a: float) -> Array:
     upper = np.full(r.shape, np.sqrt((a - B) * (a + B)))
     annulus = Annulus(upper, outer_radius=np.full(r.shape, a))
-    return two_root.two_root_integral(
-        lambda x, s, _: weight(x, s), B, r, annulus, odd=odd, rtol=RTOL
-    )
+    return two_root.two_root_integral(lambda x, s, _: weight(x, s), B, r, annulus, rtol=RTOL)
 
 
 # At r = B a different rule applies; both must agree around it.
@@ -50,7 +46,7 @@ def test_one_sided_even_weight() -> None:
 
 def test_one_sided_pole() -> None:
     """F = x/s: arcsinh(s_a/k) below the break, arccosh(s_a/k) above, k^2 = |r^2 - b^2|."""
-    result = two_root_integral(lambda x, _: np.ones_like(x), AROUND, END, odd=True)
+    result = two_root_integral(lambda x, _: np.ones_like(x), AROUND, END)
     k = np.sqrt(np.abs(AROUND - B) * (AROUND + B))
     top = np.sqrt((END - B) * (END + B))
     root = np.sqrt((END - AROUND) * (END + AROUND))
@@ -70,9 +66,7 @@ def test_one_sided_annulus_equals_difference() -> None:
         return (2 * s - B * np.arctan(s / B)) * s / x
 
     stick_edge = InnerEnd(upper - lower, np.full(r.shape, c))
-    annulus = two_root.two_root_integral(
-        weight, B, r, Annulus(upper, stick_edge), odd=True, rtol=RTOL
-    )
-    whole = two_root.two_root_integral(weight, B, r, Annulus(upper), odd=True, rtol=RTOL)
-    inner = two_root.two_root_integral(weight, B, r, Annulus(lower), odd=True, rtol=RTOL)
+    annulus = two_root.two_root_integral(weight, B, r, Annulus(upper, stick_edge), rtol=RTOL)
+    whole = two_root.two_root_integral(weight, B, r, Annulus(upper), rtol=RTOL)
+    inner = two_root.two_root_integral(weight, B, r, Annulus(lower), rtol=RTOL)
     assert np.allclose(annulus, whole - inner, rtol=1e-12, atol=0)

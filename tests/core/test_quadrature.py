@@ -1,4 +1,4 @@
-"""A-priori error bound of the quadrature rules, and their cost at each tolerance."""
+"""Stress integrals would miss their tolerance, or a looser one would cost more."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mdr_core import quadrature
 from mdr_core.fields import pressure
 from mdr_core.normal import solve
 from mdr_core.profiles import Hyperboloid, RoundedPunch, Sphere, TruncatedCone
-from mdr_core.quadrature import Analytic, error_bound, gauss_legendre, integrate
+from mdr_core.quadrature import Analytic, integrate
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 LENGTHS = (0.05, 0.2, 0.7, 1.5, 3.0, 6.0, 11.0, 20.0)
-POINTS = (8, 12, 24, 48)
 DECADES = tuple(10.0**-k for k in range(3, 14))
 #: Rounding error of a sum of about fifty positive terms.
 ROUNDING = 1e-14
@@ -58,30 +57,6 @@ def relative_error(value: float, truth: mpf) -> float:
     return float(abs(mpf(value) / truth - 1))
 
 
-@pytest.mark.parametrize("name", FAMILY)
-@pytest.mark.parametrize("points", POINTS)
-def test_error_within_bound(name: str, points: int) -> None:
-    fn, growth, _ = FAMILY[name]
-    nodes, weights = gauss_legendre(points)
-    for length in LENGTHS:
-        value = length / 2 * float(weights @ fn(np, length / 2 * nodes))
-        truth = exact(name, -length / 2, length / 2)
-        # The bound is relative to the largest |h| times the length, which is never smaller.
-        size = max(abs(fn(np, y)) for y in np.linspace(-length / 2, length / 2, 201)) * length
-        error = float(abs(mpf(value) - truth)) / size
-        bound = error_bound(points, length / 2, Analytic(growth=growth))
-        assert error <= bound + ROUNDING, (length, error, bound)
-
-
-def test_bound_decreases_with_points_and_increases_with_length() -> None:
-    for length in LENGTHS:
-        bounds = [error_bound(points, length, quadrature.DEFAULT) for points in POINTS]
-        assert bounds == sorted(bounds, reverse=True)
-    for points in POINTS:
-        bounds = [error_bound(points, length, quadrature.DEFAULT) for length in LENGTHS]
-        assert bounds == sorted(bounds)
-
-
 @pytest.mark.parametrize("rtol", DECADES)
 @pytest.mark.parametrize("name", [name for name, (_, _, even) in FAMILY.items() if even])
 def test_even_integrals_meet_the_tolerance(name: str, rtol: float) -> None:
@@ -99,7 +74,7 @@ def test_plain_integrals_meet_the_tolerance(name: str, rtol: float) -> None:
     ends = [(low, low + length) for low in (0.0, 0.3, 2.0) for length in (1e-9, *LENGTHS)]
     lower, length = np.array(ends).T[0], np.array([high - low for low, high in ends])
     analytic = Analytic(growth=growth)
-    result = integrate(lambda y, _: fn(np, y), length, rtol, lower, even=False, analytic=analytic)
+    result = integrate(lambda y, _: fn(np, y), length, rtol, lower, analytic=analytic)
     for value, (low, high) in zip(result, ends, strict=True):
         assert relative_error(value, exact(name, low, high)) <= rtol + ROUNDING, (low, high)
 
@@ -115,10 +90,10 @@ def test_double_zero_at_or_next_to_the_interval(rtol: float) -> None:
         return mp.sinh(y) - mp.atan(mp.sinh(y))
 
     lengths = np.geomspace(1e-4, 3.0, 40)
-    analytic = Analytic(zeros=2)
+    analytic = Analytic()
     with mp.workdps(50):
         for low in (0.0, 1e-4, 3e-3, 0.05, 0.4):
-            result = integrate(h, lengths, rtol, np.full(40, low), even=False, analytic=analytic)
+            result = integrate(h, lengths, rtol, np.full(40, low), analytic=analytic)
             for value, length in zip(result, lengths.tolist(), strict=True):
                 exact_ = truth(mpf(low) + mpf(length)) - truth(mpf(low))
                 assert relative_error(value, exact_) <= rtol + ROUNDING, (low, length)

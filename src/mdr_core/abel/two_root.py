@@ -5,7 +5,7 @@ F itself has a root at a break b. The substitution
     x^2 = max(r, b)^2 + |r^2 - b^2| sinh^2 y
 
 removes both roots, near or far from each other. The integrand is then analytic in the strip
-|Im y| < pi/2 whatever r and b are, so that `mdr_core.quadrature` bounds its error a priori.
+|Im y| < pi/2 whatever r and b are, so that pieces of equal length serve all integrals.
 
 Source: notes, §5.
 """
@@ -16,10 +16,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus
-from mdr_core.abel.interpolation import Interpolation
-from mdr_core.elementwise import every, indices, is_number, number, some, where
+from mdr_core.elementwise import indices, number, some, where
 from mdr_core.quadrature import DEFAULT, Analytic, integrate
-from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
+from mdr_core.typing import Array, Chosen, Flags, Parameter
 
 # weight(x, s, index) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b. x and s have
 # shape (nodes, k); index (k,) selects their integrals.
@@ -29,12 +28,8 @@ _TINY: Final = float(np.finfo(float).tiny)
 # Root of |r^2 - b^2| of a radius on the break, over b and the least s of the annulus: its square is
 # rounding error.
 _NEXT_TO_BREAK: Final = 1e-8
-# Longest interval whose integral is interpolated: few points lie nearer to a root.
-_LONGEST: Final = 4.6
 # Rounding error of a difference of contact coordinates.
 _ROUNDING: Final = 4 * float(np.finfo(float).eps)
-MANY: Final = 1500
-"""Points from which interpolation takes less time than simple integrals, by measurement."""
 
 
 class _Ends(NamedTuple):
@@ -63,16 +58,6 @@ class _Distances(NamedTuple):
     """a^2 - r^2 [length^2]."""
     root: Array | None
     """sqrt(c^2 - r^2), zero for r >= c; None if there is no c [length]."""
-
-    def at(self, chosen: Indices) -> "_Distances":
-        """Those of the chosen points."""
-        root = None if self.root is None else self.root[chosen]
-        return _Distances(self.break2[chosen], self.outer2[chosen], root)
-
-
-# Integrals of points with b^2 - r^2, from the start of the interval of y, None for zero, and its
-# length.
-_Integrals = Callable[[Array, Array | None, Array], Array]
 
 
 def inverse_hypot(x: Array, b: Parameter) -> Array:
@@ -119,11 +104,9 @@ def two_root_integral(
     r: Array,
     annulus: Annulus,
     *,
-    odd: bool,
     rtol: float,
     analytic: Analytic = DEFAULT,
     beyond: Array | None = None,
-    many: int = MANY,
 ) -> Array:
     """Return the integrals of F(x)/sqrt(x^2 - r^2) over x from max(r, b, c) to a.
 
@@ -137,12 +120,10 @@ def two_root_integral(
     weight : F(x) s/x, analytic in s.
     b, r : break b > 0 and points 0 <= r < a [length], r of shape (m,).
     annulus : a and c in the coordinate s; c <= b stands for c = b.
-    odd : True if F is odd in s, which halves the nodes for r < b.
     rtol : relative tolerance, 1e-3 to 1e-14.
     analytic : strip in which the integrand is analytic in y, and its growth.
     beyond : sqrt(r^2 - b^2), if all radii lie beyond the break and it has more digits [length].
         The inner end then has its coordinate.
-    many : number of ascending points from which interpolation between few of them takes less time.
 
     Returns
     -------
@@ -154,7 +135,7 @@ def two_root_integral(
 
     >>> annulus = Annulus(np.array([np.sqrt(3.0)]))
     >>> axis = np.zeros(1)
-    >>> value = two_root_integral(lambda x, s, _: x / x, 1.0, axis, annulus, odd=True, rtol=1e-12)
+    >>> value = two_root_integral(lambda x, s, _: x / x, 1.0, axis, annulus, rtol=1e-12)
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
@@ -169,27 +150,20 @@ def two_root_integral(
         # Their integrals, which are not used, are short there.
         distances.break2[infinite] = -b * b
 
-    def integrals(break2: Array, start: Array | None, length: Array) -> Array:
-        above, shift = break2 < 0, np.maximum(-break2, 0.0)
-        epsilon = np.sqrt(np.abs(break2))
+    start, length = _interval(distances, ends)
+    shift = np.maximum(-distances.break2, 0.0)
+    epsilon = np.sqrt(np.abs(distances.break2))
 
-        def h(y: Array, index: Chosen) -> Array:
-            # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
-            s = np.sinh(y, out=y)
-            s *= epsilon[index]
-            s *= s
-            s += shift[index]
-            x = s + b * b
-            return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
+    def h(y: Array, index: Chosen) -> Array:
+        # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
+        s = np.sinh(y, out=y)
+        s *= epsilon[index]
+        s *= s
+        s += shift[index]
+        x = s + b * b
+        return weight(np.sqrt(x, out=x), np.sqrt(s, out=s), index)
 
-        return integrate(h, length, rtol, start, even=odd or above, analytic=analytic)
-
-    single = is_number(ends.upper) and is_number(ends.gap2)
-    if r.size >= many and single and beyond is None and every(r[1:] >= r[:-1]):
-        split = int(r.searchsorted(ends.begin))
-        result = _interpolated(distances, split, ends, integrals, (rtol, analytic.growth))
-    else:
-        result = integrals(distances.break2, *_interval(distances, ends))
+    result = integrate(h, length, rtol, start, analytic=analytic)
     if infinite is not None:
         result[infinite] = np.inf
     return result
@@ -255,47 +229,3 @@ def _interval(distances: _Distances, ends: _Ends) -> tuple[Array | None, Array]:
     covered2 = np.where(root > 0, ends.gap2, outer2)
     length = np.arcsinh(covered2 / np.maximum(roots, _TINY))
     return np.arcsinh(np.minimum(root, ends.lower) / epsilon), length
-
-
-def _interpolated(
-    distances: _Distances,
-    split: int,
-    ends: _Ends,
-    integrals: _Integrals,
-    tolerance: tuple[float, float],
-) -> Array:
-    """Return the integrals over one annulus at many ascending radii, interpolated between few.
-
-    They are odd functions of y, analytic for |Im y| < pi/2:
-
-        sinh y = sqrt(a^2 - m^2)/sqrt(m^2 - r^2) for the `split` radii r < m,
-        sinh y = sqrt(a^2 - r^2)/sqrt(r^2 - b^2) for the others.
-
-    Source: notes, §5.
-    """
-    break2, outer2, root = distances
-    gap = np.sqrt(ends.gap2)
-    to_begin = np.sqrt(break2[:split]) if root is None else root[:split]
-    sinh = np.concatenate([gap / to_begin, np.sqrt(outer2[split:] / -break2[split:])])
-    y, first = np.arcsinh(sinh), float(np.arcsinh(gap / ends.begin))
-    few = indices(y > _LONGEST)
-    y[few] = first
-    interpolation = Interpolation([(y[:split], first), (y[split:], 0.0)], *tolerance)
-    within, past = interpolation.nodes
-    root2 = np.square(gap / np.sinh(within))
-    # Points next to a root have no piece of their own.
-    rest = distances.at(few)
-    below = _Distances(
-        np.concatenate([root2 - ends.lower * ends.lower, rest.break2]),
-        np.concatenate([ends.gap2 + root2, rest.outer2]),
-        None if rest.root is None else np.concatenate([np.sqrt(root2), rest.root]),
-    )
-    start, length = _interval(below, ends)
-    values = integrals(
-        np.concatenate([below.break2, -np.square(ends.upper / np.cosh(past))]),
-        None if start is None else np.concatenate([start, np.zeros(past.size)]),
-        np.concatenate([length, past]),
-    )
-    result = interpolation(np.concatenate([values[: within.size], values[length.size :]]))
-    result[few] = values[within.size : length.size]
-    return result

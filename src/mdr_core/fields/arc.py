@@ -23,8 +23,6 @@ from mdr_core.typing import Array, Chosen
 _NEAR_AXIS: Final = 1e-8
 # The same for an arc that starts on the axis, as a part of the radius at which it ends.
 _NEXT_TO_AXIS: Final = 1e-120
-# Nodes on every piece.
-_NODES: Final = 24
 # Least power to integrate: the quintic of a table's piece, times x of the factor and of dx.
 _DEGREE: Final = 7.0
 # Tolerance of the foundation's load, for which no tolerance is requested.
@@ -92,7 +90,7 @@ class Arc:
         if base == 0:
             r = np.maximum(r, _NEAR_AXIS * low if low > 0 else _NEXT_TO_AXIS * high)
         growth = max(branch.steepness + 1, _DEGREE)
-        analytic = Analytic(growth=growth, zeros=2, fewest=_NODES)
+        analytic = Analytic(growth=growth)
         total = np.zeros(r.shape)
         for start, stop in pairwise([*branch.cuts(low, high, branch.opposite_singularity), high]):
             seen = np.flatnonzero(r < stop)
@@ -108,7 +106,6 @@ class Arc:
                 base,
                 r[seen],
                 Annulus(roots[1:], inner, np.array([stop])),
-                odd=False,
                 rtol=rtol,
                 analytic=analytic,
             )

@@ -10,7 +10,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.two_root import MANY, inverse_hypot, root_difference, two_root_integral
+from mdr_core.abel.two_root import inverse_hypot, root_difference, two_root_integral
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import every, number, piecewise, piecewise_pair, some, where
 from mdr_core.profiles.base import Profile
@@ -37,8 +37,6 @@ class TippedCone(Profile):
 
     slope: Parameter
     tip_radius: Parameter
-    # Radii from which interpolation takes less time than the integrals of the flank.
-    many_radii: ClassVar[int] = MANY
 
     @property
     @abstractmethod
@@ -228,17 +226,14 @@ class TippedCone(Profile):
         if distance < _NEAR:
             analytic = Analytic(growth=1.0, before=distance)
         else:
-            # The ellipse extends no farther before the interval than to its sides.
             analytic = Analytic(growth=1.0, strip=min(DEFAULT.strip, distance))
         value = two_root_integral(
             lambda x, s, _: self._flank_weight(x, s),
             b,
             r,
             Annulus(s, inner, a),
-            odd=False,
             rtol=rtol,
             analytic=analytic,
-            many=self.many_radii,
         )
         return value / pi
 

@@ -14,7 +14,6 @@ from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
-from mdr_core.quadrature import DEFAULT, Analytic
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import first_index
 
@@ -74,8 +73,6 @@ class FlatEnded(Profile):
 class Truncated(FlatEnded):
     """Flat-ended profile with a closed dg/ds = g'(x) s/x beyond it, s = sqrt(x^2 - b^2)."""
 
-    # Zeros of dg/ds at the break.
-    analytic: ClassVar[Analytic] = DEFAULT
     similar: ClassVar[bool] = True
 
     @property
@@ -113,9 +110,7 @@ class Truncated(FlatEnded):
             float(self.flat_radius),
             radius,
             annulus,
-            odd=True,
             rtol=rtol,
-            analytic=self.analytic,
             beyond=beyond,
         )
         return integral / pi
@@ -139,7 +134,6 @@ class RoundedPunch(Truncated):
 
     kind: ClassVar[str] = "rounded_punch"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
-    analytic: ClassVar[Analytic] = Analytic(zeros=2)
 
     def f(self, radius: Array) -> Array:
         return np.square(np.maximum(radius - self.flat_radius, 0.0)) / (2 * self.rounding_radius)
