@@ -28,6 +28,8 @@ from mdr_core.validation import (
 )
 
 _CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
+# Rounding error of a contact radius that follows from a load.
+_RADIUS: Final = 4 * float(np.finfo(float).eps)
 # Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
 # representable beside factors of the accepted magnitudes.
 _DECADES: Final = 150.0
@@ -150,7 +152,9 @@ class NormalContact(validity.ContactResults):
         with np.errstate(divide="ignore", invalid="ignore"):
             load, slope = load_and_slope(profile, of_force=self.control == "normal_force")(inside)
             condition = load / (inside * slope)
-        return rounding * where(condition > 1, condition, 1.0)
+        error = rounding * where(condition > 1, condition, 1.0)
+        # Just beyond a break of a table its load changes more than the contact radius.
+        return np.maximum(error, where(condition > 0, _RADIUS / condition, 0.0))
 
     @property
     def edge_errors(self) -> Parameter:

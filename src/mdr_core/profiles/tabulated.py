@@ -129,6 +129,10 @@ class Tabulated(Profile):
         return "piecewise_moments"
 
     @property
+    def flattens(self) -> bool:
+        return True
+
+    @property
     def breaks(self) -> tuple[Parameter, ...]:
         return self._breaks
 
