@@ -145,15 +145,16 @@ class NormalContact(validity.ContactResults):
     def error_estimates(self) -> Parameter:
         """Upper bound of the relative error of each case, a single number if all have the same."""
         profile, rounding = self.profile, self.profile.rounding
-        if self.control == "contact_radius" or not profile.flattens:
+        if self.control == "contact_radius" or not (profile.flattens or profile.steepens):
             return rounding
-        # Where g' falls to zero, the contact radius changes more than the load.
-        inside = self.coordinate * (1 - _NEAR_ROOT * np.sqrt(rounding))
+        # Where g' falls to zero, the contact radius changes more than the load; just beyond a break
+        # of a table, the load more than the contact radius.
+        nearest = _NEAR_ROOT * np.sqrt(rounding) if profile.flattens else 0.0
+        inside = self.coordinate * (1 - nearest)
         with np.errstate(divide="ignore", invalid="ignore"):
             load, slope = load_and_slope(profile, of_force=self.control == "normal_force")(inside)
             condition = load / (inside * slope)
         error = rounding * where(condition > 1, condition, 1.0)
-        # Just beyond a break of a table its load changes more than the contact radius.
         return np.maximum(error, where(condition > 0, _RADIUS / condition, 0.0))
 
     @property

@@ -146,7 +146,7 @@ def test_maximum_of_a_noisy_table(seed: int) -> None:
     rng = np.random.default_rng(seed)
     r = np.linspace(0, 1, 40)
     height = (np.sqrt(1 + r * r) - 1) * (1 + 1e-4 * rng.standard_normal(40))
-    contact = normal.solve(Tabulated(r, height, "pchip"), E_STAR, contact_radius=0.8)
+    contact = normal.solve(Tabulated(r, height), E_STAR, contact_radius=0.8)
     steps = np.outer([-1, 1], np.geomspace(1e-9, 1e-2, 12)).ravel()
     near = np.add.outer(r[r < 0.8], steps).ravel()
     radii = np.append(near[(near >= 0) & (near < 0.8)], np.linspace(0, 0.8, 5001)[:-1])
@@ -179,7 +179,7 @@ def flat_table() -> Tabulated:
     """Points of a rounded punch; the slope of "pchip" next to the flat is 3/4 of the chord's, so
     that f'' is 6/2 - 2 * 3/4 = 3/2 of its value there."""
     x = np.linspace(0.0, 1.0, 20)
-    return Tabulated(np.append(0.0, B + x), np.append(0.0, x * x / (2 * R)), "pchip")
+    return Tabulated(np.append(0.0, B + x), np.append(0.0, x * x / (2 * R)), breaks=(B,))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9])

@@ -40,8 +40,8 @@ PROFILES = (
     Hyperboloid(0.3, 1.0),
     TruncatedCone(0.3, 0.4),
     CappedParaboloid(0.2, 2.0, 1.0),
-    Tabulated(RADII, RADII**2 / 2, interpolation="cubic"),
-    Tabulated(RADII, np.maximum(RADII - 0.375, 0.0) ** 2 / 2, interpolation="pchip"),
+    Tabulated(RADII, RADII**2 / 2),
+    Tabulated(RADII, np.maximum(RADII - 0.375, 0.0) ** 2 / 2, breaks=(0.375,)),
 )
 FORCES = np.array([1.0, 1.0, 1.3, 1.1, 1.6, 1.5])
 CONTROLS = ("normal_force", "indentation_depth")

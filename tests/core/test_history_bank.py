@@ -26,13 +26,11 @@ if TYPE_CHECKING:
 
 ENERGY = 1e-10
 BOUND = 1e-12
-#: Tables are sums over knots; their bound is that of the normal problem.
-TABLE = 1e-11
 #: Relative to mu F_N at full slip: the depth is rounded, and so are the points of first contact and
 #: of separation on an oblique path.
 TOUCH = 8 * EPS
 #: Largest ratio of estimate to largest admissible error.
-OVERSTATED, OVERSTATED_TABLE = 45.0, 2000.0
+OVERSTATED = 45.0
 
 
 def each(cases: Iterable[dict[str, Any]]) -> pytest.MarkDecorator:
@@ -49,7 +47,7 @@ def material(case: dict[str, Any]) -> tuple[Any, ...]:
 
 
 def bound_of(case: dict[str, Any]) -> float:
-    return TABLE if case["profile"]["kind"] == "tabulated" else BOUND
+    return BOUND
 
 
 def input_error(case: dict[str, Any], name: str, index: int) -> float:
@@ -85,8 +83,8 @@ def cycle_failures(case: dict[str, Any], index: int, result: Iterable[float]) ->
 
 
 def failures_of_a_cycle(case: dict[str, Any]) -> list[str]:
-    failures, table = [], case["profile"]["kind"] == "tabulated"
-    factor = OVERSTATED_TABLE if table else OVERSTATED
+    failures = []
+    factor = OVERSTATED
     for index, amplitude in enumerate(case["given"]):
         control = {case["control"]: case["load"], case["tangential_control"]: amplitude}
         result = history.cycles(*material(case), **control, count=2)

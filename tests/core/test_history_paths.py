@@ -24,7 +24,6 @@ FULL_SLIP = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * DEPTH
 SPRINGS = 100_000
 #: Error limit with `SPRINGS` springs; ten times fewer have at most a hundred times the error.
 SPRING_ERROR = 1e-9
-TABLE = {"kind": "tabulated", "r": [0.0, 0.3, 0.7, 1.1, 2.0], "breaks": []}
 PROFILES: dict[str, dict[str, Any]] = {
     "paraboloid": {"kind": "paraboloid", "radius": 1.3},
     "cone": {"kind": "cone", "slope": 0.3},
@@ -44,8 +43,6 @@ PROFILES: dict[str, dict[str, Any]] = {
         "tip_radius": 3.0,
         "radius": 1.1,
     },
-    "linear-table": {**TABLE, "f": [0.0, 0.02, 0.1, 0.25, 0.9], "interpolation": "linear"},
-    "cubic-table": {**TABLE, "f": [0.0, 0.02, 0.1, 0.25, 0.8], "interpolation": "cubic"},
     "flat-punch": {"kind": "flat_punch", "radius": 0.5},
 }
 every_profile = pytest.mark.parametrize("name", PROFILES)

@@ -27,7 +27,7 @@ def test_inverse_near_a_jump() -> None:
 @pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
 def test_inverse_at_the_resolution_of_doubles(control: str) -> None:
     """The contact exceeds the flat of the table by less than the resolution of a double."""
-    table = profiles.Tabulated([0.0, 1.0, 2.0], [0.0, 0.0, 1.0], "linear")
+    table = profiles.Tabulated([0.0, 1.0, 2.0], [0.0, 0.0, 1.0], (1.0,))
     contact = normal.solve(table, 1.0, **{control: [1e-70, 0.0, 1e-40]})
     np.testing.assert_allclose(contact.contact_radius, 1.0, rtol=1e-15)
 

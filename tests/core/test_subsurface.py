@@ -221,7 +221,7 @@ def test_tables_that_are_exact(flat: float, count: int) -> None:
     """A spline through a paraboloid, or through a rounded punch with its break, is exact."""
     r = np.unique(np.append(np.linspace(0, 1.4, count), flat))
     heights = np.square(np.maximum(r - flat, 0.0)) / 4
-    table = Tabulated(r, heights, "cubic", (flat,) if flat else ())
+    table = Tabulated(r, heights, (flat,) if flat else ())
     body = RoundedPunch(flat, 2.0) if flat else Paraboloid(2.0)
     rng = np.random.default_rng(4)
     x, z = rng.uniform(-1.6, 1.6, 400), 10 ** rng.uniform(-12, 1, 400)

@@ -19,10 +19,8 @@ from tests.core.comparison import (
 from tests.oracles import bank
 
 BOUND = 1e-12
-#: Tables are sums over knots; their bound is that of the normal problem.
-TABLE = 1e-11
-#: Largest ratio of estimate to largest admissible error: for powers up to 60, and tables.
-OVERSTATED, OVERSTATED_TABLE = 150.0, 3000.0
+#: Largest ratio of estimate to largest admissible error: for powers up to 60.
+OVERSTATED = 150.0
 #: Largest allowance where F_N is computed before F_x is compared with mu F_N: three roundings, of
 #: a(d), F_N(a) and their ratio, at the largest condition number, 1.2e13. Next to full slip, the
 #: stick radius has no more digits than that, and which of them are right depends on the processor.
@@ -43,11 +41,10 @@ def solved(case: dict[str, Any]) -> tangential.TangentialContact:
 
 def failures_of(case: dict[str, Any]) -> list[str]:
     result = solved(case)
-    table = case["profile"]["kind"] == "tabulated"
     controls = (case["control"], case["tangential_control"])
     computed = controls[0] != "normal_force" and controls[1] == "tangential_force"
     largest = COMPUTED_FORCE if computed else LARGEST_ALLOWANCE
-    bound = TABLE if table else BOUND
+    bound = BOUND
     failures, allowed = [], [bound]
     for name, row in case["expected"].items():
         values = getattr(result, name)
@@ -64,9 +61,7 @@ def failures_of(case: dict[str, Any]) -> list[str]:
                 by_inputs,
                 result.error_estimate,
             )
-    failures += overstated(
-        result.error_estimate, allowed, OVERSTATED_TABLE if table else OVERSTATED
-    )
+    failures += overstated(result.error_estimate, allowed, OVERSTATED)
     if list(result.regime) != case["regime"]:
         failures.append(f"regime is {result.regime}")
     return failures

@@ -61,7 +61,7 @@ def test_overflowing_outer_radius_is_rejected() -> None:
 def kinked() -> Tabulated:
     """A paraboloid by straight lines, with a corner at r = 1."""
     r = np.linspace(0.0, 3.0, 13)
-    return Tabulated(tuple(r), tuple(r**2 / 2 + 0.5 * np.maximum(r - 1, 0)), "linear")
+    return Tabulated(tuple(r), tuple(r**2 / 2 + 0.5 * np.maximum(r - 1, 0)), (1.0,))
 
 
 @pytest.mark.parametrize(

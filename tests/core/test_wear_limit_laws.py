@@ -265,7 +265,7 @@ def test_fields_do_not_depend_on_the_tolerance(profile: Profile) -> None:
 
 
 def test_zero_load_among_others_on_a_table_wears_nothing() -> None:
-    table = Tabulated((0.0, 1.0, 2.0), (0.0, 0.3, 0.8), "cubic")
+    table = Tabulated((0.0, 1.0, 2.0), (0.0, 0.3, 0.8))
     contact = normal.solve(table, E_STAR, normal_force=[0.1, 0.0])
     worn = limit.solve(contact, G_STAR, MU, tangential_force=[0.01, 0.0])
     assert worn.worn_volume[0] > 0

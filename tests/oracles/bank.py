@@ -7,7 +7,6 @@ of prescribed and expected values have equal length.
 - `normal`: d, F_N, a, ... of one load.
 - `pressure`: p at given radii.
 - `profile`: f, f', g, g' at given x.
-- `tabulated`: all of these for tables.
 - `tangential`: one record per contact and tangential control.
 - `slip_fields`: one record per state, at given radii.
 - `history_cycles`: one record per contact and tangential control, constant normal load.

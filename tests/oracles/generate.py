@@ -17,7 +17,6 @@ from tests.oracles.cases import EXTREMES, FAMILIES, SCALES, Family, Profile, cas
 from tests.oracles.reference import (
     CLOSED_DIGITS,
     CONTROLS,
-    OUTPUTS,
     QUAD_DIGITS,
     State,
     contact_radius,
@@ -26,8 +25,6 @@ from tests.oracles.reference import (
     state,
 )
 from tests.oracles.shapes import FlatPunch, Shape, shape_of
-from tests.oracles.table_cases import TableCase, table_contacts
-from tests.oracles.tables import TABLE_DIGITS, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -327,82 +324,6 @@ def _profile_record(family: Family, profile: Profile, scale: str) -> Record:
     return record
 
 
-def table_cases() -> Iterable[Record]:
-    for scene in table_contacts():
-        with mp.workdps(TABLE_DIGITS):
-            table = Table(scene.profile)
-            for number, radius in enumerate(scene.radii):
-                yield from _table_records(scene, table, radius, fields=number == 0)
-
-
-def _table_records(
-    scene: TableCase, table: Table, radius: float, *, fields: bool
-) -> Iterable[Record]:
-    """Return one record per control; fields are stored for a prescribed contact radius only."""
-    loads_ = {
-        "contact_radius": radius,
-        "indentation_depth": float(table.g(mpf(radius))),
-        "normal_force": float(table.force(mpf(radius))),
-    }
-    for control, load in loads_.items():
-        a = table.contact_radius(control, mpf(load))
-        d, n = table.g(a), table.force(a)
-        values = dict(zip(OUTPUTS, (d, n, a, n / (mp.pi * a**2), 2 * a), strict=False))
-        slope = table.dg(a)
-        rates = (a * slope / d, 2 * a**2 * slope / n, mpf(1), 2 * a**2 * slope / n - 2, mpf(1))
-        condition_ = dict(zip(OUTPUTS, rates, strict=False))
-        if fields and control == "contact_radius":
-            values["elastic_energy"] = table.energy(a)
-            condition_["elastic_energy"] = a * n * slope / values["elastic_energy"]
-        rate = condition_[control]
-        record: Record = {
-            "id": f"table-{scene.name}-5.74-{radius:g}-{SHORT[control]}",
-            "equation": "(5.74)",
-            "tags": {"family": f"table-{scene.name}", "interpolant": scene.name},
-            "profile": scene.profile,
-            "e_star": 1.0,
-            "control": control,
-            "load": load,
-            "expected": {name: digits(value) for name, value in values.items()},
-            "condition": {name: condition(value / rate) for name, value in condition_.items()},
-        }
-        if fields and control == "contact_radius":
-            record.update(_table_fields(scene, table, radius))
-        if scene.truth is not None:
-            truth = state(scene.truth, control, load, 1.0)
-            record["truth"] = {name: digits(truth.values[name]) for name in values}
-        yield record
-
-
-def table_radii(scene: TableCase, a: float) -> list[float]:
-    """Return radii between knots, next to a knot and to breaks, near the axis and near the edge.
-
-    The axis is excluded: the slope of a smooth body's interpolant there is a rounding or spline
-    error, so that its pressure is formally infinite.
-    """
-    knots = scene.profile["r"]
-    middle = next((r for r in knots if r > a / 2), a / 2)
-    points = [a * fraction for fraction in FRACTIONS[1:]] + [0.37 * a]
-    points += [middle * (1 + sign * 1e-6) for sign in (-1, 1)]
-    for b in scene.profile["breaks"]:
-        points += [b * (1 + sign * step) for sign in (-1, 1) for step in DISTANCES]
-    return sorted({r for r in points if 0 < r < a and r not in knots})
-
-
-def _table_fields(scene: TableCase, table: Table, radius: float) -> Record:
-    points = table_radii(scene, radius)
-    fields: Record = {"radius": points}
-    for name in ("f", "df", "g", "dg"):
-        fields[name] = [digits(getattr(table, name)(mpf(r))) for r in points]
-    fields["pressure"] = [digits(table.pressure(mpf(r), mpf(radius))) for r in points]
-    if scene.truth is not None:
-        with mp.workdps(QUAD_DIGITS):
-            shape = shape_of(scene.truth)
-            truth = [pressure(shape, mpf(r), mpf(radius)) for r in points]
-            fields["truth_pressure"] = [digits(p) for p in truth]
-    return fields
-
-
 def finite_range(record: Record) -> bool:
     """Return all records; a value that is not representable is a defect of the case selection."""
     return all(math.isfinite(value) for value in _numbers(record))
@@ -426,7 +347,6 @@ MAKERS = {
     "profile": profile_cases,
     "normal": lambda: itertools.chain(normal_cases(), extreme_cases()),
     "pressure": pressure_cases,
-    "tabulated": table_cases,
 }
 
 

@@ -16,10 +16,9 @@ from mpmath import mp, mpf
 from tests.oracles import slip_reference as slip
 from tests.oracles.cases import FAMILIES, SCALES, Family, Profile
 from tests.oracles.generate import condition, digits, loads, profile_at
-from tests.oracles.history_reference import history, overlap
+from tests.oracles.history_reference import history
 from tests.oracles.slip_generate import CLOSE, EQUATIONS, GENERAL, checked, material_at, write
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting
-from tests.oracles.table_cases import table_contacts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,7 +34,6 @@ SHORT = {
     "tangential_force": "Fx",
     "tangential_displacement": "u",
 }
-TABLES = ("truncated-cone", "two-points", "graded")
 #: Relative step of the difference quotients for condition numbers.
 NUDGE = mpf(10) ** -18
 #: Cycles with oscillating normal load: its relative amplitude, and the tangential amplitude as a
@@ -95,25 +93,6 @@ def scenes() -> Iterator[Scene]:
             assert profile is not None, family.name
             given = loads(family, profile, ratio, scale)
             yield Scene(family.name, regime, scale, profile, given, material_at(scale, turn), turn)
-    for table in table_contacts():
-        if table.name in TABLES:
-            turn += 1
-            with mp.workdps(WORK_DIGITS):
-                body = slip.body_of(table.profile)
-                a = mpf(table.radii[0])
-                given = {
-                    "indentation_depth": float(body.g(a)),
-                    "normal_force": float(body.force(a)),
-                }
-            yield Scene(
-                f"table-{table.name}",
-                f"{table.radii[0]:g}",
-                "1",
-                table.profile,
-                given,
-                Material(1.0, 0.8, 0.3),
-                turn,
-            )
 
 
 # Cycles at constant normal load -----------------------------------------------------------------
@@ -143,10 +122,10 @@ def loop(at: Setting, control: str, amplitude: mpf) -> tuple[mpf, mpf]:
         edge = body.b if body.blunt else mpf(0)
         # 4 mu F_N u0 - (8 mu^2 E*^2/G*) int (d - g)^2 dx, with int (d - g) dx = N/2.
         way = 4 * bound * (amplitude - _full_slip_displacement(at))
-        return way + factor * overlap(at, edge), bound / amplitude
+        return way + factor * slip.overlap(at, edge), bound / amplitude
     c = slip.stick_radius(at, control, amplitude)
     force = at.mu * at.e_star * (at.n - body.force(c))
-    return factor * overlap(at, c), force / (at.shift * (at.depth - body.g(c)))
+    return factor * slip.overlap(at, c), force / (at.shift * (at.depth - body.g(c)))
 
 
 def cycle_record(scene: Scene, normal: str, control: str) -> Record:
@@ -312,14 +291,12 @@ def tasks() -> Iterator[Task]:
 
 
 def _new_kind(everything: list[Scene], number: int) -> bool:
-    """The first scene of each kind; all but steep ones for powers and tables."""
+    """The first scene of each kind; all but steep ones for powers."""
     scene = everything[number]
     if scene.regime in CLOSE:
         return False
     if scene.profile["kind"] == "power":
         return scene.profile["exponent"] in (0.5, 1.5, 4.0)
-    if scene.profile["kind"] == "tabulated":
-        return scene.family != "table-graded"
     earlier = (one.profile["kind"] for one in everything[:number])
     return scene.profile["kind"] not in earlier
 

@@ -19,16 +19,12 @@ from typing import TYPE_CHECKING, Any
 from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as slip
-from tests.oracles.reference import integral
 from tests.oracles.shapes import FlatPunch
 from tests.oracles.slip_reference import (
-    RULE_DIGITS,
     WORK_DIGITS,
-    Body,
     Material,
     Setting,
     ShapeBody,
-    body_of,
 )
 
 if TYPE_CHECKING:
@@ -140,34 +136,7 @@ class _Moments:
     second: mpf
 
 
-def overlap(at: Setting, c: mpf) -> mpf:
-    """int_c^a (g(a) - g) (g - g(c)) dx; for tables by a rule with an error estimate."""
-    body = at.body
-    if isinstance(body, ShapeBody):
-        return slip.overlap(at, c)
-    low, total = body.g(c), mpf(0)
-    for panel in body.panels(c, at.a):
-        start = panel.s(panel.low)
-        width = panel.s(panel.high) - start
-
-        def density(part: mpf, panel: slip.Panel = panel, start: mpf = start,
-                    width: mpf = width) -> mpf:  # fmt: skip
-            with mp.workdps(WORK_DIGITS):
-                s = start + width * part
-                equivalent_profile = panel.equivalent_profile(s)
-                return (
-                    width
-                    * (at.depth - equivalent_profile)
-                    * (equivalent_profile - low)
-                    * panel.ratio(s)
-                )
-
-        with mp.workdps(RULE_DIGITS):
-            total += integral(density, [mpf(0), mpf(1)])
-    return total
-
-
-def _moments(body: Body, w: mpf) -> _Moments:
+def _moments(body: ShapeBody, w: mpf) -> _Moments:
     edge = body.b if body.blunt else mpf(0)
     if w == 0:
         return _Moments(edge, mpf(0), mpf(0))
@@ -175,7 +144,7 @@ def _moments(body: Body, w: mpf) -> _Moments:
     g, n = body.g(x), body.force(x)
     at = Setting(body, x, g, n, mpf(1), mpf(1), mpf(1), mpf(1), mpf(1))
     first = x * g - n / 2
-    return _Moments(x, first, g * first - overlap(at, edge))
+    return _Moments(x, first, g * first - slip.overlap(at, edge))
 
 
 def _quadratic(points: Sequence[tuple[mpf, mpf]]) -> tuple[mpf, mpf, mpf]:
@@ -198,13 +167,13 @@ def _parts(histories: Sequence[SpringHistory], step: int) -> tuple[list[mpf], li
 def history(profile: Mapping[str, Any], path: Path, material: Material) -> list[Sample]:
     """Exact sums after each load step of a path of (depth, displacement) from (0, 0)."""
     with mp.workdps(WORK_DIGITS):
-        body = body_of(profile)
+        body = ShapeBody(profile)
         if isinstance(body, ShapeBody) and isinstance(body.shape, FlatPunch):
             return _punch(body, path, material)
         return _sums(body, path, material)
 
 
-def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
+def _sums(body: ShapeBody, path: Path, material: Material) -> list[Sample]:
     e_star, g_star = mpf(material.e_star), mpf(material.g_star)
     totals = [[mpf(0)] * 3 for _ in path]
     borders = fronts(path, material)
@@ -239,11 +208,11 @@ def _sums(body: Body, path: Path, material: Material) -> list[Sample]:
     ]
 
 
-def _bearing(body: Body, depth: mpf) -> mpf:
+def _bearing(body: ShapeBody, depth: mpf) -> mpf:
     return body.force(body.radius("indentation_depth", depth)) if depth > 0 else mpf(0)
 
 
-def _punch(body: Body, path: Path, material: Material) -> list[Sample]:
+def _punch(body: ShapeBody, path: Path, material: Material) -> list[Sample]:
     """All springs of a flat punch are identical."""
     width = 2 * body.b
     life = follow(mpf(0), path, material)

@@ -383,7 +383,7 @@ _MAKERS: dict[str, Callable[[Mapping[str, Any]], Shape]] = {
     ),
 }
 
-#: Kinds with a closed form; ``tabulated`` is in ``tables``.
+#: Kinds with a closed form.
 KINDS = tuple(_MAKERS)
 
 

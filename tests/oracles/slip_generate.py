@@ -20,7 +20,6 @@ from tests.oracles.bank import DATA
 from tests.oracles.cases import FAMILIES, SCALES, Family, Profile
 from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
 from tests.oracles.slip_reference import CONTROLS, OUTPUTS, WORK_DIGITS, Material, Setting
-from tests.oracles.table_cases import table_contacts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -111,7 +110,6 @@ def tasks() -> Iterator[Task]:
         if task is not None:
             yield task
     yield from _break_tasks()
-    yield from _table_tasks()
 
 
 def _equation(kind: str, tangential: str, turn: int) -> str:
@@ -197,26 +195,6 @@ def _break_tasks() -> Iterator[Task]:
                 1,
                 tuple(("c", radius) for radius in radii),
             )
-
-
-def _table_tasks() -> Iterator[Task]:
-    for turn, scene in enumerate(table_contacts()):
-        for number, radius in enumerate(scene.radii[:2]):
-            for tangential in CONTROLS if number == 0 else CONTROLS[turn % 3 :][:1]:
-                equation = _equation("tabulated", tangential, turn)
-                yield Task(
-                    f"table-{scene.name}-{equation[1:-1]}-{radius:g}-{TANGENTIAL[tangential]}",
-                    equation,
-                    {"family": f"table-{scene.name}", "regime": f"{radius:g}", "scale": "1"},
-                    scene.profile,
-                    Material(1.0, 0.8, 0.3),
-                    "contact_radius",
-                    radius,
-                    tangential,
-                    1,
-                    (1e-14, 1e-6, 0.5, 1 - 1e-9),
-                    energy=False,
-                )
 
 
 def prescribed_value(at: Setting, task: Task, target: Any) -> float | None:
@@ -390,7 +368,6 @@ def field_tasks() -> Iterator[FieldTask]:
                 task = _field_task(family, regime, size, ratio, turn_)
                 if task is not None:
                     yield task
-    yield from _table_fields()
 
 
 #: Contacts near a body's end, or far beyond its break.
@@ -405,33 +382,6 @@ FAR = {
     "spherical-tip-cone0.1": "b/a=1e-6",
     "capped-paraboloid-worn": "b/a=1e-3",
 }
-
-
-#: A narrow annulus over many panels, and one next to a break; both radii exact.
-TABLE_FIELDS = {"sphere200": (0.5, 0.49), "rounded-punch": (0.65, 0.62)}
-
-
-def _table_fields() -> Iterator[FieldTask]:
-    for scene in table_contacts():
-        if scene.name not in TABLE_FIELDS:
-            continue
-        a, c = TABLE_FIELDS[scene.name]
-        radii = [0.0, 1e-9, a / 3, c * (1 - 1e-9), c, c * (1 + 1e-9), (a + c) / 2, a * (1 - 1e-9)]
-        if scene.name == "rounded-punch":
-            radii += [0.6 * (1 - 1e-9), 0.6 * (1 + 1e-9), a * (1 + 1e-9), 3 * a]
-        task = Task(
-            f"fields-table-{scene.name}-5.18-{a:g}-{c:g}",
-            "(5.18)",
-            {"family": f"table-{scene.name}", "regime": f"{a:g}", "scale": "1"},
-            scene.profile,
-            Material(1.0, 0.8, 0.3),
-            "contact_radius",
-            a,
-            "stick_radius",
-            1,
-            (("c", c),),
-        )
-        yield FieldTask(task, c, tuple(sorted(radii)))
 
 
 def _field_task(

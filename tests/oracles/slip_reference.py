@@ -1,7 +1,7 @@
 """Reference results for partial slip: the tangential problem and the fields over the radius.
 
 A body is a sequence of panels. On each panel the equivalent profile g is smooth in s = sqrt(x^2 -
-k^2), where k is the panel's left end: the break of a shape, a knot of a table, or zero. Every
+k^2), where k is the panel's left end: the break of a shape, or zero. Every
 integral is taken in s, or in an angle or a hyperbolic angle of s that removes the kernel's
 singularity, panel by panel.
 
@@ -19,7 +19,6 @@ from mpmath import mp, mpf
 
 from tests.oracles.reference import contact_radius, integral
 from tests.oracles.shapes import FlatPunch, Monomials, Shape, shape_of
-from tests.oracles.tables import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -137,60 +136,10 @@ class ShapeBody:
         )
 
 
-class TableBody:
-    """A table's interpolant: one panel between adjacent knots."""
-
-    blunt = False
-
-    def __init__(self, profile: Mapping[str, Any]) -> None:
-        self.table = Table(profile)
-        self.g, self.dg, self.force = self.table.g, self.table.dg, self.table.force
-        self.f = self.table.f
-        jumps = zip(self.table.knots, self.table.jumps, strict=False)
-        self.b = next(k for k, jump in jumps if any(jump))
-        self.blunt = self.b > 0
-
-    def radius(self, control: str, reduced: mpf) -> mpf:
-        return self.table.contact_radius(control, reduced)
-
-    def panels(self, low: mpf, high: mpf) -> Iterator[Panel]:
-        knots = self.table.knots
-        for i in range(self.table.panel(low), self.table.panel(high) + 1):
-            start, end = max(low, knots[i]), min(high, knots[i + 1])
-            if end > start:
-                yield Panel(knots[i], start, end, lambda x, s: self.table.g(x), self._dg(i))
-
-    def _dg(self, number: int) -> Callable[[mpf, mpf], mpf]:
-        # s of the panel's own knot is free of cancellation where x rounds to the knot.
-        return lambda x, s: self.table.dg(x, s if self.table.panel(x) == number else None)
-
-    def integrate(self, fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:
-        return self.table.pieces(low, high, fn)
-
-    def unknown(self, x: mpf) -> Callable[[mpf], tuple[mpf, mpf]]:
-        low, width = self.b, x - self.b
-
-        def radius(w: mpf) -> tuple[mpf, mpf]:
-            fraction = 1 / (1 + mp.exp(-w))
-            return low + width * fraction, width * fraction * (1 - fraction)
-
-        return radius
-
-    def start(self, x: mpf) -> mpf:
-        return mpf(0)
-
-
-Body = ShapeBody | TableBody
-
-
-def body_of(profile: Mapping[str, Any]) -> Body:
-    return TableBody(profile) if profile["kind"] == "tabulated" else ShapeBody(profile)
-
-
-def invert(body: Body, fn: Callable[[mpf], mpf], slope: Callable[[mpf], mpf], goal: mpf,
+def invert(body: ShapeBody, fn: Callable[[mpf], mpf], slope: Callable[[mpf], mpf], goal: mpf,
            upper: mpf) -> mpf:  # fmt: skip
     """The x < upper with fn(x) = goal > 0, by bracketed Newton's method in logarithms."""
-    low_break = body.b if isinstance(body, ShapeBody) and not body.blunt else mpf(0)
+    low_break = body.b if not body.blunt else mpf(0)
     top = low_break if low_break and low_break < upper and fn(low_break) >= goal else upper
     radius = body.unknown(top)
     target = mp.log(goal)
@@ -199,9 +148,6 @@ def invert(body: Body, fn: Callable[[mpf], mpf], slope: Callable[[mpf], mpf], go
         return mp.log(fn(radius(w)[0])) - target
 
     high = low = body.start(top)
-    step = mpf(1)
-    while isinstance(body, TableBody) and excess(high) < 0:
-        high, step = high + step, 2 * step
     step = mpf(1)
     while excess(low) > 0:
         low, step = low - step, 2 * step
@@ -234,7 +180,7 @@ def _newton(excess: Callable[[mpf], mpf], rate: Callable[[mpf], mpf], low: mpf, 
 class Setting:
     """Contact (edge a, depth, reduced force) and material; all to `WORK_DIGITS` digits."""
 
-    body: Body
+    body: ShapeBody
     a: mpf
     depth: mpf
     n: mpf
@@ -265,7 +211,7 @@ class Material:
 def setting(profile: Mapping[str, Any], control: str, load: float, material: Material) -> Setting:
     """Return the normal contact under one load (at most one control), at full precision."""
     with mp.workdps(WORK_DIGITS):
-        body = body_of(profile)
+        body = ShapeBody(profile)
         e_star, g_star, mu = mpf(material.e_star), mpf(material.g_star), mpf(material.mu)
         given = mpf(load)
         reduced = given / e_star if control == "normal_force" else given
@@ -423,7 +369,7 @@ def full_slip(at: Setting, displacement: float) -> dict[str, mpf]:
         return dict(zip(OUTPUTS, answers, strict=True))
 
 
-def _abel(body: Body, panel: Panel, r: mpf) -> mpf:
+def _abel(body: ShapeBody, panel: Panel, r: mpf) -> mpf:
     """int g'(x)/sqrt(x^2 - r^2) dx over a panel that begins at or beyond r."""
     square = (r - panel.k) * (r + panel.k)
     low, high = panel.s(panel.low), panel.s(panel.high)
@@ -460,7 +406,7 @@ def traction(at: Setting, c: mpf, r: mpf) -> mpf:
         return at.e_star / mp.pi * total
 
 
-def _back(body: Body, panel: Panel, r: mpf, density: Callable[[mpf], mpf]) -> mpf:
+def _back(body: ShapeBody, panel: Panel, r: mpf, density: Callable[[mpf], mpf]) -> mpf:
     """int density(s)/sqrt(r^2 - x^2) dx over a panel that ends at or below r."""
     reach = panel.s(r)
     begin = mp.asin(panel.s(panel.low) / reach)

@@ -20,8 +20,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from tests.oracles.shapes import kappa
-from tests.oracles.slip_reference import WORK_DIGITS, ShapeBody, TableBody, body_of
-from tests.oracles.tables import Table
+from tests.oracles.slip_reference import WORK_DIGITS, ShapeBody
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -54,10 +53,10 @@ def foundation(profile: Mapping[str, Any], depth: float, count: int) -> Foundati
     if profile["kind"] == "flat_punch":
         return Foundation(np.zeros(1), np.array([2 * profile["radius"]]))
     with mp.workdps(WORK_DIGITS):
-        body = body_of(profile)
+        body = ShapeBody(profile)
         edge = float(body.radius("indentation_depth", mpf(depth)))
         flat = float(body.b) if body.blunt else 0.0
-        knots = [0.0, *(k for k in _breaks(body) if 0 < k < edge), edge]
+        knots = [0.0, *(k for k in [float(body.b)] if 0 < k < edge), edge]
     first_contact_depth, length = [], []
     for low, high in itertools.pairwise(knots):
         if high <= flat:
@@ -78,17 +77,9 @@ def foundation(profile: Mapping[str, Any], depth: float, count: int) -> Foundati
     return Foundation(np.concatenate(first_contact_depth), np.concatenate(length))
 
 
-def _breaks(body: ShapeBody | TableBody) -> list[float]:
-    if isinstance(body, TableBody):
-        return [float(k) for k in body.table.knots]
-    return [float(body.b)]
-
-
 def equivalent_profile(profile: Mapping[str, Any], x: Array, s: Array, low: float) -> Array:
     """g at the radii x = sqrt(low^2 + s^2); `low` is the break at or below them."""
     kind = profile["kind"]
-    if kind == "tabulated":
-        return _table_equivalent_profile(profile, x)
     if kind in _POWERS:
         return sum((c * float(kappa(mpf(n))) * x**n for c, n in _POWERS[kind](profile)), 0 * x)
     return _EQUIVALENT_PROFILES[kind](profile, x, s, np.arctan2(s, low), low > 0)
@@ -135,26 +126,6 @@ _EQUIVALENT_PROFILES: dict[str, Any] = {
         x**2 / p["tip_radius"] + (x * s * (1 / p["radius"] - 1 / p["tip_radius"]) if far else 0 * x)
     ),
 }
-
-
-def _table_equivalent_profile(profile: Mapping[str, Any], x: Array) -> Array:
-    """Sum over knots of the jumps in f', f'' and f''', expanded about each knot."""
-    with mp.workdps(WORK_DIGITS):
-        table = Table(profile)
-        rows = [
-            (float(k), float(a + b * k + c * k**2), float(b + 2 * c * k), float(c))
-            for k, (a, b, c) in zip(table.knots, table.jumps, strict=False)
-        ]
-    wide = x.astype(np.longdouble)
-    total = np.zeros_like(wide)
-    for k, first, second, third in rows:
-        reach = np.maximum(wide, k)
-        s = np.sqrt((reach - k) * (reach + k))
-        phi = np.arctan2(s, np.longdouble(k))
-        line = s - k * phi
-        square = ((reach**2 + 2 * np.longdouble(k) ** 2) * phi - 3 * k * s) / 2
-        total += first * phi + second * line + third * square
-    return (wide * total).astype(float)
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,9 @@ from mpmath import mp, mpf
 from tests.oracles import slip_reference as slip
 from tests.oracles import springs
 from tests.oracles.cases import FAMILIES
-from tests.oracles.history_reference import Sample, history, overlap
+from tests.oracles.history_reference import Sample, history
 from tests.oracles.shapes import KINDS, shape_of
 from tests.oracles.slip_reference import Material
-from tests.oracles.tables import Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,20 +36,6 @@ PROFILES: dict[str, dict[str, Any]] = {
     "truncated-cone": {"kind": "truncated_cone", "flat_radius": 0.6, "slope": 0.3},
     "sphere": {"kind": "sphere", "radius": 1.5},
     "rounded-cone": {"kind": "rounded_cone", "slope": 0.3, "tip_radius": 1.7},
-    "cubic-table": {
-        "kind": "tabulated",
-        "r": [0.0, 0.3, 0.7, 1.1, 2.0],
-        "f": [0.0, 0.02, 0.1, 0.25, 0.8],
-        "interpolation": "cubic",
-        "breaks": [],
-    },
-    "linear-table": {
-        "kind": "tabulated",
-        "r": [0.0, 0.3, 0.7, 1.1, 2.0],
-        "f": [0.0, 0.02, 0.1, 0.25, 0.9],
-        "interpolation": "linear",
-        "breaks": [],
-    },
     "flat-punch": {"kind": "flat_punch", "radius": 0.5},
 }
 DEPTH = 0.25
@@ -122,17 +107,6 @@ def test_springs_have_the_equivalent_profile_of_every_kind() -> None:
     assert proved == set(KINDS) - {"flat_punch"}
 
 
-@pytest.mark.parametrize("name", ["cubic-table", "linear-table"])
-def test_springs_have_the_equivalent_profile_of_a_table(name: str) -> None:
-    with mp.workdps(60):
-        table = Table(PROFILES[name])
-        x = np.array([0.1, 0.3, 0.5, 0.9, 1.3, 1.9])
-        expected = [float(table.g(mpf(one))) for one in x.tolist()]
-    assert springs.equivalent_profile(PROFILES[name], x, x, 0.0) == pytest.approx(
-        expected, rel=1e-13, abs=0
-    )
-
-
 @everywhere
 def test_springs_converge_to_the_exact_history(name: str) -> None:
     path = random_path(5, 7)
@@ -178,9 +152,8 @@ def test_first_loading_is_partial_slip(name: str, rho: float) -> None:
     with mp.workdps(slip.WORK_DIGITS):
         assert same(computed.tangential_force, known["tangential_force"])
         factor = 2 * (at.mu * at.e_star) ** 2 / at.g_star
-        assert same(computed.dissipated_energy, factor * overlap(at, known["stick_radius"]))
-        if "table" not in name:
-            assert same(computed.dissipated_energy, known[DISSIPATED])
+        assert same(computed.dissipated_energy, factor * slip.overlap(at, known["stick_radius"]))
+        assert same(computed.dissipated_energy, known[DISSIPATED])
 
 
 def cycle(name: str, amplitude: float) -> tuple[mpf, mpf]:
@@ -236,7 +209,7 @@ def test_full_slip_dissipates_friction_times_sliding_distance(name: str) -> None
         at = slip.setting(PROFILES[name], "indentation_depth", DEPTH, MATERIAL)
         assert same(force, at.mu * at.e_star * at.n)
         edge = at.body.b if at.body.blunt else mpf(0)
-        missing = mpf(0) if at.flat_punch else overlap(at, edge)
+        missing = mpf(0) if at.flat_punch else slip.overlap(at, edge)
         # int (d - g)^2 = d int (d - g) - int (d - g) g.
         square = at.depth * at.n / 2 - missing
         loop = 4 * force * mpf(amplitude) - 8 * (at.mu * at.e_star) ** 2 / at.g_star * square

@@ -20,7 +20,7 @@ def everything() -> list[bank.Record]:
 
 def test_every_kind_is_covered_by_every_control() -> None:
     covered = {(r["profile"]["kind"], r["tangential_control"]) for r in everything()}
-    expected = {(kind, control) for kind in (*KINDS, "tabulated") for control in CONTROLS}
+    expected = {(kind, control) for kind in KINDS for control in CONTROLS}
     # A flat punch has a single stick radius, independent of the force.
     assert covered == expected - {("flat_punch", "stick_radius")}
 
@@ -36,7 +36,7 @@ def test_every_regime_and_direction_is_covered() -> None:
 
 def test_every_kind_has_its_fields() -> None:
     kinds = {record["profile"]["kind"] for record in bank.load("slip_fields")}
-    assert kinds == {*KINDS, "tabulated"}
+    assert kinds == set(KINDS)
 
 
 def test_slip_opposes_and_traction_follows_the_force() -> None:

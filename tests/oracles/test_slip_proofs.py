@@ -47,7 +47,7 @@ def setting_of(profile: Profile, radius: float) -> Setting:
 def chosen(name: str) -> Setting:
     """Return a contact that extends beyond the break, if there is one."""
     profile = PROFILES[name]
-    b = float(reference.body_of(profile).b)
+    b = float(reference.ShapeBody(profile).b)
     return setting_of(profile, 1.7 * b if b else 0.5)
 
 

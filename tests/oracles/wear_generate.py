@@ -10,7 +10,7 @@ import math
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mpmath import mp, mpf
@@ -21,7 +21,6 @@ from tests.oracles.cases import FAMILIES, SCALES, Profile
 from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
 from tests.oracles.slip_generate import BLUNT, material_at
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting, setting
-from tests.oracles.table_cases import table_contacts
 from tests.oracles.wear_reference import FIELDS, OUTPUTS, Limit
 
 if TYPE_CHECKING:
@@ -52,8 +51,6 @@ OF_PARABOLOID = {
     PAIRS[2]: ("(5.87)", "(5.88)"),
     PAIRS[3]: ("(5.90)",),
 }
-#: Tables with fewer points are short; those with more are left out.
-SHORT_TABLE, MAX_POINTS, THIN = 10, 70, 1 - 1e-3
 #: Beyond it, adjacent doubles as amplitudes give unrelated results.
 MAX_CONDITION = 1e11
 WIDE, NARROW = mpf("0.5"), mpf("1e-6")
@@ -99,24 +96,6 @@ def tasks() -> Iterator[Task]:
                 assert profile is not None
                 tags = {"family": family.name, "regime": regime, "scale": scale}
                 yield _task(turn, pair, tags, profile, material_at(scale, turn), given[pair[0]])
-    yield from _table_tasks(turn)
-
-
-def _table_tasks(turn: int) -> Iterator[Task]:
-    """Small tables for every pair; long ones, with many panels, for a narrow worn annulus."""
-    for scene in table_contacts():
-        points = len(scene.profile["r"])
-        if points > MAX_POINTS:
-            continue
-        short = points < SHORT_TABLE
-        for pair in PAIRS if short else PAIRS[turn % 4 :][:1]:
-            turn += 1
-            tags = {"family": f"table-{scene.name}", "regime": f"{scene.radii[0]:g}", "scale": "1"}
-            material = Material(1.0, 0.8, 0.3)
-            result = setting(scene.profile, "contact_radius", scene.radii[0], material)
-            load = result.depth if pair[0] == "indentation_depth" else result.n
-            task = _task(turn, pair, tags, scene.profile, material, float(load))
-            yield task if short else replace(task, places=(THIN,))
 
 
 def _task(

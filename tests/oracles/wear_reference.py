@@ -17,10 +17,10 @@ from mpmath import mp, mpf
 from tests.oracles.slip_reference import (
     SIGN_DIGITS,
     WORK_DIGITS,
-    Body,
     Material,
     Panel,
     Setting,
+    ShapeBody,
     _abel,
     invert,
     setting,
@@ -93,7 +93,7 @@ def stick_edge(at: Setting, control: str, name: str, given: mpf) -> tuple[mpf, m
     return c, share / c
 
 
-def _largest(body: Body, at: Setting, share: mpf) -> mpf:
+def _largest(body: ShapeBody, at: Setting, share: mpf) -> mpf:
     """The largest c < a with c (d - g(c)) = share.
 
     Starting from above, c -> g^-1(d - share/c) decreases monotonically towards the root: c (d - g)
@@ -139,7 +139,7 @@ def _zero(_x: mpf, _s: mpf) -> mpf:
     return mpf(0)
 
 
-def _whole(body: Body, low: mpf, high: mpf) -> Iterator[Panel]:
+def _whole(body: ShapeBody, low: mpf, high: mpf) -> Iterator[Panel]:
     """All panels, including the flat of a blunt shape, where g = 0 and the integrand is nonzero."""
     if body.blunt and low < body.b:
         yield Panel(mpf(0), low, min(body.b, high), _zero, _zero)
@@ -201,8 +201,7 @@ def worn_annulus_width(at: Setting, c: mpf, step: mpf, near: mpf | None = None) 
 
 
 def _end(at: Setting) -> mpf:
-    shape = getattr(at.body, "shape", None)
-    return shape.limit if shape is not None else at.body.table.knots[-1]
+    return at.body.shape.limit
 
 
 def _illinois(fn: Callable[[mpf], mpf], low: mpf, high: mpf) -> mpf:

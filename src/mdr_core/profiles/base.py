@@ -175,6 +175,11 @@ class Profile(ABC):
         return False
 
     @property
+    def steepens(self) -> bool:
+        """True if the contact radius may not resolve the load just beyond a break."""
+        return False
+
+    @property
     def steepness(self) -> float:
         """Highest power that g resembles over part of the contact, which sets the resolution."""
         return 3.5

@@ -130,7 +130,11 @@ class Tabulated(Profile):
 
     @property
     def flattens(self) -> bool:
-        return True
+        return not self._flanks
+
+    @property
+    def steepens(self) -> bool:
+        return bool(self._flanks)
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
