@@ -302,6 +302,8 @@ class IntervalMoments:
             rise, measure = rise * twice, measure / np.square(twice)
         # Both scale with the width, which has fewer digits than the span.
         total = in_order(weights, rise)
+        # The slope of g may underflow on a flat.
+        total = np.where(total > 0, total, inf)
         t = in_order(cumulative, rise[:, None]) / total
         measure = measure * (span / total)
         parts = np.array([np.square(1 - t), 2 * t * (1 - t), t * t])

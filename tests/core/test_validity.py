@@ -65,7 +65,7 @@ def test_infinite_deviatoric_stress() -> None:
 
 def test_warning_lists_the_radii_of_infinite_deviatoric_stress_only() -> None:
     rubber, r = bodies(0.5), np.arange(6.0)
-    table = Tabulated(r, 1e-3 * r * (r + 1))
+    table = Tabulated(r, 1e-3 * (r + np.maximum(r - 3, 0)), breaks=(3.0,))
     contact = normal.solve(table, rubber.e_star, contact_radius=3.5)
     slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=2.5)
     message = warnings_of(slips, rubber)["plastic"].message()

@@ -1,6 +1,5 @@
 """Random profiles of all kinds, and tables like measured ones, in SI."""
 
-from bisect import bisect_right
 from collections.abc import Callable
 from math import log1p, sqrt, tanh
 from random import Random
@@ -140,7 +139,7 @@ def _tabulated(random: Random, _kind: str, size: float) -> Case:
         lambda s: 0.1 * s * s + max(s * s - flat * flat, 0.0),
     )
     shape = random.choice(shapes)
-    count = random.choice((random.randint(2, 9), random.randint(10, 60), random.randint(60, 300)))
+    count = random.choice((random.randint(3, 9), random.randint(10, 60), random.randint(60, 300)))
     if random.random() < 0.05:
         count = random.randint(300, 1000)
     spacing = random.choice((1.0, 1.0, 2.0, 0.7))
@@ -150,24 +149,21 @@ def _tabulated(random: Random, _kind: str, size: float) -> Case:
     if random.random() < 0.3:
         places = sorted({*places, flat})
     heights = [shape(s) for s in places]
-    if random.random() < 0.3:
-        # Measured heights scatter; they are sorted, since a profile never decreases.
-        noise = spread(random, 1e-6, 1e-2) * heights[-1]
-        heights = sorted([0.0, *(max(y + random.gauss(0, noise), 0.0) for y in heights[1:])])
+    noise = spread(random, 1e-6, 1e-2) * heights[-1] if random.random() < 0.3 else 0.0
+    heights = [y + random.gauss(0, noise) for y in heights]
     r, f = [L * s for s in places], [h * y for y in heights]
     if random.random() < 0.4:
         # Instruments print a fixed number of digits.
         digits = random.randint(4, 8)
         r, f = ([float(f"{value:.{digits}g}") for value in each] for each in (r, f))
     table: dict[str, Any] = {"kind": "tabulated", "r": r, "f": f}
-    if random.random() < 0.8:
-        table["interpolation"] = random.choice(("cubic", "pchip", "linear"))
+    if noise > 0 and random.random() < 0.3:
+        table["uncertainty"] = h * noise
     if random.random() < 0.3:
-        table["breaks"] = sorted({random.choice(r[1:-1] or r) for _ in range(random.randint(1, 3))})
-
-    def height(radius: float) -> float:
-        i = min(max(bisect_right(r, radius) - 1, 0), len(r) - 2)
-        share = (radius - r[i]) / (r[i + 1] - r[i]) if r[i + 1] > r[i] else 0.0
-        return f[i] + share * (f[i + 1] - f[i])
-
-    return Case(table, height, r[-1] * spread(random, 0.05, 0.9))
+        table["breaks"] = [L * flat]
+    if random.random() < 0.2:
+        # Both sides of the axis, in any order.
+        order = random.sample(range(len(r)), len(r))
+        table["r"] = [random.choice((-1, 1)) * r[i] for i in order]
+        table["f"] = [f[i] for i in order]
+    return Case(table, lambda radius: h * shape(radius / L), r[-1] * spread(random, 0.05, 0.9))

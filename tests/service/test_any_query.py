@@ -63,9 +63,9 @@ def tables(draw: st.DrawFn) -> dict[str, object]:
     for dr, df in draw(steps):
         r.append(r[-1] + dr)
         f.append(f[-1] + df)
-    interpolation = draw(st.sampled_from(["auto", "cubic", "pchip", "linear"]))
+    uncertainty = draw(st.none() | st.floats(0, 1e9))
     breaks = draw(st.lists(st.sampled_from(r), max_size=2))
-    return {"kind": "tabulated", "r": r, "f": f, "interpolation": interpolation, "breaks": breaks}
+    return {"kind": "tabulated", "r": r, "f": f, "uncertainty": uncertainty, "breaks": breaks}
 
 
 TERMS = st.fixed_dictionaries(

@@ -48,8 +48,8 @@ PROFILES = {
         profiles.CappedParaboloid(0.1, 0.5, 0.4),
     ),
     "tabulated": (
-        {"r": [0.0, 0.5, 1.0, 2.0], "f": [0, 0.1, 0.5, 2.5], "interpolation": "pchip"},
-        profiles.Tabulated([0.0, 0.5, 1.0, 2.0], [0.0, 0.1, 0.5, 2.5], interpolation="pchip"),
+        {"r": [0.0, 0.5, 1.0, 2.0], "f": [0, 0.1, 0.5, 2.5], "uncertainty": 0.01},
+        profiles.Tabulated([0.0, 0.5, 1.0, 2.0], [0.0, 0.1, 0.5, 2.5], uncertainty=0.01),
     ),
 }
 
@@ -125,7 +125,7 @@ def test_catalogue_lists_every_kind_with_its_fields(client: Client) -> None:
     for name, kind in listed.items():
         assert kind["formula"]
         required = {field["name"] for field in kind["fields"] if field["required"]}
-        assert required == set(PROFILES[name][0]) - {"interpolation"}
+        assert required == set(PROFILES[name][0]) - {"uncertainty"}
     (slope,) = listed["cone"]["fields"]
     assert slope["dimension"] == "1"
     assert "normal_force" in listed["cone"]["closed_forms"]

@@ -136,10 +136,12 @@ def test_warning_lists_five_singular_radii(radii: int, listed: str) -> None:
     assert notice.message == f"pressure is infinite at radius {listed}"
 
 
-def test_pressure_is_infinite_at_a_point_of_a_linear_table(client: Client) -> None:
+def test_pressure_is_infinite_at_the_breaks_of_a_table(client: Client) -> None:
     r = [0.0, 0.25, 0.5, 1.0]
+    heights = [max(x - 0.25, 0) + max(x - 0.5, 0) for x in np.linspace(0, 1, 17)]
+    table = {"r": np.linspace(0, 1, 17).tolist(), "f": heights, "breaks": [0.25, 0.5]}
     body = {
-        "profile": {"kind": "tabulated", "r": r, "f": [0, 0, 0.1, 0.4], "interpolation": "linear"},
+        "profile": {"kind": "tabulated", **table},
         "material": {"e_star": 1},
         "load": {"contact_radius": 0.7},
         "radius": r,

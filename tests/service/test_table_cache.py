@@ -1,4 +1,4 @@
-"""Cache of resolved tables in a compute process: identical bytes."""
+"""A table would be fitted at every query, or a kept one would answer for another."""
 
 import json
 
@@ -21,7 +21,7 @@ def table(curvature: float = 1.0, **rest: object) -> TabulatedProfile:
     return TabulatedProfile.model_validate({"kind": "tabulated"} | given)
 
 
-def test_table_is_resolved_once() -> None:
+def test_table_is_fitted_once() -> None:
     assert contacts.profile(table()) is contacts.profile(table())
 
 
@@ -29,12 +29,12 @@ def test_table_is_resolved_once() -> None:
     "other",
     [
         table(curvature=np.nextafter(1.0, 2.0)),
-        table(interpolation="pchip"),
+        table(uncertainty=1e-9),
         table(breaks=[R[3]]),
         table(breaks=[R[4]]),
     ],
 )
-def test_different_table_is_resolved_separately(other: TabulatedProfile) -> None:
+def test_different_table_is_fitted_separately(other: TabulatedProfile) -> None:
     assert contacts.profile(table()) is not contacts.profile(other)
 
 

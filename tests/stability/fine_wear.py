@@ -83,7 +83,7 @@ BREAKS = {
     ),
     "forces": Break(CappedParaboloid(1.0, 4.0, 1.0), 1.1, "forces", 0.97, 16.0),
     "stick edge passes": Break(
-        Tabulated(_TABLE, _HEIGHTS, "linear"), 1.2, "force, displacement", 0.7, 0.1
+        Tabulated(_TABLE, _HEIGHTS, (1.0,)), 1.2, "force, displacement", 0.7, 0.1
     ),
 }
 #: Half as many give scalars within 5e-4.

@@ -47,7 +47,6 @@ SHAPES: dict[str, tuple[dict[str, Any], float]] = {
             "kind": "tabulated",
             "r": R.tolist(),
             "f": (R * R / 2 + R**4 / 8).tolist(),
-            "interpolation": "cubic",
         },
         0.7,
     ),

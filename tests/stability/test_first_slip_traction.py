@@ -13,10 +13,8 @@ import pytest
 from mpmath import mp, mpf
 
 from mdr_core import abel
-from mdr_core.profiles import Tabulated
 from tests.core.comparison import EPS, profile_from
 from tests.oracles.shapes import shape_of
-from tests.oracles.tables import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,15 +44,8 @@ SHAPES: dict[str, dict[str, Any]] = {
     "truncated cone": {"kind": "truncated_cone", "flat_radius": 0.5, "slope": 0.3},
     "rounded cone": {"kind": "rounded_cone", "slope": 0.4, "tip_radius": 1.5},
     "spherical-tip cone": {"kind": "spherical_tip_cone", "slope": 0.5, "tip_radius": 1.0},
-    "table": {
-        "kind": "tabulated",
-        "r": [0.15 * i for i in range(9)],
-        "f": [(0.15 * i) ** 2 / (1 + (1 - (0.15 * i / 1.3) ** 2) ** 0.5) for i in range(9)],
-        "interpolation": "cubic",
-        "breaks": [],
-    },
 }
-#: Contact edge; not a knot of the table.
+#: Contact edge.
 A = 1.02
 
 
@@ -63,7 +54,7 @@ class Annulus:
 
     def __init__(self, name: str, profile: Profile) -> None:
         self.kind = SHAPES[name]["kind"]
-        self.body = Table(SHAPES[name]) if self.kind == "tabulated" else shape_of(SHAPES[name])
+        self.body = shape_of(SHAPES[name])
         self.profile = profile
 
     def radius(self, coordinate: mpf) -> mpf:
@@ -139,10 +130,7 @@ def check(exact: Callable[..., mpf], arguments: tuple[mpf, ...], value: float) -
 
 
 def profile_of(name: str) -> Profile:
-    fields = SHAPES[name]
-    if fields["kind"] == "tabulated":
-        return Tabulated(fields["r"], fields["f"], interpolation="cubic")
-    return profile_from(fields)
+    return profile_from(SHAPES[name])
 
 
 def kernel(profile: Profile, coordinate: float, width: float, r: np.ndarray) -> np.ndarray:

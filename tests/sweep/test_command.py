@@ -65,7 +65,7 @@ def test_nested_inverts_flat() -> None:
     assert fields["material.bodies.0.poissons_ratio"] == 0.3
     assert fields["material.bodies.1"] == "rigid"
     assert nested(fields) == BALL
-    listed = {"profile": {"kind": "tabulated", "r": [0.0, 1.0], "f": [0.0, 1.0]}}
+    listed = {"profile": {"kind": "tabulated", "r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}}
     assert nested(flat(listed)) == listed
 
 
