@@ -11,8 +11,8 @@ from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnsw
 from mdr_service.schemas.wear import WearField
 
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": members(NormalAnswer, ["maximum_pressure"]),
-    "tangential": members(TangentialAnswer, ["maximum_pressure"]),
+    "normal": members(NormalAnswer, ["maximum_pressure", "data_error"]),
+    "tangential": members(TangentialAnswer, ["maximum_pressure", "data_error"]),
     "wear": members(WearAnswer, ["radius", *get_args(WearField)]),
 }
 """Quantities that a sweep computes unless some are named, by query."""
