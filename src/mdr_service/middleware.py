@@ -18,6 +18,7 @@ from starlette.responses import Response
 from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from mdr_core import __version__
 from mdr_service import observability, problems
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
@@ -35,7 +36,10 @@ _UNREAD: Final = problems.BODY_TOO_LARGE.status
 # Time for a client on the same continent to read a response.
 _LINGER_SECONDS: Final = 1.0
 _CLOSE: Final = ((b"connection", b"close"),)
-_ALWAYS: Final = ((b"x-content-type-options", b"nosniff"),)
+_ALWAYS: Final = (
+    (b"x-content-type-options", b"nosniff"),
+    (b"mdr-version", __version__.encode("ascii")),
+)
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -54,7 +58,7 @@ def install(app: FastAPI) -> None:
             allow_origins=SETTINGS.cors_origins,
             allow_methods=("GET", "POST"),
             allow_headers=("Content-Type", "If-None-Match", "X-Request-Id"),
-            expose_headers=("ETag", "Retry-After", "X-Request-Id"),
+            expose_headers=("ETag", "MDR-Version", "Retry-After", "X-Request-Id"),
         )
 
 
