@@ -9,7 +9,7 @@ PYTHON ?= $(shell for python in $(PYTHONS); do \
 
 BIN := .venv/bin
 # Sources of the compiled module.
-COMPILED := src/mdr_core/history/slip_memory_kernel.py src/mdr_core/history/slip_memory_kernel.pxd
+COMPILED := src/mdr_core/history/slip_kernel.py src/mdr_core/history/slip_kernel.pxd
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
