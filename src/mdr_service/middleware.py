@@ -247,7 +247,9 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
     if error.status_code == problems.METHOD_NOT_ALLOWED.status:
         detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed here"
         failure = ServiceError(problems.METHOD_NOT_ALLOWED, detail)
-        return problem_response(failure, {"Allow": _allowed(request)})
+        # Files have no route; the framework names their methods.
+        allowed = _allowed(request) or (error.headers or {})["Allow"]
+        return problem_response(failure, {"Allow": allowed})
     raise error
 
 
