@@ -40,7 +40,8 @@ NUMBERS := tests/core tests/stability $(addprefix tests/contract/test_,example_a
 UNITS := import numpy; print(*numpy.show_config("dicts").get("SIMD Extensions", {}).get("found", []))
 test-portable: .venv/development
 	rm -rf build/plain && mkdir -p build && cp -R src build/plain && rm -f build/plain/mdr_core/history/*.so
-	PORTABLE_RUN=1 PYTHONPATH=build/plain OPENBLAS_CORETYPE=Nehalem GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA \
+	PORTABLE_RUN=1 MDR_PLAIN=1 PYTHONPATH=build/plain \
+	OPENBLAS_CORETYPE=Nehalem GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA \
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(UNITS)')" \
 	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "not long" $(NUMBERS)
 

@@ -18,7 +18,7 @@ TEXT = Path(slip_memory.__file__).with_name("slip_kernel.py")
 
 
 @pytest.mark.skipif(
-    which("cc") is None or "PORTABLE_RUN" in os.environ, reason="there is no compiled module"
+    which("cc") is None or "MDR_PLAIN" in os.environ, reason="there is no compiled module"
 )
 def test_the_loop_is_compiled() -> None:
     suffix = Path(slip_kernel.__file__).suffix
