@@ -35,7 +35,9 @@ _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
 _OF_OUTPUT: Final = frozenset({"output", "size"})
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
-_REQUEST: Final = "a request is a JSON object; see --help for one given by options"
+_REQUEST: Final = (
+    "a request is a JSON object; give a table with --table, and numbers with options (--help)"
+)
 
 _logger: Final = logging.getLogger(__name__)
 
