@@ -9,7 +9,7 @@ PYTHON ?= $(shell for python in $(PYTHONS); do \
 
 BIN := .venv/bin
 # Sources of the compiled module.
-COMPILED := src/mdr_core/history/slip_memory_kernel.py src/mdr_core/history/slip_memory_kernel.pxd
+COMPILED := src/mdr_core/history/slip_kernel.py src/mdr_core/history/slip_kernel.pxd
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # More BLAS threads than cores wait for each other and make small products slower, not faster.
@@ -40,7 +40,8 @@ NUMBERS := tests/core tests/stability $(addprefix tests/contract/test_,example_a
 UNITS := import numpy; print(*numpy.show_config("dicts").get("SIMD Extensions", {}).get("found", []))
 test-portable: .venv/development
 	rm -rf build/plain && mkdir -p build && cp -R src build/plain && rm -f build/plain/mdr_core/history/*.so
-	PORTABLE_RUN=1 PYTHONPATH=build/plain OPENBLAS_CORETYPE=Nehalem GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA \
+	PORTABLE_RUN=1 MDR_PLAIN=1 PYTHONPATH=build/plain \
+	OPENBLAS_CORETYPE=Nehalem GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA \
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(UNITS)')" \
 	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "not long" $(NUMBERS)
 

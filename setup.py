@@ -16,8 +16,8 @@ def extensions() -> list[Extension]:
         return []
     modules = cythonize(
         Extension(
-            "mdr_core.history.slip_memory_kernel",
-            ["src/mdr_core/history/slip_memory_kernel.py"],
+            "mdr_core.history.slip_kernel",
+            ["src/mdr_core/history/slip_kernel.py"],
             # Without fused multiply-add the digits are those of the uncompiled text.
             extra_compile_args=["-O3", "-ffp-contract=off"],
         ),
@@ -29,7 +29,7 @@ def extensions() -> list[Extension]:
             "cdivision": True,
             "initializedcheck": False,
             "infer_types": True,
-            # The types are those of slip_memory_kernel.pxd.
+            # The types are those of slip_kernel.pxd.
             "annotation_typing": False,
         },
     )

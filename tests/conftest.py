@@ -47,6 +47,7 @@ class Client:
     """In-process client of the application."""
 
     def __init__(self, portal: BlockingPortal, app: FastAPI) -> None:
+        self.app = app
         self._portal = portal
         self._client = httpx.AsyncClient(
             transport=httpx.ASGITransport(app), base_url="http://service"

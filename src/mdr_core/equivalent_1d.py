@@ -58,11 +58,9 @@ def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Ar
     closed = _closed_inverse(profile, load, of_force=of_force)
     if closed is not None:
         return closed
-    end = profile.last_coordinate
-    if end is not None:
-        most, _ = load_and_slope(profile, of_force=of_force)(number(end))
+    if profile.largest_loads is not None:
         name = "normal_force" if of_force else "indentation_depth"
-        require_inside(name, load > most, profile.domain)
+        require_inside(name, load > profile.largest_loads[of_force], profile.domain)
     return _root(profile, load, of_force=of_force)
 
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import every, indices, number, some
-from mdr_core.equivalent_1d import coordinate_from_load
+from mdr_core.elementwise import every, indices, some, where
+from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
@@ -91,9 +91,8 @@ class IntervalMoments:
 
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
-        end = self.profile.last_coordinate
-        if end is not None:
-            normal = np.minimum(normal, self.normal(number(end)))
+        if self.profile.largest_loads is not None:
+            normal = np.minimum(normal, self.profile.largest_loads[self.over_forces])
         return coordinate_from_load(self.profile, normal, of_force=self.over_forces)
 
     def over(self, low: Array, span: Array, ends: Array) -> Moments:
@@ -163,20 +162,18 @@ class IntervalMoments:
             upper.weights[:, below] = lower.joined(upper.at(below)).weights
         return Moments(span, upper.weights)
 
-    def conjugate_step(self, low: Array, span: Array) -> Array:
-        """Return the increase of the conjugate over each interval, a sum of positive terms."""
-        ends = self.contact_coordinate(np.array([low, low + span]))
-        lower, middle, upper = self.over(low, span, ends).weights
-        a = self.profile.contact_radius(ends[1 if self.over_forces else 0])
-        if self.over_forces:
-            return np.asarray(span * (1 / (2 * a) + upper + middle / 2))
-        return np.asarray(span * (2 * a + lower + middle / 2))
+    def mean_slope(self, low: Array, high: Array) -> Array:
+        """Return the mean slope of the conjugate between two contact coordinates, low <= high.
 
-    def conjugate_mean(self, low: Array, span: Array) -> Array:
-        """Return the mean reduced force over each interval of depth."""
-        ends = self.contact_coordinate(np.array([low, low + span]))
-        force, a = self.profile.reduced_force(ends[0]), self.profile.contact_radius(ends[0])
-        return np.asarray(force + span * (a + self.over(low, span, ends).weights[0] / 2))
+        It has no cancellation, however near they are: errors of their difference hardly matter.
+        """
+        width = high - low
+        steps = [step(self.profile, high, width, low) for step in (depth_step, force_step)]
+        normal, conjugate = reversed(steps) if self.over_forces else steps
+        twice = 2 * self.profile.contact_radius(high)
+        apart = (width > 0) & (normal > 0)
+        edge = 1 / twice if self.over_forces else twice
+        return where(apart, conjugate / where(apart, normal, 1.0), edge)
 
     @cached_property
     def _breaks(self) -> tuple[Array, Array]:
@@ -221,11 +218,14 @@ class IntervalMoments:
     def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
         """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
         profile, weights = self.profile, np.zeros((3, low.size))
-        shallow = (base == 0) & (profile.contact_radius(ends[1]) < _SHALLOW * profile.first_radius)
-        limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
-        wide = (ends[1] > limit * ends[0]) | ((base == 0) & (low + span > _WIDE * low))
-        closed, by_rule = wide & ~shallow & (span > 0), (~wide | shallow) & (span > 0)
-        beyond = shallow | (base > 0)
+        beyond, long = base > 0, span > 0
+        limit = np.where(beyond, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
+        wide = (ends[1] > limit * ends[0]) | (~beyond & (low + span > _WIDE * low))
+        if some(profile.first_radius > 0):
+            shallow = profile.contact_radius(ends[1]) < _SHALLOW * profile.first_radius
+            shallow &= ~beyond
+            beyond, wide = beyond | shallow, wide & ~shallow
+        closed, by_rule = wide & long, ~wide & long
         if every(by_rule):
             return Moments(span, self.over_narrow(span, ends, base, beyond))
         if some(closed):
@@ -279,35 +279,37 @@ class IntervalMoments:
             distance from `base`; elsewhere it is in the logarithm.
         """
         profile, (start, stop) = self.profile, ends
-        slope = self._slope(stop)
-        if not every(slope):
+        width = stop - start
+        thin = width < _THIN * stop
+        if some(thin):
+            slope = self._slope(stop)
             # An interval may end where g becomes constant.
             slope = np.where(slope > 0, slope, self._slope(start))
-        with np.errstate(divide="ignore"):
-            estimate = span / slope
-        thin = (stop - start < _THIN * stop) & (estimate > 0)
-        width = np.where(thin, np.minimum(estimate, stop), stop - start)
+            with np.errstate(divide="ignore"):
+                estimate = span / slope
+            width = np.where(thin & (estimate > 0), np.minimum(estimate, stop), width)
         share, weights, cumulative = cumulative_rule(_POINTS)
         place, moved = _in_logarithm(stop, width, share)
-        origin, past = place, np.zeros_like(place)
         if some(beyond):
             root, climb = _in_root(stop - base, start - base, width, share)
             place = np.where(beyond, np.minimum(base + root * root, stop), place)
             moved = np.where(beyond, 2 * root * climb, moved)
             origin, past = np.where(beyond, base, place), np.where(beyond, root * root, 0.0)
-        rise = moved * profile.depth_slope_beyond(place, origin, past)
-        twice = 2 * profile.contact_radius(place)
-        measure = 2 * weights * moved * profile.radius_slope(place)
+            slope = profile.depth_slope_beyond(place, origin, past)
+        else:
+            slope = profile.depth_slope(place)
+        rise, measure = moved * slope, weights * moved * profile.radius_slope(place)
         if self.over_forces:
+            twice = 2 * profile.contact_radius(place)
             rise, measure = rise * twice, measure / np.square(twice)
         # Both scale with the width, which has fewer digits than the span.
         total = in_order(weights, rise)
         # The slope of g may underflow on a flat.
         total = np.where(total > 0, total, inf)
         t = in_order(cumulative, rise[:, None]) / total
-        measure = measure * (span / total)
-        parts = np.array([np.square(1 - t), 2 * t * (1 - t), t * t])
-        return in_order(measure, parts.swapaxes(0, 1))
+        rest, parts = 1 - t, np.empty((share.size, 3, span.size))
+        parts[:, 0], parts[:, 1], parts[:, 2] = rest * rest, 2 * t * rest, t * t
+        return in_order(measure, parts) * (2 * span / total)
 
 
 def interval_moments(profile: Profile, *, over_forces: bool) -> IntervalMoments:

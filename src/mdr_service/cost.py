@@ -36,6 +36,8 @@ _START: Final[dict[type[Query], float]] = {
     EvolutionQuery: 0.12,
     SubsurfaceQuery: 1e-3,
 }
+# Time to list the errors of an invalid query.
+_INVALID: Final = 5e-5
 # Additional time of many loads, for which arrays take the place of single numbers.
 _ARRAYS: Final = 2e-4
 # Time per load without and with friction or per sample, per load with wear, per entry of `cycles`.
@@ -69,7 +71,10 @@ _LONGEST: Final = 4.0 * SETTINGS.budget_seconds
 def seconds(query: Query | BatchQuery) -> float:
     """Return the expected time of a query or a batch."""
     if isinstance(query, BatchQuery):
-        times = [seconds(item.query) for item in query.queries if isinstance(item.query, Query)]
+        times = [
+            seconds(item.query) if isinstance(item.query, Query) else _INVALID
+            for item in query.queries
+        ]
         # A query that is rejected alone takes no time.
         return sum(time for time in times if time <= _LONGEST)
     if isinstance(query, SubsurfaceQuery):

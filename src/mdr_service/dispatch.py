@@ -15,6 +15,7 @@ from mdr_service import cost, problems
 from mdr_service.plots import PLOTS
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
+from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.queries import SCHEMAS
@@ -26,7 +27,7 @@ _logger: Final = logging.getLogger(__name__)
 
 def respond(
     name: str,
-    query: Query | BatchQuery | bytes,
+    query: Query | BatchQuery | bytes | dict[str, str],
     media_type: str,
     members: Sequence[str] = (),
     size: tuple[int, int] | None = None,
@@ -36,7 +37,7 @@ def respond(
     Parameters
     ----------
     name : name of the query, a key of `SCHEMAS`, or ``batch``.
-    query : the request, or its text, which is first parsed.
+    query : the request, or its text or the parameters that stand for it, which are first parsed.
     media_type : media type of the content.
     members : members of the result to return, by default all; a picture shows all.
     size : width and height of a picture [mm].
@@ -48,6 +49,9 @@ def respond(
     if isinstance(query, bytes):
         model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
         query = model.model_validate_json(query)
+        cost.require_feasible(query, media_type)
+    elif isinstance(query, dict):
+        query = PARAMETERS[name].model_validate(query).query()
         cost.require_feasible(query, media_type)
     if isinstance(query, BatchQuery):
         _require_few_numbers(query)

@@ -18,6 +18,7 @@ from starlette.responses import Response
 from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from mdr_core import __version__
 from mdr_service import observability, problems
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
@@ -35,7 +36,10 @@ _UNREAD: Final = problems.BODY_TOO_LARGE.status
 # Time for a client on the same continent to read a response.
 _LINGER_SECONDS: Final = 1.0
 _CLOSE: Final = ((b"connection", b"close"),)
-_ALWAYS: Final = ((b"x-content-type-options", b"nosniff"),)
+_ALWAYS: Final = (
+    (b"x-content-type-options", b"nosniff"),
+    (b"mdr-version", __version__.encode("ascii")),
+)
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -54,7 +58,7 @@ def install(app: FastAPI) -> None:
             allow_origins=SETTINGS.cors_origins,
             allow_methods=("GET", "POST"),
             allow_headers=("Content-Type", "If-None-Match", "X-Request-Id"),
-            expose_headers=("ETag", "Retry-After", "X-Request-Id"),
+            expose_headers=("ETag", "MDR-Version", "Retry-After", "X-Request-Id"),
         )
 
 
@@ -241,9 +245,11 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
     if error.status_code == problems.NOT_FOUND.status:
         return problem_response(ServiceError(problems.NOT_FOUND, "GET /docs lists the endpoints"))
     if error.status_code == problems.METHOD_NOT_ALLOWED.status:
-        detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed here"
+        # Files have no route; the framework names their methods.
+        allowed = _allowed(request) or (error.headers or {})["Allow"]
+        detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed: use {allowed}"
         failure = ServiceError(problems.METHOD_NOT_ALLOWED, detail)
-        return problem_response(failure, {"Allow": _allowed(request)})
+        return problem_response(failure, {"Allow": allowed})
     raise error
 
 

@@ -2,6 +2,7 @@
 
 import atexit
 import logging
+import logging.config
 import os
 from collections import deque
 from collections.abc import Mapping
@@ -16,7 +17,9 @@ from time import perf_counter
 from typing import Any, Final
 
 import orjson
-from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info
+
+from mdr_core import __version__
 
 _OTHER: Final = "other"
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
@@ -59,6 +62,7 @@ _WRITE_INTERVAL: Final = 0.1
 # Time for the last lines at the end of the process.
 _FLUSH_SECONDS: Final = 1.0
 _STANDARD_ERROR: Final = 2
+Info("mdr_build", "Version of the service.", registry=REGISTRY).info({"version": __version__})
 _requests: Final = logging.getLogger("mdr_service.requests")
 
 
@@ -174,6 +178,12 @@ class JsonLines(logging.Formatter):
         if record.exc_info:
             line["trace"] = self.formatException(record.exc_info)
         return orjson.dumps(line, default=str).decode()
+
+
+def configure_logging() -> None:
+    """Write log records and warnings of this process as lines of JSON."""
+    logging.config.dictConfig(dict(LOGGING))
+    logging.captureWarnings(capture=True)
 
 
 LOGGING: Final[Mapping[str, Any]] = {

@@ -5,13 +5,19 @@ progress of a client that reads. The class relies on internals of uvicorn, whose
 for that reason; tests check that every overridden method exists and is called.
 """
 
+import re
 import socket
 import struct
 from asyncio import AbstractEventLoop, Transport
 from typing import Any, Final
 
 import orjson
-from httptools import HttpParserError, HttpParserUpgrade, HttpRequestParser
+from httptools import (
+    HttpParserError,
+    HttpParserInvalidURLError,
+    HttpParserUpgrade,
+    HttpRequestParser,
+)
 from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import (
     STATUS_LINE,
@@ -41,6 +47,8 @@ _WRITE_SECONDS: Final = 10.0
 _SEND_BUFFER_BYTES: Final = 131_072
 # Time for a rejected client to finish sending and read the response.
 _LINGER_SECONDS: Final = 1.0
+# What is in a header `Host` (RFC 9110, 7.2).
+_HOST: Final = re.compile(rb"[A-Za-z0-9._~!$&'()*+,;=%:\[\]-]*")
 # `struct linger` of socket(7): what the kernel has not sent is discarded.
 _DISCARD: Final = struct.pack("ii", 1, 0)
 
@@ -116,9 +124,14 @@ class BoundedProtocol(HttpToolsProtocol):
         self._buffered += len(data)
         try:
             self._parse(data)
-        except HttpParserError:
+        except HttpParserError as error:
             if self._buffered <= MAX_HEADER_BYTES:
-                self._reject(problems.MALFORMED_HTTP, "the request cannot be parsed")
+                # An error in a method of this class is the context of the error of the parser.
+                cause = error.__context__ or error
+                is_url = isinstance(cause, HttpParserInvalidURLError)
+                # That error alone repeats what was sent.
+                detail = "the URL cannot be parsed" if is_url else str(cause)
+                self._reject(problems.MALFORMED_HTTP, detail)
                 return
         if self._buffered > MAX_HEADER_BYTES:
             detail = f"the limits are {MAX_HEADER_BYTES} bytes and {MAX_HEADER_FIELDS} fields"
@@ -135,7 +148,7 @@ class BoundedProtocol(HttpToolsProtocol):
                 return
             method, version = self.parser.get_method(), self.parser.get_http_version()
             if method == b"CONNECT":
-                raise HttpParserError
+                raise HttpParserError("this is not a proxy")
             lines = [b"%s %s HTTP/%s" % (method, self.url, version.encode())]
             lines += [name + b": " + value for name, value in self.headers if name != b"upgrade"]
             data = b"\r\n".join((*lines, b"", rest))
@@ -154,13 +167,33 @@ class BoundedProtocol(HttpToolsProtocol):
         if size > MAX_HEADER_BYTES or len(self.headers) > MAX_HEADER_FIELDS:
             self._buffered = MAX_HEADER_BYTES + 1
             raise HttpParserError
+        self._require_valid_framing()
         # A client that sends the next request is reading, or will wait for its response.
         self._buffered = self._unsent = 0
         if len(self.pipeline) >= _MAX_PIPELINED:
-            raise HttpParserError
+            raise HttpParserError(f"more than {_MAX_PIPELINED} requests wait for a response")
         super().on_headers_complete()
         # Trailers are parsed like headers, but the request is already in the application.
         self.headers = []
+
+    def _require_valid_framing(self) -> None:
+        """Raise HttpParserError where a proxy in front could read another request.
+
+        The parser leaves that to its user: RFC 9112, 2.3, 3.2 and 6.1.
+        """
+        version = self.parser.get_http_version()
+        if version not in {"1.0", "1.1"}:
+            raise HttpParserError("the version must be HTTP/1.1")
+        hosts = [value for name, value in self.headers if name == b"host"]
+        if (
+            len(hosts) > 1
+            or (version == "1.1" and not hosts)
+            or not _HOST.fullmatch(b"".join(hosts))
+        ):
+            raise HttpParserError("exactly one valid Host is needed")
+        codings = [value.lower() for name, value in self.headers if name == b"transfer-encoding"]
+        if codings and (codings != [b"chunked"] or version == "1.0"):
+            raise HttpParserError("the only transfer coding is chunked")
 
     def on_body(self, body: bytes) -> None:
         self._buffered = 0

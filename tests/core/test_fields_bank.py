@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from mdr_core.typing import Array
 
 BOUND = 1e-11
+#: Largest allowance, for slip of 1e-18 of the largest, 1e-9 beyond a stick radius that is rounded.
+NEXT_TO_STICK = 1.3e-2
 #: Error limit of the cone's traction on the axis, where its pressure is infinite.
 AXIS = 1e-12
 CASES = bank.load("slip_fields")
@@ -44,7 +46,7 @@ def misses(case: dict[str, Any], name: str, result: Array) -> Iterator[str]:
     """Values of a field at the radii of a case that exceed their bound."""
     for index, expected in enumerate(case["expected"][name]):
         error = relative_error(float(result[index]), expected)
-        bound = BOUND + allowance(case["condition"][name][index])
+        bound = BOUND + allowance(case["condition"][name][index], largest=NEXT_TO_STICK)
         if not error <= bound:
             radius = case["radius"][index]
             yield f"{name} at {radius!r}: {result[index]!r}, {error:.2e} > {bound:.2e}"

@@ -14,10 +14,12 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from mdr_core import equivalent_1d, normal, tangential
+from mdr_core import equivalent_1d, history, normal, tangential
 from mdr_core.fields import normal as normal_fields
 from mdr_core.fields import tangential as tangential_fields
-from mdr_core.profiles import KINDS, Profile, SphericalTipCone
+from mdr_core.history import contact_state, dissipation, slip_memory, traction_vertices
+from mdr_core.interval_moments import IntervalMoments
+from mdr_core.profiles import KINDS, Paraboloid, Profile, Sphere, SphericalTipCone
 from mdr_core.profiles import base as profiles
 from mdr_service.queries.fields import solve_stress, stress_result
 from mdr_service.schemas.fields import StressQuery
@@ -34,6 +36,7 @@ QUERY: dict[str, Any] = {
     "load": {"normal_force": 0.3},
     "radius": [0.0, 0.3, 0.6],
 }
+PATHS = ("forces", "displacements")
 LOADED = {"friction_coefficient": 0.3, "tangential": {"tangential_force": 0.05}}
 
 
@@ -149,6 +152,70 @@ def test_field_computes_no_other_field(kind: str) -> None:
     ):
         field("slip", tangential_contact, 1e-10)
         field("normal_displacement", tangential_contact, 1e-10)
+
+
+@pytest.mark.parametrize("controls", PATHS)
+def test_slip_memory_is_followed_once_for_all_results(controls: str) -> None:
+    steps: list[int] = []
+    follow = slip_memory.follow
+
+    def counted_follow(start: Any, points: Any) -> Any:
+        steps.append(points.normal.size)
+        return follow(start, points)
+
+    path = load_path(controls, 100_000)
+    with patch.object(slip_memory, "follow", counted_follow):
+        result = history.solve(Paraboloid(1.3), 3.7, 2.9, 0.37, **path)
+        for name in result.quantities:
+            getattr(result, name)
+        assert result.error_estimate > 0
+        assert result.warnings is not None
+        assert result.state.in_contact
+    assert sum(steps) == 100_000
+
+
+@pytest.mark.parametrize("controls", PATHS)
+def test_tangential_force_of_a_history_needs_nothing_else(controls: str) -> None:
+    """Whatever its length: neither slip and energies nor the normal contact of each sample."""
+    for steps in (10, 100_000):
+        with (
+            patch.object(dissipation, "per_step", never),
+            patch.object(traction_vertices, "variance_growth", never),
+            patch.object(Sphere, "reduced_energy", never),
+            patch.object(IntervalMoments, "over", never),
+            patch.object(history.LoadHistory, "normal", property(never)),
+        ):
+            result = history.solve(Sphere(1.5), 3.7, 2.9, 0.37, **load_path(controls, steps))
+            assert np.any(result.tangential_force != 0)
+            assert np.any(result.tangential_displacement != 0)
+
+
+def test_a_step_computes_only_what_is_requested() -> None:
+    state = history.unloaded(Sphere(1.5), 3.7, 2.9, 0.37)
+    for depth, displacement in ((0.2, 0.01), (0.25, 0.03), (0.22, -0.01), (0.23, 0.02)):
+        with (
+            patch.object(dissipation, "per_step", never),
+            patch.object(traction_vertices, "variance_growth", never),
+            patch.object(contact_state, "variance_growth", never),
+            patch.object(Sphere, "reduced_energy", never),
+        ):
+            with patch.object(equivalent_1d, "invert", never):
+                state = history.advance(state, depth, displacement)
+            assert state.tangential_force != 0
+        kept = state.known_edges[:]
+        with patch.object(equivalent_1d, "invert", never):
+            assert state.normal_force > 0
+        assert state.known_edges == kept
+
+
+def load_path(controls: str, steps: int) -> dict[str, Any]:
+    """Random load path of points that are not in full slip."""
+    random = np.random.default_rng(8)
+    normal = random.uniform(0.2, 0.3, steps)
+    tangential = random.uniform(-0.1, 0.1, steps)
+    if controls == "forces":
+        return {"normal_force": normal, "tangential_force": 0.3 * tangential}
+    return {"indentation_depth": normal, "tangential_displacement": tangential}
 
 
 def run_stress(**more: Any) -> dict[str, Any]:

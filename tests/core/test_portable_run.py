@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mdr_core.history import slip_memory_kernel
+from mdr_core.history import slip_kernel
 
 pytestmark = pytest.mark.skipif(
     "PORTABLE_RUN" not in os.environ, reason="the run uses the whole processor"
@@ -33,7 +33,7 @@ def digits(environment: dict[str, str]) -> list[str]:
 
 
 def test_loop_is_not_compiled() -> None:
-    assert Path(slip_memory_kernel.__file__).suffix in SOURCE_SUFFIXES
+    assert Path(slip_kernel.__file__).suffix in SOURCE_SUFFIXES
 
 
 def test_numpy_dispatches_to_no_vector_unit() -> None:

@@ -391,7 +391,9 @@ def test_stresses_of_a_contact_edge_next_to_its_tip(part: float) -> None:
             with mpmath.workdps(40):
                 edge = mpmath.mpf(stick)
                 exact = [slip_reference.traction(setting, edge, mpmath.mpf(r)) for r in radii]
-            np.testing.assert_allclose(result, [float(value) for value in exact], rtol=1e-11)
+            # The stress falls with the root of the gap, the rounding error of g' does not.
+            rtol = 1e-12 + 2 * np.finfo(float).eps / np.sqrt(gap)
+            np.testing.assert_allclose(result, [float(value) for value in exact], rtol=rtol)
 
 
 def test_polyline_after_arcs_has_no_negative_segment() -> None:

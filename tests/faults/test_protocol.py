@@ -241,14 +241,43 @@ def test_trailers_within_the_limits_are_ignored(served: Served) -> None:
         b"CONNECT example.org:443 HTTP/1.1\r\nHost: example.org\r\n\r\n",
         b"GET /\xff HTTP/1.1\r\nHost: x\r\n\r\n",
         b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n",
-        b"POST /v1/normal HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nnot a length\r\n",
+        b"POST /v1/normal HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nno length\r\n",
+        b"GET /health HTTP/1.1\r\n\r\n",
+        b"GET /health HTTP/1.1\r\nHost: x\r\nHost: x\r\n\r\n",
+        b"GET /health HTTP/1.0\r\nHost: x\r\nHost: y\r\n\r\n",
+        b"GET /health HTTP/1.1\r\nHost: x/y@z\r\n\r\n",
+        b"GET /health\r\n\r\n",
+        b"GET /health HTTP/2.0\r\nHost: x\r\n\r\n",
+        chunked().replace(b": chunked", b": gzip, chunked"),
+        chunked().replace(b": chunked", b": xchunked"),
+        chunked().replace(b": chunked", b": chunked\r\nTransfer-Encoding: chunked"),
+        chunked(headers=b"Content-Length: 3\r\n"),
+        chunked().replace(b"HTTP/1.1", b"HTTP/1.0"),
+        b"GET /" + b"\xff" * 20_000 + b" HTTP/1.1\r\nHost: x\r\n\r\n",
+        b"GET http://[" + b"x" * 20_000 + b" HTTP/1.1\r\nHost: x\r\n\r\n",
     ],
-    ids=["words", "TLS", "HTTP/2", "CONNECT", "not ASCII", "two lengths", "chunk"],
+    ids=[
+        *("words", "TLS", "HTTP/2", "CONNECT", "not ASCII", "two lengths", "chunk", "no host"),
+        *("two hosts", "two hosts of 1.0", "not a host", "HTTP/0.9", "HTTP/2.0", "gzip"),
+        *("unknown coding", "two codings", "coding and length", "chunks of 1.0"),
+        *("long and not ASCII", "long and not a URL"),
+    ],
 )
 def test_malformed_request_is_rejected_with_a_problem(served: Served, text: bytes) -> None:
     result = served.responses(text, number=2)
     assert [status for status, _ in result] == [400]
-    assert json.loads(result[0][1])["type"] == "urn:mdr:problem:malformed-http"
+    problem = json.loads(result[0][1])
+    assert problem["type"] == "urn:mdr:problem:malformed-http"
+    # It says what is wrong, without what was sent.
+    assert 10 < len(problem["detail"]) < 100
+
+
+def test_valid_framing_is_served(served: Served) -> None:
+    assert served.responses(b"GET /health HTTP/1.0\r\n\r\n")[0][0] == 200
+    assert served.responses(chunked().replace(b": chunked", b": Chunked"))[0][0] == 200
+    for host in (b"x:80", b"[::1]:8000", b"", b"a_b.example"):
+        text = GET.replace(b"Host: x", b"Host: " + host)
+        assert served.responses(text)[0][0] == 200
 
 
 def test_pipelined_requests_are_answered_in_order(served: Served) -> None:

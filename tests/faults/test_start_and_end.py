@@ -125,7 +125,8 @@ def test_closed_stream_does_not_stop_the_service(closed: str) -> None:
         for _ in range(3):
             client.request("GET", "/health/ready")
             response = client.getresponse()
-            assert (response.status, response.read()) == (200, b'{"status":"ok"}')
+            assert response.status == 200
+            assert response.read().startswith(b'{"status":"ok"')
         os.killpg(process.pid, signal.SIGTERM)
         wait_for(lambda: not is_served(port))
 

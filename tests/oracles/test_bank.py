@@ -64,8 +64,8 @@ ILL_CONDITIONED = {
     "profile": 5,
 }
 """Numbers of stored results, per bank, that the rounding of the inputs alone may change by more
-than 1e-3. Their bounds include no more than that, or 8e-3 of tangential contacts whose normal force
-is computed."""
+than 1e-3. Their bounds include no more than that, apart from slip next to a stick radius and from
+tangential contacts whose normal force is computed."""
 
 
 def conditions(record: Any, key: str = "") -> Iterator[float]:

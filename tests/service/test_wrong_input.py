@@ -954,6 +954,8 @@ def test_unknown_endpoint_is_a_problem(client: Client, method: str, path: str, s
         ("/v1/normal", "GET, HEAD, POST"),
         ("/v1/wear/evolution", "POST"),
         ("/health", "GET, HEAD"),
+        ("/explorer/main.js", "GET, HEAD"),
+        ("/docs/page/docs.css", "GET, HEAD"),
     ],
 )
 def test_allow_header_lists_the_methods(client: Client, path: str, methods: str) -> None:

@@ -1,23 +1,30 @@
 """State of a contact after a load history, and one straight step from it."""
 
-from dataclasses import dataclass, replace
-from typing import ClassVar, NamedTuple
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from mdr_core.cached import cached_property
+from mdr_core.elementwise import number
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
-from mdr_core.history import slip_memory
-from mdr_core.history.dissipation import Dissipation
-from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
-from mdr_core.history.traction_vertices import TractionVertices, widths
+from mdr_core.history import dissipation, slip_memory
+from mdr_core.history.slip_layout import NORMAL, STEP
+from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
+from mdr_core.history.traction_vertices import SHORT, variance_growth, widths
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
 from mdr_core.typing import Array
-from mdr_core.validation import require_positive, require_single_profile, require_type
+from mdr_core.validation import (
+    require_inside,
+    require_positive,
+    require_single_profile,
+    require_type,
+)
 
 
 class TractionSegments(NamedTuple):
@@ -34,7 +41,18 @@ class TractionSegments(NamedTuple):
     inverse: bool = False
 
 
-@dataclass(frozen=True, repr=False)
+class Edge(NamedTuple):
+    """Contact whose edge is a vertex of the polyline, with its traction."""
+
+    coordinate: Array
+    """Contact coordinate."""
+    force: Array
+    """F_N/E* [length^2]."""
+    shear: Array
+    """F_x/(mu E*) [length^2]."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class ContactState(Results):
     """A contact after any load history, as the polyline of its springs' anchors.
 
@@ -51,8 +69,12 @@ class ContactState(Results):
     """Polyline over depths; chords stand for the arcs of nonlinear load steps."""
     curved_segments: TractionSegments | None = None
     """All segments, if nonlinear load steps have laid some, which are arcs; else None."""
-    last_step: FrontPath | None = None
-    """Path of the slip front on the step of `advance` that led here; None for other states."""
+    before: Polyline | None = None
+    """Polyline before the step of `advance` that led here; None for other states."""
+    known_edges: list[Edge] = field(init=False, default_factory=list)
+    """Edges of the first vertices: those of a step are known to the next one."""
+    known_variances: list[float] = field(init=False, default_factory=list)
+    """Variances of the anchors below the first vertices, in the same way."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -74,48 +96,83 @@ class ContactState(Results):
     @property
     def indentation_depth(self) -> float:
         """d [length]; negative in separation."""
-        return self.polyline.load_point[0]
+        return self.polyline.normal
 
     @property
     def tangential_displacement(self) -> float:
         """u_x [length]."""
-        return self.displacement_ratio * self.polyline.load_point[1]
+        return self.displacement_ratio * self.polyline.tangential
 
     @property
     def in_contact(self) -> bool:
         """True unless the bodies are separated."""
         return self.polyline.in_contact
 
-    @property
+    @cached_property
     def _moments(self) -> IntervalMoments:
         return interval_moments(self.profile, over_forces=False)
-
-    @cached_property
-    def _vertices(self) -> TractionVertices:
-        return TractionVertices(self._moments, self._tree, self.coordinate)
 
     @cached_property
     def _tree(self) -> VertexTree:
         return slip_memory.as_tree(self.polyline)
 
     @property
+    def _edges(self) -> list[Edge]:
+        """Edges of all vertices, at least that on the axis."""
+        known = self.known_edges
+        if not known:
+            known.append(Edge(*map(number, (self.profile.first_coordinate, 0.0, 0.0))))
+        for vertex in self.polyline.vertices[len(known) :, NORMAL:STEP].tolist():
+            known.append(self._edge(known[-1], *map(number, vertex)))
+        return known
+
+    def _edge(self, below: Edge, depth: Any, rise: Any, fall: Any, anchor: Any) -> Edge:
+        """Edge of the vertex at a depth, above another one."""
+        profile, span = self.profile, (rise + fall) / 2
+        if profile.largest_loads is not None:
+            # By rounding a corner may be deeper than the load point.
+            depth = min(depth, profile.largest_loads[0])
+        coordinate = coordinate_from_load(profile, depth, of_force=False)
+        force = profile.reduced_force(coordinate)
+        grown = force - below.force
+        if profile.has_no_partial_slip:
+            # Depth and force are proportional.
+            grown = force / depth * span
+        elif span < SHORT * depth:
+            grown = span * self._moments.mean_slope(below.coordinate, coordinate)
+        return Edge(coordinate, force, below.shear + anchor / span * grown)
+
+    @property
+    def _variance(self) -> float:
+        """Variance of the anchors, int (anchor - mean)^2 dx over 0 < x < a [length^3]."""
+        known = self.known_variances
+        if not known:
+            known.append(0.0)
+        edges = self._edges[len(known) - 1 :]
+        if len(edges) > 1:
+            coordinate, _, shear = np.array(edges).T
+            depth, rise, fall, anchor = self.polyline.vertices[-len(edges) :, NORMAL:STEP].T
+            span, ends = (rise + fall)[1:] / 2, np.array([coordinate[:-1], coordinate[1:]])
+            grown = variance_growth(self._moments, depth[:-1], span, anchor[1:], ends, shear[:-1])
+            known.extend((known[-1] + np.cumsum(grown)).tolist())
+        return known[-1]
+
+    @property
     def depth(self) -> Array:
         """Depths w of the vertices, from 0 to d [length]; empty in separation."""
-        vertices = np.append(self._vertices.depth[:-1], self.indentation_depth)
-        return vertices if self.in_contact else vertices[:0]
+        return self._tree.normal.copy()
 
     @property
     def load(self) -> Array:
         """q_x of the springs at the vertices [force/length]; linear in w between them."""
-        tree = self._tree
-        above = np.cumsum((tree.slope * tree.span)[:0:-1])
-        loads = self.friction_coefficient * self.e_star * np.append(above[::-1], 0.0)
+        above = np.cumsum(self._tree.anchor[:0:-1])[::-1]
+        loads = self.friction_coefficient * self.e_star * np.append(above, 0.0)
         return loads if self.in_contact else loads[:0]
 
     @cached_property
     def coordinate(self) -> Array:
         """Contact coordinates of the vertices; in separation that of the axis."""
-        return read_only(self._moments.contact_coordinate(self._tree.normal))
+        return read_only(np.array([edge.coordinate for edge in self._edges]))
 
     @cached_property
     def slope(self) -> Array:
@@ -127,40 +184,42 @@ class ContactState(Results):
         """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
         if self.curved_segments is not None:
             return self.curved_segments
-        tree = self._tree
-        width = widths(self._moments, tree, self.coordinate)
+        width = widths(self._moments, self._tree, self.coordinate)
         straight = np.zeros(self.slope.shape)
         return TractionSegments(self.coordinate, width, self.slope, straight)
 
     @property
     def contact_radius(self) -> float:
         """a [length]."""
-        return float(self.profile.contact_radius(self.coordinate[-1])) if self.in_contact else 0.0
+        at = self._edges[-1].coordinate
+        return float(self.profile.contact_radius(at)) if self.in_contact else 0.0
 
     @property
     def normal_force(self) -> float:
         """F_N [force]."""
-        return float(self.e_star * self.profile.reduced_force(self.coordinate[-1]))
+        return float(self.e_star * self._edges[-1].force)
 
     @property
     def elastic_energy(self) -> float:
         """Energy stored by the normal load, int F_N dd [force length]."""
-        return float(self.e_star * self.profile.reduced_energy(self.coordinate[-1]))
+        return float(self.e_star * self.profile.reduced_energy(self._edges[-1].coordinate))
 
     @property
     def tangential_energy(self) -> float:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        return self.energy_unit * float(self._vertices.square[-1])
+        if not self.in_contact:
+            return 0.0
+        edge = self._edges[-1]
+        radius = self.profile.contact_radius(edge.coordinate)
+        return float(self.energy_unit * (edge.shear * edge.shear / (4 * radius) + self._variance))
 
     @cached_property
     def dissipation(self) -> float:
         """Energy dissipated by friction on the step of `advance` that led here [force length]."""
-        if self.last_step is None:
+        if self.before is None:
             return 0.0
-        moments = self._moments
-        slip = Dissipation(moments, self.last_step)
-        each = slip.per_step(moments.contact_coordinate(slip.ends))
-        return self.energy_unit * float(each.sum())
+        tree = slip_memory.as_tree(self.before, self.polyline)
+        return float(self.energy_unit * dissipation.per_step(self._moments, tree)[-1])
 
     @property
     def energy_unit(self) -> float:
@@ -178,13 +237,7 @@ class ContactState(Results):
     @property
     def tangential_force(self) -> float:
         """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
-        return self.friction_coefficient * self.e_star * float(self._vertices.shear[-1])
-
-
-def read_only(values: Array) -> Array:
-    """Return the array, marked read-only."""
-    values.flags.writeable = False
-    return values
+        return float(self.friction_coefficient * self.e_star * self._edges[-1].shear)
 
 
 def unloaded(
@@ -259,11 +312,18 @@ def advance(
     0.75
     """
     require_type("state", state, ContactState, "a state, as from history.unloaded")
-    depth, displacement = np.array([indentation_depth]), np.array([tangential_displacement])
-    if not (np.isfinite(depth[0]) and np.isfinite(displacement[0])):
+    if not (isfinite(indentation_depth) and isfinite(tangential_displacement)):
         raise InputError(("history",), "must be finite")
-    coordinate_from_load(state.profile, np.maximum(depth, 0.0), of_force=False)
-    once = np.zeros(1, dtype=bool), np.zeros(1, dtype=np.intp)
-    points = LoadPoints(depth, displacement / state.displacement_ratio, *once)
-    _, path, polyline = slip_memory.apply_steps(state.polyline, points)
-    return replace(state, polyline=polyline, curved_segments=None, last_step=path)
+    profile, largest = state.profile, state.profile.largest_loads
+    if largest is not None:
+        require_inside("indentation_depth", number(indentation_depth) > largest[0], profile.domain)
+    line, kept = slip_memory.moved(
+        state.polyline,
+        float(indentation_depth),
+        float(tangential_displacement) / state.displacement_ratio,
+    )
+    moduli = state.e_star, state.g_star, state.friction_coefficient
+    following = ContactState(profile, *moduli, line, before=state.polyline)
+    following.known_edges.extend(state.known_edges[:kept])
+    following.known_variances.extend(state.known_variances[:kept])
+    return following

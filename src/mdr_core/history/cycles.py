@@ -122,4 +122,4 @@ def cycles(
         samples_per_step=samples_per_step,
         rtol=rtol,
     )
-    return LoadCycles(history.path, history.normal, history.results, rtol, count)
+    return LoadCycles(history.path, e_star, history.results, rtol, count)

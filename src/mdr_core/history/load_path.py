@@ -5,6 +5,7 @@ of each pair is prescribed and both change, it is nonlinear in either plane: see
 """
 
 from dataclasses import dataclass
+from math import inf
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,7 @@ from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_memory import LoadPoints
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
+from mdr_core.validation import FINITE, extremes, not_negative
 
 # A force at the onset of full slip differs from mu F_N by the rounding of both.
 _ROUNDING: Final = 8 * float(np.finfo(float).eps)
@@ -45,7 +47,9 @@ class SampledPath:
     @property
     def continues(self) -> Flags:
         """Samples on the same load step as the one before."""
-        return np.arange(self.normal.size) % self.per_step > 0
+        flags = np.ones((self.normal.size // self.per_step, self.per_step), dtype=bool)
+        flags[:, 0] = False
+        return flags.ravel()
 
     @property
     def over_forces(self) -> bool:
@@ -102,20 +106,21 @@ class SampledPath:
         mu, e_star = self.start.friction_coefficient, self.start.e_star
         scale = mu * e_star / (1.0 if self.over_forces else self.start.g_star)
         normal, tangential = self._normal_coordinate, self.tangential / scale
-        within, limit = tangential, scale * normal
-        if self.over_forces:
-            within = self.within_friction(normal, tangential, self.step)
-            limit = mu * (e_star * normal if self.depth_prescribed else self.normal)
         # At the given points the rounding of `scale` does not decide between the regimes.
-        near = np.abs(np.abs(tangential) - normal) <= 2 * _ROUNDING * normal
-        below = np.abs(self.tangential) < limit
-        least, most = np.nextafter(normal, 0.0), np.nextafter(normal, 2 * normal)
-        size = np.where(below, np.minimum(np.abs(tangential), least), normal)
+        apart = np.abs(tangential)
+        apart -= normal
+        near = indices(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
+        near = near[(near + 1) % self.per_step == 0]
+        n, at_limit, prescribed = normal[near], tangential[near], np.abs(self.tangential[near])
+        limit = scale * n
+        if self.over_forces:
+            tangential = self.within_friction(normal, tangential, self.step)
+            limit = mu * (e_star * n if self.depth_prescribed else self.normal[near])
+        least, most = np.nextafter(n, 0.0), np.nextafter(n, 2 * n)
+        size = np.where(prescribed < limit, np.minimum(np.abs(at_limit), least), n)
         if not self.over_forces:
-            beyond = np.abs(self.tangential) > limit
-            size = np.where(beyond, np.maximum(np.abs(tangential), most), size)
-        given = np.append(~self.continues[1:], True)
-        tangential = np.where(near & given, np.copysign(size, tangential), within)
+            size = np.where(prescribed > limit, np.maximum(np.abs(at_limit), most), size)
+        tangential[near] = np.copysign(size, at_limit)
         return LoadPoints(normal, tangential, self.continues, self.step)
 
     def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
@@ -136,7 +141,8 @@ class SampledPath:
             raise InputError(
                 ("history", "tangential", self.tangential_name, int(step[beyond[0]])),
                 "no equilibrium: between the point before and this one the force exceeds "
-                "friction_coefficient x normal_force",
+                "friction_coefficient x normal_force; reduce it, or prescribe "
+                "tangential_displacement",
             )
         # At the limit, up to rounding error, all springs slip.
         at_limit = np.abs(tangential) >= limit * (1 - _ROUNDING)
@@ -170,7 +176,7 @@ def build(
     if sizes[0] != sizes[1] and 1 not in sizes:
         raise InputError(
             ("history", "tangential", tangential[0]),
-            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}",
+            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}: give one or as many",
         )
     points = np.broadcast_arrays(normal_points, tangential_points)
     first, second = (_along(each, samples_per_step) for each in points)
@@ -194,9 +200,11 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     points = np.atleast_1d(value)
     if points.ndim != 1 or points.size == 0:
         raise InputError(("history", axis, name), "must be a list of at least one number")
-    negative = (points < 0) & (name == "normal_force")
-    bad = indices(~np.isfinite(points) | negative)
-    if bad.size:
-        sign = " and not negative" if name == "normal_force" else ""
-        raise InputError(("history", axis, name, int(bad[0])), f"must be finite{sign}")
+    least, most = extremes(points)
+    forces = name == "normal_force"
+    if not ((least >= 0 if forces else least > -inf) and most < inf):
+        bad = ~np.isfinite(points) | ((points < 0) & forces)
+        first = int(indices(bad)[0])
+        detail = not_negative(name) if forces and points[first] < 0 else FINITE
+        raise InputError(("history", axis, name, first), detail)
     return points

@@ -164,7 +164,7 @@ class NonlinearSteps:
         tree = slip_memory.as_tree(line)
         # Of each segment, below the vertex of its index.
         end = (line.load_step + 1) * self.path.per_step
-        on_face = (tree.growth == 0).any(axis=1)
+        on_face = tree.on_face
         rate = np.where(on_face, 0.0, self.rate[end - 1])
         rate[0] = 0.0
         if not rate.any():
@@ -173,8 +173,9 @@ class NonlinearSteps:
         chord = rate[1:] != 0
         corners = np.flatnonzero(chord[:-1] & on_face[2:]) + 1
         if corners.size:
-            own = np.where(tree.growth[corners + 1, 0] == 0, 0, 1)
-            sums = np.stack([line.forward, line.backward])[own, corners].sum(axis=1)
+            # The sum that is constant above the corner, along the face.
+            own = np.where(tree.slope[corners + 1] < 0, 0, 1)
+            sums = line.sums[corners, own]
             sign = np.where(own == 0, 1.0, -1.0)
             coordinate[corners] = self._on_arcs(
                 coordinate[corners], end[corners], sign * rate[corners], sign, sums
@@ -318,6 +319,5 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     sets = []
     for halvings in range(_HALVINGS + 1):
         points, last = nonlinear.chords(finest, halvings)
-        start = path.start.polyline
-        sets.append((StepResults(path.moments, points, start), last))
+        sets.append((StepResults(path.moments, points), last))
     return ExtrapolatedResults(nonlinear, tuple(sets))

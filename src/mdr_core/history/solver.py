@@ -11,7 +11,7 @@ from mdr_core.cached import cached_property
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, nonlinear_steps, slip_memory
-from mdr_core.history.contact_state import ContactState, read_only, unloaded
+from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.nonlinear_steps import ExtrapolatedResults
 from mdr_core.history.slip_memory import Polyline
@@ -31,8 +31,8 @@ class LoadHistory(validity.ContactResults):
     """Results of a load history at every sample; each is computed on first use."""
 
     path: SampledPath
-    normal: NormalContact
-    """Normal contact of every sample, with zero load in separation; one if the load is constant."""
+    e_star: float | Material
+    """Effective modulus [pressure], or the material that has it."""
     results: StepResults | ExtrapolatedResults
     """Results of the tangential foundation in reduced units."""
     rtol: float
@@ -49,6 +49,15 @@ class LoadHistory(validity.ContactResults):
         "regime",
         "slip_fronts",
     )
+
+    @cached_property
+    def normal(self) -> NormalContact:
+        """Normal contact of every sample, with zero load in separation; one if it is constant."""
+        load = np.maximum(self.path.normal, 0.0)
+        least, most = extremes(load)
+        # A single load takes less time than several.
+        given = {self.path.normal_name: number(most) if least == most else load}
+        return normal.solve(self.path.start.profile, self.e_star, **given, rtol=self.rtol)
 
     @property
     def step(self) -> Indices:
@@ -140,15 +149,10 @@ class LoadHistory(validity.ContactResults):
         if isinstance(steps, ExtrapolatedResults):
             curved_segments = steps.nonlinear.curved_segments(steps.finest.last)
             steps = steps.finest
-        part, at = steps.last_vertices
-        line = steps.last
+        line, (part, at) = steps.last, steps.last_vertices
         if self.path.over_forces:
-            line = self._over_depths(part.depth_step[at[1:]], line)
-        state = replace(self.path.start, polyline=line, curved_segments=curved_segments)
-        if line.in_contact:
-            # Known here; the state would recompute them from its depths.
-            vars(state)["coordinate"] = read_only(part.coordinate[at])
-        return state
+            line = self._over_depths(part.conjugate_step[at[1:]], line)
+        return replace(self.path.start, polyline=line, curved_segments=curved_segments)
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
         """Return a polyline over reduced forces as one over depths, with the same slopes."""
@@ -160,7 +164,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def slip_fronts(self) -> Array:
         """Radii of the slip fronts at the end of the history, ascending [length]."""
-        profile, steps = self.normal.profile, self.results
+        profile, steps = self.path.start.profile, self.results
         if profile.has_no_partial_slip:
             return np.zeros(0)
         if isinstance(steps, ExtrapolatedResults):
@@ -172,7 +176,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def method(self) -> str:
         """Most expensive method among the results."""
-        return self.normal.profile.tangential_method
+        return self.path.start.profile.tangential_method
 
     @property
     def error_estimate(self) -> float:
@@ -268,24 +272,28 @@ def solve(
     pressed = only_one(("history", "normal"), normal_load)
     pushed = only_one(("history", "tangential"), tangential_load)
     path = load_path.build(start, pressed, pushed, samples_per_step)
-    contact = _normal_contact(path, e_star, rtol)
+    _require_solvable(path, rtol)
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if path.nonlinear.any() and not profile.has_no_partial_slip:
-        return LoadHistory(path, contact, nonlinear_steps.results(path, rtol), rtol)
-    steps = StepResults(path.moments, path.load_points, start.polyline)
-    return LoadHistory(path, contact, steps, rtol)
+        return LoadHistory(path, e_star, nonlinear_steps.results(path, rtol), rtol)
+    return LoadHistory(path, e_star, StepResults(path.moments, path.load_points), rtol)
 
 
-def _normal_contact(path: SampledPath, e_star: float | Material, rtol: float) -> NormalContact:
-    """Return the normal contact, raising InputError if a load is beyond the end of the profile."""
-    name, load = path.normal_name, np.maximum(path.normal, 0.0)
-    least, most = extremes(load)
-    # A single load takes less time than several.
-    given = {name: number(most) if least == most else load}
-    try:
-        return normal.solve(path.start.profile, e_star, **given, rtol=rtol)
-    except InputError as error:
-        if error.path[:1] != ("load",):
-            raise
-        at = ("history", "normal", name, int(path.step[path.normal.argmax()]))
-        raise InputError(at, error.detail) from None
+def _require_solvable(path: SampledPath, rtol: float) -> None:
+    """Raise InputError unless the normal contact has a solution at all samples.
+
+    It has, if it has one under the largest load and under the smallest above zero.
+    """
+    least, most = extremes(path.normal)
+    if least <= 0 < most:
+        least = float(path.normal[path.normal > 0].min())
+    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0))):
+        try:
+            given = {path.normal_name: number(load)}
+            normal.solve(path.start.profile, path.start.e_star, **given, rtol=rtol)
+        except InputError as error:
+            if error.path[:1] != ("load",):
+                raise
+            at = int(path.step[np.argmax(path.normal == load)])
+            place = "history", "normal", path.normal_name, at
+            raise InputError(place, error.detail) from None

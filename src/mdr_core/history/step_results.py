@@ -1,89 +1,60 @@
 """Results of the tangential foundation at every load point of a sequence of straight steps."""
 
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.cached import cached_property
-from mdr_core.history import slip_memory
-from mdr_core.history.dissipation import Dissipation
-from mdr_core.history.slip_memory import FrontPath, LoadPoints, Polyline, VertexTree
+from mdr_core.history import dissipation, slip_memory
+from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
 
-# Steps evaluated at once: bounds the memory, and keeps their arrays in the processor's cache.
+# Steps evaluated at once.
 _BLOCK: Final = 16_384
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
 
 
-@dataclass(frozen=True)
-class _Block:
-    """Some of the steps, and the polyline after them."""
+class _Block(NamedTuple):
+    """Some of the steps, with the results at their vertices, and the polyline after them."""
 
-    moments: IntervalMoments
-    steps: slice
-    tree: VertexTree
-    path: FrontPath
+    vertices: TractionVertices
     line: Polyline
-
-    @cached_property
-    def vertices(self) -> TractionVertices:
-        """Vertices of the polylines."""
-        coordinate = self._coordinates[: self.tree.normal.size]
-        return TractionVertices(self.moments, self.tree, coordinate)
-
-    @cached_property
-    def dissipation(self) -> Array:
-        """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
-        coordinate = self._coordinates[self.tree.normal.size :]
-        return self._slip.per_step(coordinate.reshape(4, -1))
-
-    @cached_property
-    def _slip(self) -> Dissipation:
-        return Dissipation(self.moments, self.path)
-
-    @cached_property
-    def _coordinates(self) -> Array:
-        """Contact coordinates of the vertices and of the ends of the slip intervals.
-
-        An inversion of both takes hardly longer than one of a part.
-        """
-        return self.moments.contact_coordinate(np.append(self.tree.normal, self._slip.ends))
 
 
 @dataclass(frozen=True)
 class StepResults:
-    """Results after each straight load step, in reduced units; each is computed on first use."""
+    """Results after each straight load step from no load, in reduced units.
+
+    Each is computed on first use; the slip memory is followed once for all.
+    """
 
     moments: IntervalMoments
     points: LoadPoints
-    start: Polyline
-    """Polyline before the first step."""
 
     @cached_property
     def shear(self) -> Array:
         """F_x/(mu E*) [length^2]."""
-        return self._per_step(lambda block: block.tree.at_load_points(block.vertices.shear))
+        return self._per_step(lambda block: block.tree.at_load_points(block.shear))
 
     @cached_property
     def displacement(self) -> Array:
         """G* u_x/(mu E*) [length], from zero on the axis."""
-        return self._per_step(lambda block: block.tree.at_load_points(block.vertices.anchor))
+        return self._per_step(lambda block: block.tree.at_load_points(block.anchor))
 
     @cached_property
     def energy(self) -> Array:
         """Stored tangential energy over (mu E*)^2/G* [length^3], >= 0."""
-        return self._per_step(lambda block: block.tree.at_load_points(block.vertices.square))
+        return self._per_step(lambda block: block.tree.at_load_points(block.square))
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
-        return self._per_step(lambda block: block.dissipation)
+        return self._per_step(lambda block: dissipation.per_step(self.moments, block.tree))
 
     @cached_property
     def regime(self) -> Indices:
@@ -93,9 +64,9 @@ class StepResults:
         """
         slips = 1 if self.moments.profile.has_no_partial_slip else 2
 
-        def code(block: _Block) -> Indices:
+        def code(block: TractionVertices) -> Array:
             tree, top = block.tree, block.tree.top
-            slipping = (tree.growth[top] == 0).any(axis=1)
+            slipping = tree.on_face[top]
             full = slipping & (tree.parent[tree.parent[top]] < 0)
             return np.where(top >= 0, np.where(full, 3, np.where(slipping, slips, 1)), 0)
 
@@ -104,39 +75,28 @@ class StepResults:
     @property
     def last(self) -> Polyline:
         """Polyline after the last step, over normal coordinates."""
-        return self._end.line
+        return self._blocks[-1].line
 
     @property
     def last_vertices(self) -> tuple[TractionVertices, Indices]:
-        """Vertices of the last block, and the indices of those of the last polyline."""
-        tree = self._end.tree
-        indices, vertex = [], int(tree.top[-1])
-        while vertex >= 0:
-            indices.append(vertex)
-            vertex = int(tree.parent[vertex])
-        return self._end.vertices, np.array(indices[::-1], dtype=np.intp)
-
-    @property
-    def _blocks(self) -> Iterable[_Block]:
-        """Blocks of steps: a single one is kept, many are computed again, to bound the memory."""
-        return [self._end] if self.points.normal.size <= _BLOCK else self._solve_blocks()
+        """Results at the vertices of the last block, and the indices of the last polyline."""
+        vertices = self._blocks[-1].vertices
+        return vertices, vertices.tree.last
 
     @cached_property
-    def _end(self) -> _Block:
-        return deque(self._solve_blocks(), maxlen=1)[0]
+    def _blocks(self) -> list[_Block]:
+        """Blocks of the steps, whose arrays stay in the processor's cache."""
+        line, blocks = slip_memory.separated(0.0, 0.0), []
+        for begin in range(0, self.points.normal.size, _BLOCK):
+            points = LoadPoints._make(row[begin : begin + _BLOCK] for row in self.points)
+            tree, line = slip_memory.follow(line, points)
+            blocks.append(_Block(TractionVertices(self.moments, tree), line))
+        return blocks
 
-    def _solve_blocks(self) -> Iterator[_Block]:
-        count, line = self.points.normal.size, self.start
-        for begin in range(0, count, _BLOCK):
-            chosen = slice(begin, begin + _BLOCK)
-            points = LoadPoints._make(row[chosen] for row in self.points)
-            tree, path, line = slip_memory.apply_steps(line, points)
-            yield _Block(self.moments, chosen, tree, path, line)
-
-    def _per_step(self, result: Callable[[_Block], Any]) -> Array:
+    def _per_step(self, result: Callable[[TractionVertices], Array]) -> Array:
         """Return a result of every step, zero in blocks without contact."""
-        values = np.zeros(self.points.normal.shape)
-        for block in self._blocks:
-            if block.tree.normal.size:
-                values[block.steps] = result(block)
-        return values
+        found = [
+            result(vertices) if vertices.tree.parent.size else np.zeros(vertices.tree.top.shape)
+            for vertices, _ in self._blocks
+        ]
+        return found[0] if len(found) == 1 else np.concatenate(found)

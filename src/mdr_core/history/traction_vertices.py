@@ -23,92 +23,105 @@ from mdr_core.typing import Array
 
 # Up to this part of its normal coordinate a segment is so short that a difference over it would
 # lose more than three of sixteen digits.
-_SHORT: Final = 2e-3
+SHORT: Final = 2e-3
 
 
 @dataclass(frozen=True)
 class TractionVertices:
-    """Vertices of the polyline, with the contact whose edge each of them is."""
+    """Vertices of the polylines, with the contact whose edge each of them is."""
 
     moments: IntervalMoments
     tree: VertexTree
-    coordinate: Array
-    """Contact coordinate of each vertex."""
 
     @cached_property
-    def radius(self) -> Array:
-        """Contact radius of each vertex [length]."""
-        return self.moments.profile.contact_radius(self.coordinate)
+    def coordinate(self) -> Array:
+        """Contact coordinate of each vertex."""
+        return self.moments.contact_coordinate(self.tree.normal)
 
     @cached_property
-    def depth(self) -> Array:
-        """Depth w of each vertex [length]."""
-        moments = self.moments
-        return moments.conjugate(self.coordinate) if moments.over_forces else self.tree.normal
+    def conjugate(self) -> Array:
+        """Reduced force of each vertex, or its depth where forces are prescribed."""
+        return self.moments.conjugate(self.coordinate)
 
     @cached_property
-    def depth_step(self) -> Array:
-        """Depth of each vertex above that of its parent [length]."""
-        return self._conjugate_step if self.moments.over_forces else self.tree.span
-
-    @cached_property
-    def force_step(self) -> Array:
-        """Reduced force I of each vertex above that of its parent [length^2]."""
-        return self.tree.span if self.moments.over_forces else self._conjugate_step
+    def conjugate_step(self) -> Array:
+        """Conjugate of each vertex above that of its parent."""
+        tree, conjugate = self.tree, self.conjugate
+        if self.moments.profile.has_no_partial_slip:
+            # Depth and force are proportional.
+            return np.asarray(conjugate / np.where(tree.normal > 0, tree.normal, 1.0) * tree.span)
+        step = conjugate - conjugate[tree.parent]
+        short = indices(tree.span < SHORT * tree.normal)
+        if short.size:
+            ends = self.coordinate[tree.parent[short]], self.coordinate[short]
+            step[short] = tree.span[short] * self.moments.mean_slope(*ends)
+        return np.asarray(step)
 
     @cached_property
     def shear(self) -> Array:
         """F_x/(mu E*) of each vertex as the load point [length^2]."""
-        return self.tree.summed(self.tree.slope * self.force_step)
+        return self._summed(conjugate=not self.moments.over_forces)
 
     @cached_property
     def anchor(self) -> Array:
         """Anchor of each vertex above that of the axis, a depth [length]."""
-        return self.tree.summed(self.tree.slope * self.depth_step)
+        return self._summed(conjugate=self.moments.over_forces)
+
+    def _summed(self, *, conjugate: bool) -> Array:
+        """Sum of the slopes times the steps in the normal coordinate, or in its conjugate."""
+        tree = self.tree
+        return tree.summed(tree.slope * self.conjugate_step if conjugate else tree.anchor)
 
     @cached_property
     def square(self) -> Array:
         """int (anchor of the vertex - anchor)^2 dx over 0 < x < a of each vertex [length^3].
 
-        With the mean m = F_x/(2 mu E* a) it is a m^2 + V, by the theorem of parallel axes. The
-        variance V does not depend on the load point and grows along the polyline by squares:
-        the energy of every traction is a sum of squares.
+        With the mean m = F_x/(2 mu E* a) it is a m^2 + V: see `variance_growth`.
         """
-        tree, radius = self.tree, self.radius
-        below, own = np.maximum(tree.parent, 0), np.arange(tree.parent.size)
-        ends = self.coordinate[np.array([below, own])]
-        some = indices((tree.parent >= 0) & (self.depth_step > 0))
-        moments = interval_moments(self.moments.profile, over_forces=False)
-        given = self.depth[below], np.maximum(self.depth_step, 0.0), ends
-        # The measure of the moments is 2 dx.
-        weights = np.zeros((3, tree.normal.size))
-        weights[:, some] = moments.over(*(each[..., some] for each in given)).weights / 2
-        low, middle, high = weights
-        width = low + middle + high
-        inner, outer = radius[below], np.where(radius > 0, radius, 1.0)
-        some_width, some_inner = np.where(width > 0, width, 1.0), np.where(inner > 0, inner, 1.0)
-        # Anchors of a segment: mean above its lower end in parts of their growth, and variance.
-        mean, spread = (high + middle / 2) / some_width, low * high - np.square(middle) / 4
-        growth = tree.slope * self.depth_step
-        apart = growth * mean + np.where(inner > 0, self.shear[below] / (2 * some_inner), 0.0)
-        added = np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
-        return np.asarray(np.square(self.shear) / (4 * outer) + tree.summed(added))
+        tree, moments, coordinate = self.tree, self.moments, self.coordinate
+        depth, step, growth = tree.normal, tree.span, tree.anchor
+        if moments.over_forces:
+            depth, step = self.conjugate, np.maximum(self.conjugate_step, 0.0)
+            growth = tree.slope * step
+        upper = indices(tree.parent >= 0)
+        lower, grown = tree.parent[upper], np.zeros(tree.parent.shape)
+        ends = np.array([coordinate[lower], coordinate[upper]])
+        over_depths = interval_moments(moments.profile, over_forces=False)
+        segments = depth[lower], step[upper], growth[upper], ends, self.shear[lower]
+        grown[upper] = variance_growth(over_depths, *segments)
+        radius = moments.profile.contact_radius(coordinate)
+        shear = np.square(self.shear) / np.where(radius > 0, 4 * radius, 1.0)
+        return np.asarray(shear + tree.summed(grown))
 
-    @cached_property
-    def _conjugate_step(self) -> Array:
-        """Conjugate of each vertex above that of its parent."""
-        moments, tree = self.moments, self.tree
-        conjugate = self.depth if moments.over_forces else moments.conjugate(self.coordinate)
-        if moments.profile.has_no_partial_slip:
-            # Depth and force are proportional.
-            some = np.where(tree.normal > 0, tree.normal, 1.0)
-            return np.asarray(conjugate / some * tree.span)
-        step = conjugate - conjugate[tree.parent]
-        short = indices(tree.span < _SHORT * tree.normal)
-        if short.size:
-            lower = tree.normal[tree.parent[short]]
-            step[short] = moments.conjugate_step(lower, tree.span[short])
-        return np.asarray(step)
+
+def variance_growth(
+    moments: IntervalMoments, low: Array, span: Array, growth: Array, ends: Array, shear: Array
+) -> Array:
+    """Return the growth of V = int (anchor - mean)^2 dx over 0 < x < a along segments [length^3].
+
+    By the theorem of parallel axes the integral about another anchor is larger by a m^2, where m is
+    its distance from the mean. V does not depend on the load point and grows along the polyline by
+    squares: the energy of every traction is a sum of squares.
+
+    Parameters
+    ----------
+    moments : those over intervals of depth.
+    low, span, growth : lower end, length in depth, and growth of the anchor, shape (n,).
+    ends : contact coordinates of both ends, shape (2, n).
+    shear : F_x/(mu E*) of the lower end as the load point.
+    """
+    # The measure of the moments is 2 dx.
+    first, middle, last = moments.over(low, span, ends).weights / 2
+    width = first + middle + last
+    inner, outer = moments.profile.contact_radius(ends)
+    outer = np.where(outer > 0, outer, 1.0)
+    some_width, some_inner = np.where(width > 0, width, 1.0), np.where(inner > 0, inner, 1.0)
+    # Anchors of a segment: mean above its lower end in parts of their growth, and variance.
+    mean, spread = (last + middle / 2) / some_width, first * last - np.square(middle) / 4
+    apart = growth * mean + np.where(inner > 0, shear / (2 * some_inner), 0.0)
+    return np.asarray(
+        np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
+    )
 
 
 def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Array:
@@ -117,7 +130,7 @@ def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Arr
     `coordinate` has the contact coordinates of its vertices, shape (n,).
     """
     width = coordinate[1:] - coordinate[:-1]
-    short = indices(tree.span[1:] < _SHORT * tree.normal[1:])
+    short = indices(tree.span[1:] < SHORT * tree.normal[1:])
     if short.size:
         upper, span = tree.normal[1:][short], tree.span[1:][short]
         edges = coordinate[1:][short], span / upper, tree.normal[short] / upper

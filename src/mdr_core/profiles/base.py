@@ -206,6 +206,12 @@ class Profile(ABC):
         """Contact coordinate at the end of the domain; None if there is no end."""
         return None
 
+    @cached_property
+    def largest_loads(self) -> tuple[Parameter, Parameter] | None:
+        """Depth [length] and F_N/E* [length^2] at the end of the domain; None for no end."""
+        end = self.last_coordinate
+        return None if end is None else (self.depth(number(end)), self.reduced_force(number(end)))
+
     @property
     def scale(self) -> Parameter:
         """Characteristic contact coordinate, such as that of a break."""

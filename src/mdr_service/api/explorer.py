@@ -2,29 +2,36 @@
 
 import gzip
 import sys
-from functools import cache
+from collections.abc import AsyncIterator
+from functools import cache, partial
 from importlib.metadata import distribution
 from pathlib import Path
+from threading import Lock
 from typing import Final
 
+import orjson
 from anyio import to_thread
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, FastAPI, Request
 from starlette.responses import (
     FileResponse,
     JSONResponse,
     PlainTextResponse,
     RedirectResponse,
     Response,
+    StreamingResponse,
 )
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
 from mdr_service.api.documentation import PAGE_HEADERS
 from mdr_service.middleware import header
+from mdr_service.transfers import LONG
 
 router = APIRouter(include_in_schema=False)
 
-_OWN: Final = "mdr-contact"
+_OWN: Final = distribution("mdr-contact")
+_README: Final = str(_OWN.metadata.json["description"])
+_LICENSE: Final = _OWN.read_text("licenses/LICENSE")
 # Built by `make docs`, and in the image.
 MANUAL: Final = Path(sys.prefix, "share", "mdr", "manual")
 _LINKS: Final = {
@@ -41,29 +48,49 @@ _LINKS: Final = {
 }
 
 
+# The file of Plotly is compressed in 0.15 s of a core: once, however many clients ask for it first.
+_reading: Final = Lock()
+
+
 @cache
-def _compressed(path: str, _changed: float) -> bytes:
-    """Return a file, compressed once: Plotly's takes 0.06 s or more."""
-    return gzip.compress(Path(path).read_bytes(), compresslevel=6, mtime=0)
+def _content(path: str, _changed: float, *, compressed: bool) -> bytes:
+    content = Path(path).read_bytes()
+    return gzip.compress(content, compresslevel=6, mtime=0) if compressed else content
+
+
+def _content_once(path: str, changed: float, *, compressed: bool) -> bytes:
+    """Return a file, read and compressed once."""
+    with _reading:
+        return _content(path, changed, compressed=compressed)
+
+
+async def _pieces(content: bytes) -> AsyncIterator[memoryview]:
+    """Yield a file in pieces; a longer one would count as memory of each request."""
+    for begin in range(0, len(content), LONG):
+        yield memoryview(content)[begin : begin + LONG]
 
 
 class Pages(StaticFiles):
     """Files with the security policy of the pages; browsers revalidate them on every visit."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """Return a file, compressed if the client takes that, or the status 304."""
+        """Return a file, compressed if the client takes that, or the status 304.
+
+        A header `Range` is ignored, as RFC 9110 allows: the files are small.
+        """
         response = await super().get_response(path, scope)
         headers = PAGE_HEADERS | {"Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
         response.headers.update(headers)
         if not isinstance(response, FileResponse) or not response.stat_result:
             return response
-        if "gzip" not in header(scope, b"accept-encoding"):
-            return response
+        compressed = "gzip" in header(scope, b"accept-encoding")
         file = str(response.path), response.stat_result.st_mtime
-        body = await to_thread.run_sync(_compressed, *file)
-        response.headers["Content-Encoding"] = "gzip"
-        del response.headers["content-length"]
-        return Response(body, response.status_code, response.headers)
+        content = await to_thread.run_sync(partial(_content_once, *file, compressed=compressed))
+        if compressed:
+            response.headers["Content-Encoding"] = "gzip"
+        response.headers["Content-Length"] = str(len(content))
+        del response.headers["Accept-Ranges"]
+        return StreamingResponse(_pieces(content), response.status_code, response.headers)
 
 
 FILES: Final = Pages(packages=[("mdr_service", "explorer"), ("plotly", "package_data")])
@@ -88,10 +115,22 @@ async def manual() -> Response:
 @router.get("/readme")
 async def readme() -> Response:
     """Return the introduction to the service."""
-    return PlainTextResponse(distribution(_OWN).metadata.json["description"])
+    return PlainTextResponse(_README)
 
 
 @router.get("/license")
 async def license_() -> Response:
     """Return the licence of the service."""
-    return PlainTextResponse(distribution(_OWN).read_text("licenses/LICENSE"))
+    return PlainTextResponse(_LICENSE)
+
+
+@router.get("/openapi.json")
+async def document(request: Request) -> Response:
+    """Return the OpenAPI document."""
+    return Response(openapi_document(request.app), media_type="application/json")
+
+
+@cache
+def openapi_document(app: FastAPI) -> bytes:
+    """Return the OpenAPI document, which the endpoint of the framework writes for each request."""
+    return orjson.dumps(app.openapi())

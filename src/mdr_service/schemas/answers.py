@@ -284,6 +284,7 @@ class Health(Answer):
     """State of the service."""
 
     status: Literal["ok"] = Field(description="State: `ok`.")
+    version: str = Field(description="Version of the service.")
 
 
 class ProblemError(Answer):

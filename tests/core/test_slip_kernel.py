@@ -11,17 +11,17 @@ from shutil import which
 import numpy as np
 import pytest
 
-from mdr_core.history import slip_memory, slip_memory_kernel
+from mdr_core.history import slip_kernel, slip_memory
 from mdr_core.history.slip_memory import LoadPoints
 
-TEXT = Path(slip_memory.__file__).with_name("slip_memory_kernel.py")
+TEXT = Path(slip_memory.__file__).with_name("slip_kernel.py")
 
 
 @pytest.mark.skipif(
-    which("cc") is None or "PORTABLE_RUN" in os.environ, reason="there is no compiled module"
+    which("cc") is None or "MDR_PLAIN" in os.environ, reason="there is no compiled module"
 )
 def test_the_loop_is_compiled() -> None:
-    suffix = Path(slip_memory_kernel.__file__).suffix
+    suffix = Path(slip_kernel.__file__).suffix
     assert suffix in importlib.machinery.EXTENSION_SUFFIXES[-1]
 
 
@@ -38,16 +38,17 @@ def test_compiled_kernel_is_bit_identical_to_python(
         np.arange(count),
     )
     start = slip_memory.separated(0.0, 0.0)
-    compiled = slip_memory.apply_steps(start, points)
+    compiled = slip_memory.follow(start, points)
+    intervals = compiled[0].slip_intervals
     specification = importlib.util.spec_from_file_location("plain", TEXT)
     assert specification is not None
     assert specification.loader is not None
     plain = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(plain)
     monkeypatch.setattr(slip_memory, "kernel", plain)
-    tree, path, line = slip_memory.apply_steps(start, points)
-    for name in ("parent", "normal", "growth", "top"):
+    tree, line = slip_memory.follow(start, points)
+    for name in ("parent", "vertices", "top"):
         np.testing.assert_array_equal(getattr(compiled[0], name), getattr(tree, name), name)
-    for ours, python in ((compiled[1], path), (compiled[2], line)):
-        for name, one, other in zip(ours._fields, ours, python, strict=True):
-            np.testing.assert_array_equal(one, other, name)
+    for one, other in zip(compiled[1], line, strict=True):
+        np.testing.assert_array_equal(one, other)
+    np.testing.assert_array_equal(intervals, tree.slip_intervals)

@@ -1,0 +1,84 @@
+# C types of slip_kernel.py, which Cython compiles as it stands.
+
+cimport cython
+
+cdef Py_ssize_t FORWARD, BACKWARD, LOW, GROWTH, ANCHOR, STEP, NEITHER
+cdef Py_ssize_t POINT, CORNER, MIRROR, AXIS, NORMAL, PLACE, RISE, FALL, TURN
+
+
+@cython.final
+cdef class PolylineStack:
+    cdef double[:, ::1] rows
+    cdef public Py_ssize_t top, changed, highest
+    cdef double x, y
+    cdef bint straight
+
+    @cython.locals(at=Py_ssize_t, i=Py_ssize_t, made=Py_ssize_t, row=Py_ssize_t)
+    cpdef Py_ssize_t run(
+        self, double[:, ::1] path, unsigned char[::1] continues, Py_ssize_t[::1] load_step,
+        Py_ssize_t[::1] number, Py_ssize_t[::1] parent, double[:, ::1] vertices,
+        Py_ssize_t[::1] tops
+    )
+    cpdef void move(self, double x, double y, bint continues, double load_step) noexcept
+    cdef void _aim(self, double x, double y) noexcept
+    @cython.locals(below=Py_ssize_t)
+    cdef void _stick(
+        self, double deeper, double further, double rise, double fall, double load_step
+    ) noexcept
+    @cython.locals(
+        lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
+        full=bint, oblique=bint
+    )
+    cdef void _slip(self) noexcept
+    @cython.locals(base=Py_ssize_t, near=bint)
+    cdef void _cut(
+        self, Py_ssize_t lower, Py_ssize_t upper, Py_ssize_t own, Py_ssize_t other, double keep
+    ) noexcept
+    @cython.locals(first=bint)
+    cdef Py_ssize_t _last_reached(self, Py_ssize_t lower, Py_ssize_t upper) noexcept
+    @cython.locals(at=Py_ssize_t)
+    cdef void _extend(
+        self, Py_ssize_t below, double forward_step, double backward_step, double further,
+        double load_step
+    ) noexcept
+    cdef void _lay(self, Py_ssize_t at, double further) noexcept
+    cdef Py_ssize_t _constant(self, Py_ssize_t at) noexcept
+    cdef void _put(
+        self, Py_ssize_t at, Py_ssize_t own, double high, double low, double growth
+    ) noexcept
+    cdef double _excess(self, Py_ssize_t upper, Py_ssize_t lower, Py_ssize_t own) noexcept
+    cdef double _normal(self, Py_ssize_t at) noexcept
+
+
+@cython.final
+cdef class SlipFront:
+    cdef Py_ssize_t[::1] parent, tops
+    cdef const double[:, :] vertices
+    cdef double[:, ::1] path, intervals
+    cdef Py_ssize_t count
+    cdef double f, b, s, f_end, b_end, s_end
+
+    @cython.locals(i=Py_ssize_t)
+    cpdef Py_ssize_t run(self)
+    @cython.locals(at=Py_ssize_t, below=Py_ssize_t, in_backward=bint)
+    cdef void _descend(self, Py_ssize_t i) noexcept
+    cdef void _sweep(
+        self, Py_ssize_t i, double rise, double fall, double turn, double lower
+    ) noexcept
+    @cython.locals(in_backward=bint)
+    cdef void _slip(
+        self, Py_ssize_t i, double rise, double fall, double upper_side, double lower_side,
+        double lower
+    ) noexcept
+    @cython.locals(new=Py_ssize_t)
+    cdef void _add(
+        self, Py_ssize_t i, double at, double span, double a, double b, double c, double s
+    ) noexcept
+    cdef double _side(self) noexcept
+    cdef bint _is_in_backward(self, double side) noexcept
+    cdef double _gap(self, bint in_backward, double side) noexcept
+
+@cython.locals(below=Py_ssize_t, i=Py_ssize_t)
+cpdef accumulate(Py_ssize_t[::1] parent, double[::1] step, double[::1] total)
+cdef double decrease(double x0, double y0, double x, double y) noexcept
+cpdef double rounding(double a, double b, double total) noexcept

@@ -1,0 +1,356 @@
+"""Mistakes of newcomers by HTTP, on the command line and in Python: each error names the remedy.
+
+The expectations were written first, as what a reader would have to be told to continue.
+"""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import mdr_core as mdr
+from mdr_command.__main__ import main
+from tests.conftest import Client
+
+STEEL = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+BALL = {"kind": "paraboloid", "radius": 0.01}
+MODULI = {"e_star": 115e9, "g_star": 95e9}
+FORCE = {"normal_force": 10}
+FRICTION = {"friction_coefficient": 0.3, "tangential": {"tangential_force": 1}}
+# Words of the tools behind the service, which mean nothing to its users.
+JARGON = re.compile(
+    r"Input should|validation|pydantic|discriminator|\btag\b|NoneType|ndarray|loc\b"
+)
+
+NORMAL = {"profile": BALL, "material": MODULI, "load": FORCE}
+BY_HTTP: dict[str, tuple[str, Any, str, list[str]]] = {
+    # What they did: path, request, place of the first error, and what its detail has to say.
+    "radius in a unit": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "sphere", "radius": "10 mm"}},
+        "profile.radius",
+        ["number", "0.01", "unit"],
+    ),
+    "radius 0": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "sphere", "radius": 0}},
+        "profile.radius",
+        ["must be positive"],
+    ),
+    "E and nu of one material": (
+        "/v1/normal",
+        NORMAL | {"material": {"E": 210e9, "nu": 0.3}},
+        "material.e_star",
+        ["bodies", "two", "youngs_modulus", "poissons_ratio", '"rigid"'],
+    ),
+    "one body": (
+        "/v1/normal",
+        NORMAL | {"material": {"bodies": [STEEL]}},
+        "material.bodies",
+        ["exactly two bodies"],
+    ),
+    "a body by name": (
+        "/v1/normal",
+        NORMAL | {"material": {"bodies": [STEEL, "steel"]}},
+        "material.bodies.1",
+        ["youngs_modulus", "poissons_ratio", '"rigid"'],
+    ),
+    "Poisson's ratio in per cent": (
+        "/v1/normal",
+        NORMAL | {"material": {"bodies": [STEEL | {"poissons_ratio": 30}, "rigid"]}},
+        "material.bodies.0.poissons_ratio",
+        ["greater than -1", "at most 0.5"],
+    ),
+    "ball as a kind": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "ball", "radius": 0.01}},
+        "profile.kind",
+        ["sphere", "paraboloid", "tabulated"],
+    ),
+    "a profile by its name": (
+        "/v1/normal",
+        NORMAL | {"profile": "sphere"},
+        "profile",
+        ["object", "kind", "sphere"],
+    ),
+    "a diameter": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "sphere", "radius": 1, "diameter": 2}},
+        "profile.diameter",
+        ["no such member", "radius"],
+    ),
+    "a force beside the load": (
+        "/v1/normal",
+        {"profile": BALL, "material": MODULI, "force": 10},
+        "load",
+        ["required", "exactly one of", "normal_force", "indentation_depth"],
+    ),
+    "a load that is a number": (
+        "/v1/normal",
+        NORMAL | {"load": 10},
+        "load",
+        ["object", "exactly one of", "normal_force"],
+    ),
+    "force and depth": (
+        "/v1/normal",
+        NORMAL | {"load": {"normal_force": 1, "indentation_depth": 1e-6}},
+        "load",
+        ["exactly one of", "normal_force", "indentation_depth"],
+    ),
+    "a force that pulls": (
+        "/v1/normal",
+        NORMAL | {"load": {"normal_force": -10}},
+        "load.normal_force",
+        ["not be negative", "compression is positive"],
+    ),
+    "depths before contact": (
+        "/v1/normal",
+        NORMAL | {"load": {"indentation_depth": [-1e-6, 0, 1e-6]}},
+        "load.indentation_depth.0",
+        ["not be negative", "first contact", "give 0"],
+    ),
+    "a contact radius of a flat punch": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "flat_punch", "radius": 1}, "load": {"contact_radius": 1}},
+        "load.contact_radius",
+        ["indentation_depth or normal_force"],
+    ),
+    "a table of one point": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "tabulated", "r": [0], "f": [0]}},
+        "profile.r",
+        ["at least", "needed"],
+    ),
+    "friction without a shear modulus": (
+        "/v1/tangential",
+        NORMAL | FRICTION | {"material": {"e_star": 115e9}},
+        "material.g_star",
+        ["needed with friction", "bodies"],
+    ),
+    "mu": (
+        "/v1/tangential",
+        NORMAL | FRICTION | {"mu": 0.3},
+        "mu",
+        ["no such member", "friction_coefficient"],
+    ),
+    "more than friction can hold": (
+        "/v1/tangential",
+        NORMAL | FRICTION | {"tangential": {"tangential_force": 5}},
+        "tangential.tangential_force",
+        ["friction_coefficient x normal_force", "reduce", "tangential_displacement"],
+    ),
+    "stress as a field": (
+        "/v1/stress",
+        NORMAL | {"radius": [0], "quantities": ["stress"]},
+        "quantities.0",
+        ["pressure", "shear_stress"],
+    ),
+    "no fields": (
+        "/v1/stress",
+        NORMAL | {"radius": [0]},
+        "quantities",
+        ["required", "pressure", "shear_stress"],
+    ),
+    "half a point": (
+        "/v1/stress",
+        NORMAL | {"points": 10.5, "quantities": ["pressure"]},
+        "points",
+        ["whole number"],
+    ),
+    "a list as a batch": ("/v1/batch", [NORMAL], "", ["object", "queries"]),
+    "a trailing comma": ("/v1/normal", '{"load": {},}', "", ["trailing comma", "line 1"]),
+    "a dictionary of Python": ("/v1/normal", "{'load': {}}", "", ["double quotes"]),
+    "nothing": ("/v1/normal", "", "", ["empty"]),
+}
+
+
+@pytest.mark.parametrize("mistake", BY_HTTP)
+def test_problem_names_the_remedy(client: Client, mistake: str) -> None:
+    path, body, place, said = BY_HTTP[mistake]
+    text = body if isinstance(body, str) else json.dumps(body)
+    response = client.post_text(path, text.encode())
+    assert response.status_code in {400, 422}
+    detail = response.json()["detail"]
+    assert detail.startswith(f"{place}: " if place else "")
+    assert all(part in detail for part in said), detail
+    assert not JARGON.search(response.text), response.text
+
+
+BY_URL: dict[str, tuple[str, str, list[str]]] = {
+    "radius in a unit": ("radius=10mm&e_star=1e11&normal_force=1", "radius", ["0.01", "unit"]),
+    "a decimal comma": ("radius=0,01&e_star=1e11&normal_force=1", "radius", ["decimal comma"]),
+    "no modulus": ("radius=1&normal_force=1", "e_star", ["youngs_modulus_1", "poissons_ratio_1"]),
+    "force": ("radius=1&e_star=1&force=1", "force", ["no such member", "normal_force"]),
+    "half a range": (
+        "radius=1&e_star=1&normal_force_from=1&n=9",
+        "normal_force_to",
+        ["required for a range"],
+    ),
+    "an unknown answer": (
+        "radius=1&e_star=1&normal_force=1&answers=force",
+        "answers",
+        ["normal_force", "contact_radius"],
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", BY_URL)
+def test_problem_of_parameters_names_the_remedy(client: Client, mistake: str) -> None:
+    parameters, place, said = BY_URL[mistake]
+    response = client.get(f"/v1/normal?kind=paraboloid&{parameters}")
+    assert response.status_code == 422
+    detail = response.json()["detail"]
+    assert detail.startswith(f"{place}: ")
+    assert all(part in detail for part in said), detail
+    assert not JARGON.search(response.text), response.text
+
+
+OPTIONS = "--kind paraboloid --radius 0.01 --e-star 1e11"
+BY_COMMAND: dict[str, tuple[str, list[str]]] = {
+    "radius in a unit": (
+        "normal --kind paraboloid --radius 10mm --e-star 1e11 --normal-force 1",
+        ["--radius", "0.01", "unit"],
+    ),
+    "no modulus": (
+        "normal --kind paraboloid --radius 0.01 --normal-force 1",
+        ["--e-star", "--youngs-modulus-1", "--poissons-ratio-1"],
+    ),
+    "no load": (f"normal {OPTIONS}", ["--normal-force", "--indentation-depth", "exactly one"]),
+    "a wrong option": (f"normal {OPTIONS} --force 1", ["--force", "mdr normal --help"]),
+    "a spreadsheet": (f"normal {OPTIONS} --normal-force 1 -o x.xlsx", ["xlsx", ".csv", "--format"]),
+    "a table as the request": ("normal table.csv", ["table.csv", "JSON", "--table", "--help"]),
+    "a request that is not there": ("normal request.json", ["request.json", "No such file"]),
+    "a wrong request": ("normal wrong.json", ["wrong.json", "load", "normal_force"]),
+    "a request and options": (f"normal wrong.json {OPTIONS}", ["file", "options", "not both"]),
+    "no fields": (f"stress {OPTIONS} --normal-force 1 --points 9", ["--quantities", "pressure"]),
+    "no friction": (
+        f"tangential {OPTIONS} --normal-force 1 --tangential-force 0.1",
+        ["--friction-coefficient", "required"],
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", BY_COMMAND)
+def test_command_line_names_the_remedy_in_a_line(
+    mistake: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("table.csv").write_text("r,f\n0,0\n1,1\n", "utf-8")
+    Path("wrong.json").write_text(json.dumps(NORMAL | {"load": {"force": 1}}), "utf-8")
+    line, said = BY_COMMAND[mistake]
+    assert main(line.split()) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"mdr {line.split()[0]}: ")
+    assert err.count("\n") == 1
+    assert not err.rstrip().endswith("}")
+    assert all(part in err for part in said), err
+    assert not JARGON.search(err), err
+
+
+BODY = mdr.Body(210e9, 0.3)
+PAIR = mdr.from_bodies([BODY, BODY])
+PRESSED = mdr.normal.solve(mdr.Paraboloid(0.01), PAIR, normal_force=10.0)
+HISTORY: Any = mdr.history.solve(
+    mdr.Paraboloid(0.01), PAIR, PAIR, 0.3, normal_force=10.0, tangential_force=[0.0, 1.0]
+)
+IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
+    "a rubber of 0.6": (lambda: mdr.Body(210e9, 0.6), ["poissons_ratio", "at most 0.5"]),
+    "constants swapped": (lambda: mdr.Body(0.3, 210e9), ["poissons_ratio", "at most 0.5"]),
+    "one body": (lambda: mdr.from_bodies([BODY]), ["exactly two bodies"]),
+    "a body by name": (lambda: mdr.from_bodies([BODY, "steel"]), ["Body", '"rigid"']),
+    "radius 0": (lambda: mdr.Paraboloid(0), ["radius", "must be positive"]),
+    "radius in a unit": (lambda: mdr.Paraboloid("10 mm"), ["radius", "number"]),
+    "one body as the material": (
+        lambda: mdr.normal.solve(mdr.Paraboloid(1), BODY, normal_force=1),
+        ["e_star", "both bodies", "from_bodies"],
+    ),
+    "swapped arguments": (
+        lambda: mdr.normal.solve(PAIR, mdr.Paraboloid(1), normal_force=1),
+        ["profile", "Paraboloid(0.01)", "not Material"],
+    ),
+    "a class as the profile": (
+        lambda: mdr.normal.solve(mdr.Paraboloid, PAIR, normal_force=1),
+        ["profile", "Paraboloid(0.01)"],
+    ),
+    "no load": (
+        lambda: mdr.normal.solve(mdr.Paraboloid(1), PAIR),
+        ["load", "exactly one of", "normal_force"],
+    ),
+    "a load in a unit": (
+        lambda: mdr.normal.solve(mdr.Paraboloid(1), PAIR, normal_force="10 N"),
+        ["load.normal_force", "number", "not str"],
+    ),
+    "depths before contact": (
+        lambda: mdr.normal.solve(mdr.Paraboloid(1), PAIR, indentation_depth=[-1e-6, 1e-6]),
+        ["load.indentation_depth.0", "first contact", "give 0"],
+    ),
+    "friction on a profile": (
+        lambda: mdr.tangential.solve(mdr.Paraboloid(1), PAIR, 0.3, tangential_force=1),
+        ["contact", "normal.solve", "not Paraboloid"],
+    ),
+    "friction without a shear modulus": (
+        lambda: mdr.tangential.solve(PRESSED, mdr.Material(1e11), 0.3, tangential_force=1),
+        ["g_star", "needed with friction", "bodies"],
+    ),
+    "pressure of a profile": (
+        lambda: mdr.fields.pressure(mdr.Paraboloid(1), [0.0]),
+        ["contact", "normal.solve", "not Paraboloid"],
+    ),
+    "shear stress without friction": (
+        lambda: mdr.fields.shear_stress(PRESSED, [0.0]),
+        ["contact", "tangential.solve", "not NormalContact"],
+    ),
+    "shear stress of a history": (
+        lambda: mdr.fields.shear_stress(HISTORY, [0.0]),
+        ["the state of a load history", "not LoadHistory"],
+    ),
+    "a step from a profile": (
+        lambda: mdr.history.advance(mdr.Paraboloid(1), 1e-6, 0.0),
+        ["state", "history.unloaded"],
+    ),
+    "pairs as terms": (
+        lambda: mdr.Series([(1.0, 2.0)]),
+        ["terms.0", "PowerTerm(coefficient, exponent)"],
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", IN_PYTHON)
+def test_exception_names_the_remedy(mistake: str) -> None:
+    call, said = IN_PYTHON[mistake]
+    with pytest.raises(mdr.InputError) as raised:
+        call()
+    message = str(raised.value)
+    assert all(part in message for part in said), message
+    assert not JARGON.search(message), message
+
+
+@pytest.mark.parametrize(
+    ("profile", "load"),
+    [
+        (BALL | {"radius": -1}, FORCE),
+        (BALL, {"normal_force": -1}),
+        (BALL, {"indentation_depth": [0, -1]}),
+        (BALL, {}),
+        ({"kind": "sphere", "radius": 1}, {"contact_radius": 1}),
+    ],
+)
+def test_sentences_of_http_and_python_are_the_same(
+    client: Client, profile: dict[str, Any], load: dict[str, Any]
+) -> None:
+    def solve() -> Any:
+        return mdr.normal.solve(mdr.KINDS[profile["kind"]](float(profile["radius"])), 115e9, **load)
+
+    problem = client.post("/v1/normal", NORMAL | {"profile": profile, "load": load}).json()
+    with pytest.raises(mdr.InputError) as raised:
+        solve()
+    # The service adds the bound of all numbers.
+    assert problem["detail"].removesuffix(", at least 1e-50") == str(raised.value)
+    assert problem["errors"][0]["detail"].startswith(raised.value.detail)

@@ -1,0 +1,86 @@
+"""Work that the event loop leaves to compute processes, or does once."""
+
+import json
+
+import pytest
+
+from mdr_service import observability, problems
+from mdr_service.api import operations
+from mdr_service.query_parameters import Parameters
+from tests.conftest import Client
+
+CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": {"e_star": 1.0}}
+FORCES = "/v1/normal?kind=cone&slope=0.1&e_star=1&normal_force_from=1&normal_force_to=2"
+
+
+def never(*_arguments: object, **_options: object) -> None:
+    raise AssertionError("the event loop computes it")
+
+
+@pytest.mark.parametrize("options", ["&answers=method", "&format=csv", ""])
+def test_long_range_is_expanded_in_a_compute_process(
+    client: Client, monkeypatch: pytest.MonkeyPatch, options: str
+) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr(Parameters, "query", never)
+        response = client.get(f"{FORCES}&n=2000{options}")
+    assert response.status_code == 200
+    # Up to a thousand values the event loop expands it; shared values are the same.
+    if not options:
+        short = client.get(f"{FORCES}&n=1000").json()
+        assert response.json()["normal_force"][::1999] == short["normal_force"][::999]
+        assert response.headers["etag"].startswith('W/"')
+
+
+def test_errors_of_a_long_range_point_at_parameters(client: Client) -> None:
+    for count in (1000, 2000):
+        problem = client.get(f"{FORCES.replace('slope=0.1', 'slope=-1')}&n={count}").json()
+        assert [each["pointer"] for each in problem["errors"]] == ["/slope"]
+        problem = client.get(f"{FORCES}&n={count}&answers=nothing").json()
+        assert [each["pointer"] for each in problem["errors"]] == ["/answers"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        CONE | {"load": {"normal_force": 1}} | {f"a{n}": 0 for n in range(1700)},
+        CONE | {"profile": {"kind": "series", "terms": [{}] * 60}, "load": {"normal_force": 1}},
+    ],
+    ids=["unknown members", "empty terms"],
+)
+def test_many_errors_are_listed_in_a_compute_process(
+    client: Client, monkeypatch: pytest.MonkeyPatch, body: object
+) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr(problems, "from_validation", never)
+        response = client.post("/v1/normal", body)
+    assert response.status_code == 422
+    assert len(response.json()["errors"]) > 10
+
+
+def test_batch_of_invalid_queries_is_answered_by_a_compute_process(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    queries = [{"ask": "normal", "request": {}}] * 100
+    with monkeypatch.context() as patch:
+        patch.setattr(problems, "from_validation", never)
+        response = client.post("/v1/batch", {"queries": queries})
+    assert [each["status"] for each in response.json()["answers"]] == [422] * 100
+
+
+def test_documents_are_written_once(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = client.get("/openapi.json")
+    monkeypatch.setattr(client.app, "openapi", never)
+    assert client.get("/openapi.json").content == first.content
+    assert json.loads(first.content)["openapi"].startswith("3.1")
+    assert client.get("/readme").text.startswith("# MDR")
+
+
+def test_metrics_are_written_once_a_second(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    seconds = iter([1000.1, 1000.9, 1001.0])
+    monkeypatch.setattr(operations, "monotonic", lambda: next(seconds))
+    texts = []
+    for _ in range(3):
+        texts.append(client.get("/metrics").text)
+        observability.LOST_LINES.inc()
+    assert texts[0] == texts[1] != texts[2]
