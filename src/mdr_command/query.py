@@ -1,8 +1,7 @@
 """``mdr normal``, ``mdr wear`` and so on: responses of the service, without a server.
 
 The request is a file or, if it consists of numbers, options such as ``--radius 0.01``: the query
-parameters of the service, with hyphens in place of underscores. ``--table`` reads the profile from
-a file of an instrument.
+parameters of the service, with hyphens in place of underscores.
 """
 
 import argparse
@@ -17,12 +16,10 @@ from pydantic.fields import FieldInfo
 
 from mdr_command import ExitStatus
 from mdr_core.errors import InputError
-from mdr_core.table_reader import read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
@@ -34,13 +31,11 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
-# Options beside the parameters of the request.
-_OTHER_OPTIONS: Final = frozenset({"output", "size", "table", "length_unit"})
+# Options beside the request.
+_OF_OUTPUT: Final = frozenset({"output", "size", "units"})
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
-_REQUEST: Final = (
-    "a request is a JSON object; give a table with --table, and numbers with options (--help)"
-)
+_REQUEST: Final = "a request is a JSON object; see --help for one given by options"
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -58,6 +53,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         help="format of the response (default: by the suffix of FILE, json without one)",
     )
     parser.add_argument("--size", metavar="WxH", help=content_negotiation.SIZE)
+    parser.add_argument("--units", metavar="L,F,P", help=content_negotiation.UNITS)
     parser.add_argument(
         "-o",
         "--output",
@@ -67,16 +63,6 @@ def declare(parser: argparse.ArgumentParser) -> None:
     )
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
-        group.add_argument(
-            "--table",
-            metavar="CSV",
-            help="table of a measured profile, in place of --kind; it is converted to metres",
-        )
-        group.add_argument(
-            "--length-unit",
-            metavar="m|mm|um|nm",
-            help="unit of the table, where its heading names none; two, as mm,um, for r and f",
-        )
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
@@ -98,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         content = _content(arguments)
     except OSError as error:
-        _say(arguments, str(error.filename), str(error.strerror))
+        _say(arguments, arguments.file, str(error.strerror))
         return ExitStatus.INVALID_INPUT
     except problems.FAILURES as error:
         return _report(problems.to_problem(error), arguments)
@@ -117,45 +103,31 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _content(arguments: argparse.Namespace) -> bytes:
     """Return the response to the request, which a file or options give."""
-    name, size = arguments.command, arguments.size
+    name = arguments.command
     suffix = arguments.output.suffix[1:].lower() if arguments.output else ""
     format_ = arguments.format or suffix or "json"
     if format_ not in FORMATS:
         detail = f"no format has the suffix .{suffix}; there are .{', .'.join(FORMATS)}; or give "
         raise InputError(("output",), f"{detail}--format")
     media_type = FORMATS[format_]
-    size = None if size is None else content_negotiation.picture_size(size, media_type)
+    look = content_negotiation.appearance(media_type, arguments.size, arguments.units)
     given = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
-    profile = _table(arguments, given)
     if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
-        return respond(name, query, media_type, size=size)
+        return respond(name, query, media_type, appearance=look)
     if arguments.file:
         raise InputError((), "give the request by a file or by options, not both")
     parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
-        return respond(name, parameters.query(profile), media_type, parameters.members, size)
-
-
-def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
-    """Return the profile of `--table`, or None without; the parameters then need some kind."""
-    file, unit = (vars(arguments).get(name) for name in ("table", "length_unit"))
-    if not file:
-        if unit:
-            raise InputError(("length_unit",), "is valid only with --table")
-        return None
-    fields = PARAMETERS[arguments.command].fields
-    if replaced := [name for name in given if fields.get(name, "").startswith("profile.")]:
-        raise InputError(("table",), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
-    given["kind"] = OF_NUMBERS[0]
-    table = read_table(file, unit.split(",") if unit and "," in unit else unit)
-    return {"kind": "tabulated", "r": table.r.tolist(), "f": table.f.tolist()}
+        return respond(name, parameters.query(), media_type, parameters.members, look)
 
 
 def _options(command: str) -> dict[str, FieldInfo]:
     """Return the parameters that are options; every command has options for a picture."""
     fields = PARAMETERS[command].model_fields if command in PARAMETERS else {}
-    return {name: field for name, field in fields.items() if name not in {"format", "size"}}
+    return {
+        name: field for name, field in fields.items() if name not in {"format", "size", "units"}
+    }
 
 
 def _read(file: str) -> bytes:
@@ -187,15 +159,12 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     names = _options(arguments.command)
     by_options = any(name in arguments for name in names)
     file = arguments.file or _STANDARD_INPUT
-    table = vars(arguments).get("table")
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
         if error.type is problems.MALFORMED_JSON:
             parts.append(_REQUEST)
-        elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
-            parts = [table, place.partition(".")[2], detail]
-        elif by_options or place in _OTHER_OPTIONS:
+        elif by_options or place in _OF_OUTPUT:
             renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
             parts = [_option(place, [place]), detail if place in _TEXTS else renamed]
         _say(arguments, *parts)

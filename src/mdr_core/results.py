@@ -35,12 +35,7 @@ class Results:
         """Return the class with one line for each result."""
         values = self.to_dict()
         width = max(map(len, values))
-        # Two digits of an estimate: more depend on the processor.
-        shown = {
-            name: f"{value:.2g}" if name.endswith("error_estimate") else _short(value)
-            for name, value in values.items()
-        }
-        lines = [f"{name:>{width}}: {text}" for name, text in shown.items()]
+        lines = [f"{name:>{width}}: {_short(value)}" for name, value in values.items()]
         return "\n".join([f"{type(self).__name__}:", *lines])
 
 

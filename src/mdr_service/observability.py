@@ -2,7 +2,6 @@
 
 import atexit
 import logging
-import logging.config
 import os
 from collections import deque
 from collections.abc import Mapping
@@ -178,12 +177,6 @@ class JsonLines(logging.Formatter):
         if record.exc_info:
             line["trace"] = self.formatException(record.exc_info)
         return orjson.dumps(line, default=str).decode()
-
-
-def configure_logging() -> None:
-    """Write log records and warnings of this process as lines of JSON."""
-    logging.config.dictConfig(dict(LOGGING))
-    logging.captureWarnings(capture=True)
 
 
 LOGGING: Final[Mapping[str, Any]] = {

@@ -17,7 +17,7 @@ from pydantic_core import PydanticCustomError
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
-from mdr_service.content_negotiation import FORMAT, SIZE, Format
+from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
@@ -82,6 +82,7 @@ class Parameters(BaseModel):
     # An unknown format is not acceptable (406), as for POST, rather than invalid.
     format: SkipValidation[Format | None] = Field(default=None, description=FORMAT)
     size: str | None = Field(default=None, description=SIZE)
+    units: str | None = Field(default=None, description=UNITS)
     answers: str | None = Field(
         default=None, description="Members of the response, separated by commas; by default all"
     )
@@ -91,13 +92,8 @@ class Parameters(BaseModel):
         """Members of the response to return; all if there are none."""
         return self.answers.split(",") if self.answers else []
 
-    def query(self, profile: Mapping[str, Any] | None = None) -> contacts.Query:
-        """Return the request; raise InputError or ValidationError, see `pointing`.
-
-        Parameters
-        ----------
-        profile : profile in place of the one that parameters give.
-        """
+    def query(self) -> contacts.Query:
+        """Return the request; raise InputError or ValidationError, see `pointing`."""
         given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
@@ -111,7 +107,7 @@ class Parameters(BaseModel):
             values["radius"] = [values["radius"]]
         if "quantities" in values:
             values["quantities"] = values["quantities"].split(",")
-        request = nested(values) | ({"profile": profile} if profile else {})
+        request = nested(values)
         for group in ("material", "load", "oscillation", "cycles"):
             if group in self.model.model_fields:
                 request.setdefault(group, {})

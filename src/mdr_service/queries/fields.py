@@ -12,7 +12,6 @@ from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
-from mdr_core.validation import TIGHTEST
 from mdr_service.queries.contacts import solve_normal, solve_tangential
 from mdr_service.queries.load_paths import require_few_samples, solve_path
 from mdr_service.results import (
@@ -66,10 +65,9 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     contact, partial = end = at_end(source)
     radius = np.array(query.radius or fields.grid(partial or contact, query.points))
     values: Result = {}
-    # The error of the edges adds to that of the integrals.
-    shape, rtol = (query.loads, radius.size), max(query.rtol / 2, TIGHTEST)
+    shape = query.loads, radius.size
     for name in query.quantities:
-        rows = broadcast(field(name, end, radius, rtol), shape)
+        rows = broadcast(field(name, end, radius, query.rtol), shape)
         values[name] = np.ascontiguousarray(rows)
     infinite: dict[str, Flags] = {}
     if not all(every(np.isfinite(rows)) for rows in values.values()):
@@ -79,7 +77,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
         checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
-    integrated = 0.0 if method == "closed_form" else rtol
+    integrated = 0.0 if method == "closed_form" else query.rtol
     names = set(query.quantities)
     if "shear_stress" in names:
         # Its edges include those of the pressure.
@@ -89,9 +87,9 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         for name in names
     )
     warnings = notices(query, source) + singular(radius, values, infinite)
-    error = max(source.error_estimate, integrated) + at_edges
-    if source.error_estimate <= query.rtol < error:
+    if source.error_estimate <= query.rtol < at_edges:
         warnings.append(normal_contact.not_reached(query.rtol))
+    error = max(source.error_estimate, integrated) + at_edges
     return {"radius": radius} | values | response_metadata(method, error, warnings)
 
 
