@@ -1,7 +1,8 @@
 """``mdr normal``, ``mdr wear`` and so on: responses of the service, without a server.
 
 The request is a file or, if it consists of numbers, options such as ``--radius 0.01``: the query
-parameters of the service, with hyphens in place of underscores.
+parameters of the service, with hyphens in place of underscores. ``--table`` reads the profile from
+a file of an instrument.
 """
 
 import argparse
@@ -16,10 +17,12 @@ from pydantic.fields import FieldInfo
 
 from mdr_command import ExitStatus
 from mdr_core.errors import InputError
+from mdr_core.table_reader import read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
+from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
@@ -31,11 +34,13 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
-# Options beside the request.
-_OF_OUTPUT: Final = frozenset({"output", "size", "units"})
+# Options beside the parameters of the request.
+_OTHER_OPTIONS: Final = frozenset({"output", "size", "units", "table", "length_unit"})
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
-_REQUEST: Final = "a request is a JSON object; see --help for one given by options"
+_REQUEST: Final = (
+    "a request is a JSON object; give a table with --table, and numbers with options (--help)"
+)
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -63,6 +68,16 @@ def declare(parser: argparse.ArgumentParser) -> None:
     )
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
+        group.add_argument(
+            "--table",
+            metavar="CSV",
+            help="table of a measured profile, in place of --kind; it is converted to metres",
+        )
+        group.add_argument(
+            "--length-unit",
+            metavar="m|mm|um|nm",
+            help="unit of the table, where its heading names none; two, as mm,um, for r and f",
+        )
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
@@ -84,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         content = _content(arguments)
     except OSError as error:
-        _say(arguments, arguments.file, str(error.strerror))
+        _say(arguments, str(error.filename), str(error.strerror))
         return ExitStatus.INVALID_INPUT
     except problems.FAILURES as error:
         return _report(problems.to_problem(error), arguments)
@@ -112,6 +127,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
     media_type = FORMATS[format_]
     look = content_negotiation.appearance(media_type, arguments.size, arguments.units)
     given = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
+    profile = _table(arguments, given)
     if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, appearance=look)
@@ -119,7 +135,22 @@ def _content(arguments: argparse.Namespace) -> bytes:
         raise InputError((), "give the request by a file or by options, not both")
     parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
-        return respond(name, parameters.query(), media_type, parameters.members, look)
+        return respond(name, parameters.query(profile), media_type, parameters.members, look)
+
+
+def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
+    """Return the profile of `--table`, or None without; the parameters then need some kind."""
+    file, unit = (vars(arguments).get(name) for name in ("table", "length_unit"))
+    if not file:
+        if unit:
+            raise InputError(("length_unit",), "is valid only with --table")
+        return None
+    fields = PARAMETERS[arguments.command].fields
+    if replaced := [name for name in given if fields.get(name, "").startswith("profile.")]:
+        raise InputError(("table",), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
+    given["kind"] = OF_NUMBERS[0]
+    table = read_table(file, unit.split(",") if unit and "," in unit else unit)
+    return {"kind": "tabulated", "r": table.r.tolist(), "f": table.f.tolist()}
 
 
 def _options(command: str) -> dict[str, FieldInfo]:
@@ -159,12 +190,15 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     names = _options(arguments.command)
     by_options = any(name in arguments for name in names)
     file = arguments.file or _STANDARD_INPUT
+    table = vars(arguments).get("table")
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
         if error.type is problems.MALFORMED_JSON:
             parts.append(_REQUEST)
-        elif by_options or place in _OF_OUTPUT:
+        elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
+            parts = [table, place.partition(".")[2], detail]
+        elif by_options or place in _OTHER_OPTIONS:
             renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
             parts = [_option(place, [place]), detail if place in _TEXTS else renamed]
         _say(arguments, *parts)

@@ -37,6 +37,7 @@ from mdr_core.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
+from mdr_core.table_reader import read_table
 
 __version__: Final = "0.1.0"
 
@@ -72,6 +73,7 @@ __all__ = [
     "from_bodies",
     "history",
     "normal",
+    "read_table",
     "subsurface",
     "tangential",
     "validity",

@@ -35,7 +35,12 @@ class Results:
         """Return the class with one line for each result."""
         values = self.to_dict()
         width = max(map(len, values))
-        lines = [f"{name:>{width}}: {_short(value)}" for name, value in values.items()]
+        # Two digits of an estimate: more depend on the processor.
+        shown = {
+            name: f"{value:.2g}" if name.endswith("error_estimate") else _short(value)
+            for name, value in values.items()
+        }
+        lines = [f"{name:>{width}}: {text}" for name, text in shown.items()]
         return "\n".join([f"{type(self).__name__}:", *lines])
 
 

@@ -17,7 +17,7 @@ from time import sleep
 from typing import Any, Final, Self, cast
 
 from mdr_core.errors import DefectError
-from mdr_service import problems
+from mdr_service import observability, problems
 
 # Before each message: whether it is bytes rather than a pickle, and its length.
 _HEAD: Final = struct.Struct("?Q")
@@ -97,6 +97,7 @@ def serve() -> None:
     calls, outcomes = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     # The pipe is for outcomes alone: printed text goes to standard error.
     os.dup2(2, 1)
+    observability.configure_logging()
     while head := calls.read(_HEAD.size):
         outcome = _attempt(calls.read(_HEAD.unpack(head)[1]))
         is_bytes = isinstance(outcome, bytes)

@@ -245,10 +245,10 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
     if error.status_code == problems.NOT_FOUND.status:
         return problem_response(ServiceError(problems.NOT_FOUND, "GET /docs lists the endpoints"))
     if error.status_code == problems.METHOD_NOT_ALLOWED.status:
-        detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed here"
-        failure = ServiceError(problems.METHOD_NOT_ALLOWED, detail)
         # Files have no route; the framework names their methods.
         allowed = _allowed(request) or (error.headers or {})["Allow"]
+        detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed: use {allowed}"
+        failure = ServiceError(problems.METHOD_NOT_ALLOWED, detail)
         return problem_response(failure, {"Allow": allowed})
     raise error
 

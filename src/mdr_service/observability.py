@@ -2,6 +2,7 @@
 
 import atexit
 import logging
+import logging.config
 import os
 from collections import deque
 from collections.abc import Mapping
@@ -177,6 +178,12 @@ class JsonLines(logging.Formatter):
         if record.exc_info:
             line["trace"] = self.formatException(record.exc_info)
         return orjson.dumps(line, default=str).decode()
+
+
+def configure_logging() -> None:
+    """Write log records and warnings of this process as lines of JSON."""
+    logging.config.dictConfig(dict(LOGGING))
+    logging.captureWarnings(capture=True)
 
 
 LOGGING: Final[Mapping[str, Any]] = {

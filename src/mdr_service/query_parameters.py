@@ -92,8 +92,13 @@ class Parameters(BaseModel):
         """Members of the response to return; all if there are none."""
         return self.answers.split(",") if self.answers else []
 
-    def query(self) -> contacts.Query:
-        """Return the request; raise InputError or ValidationError, see `pointing`."""
+    def query(self, profile: Mapping[str, Any] | None = None) -> contacts.Query:
+        """Return the request; raise InputError or ValidationError, see `pointing`.
+
+        Parameters
+        ----------
+        profile : profile in place of the one that parameters give.
+        """
         given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
@@ -107,7 +112,7 @@ class Parameters(BaseModel):
             values["radius"] = [values["radius"]]
         if "quantities" in values:
             values["quantities"] = values["quantities"].split(",")
-        request = nested(values)
+        request = nested(values) | ({"profile": profile} if profile else {})
         for group in ("material", "load", "oscillation", "cycles"):
             if group in self.model.model_fields:
                 request.setdefault(group, {})

@@ -93,3 +93,44 @@ def test_examples_of_options_run(example: str, capsys: Capture) -> None:
     assert program == "mdr"
     assert command.main(given) == 0
     assert capsys.readouterr().out
+
+
+TABLES = Path(__file__).parents[1] / "data" / "tables"
+LOAD = ["--e-star", "1.15e11", "--normal-force", "0.5"]
+
+
+def test_a_table_in_any_unit_is_the_profile_in_metres(tmp_path: Path) -> None:
+    request, by_file, by_table = (tmp_path / name for name in ("request.json", "a", "b"))
+    points = json.loads((TABLES / "expected.json").read_text("utf-8"))["points"]
+    profile = {"kind": "tabulated", **points}
+    body = {"profile": profile, "material": {"e_star": 1.15e11}, "load": {"normal_force": 0.5}}
+    request.write_text(json.dumps(body), "utf-8")
+    assert main(["normal", str(request), "-o", str(by_file)]) == 0
+    for file, units in {"tabs.txt": [], "plain.txt": ["--length-unit", "m"]}.items():
+        options = ["--table", str(TABLES / file), *units, *LOAD]
+        assert main(["normal", *options, "-o", str(by_table)]) == 0
+        assert by_table.read_bytes() == by_file.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["--table", "plain.txt"], "--length-unit: is required: no heading names the unit of r"),
+        (["--table", "plain.txt", "--length-unit", "inch"], "--length-unit: inch is none of"),
+        (["--table", "refused_line.csv"], "refused_line.csv: Line 4: 2 numbers are expected"),
+        (["--table", "none.csv"], "none.csv: No such file or directory"),
+        (["--table", "tabs.txt", "--slope", "1"], "tabs.txt: is a profile: leave out --slope"),
+        (["--length-unit", "mm"], "--length-unit: is valid only with --table"),
+    ],
+)
+def test_errors_name_the_table_or_the_option(
+    given: list[str], message: str, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(TABLES)
+    assert main(["normal", *given, *LOAD]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_an_endless_table_is_refused(capsys: Capture) -> None:
+    assert main(["normal", "--table", "/dev/zero", *LOAD]) == 2
+    assert "longer than 4000000 bytes" in capsys.readouterr().err

@@ -64,6 +64,11 @@ class Visit:
             self.page.wait_for_timeout(50)
         raise TimeoutError(self.page.url)
 
+    def state(self) -> str | None:
+        """Return the state of the page when it is at rest, see `main.js`."""
+        self.page.locator("body:not([data-state=pending])").wait_for()
+        return self.page.locator("body").get_attribute("data-state")
+
     def number(self, label: str) -> str:
         entry = self.page.locator("#numbers div", has=self.page.get_by_text(label, exact=True))
         return entry.locator("dd").inner_text()

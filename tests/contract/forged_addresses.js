@@ -19,7 +19,7 @@ async (addresses) => {
         const shown = toAddress(fromAddress(location.search, location.hash).inputs);
         dispatchEvent(new PopStateEvent("popstate"));
         // A case is drawn to the end once: most members are refused, so that cases repeat.
-        while (!cases.has(shown) && document.querySelector("#results").dataset.state === "pending") {
+        while (!cases.has(shown) && document.body.dataset.state === "pending") {
             await new Promise((done) => setTimeout(done, 1));
         }
         cases.add(shown);

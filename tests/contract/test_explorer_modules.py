@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+from tests.conftest import Client
 from tests.contract.forged_addresses import OFFERED, forged
 from tests.contract.javascript import evaluated
 
@@ -20,13 +21,17 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
     calls = [[f"?{part.query}", f"#{part.fragment}"] for part in parts]
     results = evaluated("inputs.js", "module.fromAddress(...call)", calls)
     number = r"-?\d+(\.\d+)?(e-?\d+)?"
+    numbers = re.compile(rf"({number}(,{number})*)?")
     path = re.compile(rf"{number},{number}(;{number},{number})*")
     for address, result in zip(addresses, results, strict=True):
         assert "error" not in result, address
         table = result["inputs"].pop("table")
         assert path.fullmatch(result["inputs"].pop("path")), address
+        assert numbers.fullmatch(result["inputs"].pop("breaks", "")), address
+        uncertainty = result["inputs"].pop("uncertainty", "")
+        assert uncertainty == "" or math.isfinite(uncertainty), address
         assert len(table["r"]) == len(table["f"])
-        for value in [*table["r"], *table["f"], *result["inputs"].values()]:
+        for value in [*table["r"], *table["f"], *table["units"], *result["inputs"].values()]:
             known = value in OFFERED if isinstance(value, str) else math.isfinite(value)
             assert known, (address, value)
     assert any(result["unread"] for result in results)
@@ -52,3 +57,76 @@ def test_tables_of_instruments_are_read() -> None:
 def test_tables_that_cannot_be_read_are_refused_with_the_line() -> None:
     refused = EXPECTED["refused"]
     assert {file: table.get("error") for file, table in read(list(refused)).items()} == refused
+
+
+STEEL = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
+PARABOLOID = {"kind": "paraboloid", "radius": 0.01}
+CONE = {"kind": "truncated_cone", "slope": 0.3, "flat_radius": 2e-4}
+# Query, body, and its error or last warning in the units of the page.
+MESSAGES: list[tuple[str, dict[str, Any], str]] = [
+    (
+        "normal",
+        {"profile": CONE, "load": {"contact_radius": 1e-4}},
+        "the contact cannot be smaller than the flat, “Radius b of the flat” = 0.2 mm",
+    ),
+    (
+        "normal",
+        {"profile": CONE, "load": {"normal_force": 100}},
+        "“Maximum pressure” is infinite, at radius 0.2 mm",
+    ),
+    (
+        "normal",
+        {"profile": {"kind": "sphere", "radius": 0.01}, "load": {"contact_radius": 0.1}},
+        (
+            "the contact would extend beyond radius 10 mm, where the profile ends or ceases to be "
+            "admissible"
+        ),
+    ),
+    (
+        "normal",
+        {"profile": {"kind": "flat_punch", "radius": 1e-3}, "load": {"contact_radius": 1e-3}},
+        (
+            "the contact radius of a flat punch is its radius at every load: prescribe "
+            "“Indentation depth d” or “Normal force”"
+        ),
+    ),
+    (
+        "normal",
+        {"profile": {"kind": "paraboloid", "radius": 0}, "load": {"normal_force": 100}},
+        "must be positive",
+    ),
+    (
+        "subsurface",
+        {"profile": PARABOLOID, "load": {"normal_force": 2000}, "points": 20},
+        "the stresses meet Tresca's criterion under a normal force of 2 kN",
+    ),
+    (
+        "wear",
+        {
+            "profile": PARABOLOID,
+            "load": {"indentation_depth": 1e-6},
+            "friction_coefficient": 0.3,
+            "oscillation": {"tangential_force": 4},
+        },
+        (
+            "wear at this depth reduces the normal force until the whole contact slips: a stick "
+            "zone remains only under amplitudes below 0.0026647 kN"
+        ),
+    ),
+]
+
+
+def message(client: Client, query: str, body: dict[str, Any]) -> str:
+    material = {"bodies": [STEEL, STEEL]} | ({"yield_strength": 1e9} if "points" in body else {})
+    response = client.post(f"/v1/{query}", body | {"material": material}).json()
+    found = response.get("errors") or response["warnings"]
+    return str(found[-1].get("detail") or found[-1]["message"])
+
+
+def test_messages_are_in_the_units_and_words_of_the_page(client: Client) -> None:
+    messages = [message(client, query, body) for query, body, _ in MESSAGES]
+    page = {"ul": "mm", "ud": "µm", "uf": "kN", "oscillation": "tangential_force"}
+    labels = {"flat_radius": "Radius b of the flat"}
+    calls = [[text, page, labels] for text in messages]
+    results = evaluated("messages.js", "module.inWords(...call)", calls)
+    assert results == [expected for _, _, expected in MESSAGES]

@@ -221,7 +221,7 @@ BY_COMMAND: dict[str, tuple[str, list[str]]] = {
     "no load": (f"normal {OPTIONS}", ["--normal-force", "--indentation-depth", "exactly one"]),
     "a wrong option": (f"normal {OPTIONS} --force 1", ["--force", "mdr normal --help"]),
     "a spreadsheet": (f"normal {OPTIONS} --normal-force 1 -o x.xlsx", ["xlsx", ".csv", "--format"]),
-    "a table as the request": ("normal table.csv", ["table.csv", "JSON", "--help"]),
+    "a table as the request": ("normal table.csv", ["table.csv", "JSON", "--table", "--help"]),
     "a request that is not there": ("normal request.json", ["request.json", "No such file"]),
     "a wrong request": ("normal wrong.json", ["wrong.json", "load", "normal_force"]),
     "a request and options": (f"normal wrong.json {OPTIONS}", ["file", "options", "not both"]),

@@ -133,6 +133,8 @@ def test_python_examples_are_typed(tmp_path: Path) -> None:
     for file, (code, _) in zip(files, examples("python", "text"), strict=True):
         file.write_text(code, "utf-8")
     mypy = [sys.executable, "-m", "mypy", "--strict", "--config-file", os.devnull]
+    # pandas has no types of its own.
+    mypy += ["--disable-error-code", "import-untyped"]
     done = subprocess.run([*mypy, *files], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
 

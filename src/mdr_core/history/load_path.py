@@ -18,7 +18,7 @@ from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_memory import LoadPoints
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import extremes
+from mdr_core.validation import FINITE, extremes, not_negative
 
 # A force at the onset of full slip differs from mu F_N by the rounding of both.
 _ROUNDING: Final = 8 * float(np.finfo(float).eps)
@@ -141,7 +141,8 @@ class SampledPath:
             raise InputError(
                 ("history", "tangential", self.tangential_name, int(step[beyond[0]])),
                 "no equilibrium: between the point before and this one the force exceeds "
-                "friction_coefficient x normal_force",
+                "friction_coefficient x normal_force; reduce it, or prescribe "
+                "tangential_displacement",
             )
         # At the limit, up to rounding error, all springs slip.
         at_limit = np.abs(tangential) >= limit * (1 - _ROUNDING)
@@ -175,7 +176,7 @@ def build(
     if sizes[0] != sizes[1] and 1 not in sizes:
         raise InputError(
             ("history", "tangential", tangential[0]),
-            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}",
+            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}: give one or as many",
         )
     points = np.broadcast_arrays(normal_points, tangential_points)
     first, second = (_along(each, samples_per_step) for each in points)
@@ -203,6 +204,7 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     forces = name == "normal_force"
     if not ((least >= 0 if forces else least > -inf) and most < inf):
         bad = ~np.isfinite(points) | ((points < 0) & forces)
-        sign = " and not negative" if forces else ""
-        raise InputError(("history", axis, name, int(indices(bad)[0])), f"must be finite{sign}")
+        first = int(indices(bad)[0])
+        detail = not_negative(name) if forces and points[first] < 0 else FINITE
+        raise InputError(("history", axis, name, first), detail)
     return points

@@ -1,19 +1,23 @@
 // The five analyses and the fields that they add to the form.
 
-import { controls, NORMAL, TANGENTIAL } from "./inputs.js";
+import { controls, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
 import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
 const SHARE = ["Share of µF_N", "1"];
 
-const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);
-const FRICTION = { key: "mu", label: "Friction coefficient µ", dimension: "1", range: [0.01, 1] };
+export const BODIES = { 1: "Body 1 (indenter)", 2: "Body 2 (flat)" };
 
-/** Return the fields of the materials of the inputs. */
-export function bodyFields(inputs) {
-  const modulus = (i) => ({ key: `e${i}`, label: `Young’s modulus ${i}`, dimension: "modulus" });
-  const ratio = (i) => ({ key: `nu${i}`, label: `Poisson’s ratio ${i}`, dimension: "1", range: [0, 0.5] });
-  return inputs.e2 === "rigid" ? [modulus(1), ratio(1)] : [modulus(1), ratio(1), modulus(2), ratio(2)];
+const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);
+const FRICTION = { key: "mu", label: QUANTITIES.friction_coefficient[0], dimension: "1", range: [0.01, 1] };
+
+/** Return the fields of the material of a body, 1 or 2. */
+export function bodyFields(inputs, i) {
+  if (inputs[`e${i}`] === RIGID) return [];
+  return [
+    { key: `e${i}`, label: `Young’s modulus ${i}`, dimension: "modulus" },
+    { key: `nu${i}`, label: `Poisson’s ratio ${i}`, dimension: "1", range: [0, 0.5] },
+  ];
 }
 
 /** Return the fields of the load of the inputs. */
@@ -65,7 +69,7 @@ export const ANALYSES = {
     lead: "What stresses act at the surface and beneath it, and at which load does the material yield?",
     fields: (inputs) => [
       ...pushFields(inputs),
-      { key: "body", label: "Stress in", choices: [[1, "body 1"], [2, "body 2"]] },
+      { key: "body", label: "Stress in", choices: [1, 2].map((i) => [i, BODIES[i]]) },
       { key: "yield", label: "Yield strength", dimension: "pressure" },
     ],
     solve: solveStress,

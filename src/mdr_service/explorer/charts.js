@@ -1,7 +1,7 @@
 // Charts from plain descriptions: curves over one axis, or a map with contours.
 
 import { make, makeButton, makeTable } from "./dom.js";
-import { fileName } from "./requests.js";
+import { download, fileName } from "./requests.js";
 import { format, scaled, unit, withUnit } from "./units.js";
 
 const figures = new Map();
@@ -51,7 +51,7 @@ function contours(trace, spec, inputs, colours) {
 function verticals(spec, inputs, colours) {
   const factor = unit(spec.x[1], inputs).factor;
   const at = (spec.edges ?? []).filter(([, radius]) => radius > 0);
-  const edges = spec.map ? at.flatMap(([name, radius]) => [[`−${name}`, -radius], [name, radius]]) : at;
+  const edges = spec.mirrored ? at.flatMap(([name, radius]) => [[name && `−${name}`, -radius], [name, radius]]) : at;
   const lines = edges.map(([, radius]) => ({
     type: "line", x0: radius / factor, x1: radius / factor, y0: 0, y1: 1, yref: "paper",
     line: { color: colours.faint, width: 1, dash: "dot" },
@@ -97,6 +97,23 @@ function columns(spec) {
   return [...tables.values()];
 }
 
+/** Return the positions and values of a map, one row each. */
+function mapPoints(spec) {
+  const { x, y, z } = spec.traces[0];
+  const repeated = y.flatMap((depth) => x.map(() => depth));
+  return [[[spec.x, y.flatMap(() => x)], [spec.y, repeated], [spec.z, z.flat()]]];
+}
+
+/** Return the data of a chart as CSV, in the units of the chart: tables beside each other. */
+function csvOf({ spec, inputs }) {
+  const shown = (spec.map ? mapPoints : columns)(spec).flat().map(([title, values]) =>
+    [withUnit(title, inputs), scaled(values, title[1], inputs)]);
+  const cell = (value) => (value === null ? "inf" : value === undefined || Number.isNaN(value) ? "" : Number(value.toPrecision(15)));
+  const length = Math.max(...shown.map(([, values]) => values.length));
+  const rows = Array.from({ length }, (_, i) => shown.map(([, values]) => cell(values[i])));
+  return [shown.map(([title]) => `"${title}"`), ...rows].map((row) => `${row.join(",")}\n`).join("");
+}
+
 /** Return the largest value of each depth: a map has too many values for a table to read. */
 function mapColumns(spec) {
   const { x, y, z } = spec.traces[0];
@@ -118,12 +135,12 @@ function save(figure, format) {
   Plotly.downloadImage(figure.plot, { format, filename, width: 800, height: 500, scale: format === "png" ? 2 : 1 });
 }
 
-function create(spec, actions) {
+function create(spec, showRequest) {
   const figure = { plot: make("div", { className: "plot", role: "img" }) };
   const button = (text, act) => makeButton(text, act, { "aria-label": `${text} of “${spec.title}”` });
   const buttons = make("span", { className: "save" },
-    button("Request", () => actions.showRequest(figure.spec.request)),
-    button("CSV", () => actions.saveCsv(figure.spec.request)),
+    button("Request", () => showRequest(figure.spec.request)),
+    button("CSV", () => download(`${fileName(spec.title)}.csv`, csvOf(figure), "text/csv")),
     button("PNG", () => save(figure, "png")),
     button("SVG", () => save(figure, "svg")));
   const data = make("details", { ontoggle: () => fillTable(figure) },
@@ -138,7 +155,7 @@ function fillTable(figure) {
   if (details.open) details.querySelector(".data").replaceChildren(...dataTables(figure.spec, figure.inputs));
 }
 
-/** Show the radius under the cursor in every chart over the radius. */
+/** Show the radius under the cursor in every chart against the radius. */
 function link(figure) {
   const others = () => [...figures.values()].filter((other) => other !== figure && other.spec.linked);
   const forOthers = (act) => {
@@ -170,9 +187,9 @@ export function redraw() {
 /**
  * Draw the charts of a response, reusing those with the same title.
  *
- * `actions.showRequest` and `actions.saveCsv` are called with the name of a chart's request.
+ * `showRequest` is called with the name of a chart's request.
  */
-export async function draw(container, specs, inputs, actions) {
+export async function draw(container, specs, inputs, showRequest) {
   await plotlyLoaded;
   for (const [title, figure] of figures) {
     if (specs.some((spec) => spec.title === title)) continue;
@@ -182,10 +199,10 @@ export async function draw(container, specs, inputs, actions) {
   }
   for (const spec of specs) {
     const known = figures.get(spec.title);
-    const figure = known ?? create(spec, actions);
+    const figure = known ?? create(spec, showRequest);
     Object.assign(figure, { spec, inputs });
     figure.element.className = spec.size ?? "";
-    figure.plot.setAttribute("aria-label", `${spec.title}: ${withUnit(spec.y, inputs)} over ${withUnit(spec.x, inputs)}`);
+    figure.plot.setAttribute("aria-label", `${spec.title}: ${withUnit(spec.y, inputs)} against ${withUnit(spec.x, inputs)}`);
     // In the order of the description, whatever was there before.
     container.append(figure.element);
     await plot(figure, { autosize: true });

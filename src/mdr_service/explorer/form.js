@@ -1,4 +1,4 @@
-// Fields of the form: a number with its unit and a slider, or a choice.
+// Fields of the form: a number with its unit and a slider, a list of numbers, or a choice.
 
 import { make } from "./dom.js";
 import { read, shown, unit } from "./units.js";
@@ -14,30 +14,50 @@ function sliderOf(field, value, reference, scale) {
   return { min: Math.log10(low), max: Math.log10(high), to: Math.log10, from: (x) => 10 ** x };
 }
 
+function fieldOf(key, ...contents) {
+  const problem = make("p", { className: "problem", role: "alert", id: `problem-${key}` });
+  return make("div", { className: "field", "data-key": key }, ...contents, problem);
+}
+
+/** Show what is wrong with the value of a field, or that nothing is. */
+export function mark(element, problem) {
+  element.querySelector(".problem").textContent = problem;
+  const control = element.querySelector(":scope > label > :is(input, select), :scope > textarea");
+  control?.setAttribute("aria-invalid", String(problem !== ""));
+}
+
 /** Return a row with `choices`, pairs of value and text; `choose(value)` is called with a new one. */
-export function choiceRow(id, label, choices, chosen, choose) {
+export function choiceRow(key, label, choices, chosen, choose) {
   const options = choices.map(([value, text]) => new Option(text, value, false, value === chosen));
-  const select = make("select", { id, onchange: () => choose(choices[select.selectedIndex][0]) }, ...options);
-  return make("label", { className: "row" }, make("span", {}, label), select);
+  const onchange = () => choose(choices[select.selectedIndex][0]);
+  const select = make("select", { id: `field-${key}`, onchange }, ...options);
+  return fieldOf(key, make("label", { className: "row" }, make("span", {}, label), select));
+}
+
+/** Return a row with a text and the unit of its numbers, `[label, text, unit]`. */
+function textRow(key, label, name) {
+  const text = make("input", {
+    type: "text", inputMode: "decimal", id: `field-${key}`, "aria-describedby": `problem-${key}`,
+  });
+  const row = make("label", { className: "row" },
+    make("span", {}, label), text, make("span", { className: "unit" }, name));
+  return [fieldOf(key, row), text];
 }
 
 /**
  * Return a row with the number of a field and a slider.
  *
- * `change(key, value)` is called with the new SI value while the slider moves and when a text
- * is a number. `reference` is the value in whose neighbourhood the slider moves.
+ * `actions.change(key, value)` is called with the new SI value while the slider moves and when a
+ * text is a number, else `actions.fail(key)`. `reference` is the value around which the slider moves.
  */
-export function numberRow(field, inputs, reference, change) {
-  const { key, dimension } = field;
+export function numberRow(field, inputs, reference, { change, fail }) {
+  const { key, dimension, label } = field;
   const { name, factor } = unit(dimension, inputs);
-  const element = make("div", { className: "field", "data-key": key });
-  element.innerHTML = `<label class="row"><span></span><input type="text" inputmode="decimal" id="field-${key}"><span class="unit"></span></label><input type="range" step="any"><p class="problem" role="alert"></p>`;
-  const [text, slider] = element.querySelectorAll("input");
-  element.querySelector("span").textContent = field.label;
-  element.querySelector(".unit").textContent = name;
-  slider.setAttribute("aria-label", `${field.label}, slider`);
+  const [element, text] = textRow(key, label, name);
   const { min, max, to, from } = sliderOf(field, inputs[key], reference, factor);
+  const slider = make("input", { type: "range", "aria-label": `${label}, slider` });
   Object.assign(slider, { min, max, step: (max - min) / 400, value: to(inputs[key]) });
+  element.firstChild.after(slider);
   const tell = (value) => slider.setAttribute("aria-valuetext", `${shown(value, dimension, inputs)} ${name}`);
   text.value = shown(inputs[key], dimension, inputs);
   tell(inputs[key]);
@@ -45,14 +65,13 @@ export function numberRow(field, inputs, reference, change) {
     const value = Number(from(Number(slider.value)).toPrecision(3));
     text.value = shown(value, dimension, inputs);
     tell(value);
+    mark(element, "");
     change(key, value);
   });
   text.addEventListener("input", () => {
     const value = read(text.value, dimension, inputs);
-    const wrong = Number.isNaN(value);
-    element.querySelector(".problem").textContent = wrong ? "not a number" : "";
-    text.setAttribute("aria-invalid", String(wrong));
-    if (wrong) return;
+    mark(element, Number.isNaN(value) ? "not a number" : "");
+    if (Number.isNaN(value)) return fail(key);
     slider.value = to(value);
     tell(value);
     change(key, value);
@@ -60,27 +79,24 @@ export function numberRow(field, inputs, reference, change) {
   return element;
 }
 
-/** Return the table that a text holds: pairs of r and f, one a line. */
-export function readTable(text) {
-  const table = { r: [], f: [] };
-  const rowOf = [];
-  text.split(/\r?\n/).forEach((line, i) => {
-    const words = line.trim().split(/[\s,;]+/).filter(Boolean);
-    if (words.length === 0 || line.startsWith("#")) return;
-    const numbers = words.map(Number);
-    // A first line of words is a heading.
-    if (numbers.some(Number.isNaN) && table.r.length === 0 && i === 0) return;
-    if (words.length !== 2 || numbers.some((x) => !Number.isFinite(x))) {
-      throw new Error(`Line ${i + 1}: two numbers are expected, r and f`);
-    }
-    table.r.push(numbers[0]);
-    table.f.push(numbers[1]);
-    rowOf.push(i + 1);
+/** Return a row with a number that may be missing, or with a list of numbers if `field.list`. */
+export function optionalRow(field, inputs, { change, fail }) {
+  const { key, dimension, label, list } = field;
+  const [element, text] = textRow(key, label, unit(dimension, inputs).name);
+  const parts = inputs[key] === "" ? [] : String(inputs[key]).split(",");
+  text.value = parts.map((part) => shown(Number(part), dimension, inputs)).join(" ");
+  text.placeholder = field.placeholder;
+  text.addEventListener("input", () => {
+    const values = text.value.split(/[\s;]+/).filter(Boolean).map((part) => read(part, dimension, inputs));
+    const wrong = values.some(Number.isNaN) || (!list && values.length > 1);
+    mark(element, wrong ? `not ${list ? "numbers with blanks between them" : "a number"}` : "");
+    if (wrong) return fail(key);
+    change(key, list || values.length === 0 ? values.join(",") : values[0]);
   });
-  return { table, rowOf };
+  return element;
 }
 
 /** Return a table as the text of its field. */
-export function tableText({ r, f }) {
-  return r.map((x, i) => `${x}, ${f[i]}`).join("\n");
+export function tableText({ r, f, units }) {
+  return [`r [${units[0]}], f [${units[1]}]`, ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
 }

@@ -1,11 +1,13 @@
 // The inputs: one flat object of numbers and words in SI units, and its form in the address.
 
 import { KINDS, measuredBall, wireProfile } from "./shapes.js";
+import { LENGTHS } from "./table_reader.js";
 import { BASE_UNITS, numberOf } from "./units.js";
 
 export const TABS = ["press", "push", "cycle", "stress", "wear"];
 export const NORMAL = ["normal_force", "indentation_depth"];
 export const TANGENTIAL = ["tangential_force", "tangential_displacement"];
+export const RIGID = "rigid";
 
 const DEFAULTS = {
   tab: "press",
@@ -17,7 +19,7 @@ const DEFAULTS = {
   path: "100,0;100,20;100,-20;100,20",
   body: 1, yield: 1.5e9,
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
-  ul: "mm", ud: "µm", uf: "N", up: "MPa",
+  ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
 };
 
 // Input that is chosen -> its choices.
@@ -26,6 +28,18 @@ const CHOICES = {
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };
+// Inputs that are lists of numbers, or that may be empty.
+const OTHERS = {
+  path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
+  breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
+  uncertainty: (text) => (text === "" ? text : number(text)),
+  e1: (text) => (text === RIGID ? text : number(text)),
+  e2: (text) => (text === RIGID ? text : number(text)),
+};
+
+const isNumber = (text) => !Number.isNaN(numberOf(text));
+const number = (text) => (isNumber(text) ? numberOf(text) : undefined);
+const isPoint = (point) => point.length === 2 && !point.some(Number.isNaN);
 
 /** Return the quantities by which the load of an analysis can be prescribed. */
 export function controls(tab) {
@@ -41,17 +55,14 @@ export function defaultInputs() {
 function valueOf(key, text, tab) {
   const choices = key === "control" ? controls(tab) : CHOICES[key];
   if (choices) return choices.find((choice) => String(choice) === text);
-  if (key === "path") return pathPoints({ path: text }).every(isPoint) ? text : undefined;
-  if (key === "e2" && text === "rigid") return text;
-  const number = numberOf(text);
-  return Number.isNaN(number) ? undefined : number;
+  return (OTHERS[key] ?? number)(text);
 }
-
-const isPoint = (point) => point.length === 2 && !point.some(Number.isNaN);
 
 function tableOf(fragment) {
   const [r, f] = ["r", "f"].map((name) => fragment.get(name)?.split(",").map(numberOf) ?? []);
-  return r.length === f.length && ![...r, ...f].some(Number.isNaN) ? { r, f } : undefined;
+  const units = ["ur", "uf"].map((name) => fragment.get(name) ?? "m");
+  const whole = r.length === f.length && ![...r, ...f].some(Number.isNaN);
+  return whole && units.every((name) => Object.hasOwn(LENGTHS, name)) ? { r, f, units } : undefined;
 }
 
 /**
@@ -75,15 +86,22 @@ export function fromAddress(search, hash) {
 
 /** Return the address of the inputs, with the fields of the chosen profile. */
 export function toAddress(inputs) {
+  const member = ([key, value]) =>
+    `${key}=${encodeURIComponent(value).replace(/%2C/g, ",").replace(/%3B/g, ";")}`;
   const keys = new Set([...Object.keys(DEFAULTS), ...Object.keys(KINDS[inputs.kind].fields)]);
-  const words = [...keys].map((key) => `${key}=${encodeURIComponent(inputs[key]).replace(/%2C/g, ",").replace(/%3B/g, ";")}`);
-  const table = inputs.kind === "tabulated" ? `#r=${inputs.table.r}&f=${inputs.table.f}` : "";
-  return `?${words.join("&")}${table}`;
+  const query = [...keys].map((key) => member([key, inputs[key]])).join("&");
+  if (inputs.kind !== "tabulated") return `?${query}`;
+  const { r, f, units: [ur, uf] } = inputs.table;
+  return `?${query}#${Object.entries({ r, f, ur, uf }).map(member).join("&")}`;
 }
 
-/** Return the inputs with another profile kind and its default values. */
+/** Return the inputs with another profile kind; values that differ from their defaults are kept. */
 export function withKind(inputs, kind) {
-  return { ...inputs, ...KINDS[kind].fields, kind };
+  const chosen = { ...inputs, kind };
+  for (const [key, value] of Object.entries(KINDS[inputs.kind].fields)) {
+    if (inputs[key] === value) delete chosen[key];
+  }
+  return { ...KINDS[kind].fields, ...chosen };
 }
 
 /** Return the points of the load path, each `[normal, tangential]`. */
@@ -93,7 +111,7 @@ export function pathPoints(inputs) {
 
 /** Return the members that every request shares. */
 export function basics(inputs) {
-  const body = (i) => ({ youngs_modulus: inputs[`e${i}`], poissons_ratio: inputs[`nu${i}`] });
-  const second = inputs.e2 === "rigid" ? "rigid" : body(2);
-  return { profile: wireProfile(inputs), material: { bodies: [body(1), second] } };
+  const bodies = [1, 2].map((i) =>
+    inputs[`e${i}`] === RIGID ? RIGID : { youngs_modulus: inputs[`e${i}`], poissons_ratio: inputs[`nu${i}`] });
+  return { profile: wireProfile(inputs), material: { bodies } };
 }

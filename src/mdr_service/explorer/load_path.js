@@ -23,13 +23,18 @@ function svgElement(name, attributes, parent) {
   return element;
 }
 
-/** Show the editor of the load path in `container`; `change(path)` is called with a new one. */
-export function showEditor(container, inputs, size, change) {
+/**
+ * Show the editor of the load path in `container`.
+ *
+ * `change(path)` is called with a new path, `fail()` if a number in the table cannot be read.
+ */
+export function showEditor(container, inputs, size, { change, fail }) {
   const points = pathPoints(inputs);
   const focused = document.activeElement?.dataset?.point;
   const commit = (path = points) => change(path.map((point) => point.join(",")).join(";"));
   container.replaceChildren(
-    heading(size, commit), drawing(points, inputs, commit), table(points, inputs, commit),
+    heading(size, commit), drawing(points, inputs, commit), table(points, inputs, commit, fail),
+    make("p", { className: "problem", role: "alert", id: "problem-path" }),
   );
   if (focused) container.querySelector(`[data-point="${focused}"]`)?.focus();
 }
@@ -114,7 +119,7 @@ function valueText([n, t], inputs) {
   return `${part(n, inputs.normal)}, ${part(t, inputs.tangential)}`;
 }
 
-function table(points, inputs, commit) {
+function table(points, inputs, commit, fail) {
   const number = (i, j, control) => make("input", {
     value: shown(points[i][j], QUANTITIES[control][1], inputs),
     inputMode: "decimal",
@@ -122,8 +127,12 @@ function table(points, inputs, commit) {
     "aria-label": `Point ${i + 1}, ${withUnit(QUANTITIES[control], inputs)}`,
     onchange: ({ target }) => {
       const value = read(target.value, QUANTITIES[control][1], inputs);
-      target.setAttribute("aria-invalid", String(Number.isNaN(value)));
-      if (Number.isNaN(value)) return;
+      if (Number.isNaN(value)) {
+        target.setAttribute("aria-invalid", "true");
+        target.closest(".field").querySelector(".problem").textContent = `Point ${i + 1}: not a number`;
+        fail();
+        return;
+      }
       points[i][j] = value;
       commit();
     },

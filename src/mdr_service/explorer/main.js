@@ -2,22 +2,37 @@
 
 import { draw, redraw } from "./charts.js";
 import { make, makeButton } from "./dom.js";
-import { choiceRow, numberRow, readTable, tableText } from "./form.js";
+import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS } from "./materials.js";
-import { bodyFields, loadFields, ANALYSES } from "./analyses.js";
-import { download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
-import { defaultInputs, fromAddress, pathPoints, TABS, toAddress, withKind } from "./inputs.js";
+import { inWords } from "./messages.js";
+import { bodyFields, loadFields, ANALYSES, BODIES } from "./analyses.js";
+import { copied, download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
+import { defaultInputs, fromAddress, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
+import { QUANTITIES } from "./quantities.js";
+import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
-import { BASE_UNITS, format, unit } from "./units.js";
+import { connectTable, showTable } from "./table_field.js";
+import { BASE_UNITS, quantity } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs;
 let catalogue = {};
 let requests = [];
 let last = null;
-let rowOfTable = [];
+// Keys of the fields that hold no value that can be read.
+const unreadable = new Set();
+
+/**
+ * State of the page: `pending` while the case is computed, `current` if the results are those of
+ * the form, `refused` if the service has none, `unreadable` if the form describes no case.
+ */
+function setState(state) {
+  document.body.dataset.state = state;
+  const outdated = state === "refused" || state === "unreadable";
+  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "take-away"]) $(`#${id}`).inert = outdated;
+}
 
 /** Show the case of the address. */
 function showAddress() {
@@ -25,12 +40,17 @@ function showAddress() {
   $("#unread").textContent = unread.length
     ? `Default values replace members of the link that the page cannot read: ${unread.join(", ")}.`
     : "";
+  unreadable.clear();
   show(next);
 }
 
 /** Show other inputs in the whole page. */
 function show(next) {
   inputs = next;
+  // Fields are built again from the inputs; the text of the table stays.
+  const table = inputs.kind === "tabulated" && unreadable.has("table");
+  unreadable.clear();
+  if (table) unreadable.add("table");
   const focused = document.activeElement?.id;
   showForm();
   showPath();
@@ -39,7 +59,13 @@ function show(next) {
 }
 
 function change(key, value) {
+  unreadable.delete(key);
   inputs = { ...inputs, [key]: value };
+  refresh();
+}
+
+function fail(key) {
+  unreadable.add(key);
   refresh();
 }
 
@@ -76,23 +102,27 @@ function rescaled(column, largest) {
 }
 
 function row(field, reference) {
-  const { key, label, choices } = field;
-  if (!choices) return numberRow(field, inputs, reference, change);
-  return choiceRow(`field-${key}`, label, choices, inputs[key], (value) => choose(key, value));
+  const { key, label, choices, optional } = field;
+  if (choices) return choiceRow(key, label, choices, inputs[key], (value) => choose(key, value));
+  if (optional) return optionalRow(field, inputs, { change, fail });
+  return numberRow(field, inputs, reference, { change, fail });
 }
 
-function fill(container, fields, references = inputs) {
+const rows = (fields, references = inputs) =>
+  fields.map((field) => row(field, references[field.key] ?? inputs[field.key]));
+
+function fill(container, elements) {
   container.querySelectorAll(":scope > :not(legend)").forEach((element) => element.remove());
-  container.append(...fields.map((field) => row(field, references[field.key] ?? inputs[field.key])));
-  container.hidden = fields.length === 0;
+  container.append(...elements);
+  container.hidden = elements.length === 0;
 }
 
 function profileFields() {
   const fields = OWN_FIELDS[inputs.kind] ?? catalogue[inputs.kind]?.fields ?? [];
   return fields
     .filter(({ name }) => Object.hasOwn(KINDS[inputs.kind].fields, name))
-    .map(({ name, dimension, description }) => ({
-      key: name, label: description, dimension,
+    .map(({ name, description, ...field }) => ({
+      key: name, label: description, ...field,
       range: name.startsWith("exponent") ? [0.5, 10] : undefined,
     }));
 }
@@ -100,13 +130,15 @@ function profileFields() {
 function materialRow(i) {
   const [modulus, ratio] = [`e${i}`, `nu${i}`];
   const current = [inputs[modulus], inputs[ratio]];
-  const known = { ...MATERIALS, ...(i === 2 && { Rigid: ["rigid", inputs[ratio]] }) };
-  const custom = current[0] === "rigid" ? MATERIALS.Steel : current;
+  const known = { ...MATERIALS, Rigid: [RIGID, inputs[ratio]] };
+  const custom = current[0] === RIGID ? MATERIALS.Steel : current;
   const chosen = Object.keys(known).find((name) => String(known[name]) === String(current)) ?? "Custom";
   const choices = ["Custom", ...Object.keys(known)].map((name) => [name, name]);
-  return choiceRow(`material-${i}`, `Body ${i}`, choices, chosen, (name) => {
+  return choiceRow(`material-${i}`, BODIES[i], choices, chosen, (name) => {
     const [e, nu] = known[name] ?? custom;
-    show({ ...inputs, [modulus]: e, [ratio]: nu });
+    // Stresses are those of an elastic body.
+    const body = e === RIGID && inputs.body === i ? 3 - i : inputs.body;
+    show({ ...inputs, body, [modulus]: e, [ratio]: nu });
   });
 }
 
@@ -114,20 +146,14 @@ function showForm() {
   const analysis = ANALYSES[inputs.tab];
   $("#kind").value = inputs.kind;
   $("#formula").textContent = `f(r) = ${OWN_FORMULAS[inputs.kind] ?? catalogue[inputs.kind]?.formula ?? "…"}`;
-  const tabulated = inputs.kind === "tabulated";
-  $("#table-fields").hidden = !tabulated;
-  if (tabulated && document.activeElement !== $("#table")) {
-    $("#table").value = tableText(inputs.table);
-    rowOfTable = inputs.table.r.map((_, i) => i + 1);
-  }
-  fill($("#profile-fields"), profileFields(), KINDS[inputs.kind].fields);
-  fill($("#bodies"), bodyFields(inputs));
-  $("#bodies legend").after(materialRow(1), materialRow(2));
-  fill($("#loading"), loadFields(inputs));
-  fill($("#analysis"), analysis.fields(inputs));
-  fill($("#units"), Object.values(BASE_UNITS).map(({ key, label, factors }) => ({
+  showTable(inputs, unreadable.has("table"));
+  fill($("#profile-fields"), rows(profileFields(), KINDS[inputs.kind].fields));
+  fill($("#bodies"), [1, 2].flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]));
+  fill($("#loading"), rows(loadFields(inputs)));
+  fill($("#analysis"), rows(analysis.fields(inputs)));
+  fill($("#units"), rows(Object.values(BASE_UNITS).map(({ key, label, factors }) => ({
     key, label, choices: Object.keys(factors).map((name) => [name, name]),
-  })));
+  }))));
   document.querySelectorAll("[role=tab]").forEach((tab) => {
     const selected = tab.id === `tab-${inputs.tab}`;
     tab.setAttribute("aria-selected", String(selected));
@@ -139,62 +165,76 @@ function showForm() {
 // Results ----------------------------------------------------------------------------------------
 
 function showNumbers(numbers) {
-  $("#numbers").replaceChildren(...numbers.map(([label, value, dimension]) => {
-    const shown = dimension ? unit(dimension, inputs) : { name: "", factor: 1 };
-    const text = typeof value === "string" ? value : `${format(value && value / shown.factor)} ${shown.name}`;
+  const entries = () => numbers.map(([label, value, dimension]) => {
+    const text = typeof value === "string" ? value : quantity(value, dimension, inputs);
     return make("div", {}, make("dt", {}, label), make("dd", {}, text));
-  }));
+  });
+  $("#numbers").replaceChildren(...entries());
+  $("#main-numbers").replaceChildren(...entries().slice(0, 2));
 }
 
-function showAccuracy(responses) {
+/** Return the labels of the fields of the profile, by their names in requests. */
+function labels() {
+  return Object.fromEntries(profileFields().map(({ key, label }) => [key, label]));
+}
+
+function showAccuracy(responses, notes) {
   const error = Math.max(...responses.map((response) => response.error_estimate));
   const methods = [...new Set(responses.map((response) => response.method.replace("_", " ")))];
   const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
-  const ofFields = fields ? `, of fields ${format(fields, 2)} of their largest value` : "";
+  const ofFields = fields ? `, of fields ${quantity(fields, "1", inputs, 2)} of their largest value` : "";
   $("#accuracy").textContent =
-    `Computed by ${methods.join(" and ")}; relative error at most ${format(error, 2)}${ofFields}.`;
-  const messages = new Map(responses.flatMap((response) => response.warnings.map((w) => [w.code, w.message])));
+    `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}.`;
+  const warnings = [...notes, ...responses.flatMap((response) => response.warnings)];
+  const messages = new Map(warnings.map(({ code, message }) => [code, message]));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>
-    make("li", {}, make("strong", {}, code.replaceAll("_", " ")), ` ${message}`)));
+    make("li", {}, make("strong", {}, code.replaceAll("_", " ")), ` ${inWords(message, inputs, labels())}`)));
 }
 
 // Member of a request -> keys of the inputs that set it.
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
+  "/history": "path", "/profile/r/": "table", "/profile/f/": "table",
   "/material/bodies/0/youngs_modulus": "e1", "/material/bodies/0/poissons_ratio": "nu1",
   "/material/bodies/1/youngs_modulus": "e2", "/material/bodies/1/poissons_ratio": "nu2",
+  "/material/bodies": "material-2",
 };
 
 /** Return the key of the input that sets the member of a request at a pointer. */
 function keyOf(pointer) {
-  const member = Object.keys(SOURCES).find((prefix) => pointer.startsWith(prefix));
+  const member = Object.keys(SOURCES).find((prefix) => `${pointer}/`.startsWith(prefix));
   if (member) return SOURCES[member];
   const [, , name, index, part] = pointer.split("/");
+  if (pointer === "/profile" && inputs.kind === "tabulated") return "table";
   if (inputs.kind === "balls" && name === "radius") return inputs.radius_1 > 0 ? "radius_2" : "radius_1";
+  if (name === "breaks") return name;
   return name === "terms" ? `${part}_${Number(index) + 1}` : pointer.split("/").pop();
+}
+
+/** Return the field at a pointer, and a message about it. */
+function placed({ pointer, detail }) {
+  const field = document.querySelector(`.field[data-key="${keyOf(pointer)}"]:not([hidden])`);
+  const label = (field?.querySelector("label > span") ?? field?.querySelector("label"))?.textContent;
+  const [, row] = pointer.match(/^\/profile\/[rf]\/(\d+)$/) ?? [];
+  const [, point] = pointer.match(/^\/history\/\w+\/\w+\/(\d+)$/) ?? [];
+  // A heading is the first line of a table that the page has written.
+  const line = row && (inputs.table.lines?.[row] ?? Number(row) + 2);
+  const where = line ? `line ${line}: ` : point ? `point ${Number(point) + 1}: ` : "";
+  const text = where + inWords(detail, inputs, labels());
+  return { field, text, message: label ? `${label}: ${text}` : text };
 }
 
 function showProblem(error) {
   const box = $("#problem");
-  document.querySelectorAll(".field .problem, #table-problem").forEach((each) => (each.textContent = ""));
-  document.querySelectorAll("[aria-invalid=true]").forEach((each) => each.setAttribute("aria-invalid", "false"));
+  document.querySelectorAll(".field:has(.problem)").forEach((field) => mark(field, ""));
   box.hidden = !error;
   if (!error) return;
   const { title = "The page has an error", errors = [] } = error.problem ?? {};
-  box.textContent = title === error.message ? title : `${title}: ${error.message}`;
-  for (const { pointer, detail } of errors) {
-    const point = pointer.match(/^\/profile\/[rf](?:\/(\d+))?$/);
-    if (inputs.kind === "tabulated" && point) {
-      const line = point[1] === undefined ? "" : `Line ${rowOfTable[Number(point[1])] ?? Number(point[1]) + 1}: `;
-      $("#table-problem").textContent = line + detail;
-      continue;
-    }
-    const field = document.querySelector(`.field[data-key="${keyOf(pointer)}"]`);
-    if (!field) continue;
-    field.querySelector(".problem").textContent = detail;
-    field.querySelector("input").setAttribute("aria-invalid", "true");
-  }
+  const found = errors.map(placed);
+  for (const { field, text } of found) if (field) mark(field, text);
+  const detail = found.length ? found.map(({ message }) => message).join("; ") : inWords(error.message, inputs, labels());
+  box.textContent = title === detail ? title : `${title}: ${detail}`;
 }
 
 function showRequests() {
@@ -208,6 +248,7 @@ function showRequests() {
 function showSource() {
   const request = requests.find(({ name }) => name === $("#request").value);
   $("#code").textContent = request ? source($("#language").value, request) : "";
+  $("#copied").textContent = "";
 }
 
 function showRequest(name) {
@@ -216,8 +257,8 @@ function showRequest(name) {
   $("#code").focus();
 }
 
-async function saveCsv(name) {
-  const { path, body } = requests.find((request) => request.name === name);
+async function saveCsv() {
+  const { name, path, body } = requests.find((request) => request.name === $("#request").value);
   download(`${fileName(name)}.csv`, await queryCsv(path, body), "text/csv");
 }
 
@@ -229,7 +270,8 @@ function showPath() {
   const normal = Math.max(...points.map(([n]) => n));
   const force = inputs.tangential === "tangential_force";
   const tangential = force && inputs.normal === "normal_force" ? inputs.mu * normal : Math.max(...points.map(([, t]) => Math.abs(t))) || 1e-7;
-  showEditor(editor, inputs, { normal, tangential }, (path) => show({ ...inputs, path }));
+  const actions = { change: (path) => show({ ...inputs, path }), fail: () => fail("path") };
+  showEditor(editor, inputs, { normal, tangential }, actions);
 }
 
 const sketch = () => showSketch($("#sketch"), inputs, last?.known?.contact_radius);
@@ -241,44 +283,56 @@ const solve = newestWins(async () => {
     recorded.push({ name, path, body });
     return query(path, body);
   };
+  const isShown = () => inputs === current && unreadable.size === 0;
   try {
     const result = await ANALYSES[current.tab].solve(current, recording);
+    if (current.tab !== inputs.tab) return;
     requests = recorded;
     last = result;
-    showProblem(null);
+    if (isShown()) showProblem(null);
     showNumbers(result.numbers);
-    showAccuracy(result.responses);
+    showAccuracy(result.responses, noteOnUnits(current, result.known.contact_radius));
     sketch();
     showRequests();
-    await draw($("#charts"), result.charts, current, { showRequest, saveCsv });
+    await draw($("#charts"), result.charts, current, showRequest);
     document.body.dataset.drawn = toAddress(current);
-    if (inputs === current) $("#results").dataset.state = "current";
+    if (isShown()) setState("current");
   } catch (error) {
     if (!(error instanceof Refusal)) reportError(error);
-    if (inputs !== current) return;
+    if (!isShown()) return;
     showProblem(error);
-    $("#results").dataset.state = "refused";
+    setState("refused");
   }
 });
 
-/** Lay out the page as a sheet of paper that states the inputs in words, or as a screen again. */
+/** Lay out the page as a report that states the inputs in words, or as a screen again. */
 function showForPrint(printing) {
   document.documentElement.classList.toggle("printing", printing);
-  const rows = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) .row:not(.field .file)");
-  $("#given").textContent = [...rows].map((row) => {
+  const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
+  const given = [...shown].map((row) => {
     const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
-    const value = control.selectedOptions?.[0].text ?? control.value;
+    const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
     return `${words[0].textContent}: ${value} ${words[1]?.textContent ?? ""}`.trim();
-  }).join("; ");
+  });
+  if (inputs.kind === "tabulated") given.splice(1, 0, `table of ${inputs.table.r.length} points`);
+  if (inputs.tab === "cycle") {
+    const dimensions = [inputs.normal, inputs.tangential].map((name) => QUANTITIES[name][1]);
+    const points = pathPoints(inputs).map((point) => point.map((x, i) => quantity(x, dimensions[i], inputs)).join(", "));
+    given.push(`points of the path (normal, tangential): ${points.join("; ")}`);
+  }
+  $("#given").textContent = `${ANALYSES[inputs.tab].title}. ${given.join("; ")}.`;
+  // The points of a table would fill the page.
+  $("#link").textContent = new URL(toAddress(inputs).replace(/#.*/, ""), document.baseURI).href;
   if (printing) redraw();
 }
 
 function refresh() {
   clearTimeout(refresh.timer);
+  sketch();
+  if (unreadable.size) return setState("unreadable");
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(() => history.replaceState(null, "", toAddress(inputs)), 250);
-  sketch();
-  $("#results").dataset.state = "pending";
+  setState("pending");
   solve();
 }
 
@@ -307,30 +361,18 @@ function makeTabs() {
   });
 }
 
-function readTableField() {
-  try {
-    const { table, rowOf } = readTable($("#table").value);
-    rowOfTable = rowOf;
-    inputs = { ...inputs, table };
-    refresh();
-  } catch (error) {
-    $("#table-problem").textContent = error.message;
-  }
-}
-
 function connect() {
   for (const [kind, { label }] of Object.entries(KINDS)) $("#kind").add(new Option(label, kind));
   $("#kind").addEventListener("change", () => show(withKind(inputs, $("#kind").value)));
-  $("#table").addEventListener("input", readTableField);
-  $("#file").addEventListener("change", async () => {
-    $("#table").value = await $("#file").files[0].text();
-    readTableField();
-  });
+  connectTable({ change: (table) => change("table", table), fail: () => fail("table") });
   $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
   $("#request").addEventListener("change", showSource);
   $("#language").addEventListener("change", showSource);
-  $("#copy").addEventListener("click", () => navigator.clipboard.writeText($("#code").textContent));
-  $("#csv").addEventListener("click", () => saveCsv($("#request").value));
+  $("#copy").addEventListener("click", async () => {
+    $("#copied").textContent = (await copied($("#code"))) ? "Copied." : "Selected: press Ctrl+C to copy.";
+  });
+  $("#csv").addEventListener("click", saveCsv);
+  $("#print").addEventListener("click", () => print());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", solve);
   addEventListener("beforeprint", () => showForPrint(true));
   addEventListener("afterprint", () => showForPrint(false));
@@ -343,5 +385,5 @@ connect();
 showAddress();
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
-  showForm();
+  if (unreadable.size === 0) showForm();
 });

@@ -23,4 +23,6 @@ export const QUANTITIES = {
   worn_depth: ["Depth", "displacement"],
   worn_volume: ["Worn volume", "volume"],
   cycles: ["Cycles", "1"],
+  friction_coefficient: ["Friction coefficient µ", "1"],
+  stress_xx: ["Stress σ_xx", "pressure"],
 };

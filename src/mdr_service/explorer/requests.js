@@ -69,6 +69,14 @@ export function source(language, { path, body }) {
   return `curl -s ${url} \\\n  -H 'content-type: application/json' \\\n  -d '${JSON.stringify(body)}'\n`;
 }
 
+/** Copy the text of an element, and return whether that succeeded; the text is selected. */
+export async function copied(element) {
+  getSelection().selectAllChildren(element);
+  // Pages over plain http have no clipboard, but may copy what is selected.
+  if (!navigator.clipboard) return document.execCommand("copy");
+  return navigator.clipboard.writeText(element.textContent).then(() => true, () => document.execCommand("copy"));
+}
+
 /** Return the name of a file about something, without a suffix. */
 export function fileName(title) {
   return title.toLowerCase().replaceAll(" ", "-");

@@ -2,9 +2,12 @@
 
 import { basics, pathPoints } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
+import { inMetres } from "./shapes.js";
+import { quantity } from "./units.js";
 
 const POINTS = 400;
 const SAMPLES_PER_STEP = 40;
+const ALONG = ["x, along the tangential force", "length"];
 
 /** Return the normal force of the load, by which all other requests give it. */
 async function normalForce(inputs, query) {
@@ -21,7 +24,7 @@ function pushed(inputs, force) {
   return { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential };
 }
 
-/** Return the fields of a stress query over the radius. */
+/** Return the fields of a stress query against the radius. */
 function fieldsOf(query, name, body, quantities) {
   return query(name, "v1/stress", { ...body, points: POINTS, quantities });
 }
@@ -36,9 +39,26 @@ function numbersOf(state, names) {
   return names.map((name) => [QUANTITIES[name][0], state[name], QUANTITIES[name][1]]);
 }
 
+/**
+ * Return the stress σ_xx on the surface along the tangential force, where fretting fatigue begins:
+ * its request, and its chart with the edges of zones.
+ */
+async function surfaceStress(query, inputs, body, radius, edges) {
+  const even = Array.from({ length: 161 }, (_, i) => radius * (i / 40 - 2));
+  const at = new Set([...even, ...edges.flatMap(([, r]) => [-r, r])]);
+  const { x, stress_xx: stress, ...response } = await query("Along the surface", "v1/subsurface", {
+    ...body, body: inputs.body, x: [...at].sort((a, b) => a - b), z: [0], quantities: ["stress_xx"],
+  });
+  const chart = {
+    request: "Along the surface", title: "Stress σ_xx along the surface", edges, mirrored: true,
+    x: ALONG, y: QUANTITIES.stress_xx, traces: [{ name: "σ_xx", x, y: stress[0][0] }],
+  };
+  return { response, chart };
+}
+
 const marker = (name, x, y) => ({ name, x: [x], y: [y], mode: "markers", role: "marker" });
 
-/** Return the chart of a quantity over another one, with a mark at the state of the contact. */
+/** Return the chart of a quantity against another one, with a mark at the state of the contact. */
 function relationChart(request, title, response, [x, y], state, { mark = "this load", ...options } = {}) {
   const [xAxis, yAxis] = [QUANTITIES[x], QUANTITIES[y]];
   const traces = [
@@ -47,7 +67,7 @@ function relationChart(request, title, response, [x, y], state, { mark = "this l
   return { request, title, x: xAxis, y: yAxis, traces, ...options };
 }
 
-/** Return the chart of a quantity over the radius, with its curves and the edges of zones. */
+/** Return the chart of a quantity against the radius, with its curves and the edges of zones. */
 function fieldChart(request, title, quantity, edges, radius, traces, options) {
   return {
     request, title, edges, linked: true, x: QUANTITIES.radius, y: QUANTITIES[quantity],
@@ -82,13 +102,13 @@ export async function solvePress(inputs, query) {
     responses: [curve, field],
     known: now,
     numbers: numbersOf(now, [
-      "contact_radius", "indentation_depth", "normal_force", "mean_pressure", "maximum_pressure",
+      "contact_radius", "maximum_pressure", "indentation_depth", "normal_force", "mean_pressure",
       "normal_stiffness", "elastic_energy",
     ]),
     charts: [
       pressureChart("Pressure", field, [["a", now.contact_radius]], { size: "wide" }),
-      relationChart("Curve", "Force over depth", fromZero, ["indentation_depth", "normal_force"], now),
-      relationChart("Curve", "Contact radius over force", curve, ["normal_force", "contact_radius"], now),
+      relationChart("Curve", "Force against depth", fromZero, ["indentation_depth", "normal_force"], now),
+      relationChart("Curve", "Contact radius against force", curve, ["normal_force", "contact_radius"], now),
     ],
   };
 }
@@ -107,25 +127,25 @@ export async function solvePush(inputs, query) {
   const size = { ...now, tangential_force: Math.abs(now.tangential_force) };
   const edges = [["c", now.stick_radius], ["a", now.contact_radius]];
   // Outside the contact, slip has no meaning.
-  const slip = field.slip[0].map((value, i) => (field.radius[i] > now.contact_radius ? null : value));
+  const slip = field.slip[0].map((value, i) => (field.radius[i] > now.contact_radius ? NaN : value));
   return {
     responses: [state, curve, field],
     known: now,
     numbers: [
+      ...numbersOf(now, ["stick_radius", "tangential_displacement"]),
       ["Regime", now.regime.replace("_", " ")],
       ...numbersOf(now, [
-        "stick_radius", "contact_radius", "slip_width", "tangential_force", "tangential_displacement",
-        "tangential_stiffness", "dissipated_energy",
+        "contact_radius", "slip_width", "tangential_force", "tangential_stiffness", "dissipated_energy",
       ]),
     ],
     charts: [
       shearStressChart("Fields", field, inputs.mu, edges),
       relationChart(
-        "Curve", "Tangential force over displacement", curve,
+        "Curve", "Tangential force against displacement", curve,
         ["tangential_displacement", "tangential_force"], now,
       ),
       relationChart(
-        "Curve", "Stick radius over tangential force", curve, ["tangential_force", "stick_radius"], size,
+        "Curve", "Stick radius against tangential force", curve, ["tangential_force", "stick_radius"], size,
       ),
       fieldChart("Fields", "Slip", "slip", edges, field.radius, [{ name: "slip", y: slip }]),
     ],
@@ -147,19 +167,25 @@ export async function solveCycle(inputs, query) {
   const end = single(path, -1);
   const edges = [...path.slip_fronts.map((r) => ["", r]), ["a", end.contact_radius]];
   const position = path.step.map((_, i) => (i + 1) / SAMPLES_PER_STEP);
+  const surface = end.contact_radius > 0
+    ? [await surfaceStress(query, inputs, body, end.contact_radius, edges)]
+    : [];
+  // The last point where the load was that of the end closes a cycle.
+  const closed = points.slice(0, -1).findLastIndex((point) => point.join() === points.at(-1).join());
+  const energyThere = path.dissipated_energy[(closed + 1) * SAMPLES_PER_STEP - 1];
   return {
-    responses: [path, field],
+    responses: [path, field, ...surface.map(({ response }) => response)],
     known: end,
     numbers: [
+      ["Energy per cycle, the last closed loop", ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
+      ...numbersOf(end, ["tangential_displacement", "dissipated_energy"]),
       ["Regime at the end", end.regime.replace("_", " ")],
-      ...numbersOf(end, [
-        "contact_radius", "normal_force", "tangential_force", "tangential_displacement", "dissipated_energy",
-      ]),
+      ...numbersOf(end, ["contact_radius", "normal_force", "tangential_force"]),
     ],
     charts: [
       relationChart(
         "History", "Hysteresis", path, ["tangential_displacement", "tangential_force"], end,
-        { mark: "end", size: "wide" },
+        { mark: "end" },
       ),
       shearStressChart("Fields at the end", field, inputs.mu, edges),
       {
@@ -167,6 +193,7 @@ export async function solveCycle(inputs, query) {
         x: ["Point of the path", "1"], y: QUANTITIES.dissipated_energy,
         traces: [{ name: "dissipated energy", x: position, y: path.dissipated_energy }],
       },
+      ...surface.map(({ chart }) => chart),
     ],
   };
 }
@@ -175,8 +202,14 @@ export async function solveStress(inputs, query) {
   const force = await normalForce(inputs, query);
   const base = pushed(inputs, force);
   const material = { ...base.material, yield_strength: inputs.yield };
-  const [contact, field, map] = await Promise.all([
-    query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } }),
+  const solved = query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } });
+  const alongSurface = solved.then((contact) => {
+    const radius = contact.contact_radius[0];
+    return surfaceStress(query, inputs, base, radius, [["a", radius]]);
+  });
+  const [contact, surface, field, map] = await Promise.all([
+    solved,
+    alongSurface,
     fieldsOf(query, "Surface", base, ["pressure", "shear_stress", "normal_displacement"]),
     query("Beneath", "v1/subsurface", {
       ...base, material, body: inputs.body, points: 61, quantities: ["von_mises"], largest: true,
@@ -187,21 +220,21 @@ export async function solveStress(inputs, query) {
   const edges = [["a", now.contact_radius]];
   const displacement = [{ name: "displacement", y: field.normal_displacement[0] }];
   return {
-    responses: [contact, field, map],
+    responses: [contact, field, map, surface.response],
     known: now,
     numbers: [
       ["Largest von Mises stress", mises.value, "pressure"],
-      ["… at depth z", mises.z, "length"],
-      ["… at x", mises.x, "length"],
-      ["Largest shear stress", shear.value, "pressure"],
       ["Yield begins at, von Mises", map.yield_onset_force.von_mises[0], "force"],
+      ["Depth z of the largest stress", mises.z, "length"],
+      ["x of the largest stress", mises.x, "length"],
+      ["Largest shear stress", shear.value, "pressure"],
       ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
       ...numbersOf(now, ["maximum_pressure", "contact_radius"]),
     ],
     charts: [
       {
-        request: "Beneath", title: "Von Mises stress beneath the surface", size: "wide", map: true, edges,
-        x: ["x, along the tangential force", "length"], y: ["Depth z", "length"],
+        request: "Beneath", title: "Von Mises stress beneath the surface", size: "wide", map: true, mirrored: true, edges,
+        x: ALONG, y: ["Depth z", "length"],
         z: ["von Mises stress", "pressure"],
         traces: [
           { name: "von Mises stress", x: map.x, y: map.z, z: map.von_mises[0] },
@@ -210,9 +243,9 @@ export async function solveStress(inputs, query) {
       },
       pressureChart("Surface", field, edges),
       shearStressChart("Surface", field, inputs.mu, edges),
+      surface.chart,
       fieldChart(
-        "Surface", "Normal displacement of the surface", "normal_displacement", edges, field.radius,
-        displacement, { size: "wide" },
+        "Surface", "Normal displacement of the surface", "normal_displacement", edges, field.radius, displacement,
       ),
     ],
   };
@@ -239,12 +272,12 @@ export async function solveWear(inputs, query) {
     responses: [limit, course],
     known: now,
     numbers: [
-      ...numbersOf(now, ["worn_volume"]),
+      ...numbersOf(now, ["worn_volume", "contact_radius"]),
       ["Worn volume in the limit", final.worn_volume, "volume"],
-      ...numbersOf(now, ["contact_radius"]),
       ["Wear radius ã in the limit", final.wear_radius, "length"],
       ...numbersOf(final, ["stick_radius"]),
       ...numbersOf(now, ["indentation_depth", "normal_force", "dissipated_energy"]),
+      ["Energy per cycle, mean", now.dissipated_energy / inputs.cycles, "energy"],
     ],
     charts: [
       fieldChart("Evolution", "Profile", "profile", edges, radius, [
@@ -260,9 +293,18 @@ export async function solveWear(inputs, query) {
         { name: "pressure", y: now.pressure, fill: true },
       ]),
       relationChart(
-        "Evolution", "Worn volume over the cycles", course, ["cycles", "worn_volume"], now,
+        "Evolution", "Worn volume against cycles", course, ["cycles", "worn_volume"], now,
         { mark: "these cycles", logarithmic: true },
       ),
     ],
   };
+}
+
+/** Return a note if the contact is small against the spacing of a table's points, else nothing. */
+export function noteOnUnits(inputs, contactRadius) {
+  const { r } = inMetres(inputs.table);
+  const spacing = (Math.max(...r) - Math.min(...r)) / (r.length - 1);
+  if (inputs.kind !== "tabulated" || !(contactRadius > 0) || contactRadius > 2 * spacing) return [];
+  const [a, h] = [contactRadius, spacing].map((x) => quantity(x, "length", inputs, 3));
+  return [{ code: "units", message: `the contact radius, ${a}, is small against the spacing of the points, ${h}: check the units of the table` }];
 }

@@ -1,6 +1,9 @@
 // Label, default values and shape f(r) of each profile kind, for the form and the sketch.
 // The descriptions of the fields come from GET v1/profiles.
 
+import { LENGTHS } from "./table_reader.js";
+import { times } from "./units.js";
+
 const kind = (label, fields, f) => ({ label, fields, f });
 const cap = (r, radius) => radius - Math.sqrt(radius ** 2 - r * r);
 
@@ -46,14 +49,18 @@ export const KINDS = {
     "Sum of two powers", { coefficient_1: 50, exponent_1: 2, coefficient_2: 2e8, exponent_2: 4 },
     (r, p) => p.terms.reduce((sum, t) => sum + t.coefficient * r ** t.exponent, 0),
   ),
-  tabulated: kind("Table of measured points", {}),
+  tabulated: kind("Table of measured points", { breaks: "", uncertainty: "" }),
 };
 
-// Fields that the page adds to those of the wire.
+// Fields in place of those of the wire.
 export const OWN_FIELDS = {
   balls: [
     { name: "radius_1", dimension: "length", description: "Radius of the first ball" },
     { name: "radius_2", dimension: "length", description: "Radius of the second ball" },
+  ],
+  tabulated: [
+    { name: "uncertainty", dimension: "displacement", description: "Uncertainty of the heights", optional: true, placeholder: "by scatter" },
+    { name: "breaks", dimension: "length", description: "Radii where the slope jumps", optional: true, list: true, placeholder: "none" },
   ],
   series: [1, 2].flatMap((i) => [
     { name: `coefficient_${i}`, dimension: "length^(1-exponent)", description: `Factor of power ${i}` },
@@ -66,11 +73,16 @@ export const OWN_FORMULAS = {
   series: "c₁·r^n₁ + c₂·r^n₂",
 };
 
-/** Return the table of a ball that has been measured, with a flat worn on it. */
+/** Return the table of a ball of radius 10 mm as a profilometer measures it: r in mm, f in µm. */
 export function measuredBall() {
-  const r = Array.from({ length: 41 }, (_, i) => Number((i * 1e-5).toPrecision(3)));
-  const f = r.map((x) => Number(Math.max(0, (x * x - 1e-8) / 0.02).toPrecision(6)));
-  return { r, f };
+  const r = Array.from({ length: 41 }, (_, i) => i / 100);
+  return { r, f: r.map((x) => Number((50 * x * x).toFixed(2))), units: ["mm", "µm"] };
+}
+
+/** Return the radii and heights of a table in metres. */
+export function inMetres({ r, f, units }) {
+  const [radii, heights] = [r, f].map((column, i) => column.map((x) => times(x, LENGTHS[units[i]])));
+  return { r: radii, f: heights };
 }
 
 /** Return the profile as the wire has it. */
@@ -84,14 +96,20 @@ export function wireProfile(inputs) {
     const term = (i) => ({ coefficient: inputs[`coefficient_${i}`], exponent: inputs[`exponent_${i}`] });
     return { kind, terms: [term(1), term(2)] };
   }
-  if (kind === "tabulated") return { kind, ...inputs.table };
+  if (kind === "tabulated") {
+    const breaks = inputs.breaks ? { breaks: inputs.breaks.split(",").map(Number) } : {};
+    const uncertainty = inputs.uncertainty === "" ? {} : { uncertainty: inputs.uncertainty };
+    return { kind, ...inMetres(inputs.table), ...breaks, ...uncertainty };
+  }
   return { kind, ...Object.fromEntries(Object.keys(KINDS[kind].fields).map((k) => [k, inputs[k]])) };
 }
 
-/** Return the points `[r, f]` of the profile up to about `reach`. */
+/** Return the points `[r, f]` of the profile up to about `reach`, of a table at least four. */
 export function outline(profile, reach) {
   if (profile.kind === "tabulated") {
-    return profile.r.map((r, i) => [r, profile.f[i]]).filter(([r]) => r <= reach * 1.5);
+    const lowest = Math.min(...profile.f);
+    const points = profile.r.map((r, i) => [Math.abs(r), profile.f[i] - lowest]).sort(([a], [b]) => a - b);
+    return points.filter(([r], i) => i < 4 || r <= reach * 1.5);
   }
   const points = [];
   for (let i = 0; i <= 120; i++) {

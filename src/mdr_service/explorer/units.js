@@ -1,21 +1,23 @@
 // Display units. The inputs and the wire are in SI units throughout.
 
+import { LENGTHS } from "./table_reader.js";
+
 // Largest magnitude of a number in a request.
 const LARGEST = 1e50;
 
-const LENGTHS = { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
+const PRESSURES = { GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 };
 
 // Dimension of a base unit -> its key in the inputs, its label in the form, and its choices.
 export const BASE_UNITS = {
   length: { key: "ul", label: "Lengths", factors: LENGTHS },
   displacement: { key: "ud", label: "Depths", factors: LENGTHS },
-  force: { key: "uf", label: "Forces", factors: { kN: 1e3, N: 1, mN: 1e-3, "µN": 1e-6 } },
-  pressure: { key: "up", label: "Pressures", factors: { GPa: 1e9, MPa: 1e6, kPa: 1e3, Pa: 1 } },
+  force: { key: "uf", label: "Forces", factors: { kN: 1e3, N: 1, mN: 1e-3, "µN": 1e-6, nN: 1e-9 } },
+  pressure: { key: "up", label: "Pressures", factors: PRESSURES },
+  modulus: { key: "um", label: "Moduli", factors: PRESSURES },
 };
 
 // Derived dimension -> powers of the base units.
 const DERIVED = {
-  modulus: { fixed: "GPa", factor: 1e9 },
   energy: { force: 1, displacement: 1 },
   stiffness: { force: 1, displacement: -1 },
   volume: { length: 3 },
@@ -47,7 +49,7 @@ export function withUnit([label, dimension], inputs) {
   return name ? `${label} [${name}]` : label;
 }
 
-/** Return SI values, null where infinite, in the display unit of their dimension. */
+/** Return SI values, null where infinite and NaN where there is none, in their display unit. */
 export function scaled(values, dimension, inputs) {
   const { factor } = unit(dimension, inputs);
   return values.map((value) => (value === null ? null : value / factor));
@@ -55,7 +57,8 @@ export function scaled(values, dimension, inputs) {
 
 /** Return a number with `digits` significant digits, without trailing zeros. */
 export function format(value, digits = 5) {
-  if (value === null || value === undefined) return "∞";
+  if (value === null) return "∞";
+  if (Number.isNaN(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-4) {
@@ -65,9 +68,10 @@ export function format(value, digits = 5) {
   return String(Number(value.toPrecision(digits))).replace("-", "−");
 }
 
-/** Return an SI value as text for an input in its display unit. */
-export function shown(value, dimension, inputs) {
-  return String(Number((value / unit(dimension, inputs).factor).toPrecision(12)));
+/** Return an SI value, null where infinite, with its display unit. */
+export function quantity(value, dimension, inputs, digits) {
+  const { name, factor } = unit(dimension, inputs);
+  return `${format(value && value / factor, digits)} ${name}`.trim();
 }
 
 /** Return the number that a text holds in decimal notation, or NaN. */
@@ -78,8 +82,17 @@ export function numberOf(text) {
   return Math.abs(number) <= LARGEST ? number : NaN;
 }
 
+/** Return a number times a power of ten without its rounding error, like the product of decimals. */
+export function times(number, factor) {
+  return Number((number * factor).toPrecision(15));
+}
+
+/** Return an SI value as text for an input in its display unit. */
+export function shown(value, dimension, inputs) {
+  return String(Number((value / unit(dimension, inputs).factor).toPrecision(12)));
+}
+
 /** Return the SI value of a text in its display unit, or NaN. */
 export function read(text, dimension, inputs) {
-  // The product of a decimal number and a power of ten, without its rounding error.
-  return Number((numberOf(text) * unit(dimension, inputs).factor).toPrecision(15));
+  return times(numberOf(text), unit(dimension, inputs).factor);
 }

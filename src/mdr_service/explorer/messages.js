@@ -1,0 +1,36 @@
+// Messages of the service in the words and units of the page.
+
+import { QUANTITIES } from "./quantities.js";
+import { quantity } from "./units.js";
+
+const NUMBER = String.raw`\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
+// Words of the service next to numbers that have a unit -> their dimension.
+const WORDS = [
+  [/(?:radius|radii)(?: of the body,| =|,)? /, "length", ""],
+  [/deviates by /, "displacement", ""],
+  [/a normal force of /, "force", ""],
+  [/amplitudes below /, "oscillation", ""],
+  ["", "displacement", / in the root mean square/],
+];
+const PATTERNS = WORDS.map(([before, dimension, after]) =>
+  [new RegExp(`(${before.source ?? ""})(${NUMBER}(?:, ${NUMBER})*)(${after.source ?? ""})`, "g"), dimension]);
+const NAMES = /\b[a-z]+(?:_[a-z]+)+\b/g;
+
+/**
+ * Return a message with the labels of the page in place of names, and with units.
+ *
+ * `labels` holds the label of each field by its name in requests.
+ */
+export function inWords(message, inputs, labels) {
+  const inUnits = (text, [pattern, dimension]) => {
+    const meant = dimension === "oscillation" ? QUANTITIES[inputs.oscillation][1] : dimension;
+    return text.replace(pattern, (_, before, numbers, after) =>
+      before + numbers.split(", ").map((each) => quantity(Number(each), meant, inputs)).join(", ") + after);
+  };
+  const label = (name) => {
+    const text = labels[name] ?? QUANTITIES[name]?.[0];
+    return text ? `“${text}”` : name;
+  };
+  // The least number on the wire says nothing in units.
+  return PATTERNS.reduce(inUnits, message.replace(/, at least 1e-\d+$/, "")).replace(NAMES, label);
+}
