@@ -25,6 +25,7 @@ from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format, appeara
 from mdr_service.dispatch import respond
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import ServiceError
+from mdr_service.queries.contacts import is_new_table, keep_table, profile
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import contacts
 from mdr_service.schemas.answers import Answer
@@ -85,6 +86,8 @@ class Responder:
         if not isinstance(query, (bytes, dict)) and cost.is_short(
             cost.require_feasible(query, self.media_type), len(self.tasks)
         ):
+            if isinstance(query, contacts.Query) and is_new_table(table := query.profile):
+                keep_table(table, await self.workers.run_in_process(profile, table))
             content = respond(*arguments)
         else:
             content = await self.workers.run_in_process(respond, *arguments)
