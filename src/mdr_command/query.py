@@ -24,6 +24,7 @@ from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.schemas.queries import SCHEMAS
+from mdr_service.sentences import NOT_NUMBERS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 
@@ -38,9 +39,9 @@ _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
 _OTHER_OPTIONS: Final = frozenset({"output", "size", "units", "table", "length_unit"})
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
-_REQUEST: Final = (
-    "a request is a JSON object; give a table with --table, and numbers with options (--help)"
-)
+_REQUEST: Final = "a request is a JSON object"
+_NOT_NUMBERS: Final = "a table needs --table, a series a request in JSON"
+_BY_OPTIONS: Final = "; give a table with --table, and numbers with options (--help)"
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -195,12 +196,13 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
         if error.type is problems.MALFORMED_JSON:
-            parts.append(_REQUEST)
+            parts.append(_REQUEST + (_BY_OPTIONS if names else ""))
         elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
             parts = [table, place.partition(".")[2], detail]
         elif by_options or place in _OTHER_OPTIONS:
             renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
-            parts = [_option(place, [place]), detail if place in _TEXTS else renamed]
+            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if place in _TEXTS else renamed
+            parts = [_option(place, [place]), said]
         _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
 
