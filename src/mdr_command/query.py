@@ -24,6 +24,7 @@ from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.schemas.queries import SCHEMAS
+from mdr_service.sentences import NOT_NUMBERS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 
@@ -35,12 +36,12 @@ _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
 # Options beside the parameters of the request.
-_OTHER_OPTIONS: Final = frozenset({"output", "size", "table", "length_unit"})
+_OTHER_OPTIONS: Final = frozenset({"output", "size", "units", "table", "length_unit"})
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
-_REQUEST: Final = (
-    "a request is a JSON object; give a table with --table, and numbers with options (--help)"
-)
+_REQUEST: Final = "a request is a JSON object"
+_NOT_NUMBERS: Final = "a table needs --table, a series a request in JSON"
+_BY_OPTIONS: Final = "; give a table with --table, and numbers with options (--help)"
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -58,6 +59,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         help="format of the response (default: by the suffix of FILE, json without one)",
     )
     parser.add_argument("--size", metavar="WxH", help=content_negotiation.SIZE)
+    parser.add_argument("--units", metavar="L,F,P", help=content_negotiation.UNITS)
     parser.add_argument(
         "-o",
         "--output",
@@ -117,24 +119,24 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _content(arguments: argparse.Namespace) -> bytes:
     """Return the response to the request, which a file or options give."""
-    name, size = arguments.command, arguments.size
+    name = arguments.command
     suffix = arguments.output.suffix[1:].lower() if arguments.output else ""
     format_ = arguments.format or suffix or "json"
     if format_ not in FORMATS:
         detail = f"no format has the suffix .{suffix}; there are .{', .'.join(FORMATS)}; or give "
         raise InputError(("output",), f"{detail}--format")
     media_type = FORMATS[format_]
-    size = None if size is None else content_negotiation.picture_size(size, media_type)
+    look = content_negotiation.appearance(media_type, arguments.size, arguments.units)
     given = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
     profile = _table(arguments, given)
     if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
-        return respond(name, query, media_type, size=size)
+        return respond(name, query, media_type, appearance=look)
     if arguments.file:
         raise InputError((), "give the request by a file or by options, not both")
     parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
-        return respond(name, parameters.query(profile), media_type, parameters.members, size)
+        return respond(name, parameters.query(profile), media_type, parameters.members, look)
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
@@ -155,7 +157,9 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
 def _options(command: str) -> dict[str, FieldInfo]:
     """Return the parameters that are options; every command has options for a picture."""
     fields = PARAMETERS[command].model_fields if command in PARAMETERS else {}
-    return {name: field for name, field in fields.items() if name not in {"format", "size"}}
+    return {
+        name: field for name, field in fields.items() if name not in {"format", "size", "units"}
+    }
 
 
 def _read(file: str) -> bytes:
@@ -192,12 +196,13 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
         if error.type is problems.MALFORMED_JSON:
-            parts.append(_REQUEST)
+            parts.append(_REQUEST + (_BY_OPTIONS if names else ""))
         elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
             parts = [table, place.partition(".")[2], detail]
         elif by_options or place in _OTHER_OPTIONS:
             renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
-            parts = [_option(place, [place]), detail if place in _TEXTS else renamed]
+            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if place in _TEXTS else renamed
+            parts = [_option(place, [place]), said]
         _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
 

@@ -16,6 +16,8 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 
 _EPS: Final = float(np.finfo(float).eps)
+# Relative distance over which the slope of a wide annulus is averaged next to a break.
+_STEP: Final = 4e-11
 # Relative rounding error of a load, and of a contact coordinate.
 _LOAD, _COORDINATE = 8 * _EPS, 2 * _EPS
 _TINY: Final = float(np.finfo(float).tiny)
@@ -120,15 +122,15 @@ def of_excess_displacement(displacement: Array, excess: Array) -> Array:
     return where(slides, np.abs(displacement) / where(slides, excess, 1.0), 0.0)
 
 
-def of_edge_slope(contact: NormalContact) -> Array:
-    """Return the relative error of g'(a) by the rounding of the contact coordinate [1].
+def of_edge_slope(contact: NormalContact, width: Array) -> Array:
+    """Return the relative error of a slip annulus by the rounding of the contact coordinate [1].
 
-    The width of the first slip annulus is inversely proportional to g'(a), which changes rapidly
-    just beyond a break, and where it falls to zero.
+    The width of a narrow one is inversely proportional to g' at the edge, which changes rapidly
+    just beyond a break, and where it falls to zero. `width` is that in the contact coordinate.
     """
     profile, at = contact.profile, contact.coordinate
     if not (profile.coordinate_breaks.size or profile.flattens):
-        return full(0.0, at)
+        return full(0.0, width)
     at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
         if contact.control == "contact_radius":
@@ -139,12 +141,13 @@ def of_edge_slope(contact: NormalContact) -> Array:
         error = np.maximum(rounding * load / (at * slope), _COORDINATE)
         if profile.flattens:
             error = np.maximum(error, contact.edge_errors)
+        step = np.maximum(np.minimum(where(width > 0, width / at, _STEP), _STEP), error)
         # A radius that is the coordinate itself does not move onto a break that it has not reached.
         exact = (contact.control == "contact_radius") & (at == load)
-        sides = np.stack([(1 - error) * at, where(exact, at, (1 + error) * at)])
+        sides = np.stack(np.broadcast_arrays((1 - step) * at, where(exact, at, (1 + step) * at)))
         # g'(a) is their ratio.
         slopes = profile.depth_slope(sides) / profile.radius_slope(sides)
-        change = np.abs(np.log(slopes[1] / slopes[0]))[()]
+        change = np.abs(np.log(slopes[1] / slopes[0])) * (error / step)
     return where(np.isfinite(change), change, 0.0)
 
 

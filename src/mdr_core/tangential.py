@@ -210,7 +210,7 @@ class TangentialContact(validity.ContactResults):
     def _width_rounding(self) -> Array:
         """Relative error of a - c by the rounding of the edges [1]."""
         normal, profile = self.normal, self.normal.profile
-        error = conditioning.of_edge_slope(normal)
+        error = conditioning.of_edge_slope(normal, self.width)
         if self.control == "stick_radius":
             narrow = conditioning.narrow_annulus(self._coordinate, self.width)
             error = error + normal.edge_errors * narrow
@@ -230,6 +230,11 @@ class TangentialContact(validity.ContactResults):
             return 0.0
         error = self.limit_error * self._load_condition
         return error + self._concealed if some(self.full_slip) else error
+
+    @property
+    def step_error(self) -> Array:
+        """Relative error of each case without that of the load at full slip [1]."""
+        return _STEP_ERROR * self.normal.error_estimates + self._width_rounding
 
     @property
     def stick_error(self) -> Array:
@@ -274,8 +279,7 @@ class TangentialContact(validity.ContactResults):
     @cached_property
     def error_estimates(self) -> Array:
         """Upper bound of the relative error of each case, rounding of its loads included [1]."""
-        own = _STEP_ERROR * self.normal.error_estimates
-        return own + self._width_rounding + self._limit_rounding
+        return self.step_error + self._limit_rounding
 
     @property
     def error_estimate(self) -> float:

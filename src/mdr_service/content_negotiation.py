@@ -1,4 +1,4 @@
-"""Media type of a response, by ``format`` or the header ``Accept``, and size of a picture."""
+"""Media type of a response, by ``format`` or the header ``Accept``, and appearance of a picture."""
 
 import re
 from collections.abc import Sequence
@@ -6,12 +6,24 @@ from typing import Final, Literal
 
 from mdr_service import problems
 from mdr_service.serializers import FORMATS, PICTURES
+from mdr_service.serializers.panels import Units
+from mdr_service.serializers.picture import Appearance
 
 Format = Literal["json", "csv", "npz", "txt", "svg", "png", "pdf"]
 FORMAT: Final = "Format of the response; overrides `Accept`"
-SIZE: Final = "Width x height of a picture in millimetres, 30 to 400 each, such as `90x60`"
+SIZE: Final = "Width x height of a picture in millimetres, 50 to 400 each, such as `90x60`"
+UNITS: Final = (
+    "Units of length, force and pressure that the labels of a picture name, such as `mm,N,MPa`: "
+    "nothing is converted"
+)
 _SIZE: Final = re.compile(r"(\d{2,3})x(\d{2,3})", re.ASCII)
-_SMALLEST, _LARGEST = 30, 400
+_SMALLEST, _LARGEST = 50, 400
+# Characters that every font has, and none that starts a formula.
+_UNIT: Final = re.compile(r"[A-Za-z0-9µμ°²³·/*^. -]{1,12}")
+_THREE_NAMES: Final = (
+    "must be three names, of length, force and pressure, such as mm,N,MPa: of at most 12 letters, "
+    "digits and characters µ ° ² ³ · / * ^ . -"
+)
 _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 
@@ -32,15 +44,23 @@ def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FOR
     return best
 
 
-def picture_size(text: str, media_type: str) -> tuple[int, int]:
-    """Return width and height of a picture [mm]; raise ServiceError if there is none."""
-    found = _SIZE.fullmatch(text)
-    size = (int(found[1]), int(found[2])) if found else (0, 0)
-    if media_type in PICTURES and min(size) >= _SMALLEST and max(size) <= _LARGEST:
-        return size
-    possible = f"must be {SIZE[0].lower()}{SIZE[1:].replace('`', '')}"
-    detail = possible if media_type in PICTURES else "is valid for pictures only: svg, png and pdf"
-    raise problems.invalid([("/size", detail)])
+def appearance(media_type: str, size: str | None, units: str | None) -> Appearance:
+    """Return the appearance of a picture; raise ServiceError if it is invalid."""
+    found = _SIZE.fullmatch(size or "")
+    sides = (int(found[1]), int(found[2])) if found else (0, 0)
+    names = [name.strip() for name in (units or "").split(",")]
+    wrong = {}
+    if size is not None and not _SMALLEST <= min(sides) <= max(sides) <= _LARGEST:
+        wrong["/size"] = f"must be {SIZE[0].lower()}{SIZE[1:].replace('`', '')}"
+    if units is not None and not (len(names) == 3 and all(map(_UNIT.fullmatch, names))):
+        wrong["/units"] = _THREE_NAMES
+    if media_type not in PICTURES:
+        given = {"/size": size, "/units": units}.items()
+        only = "is valid for pictures only: svg, png and pdf"
+        wrong = {pointer: only for pointer, text in given if text is not None}
+    if wrong:
+        raise problems.invalid(list(wrong.items()))
+    return Appearance(sides if size else None, Units(*names) if units else None)
 
 
 def _range(text: str) -> tuple[str, float]:

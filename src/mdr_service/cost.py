@@ -11,6 +11,7 @@ from typing import Final
 
 from mdr_service import problems
 from mdr_service.problems import ServiceError
+from mdr_service.queries.contacts import is_new_table
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import FieldQuery, LoadedQuery, StressQuery
@@ -38,6 +39,8 @@ _START: Final[dict[type[Query], float]] = {
 }
 # Time to list the errors of an invalid query.
 _INVALID: Final = 5e-5
+# Time to resolve a table. A single query leaves it to a compute process, and has the rest at once.
+_RESOLVE: Final = 2e-2
 # Additional time of many loads, for which arrays take the place of single numbers.
 _ARRAYS: Final = 2e-4
 # Time per load without and with friction or per sample, per load with wear, per entry of `cycles`.
@@ -72,7 +75,9 @@ def seconds(query: Query | BatchQuery) -> float:
     """Return the expected time of a query or a batch."""
     if isinstance(query, BatchQuery):
         times = [
-            seconds(item.query) if isinstance(item.query, Query) else _INVALID
+            seconds(item.query) + _RESOLVE * is_new_table(item.query.profile)
+            if isinstance(item.query, Query)
+            else _INVALID
             for item in query.queries
         ]
         # A query that is rejected alone takes no time.

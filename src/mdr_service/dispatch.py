@@ -12,7 +12,6 @@ from pydantic import ValidationError
 
 from mdr_core.errors import InputError
 from mdr_service import cost, problems
-from mdr_service.plots import PLOTS
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.query_parameters import PARAMETERS
@@ -20,6 +19,7 @@ from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import PICTURES, WRITE, json
+from mdr_service.serializers.picture import AS_USUAL, Appearance
 from mdr_service.settings import SETTINGS
 
 _logger: Final = logging.getLogger(__name__)
@@ -30,7 +30,7 @@ def respond(
     query: Query | BatchQuery | bytes | dict[str, str],
     media_type: str,
     members: Sequence[str] = (),
-    size: tuple[int, int] | None = None,
+    appearance: Appearance = AS_USUAL,
 ) -> bytes:
     """Return the response content of a query or a batch.
 
@@ -40,7 +40,7 @@ def respond(
     query : the request, or its text or the parameters that stand for it, which are first parsed.
     media_type : media type of the content.
     members : members of the result to return, by default all; a picture shows all.
-    size : width and height of a picture [mm].
+    appearance : size and units of a picture.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def respond(
         source = kind.solve(query)
         result: Any = kind.result(query, source)
         if media_type in PICTURES:
-            return WRITE[media_type](PLOTS[name](query, source, result), size=size)
+            return WRITE[media_type](query, result, appearance)
         if members:
             for member in members:
                 if member not in result:

@@ -24,8 +24,8 @@ wear); as a `yield_onset_force` it means that no load reaches the yield strength
 
 **Formats.** `?format=` or the header `Accept` selects JSON (the default); `csv`, a table with a
 column per quantity, in which infinities are written `inf`; `npz`, an archive of arrays for
-`numpy.load`; `txt`, the table without its heading; or `svg`, `png` or `pdf`, a
-picture, whose width and height `?size=` sets.
+`numpy.load`; `txt`, the table without its heading; or `svg`, `png` or `pdf`, a picture of the
+values of the response, whose width and height `?size=` sets, and whose units `?units=` names.
 
 **GET.** Five queries are available by parameters as well, for spreadsheets and browsers: numbers,
 and one range. `answers` chooses members of the response, and with `format=txt` a single number is

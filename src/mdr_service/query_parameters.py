@@ -17,7 +17,7 @@ from pydantic_core import PydanticCustomError
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
-from mdr_service.content_negotiation import FORMAT, SIZE, Format
+from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
@@ -82,6 +82,7 @@ class Parameters(BaseModel):
     # An unknown format is not acceptable (406), as for POST, rather than invalid.
     format: SkipValidation[Format | None] = Field(default=None, description=FORMAT)
     size: str | None = Field(default=None, description=SIZE)
+    units: str | None = Field(default=None, description=UNITS)
     answers: str | None = Field(
         default=None, description="Members of the response, separated by commas; by default all"
     )

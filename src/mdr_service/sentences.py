@@ -21,6 +21,7 @@ Path = tuple[str | int, ...]
 _Model = type[BaseModel]
 
 NUMBER: Final = "must be a number such as 0.01 or 1.1e11"
+NOT_NUMBERS: Final = "series and tables need a request in JSON"
 _KINDS: Final = ", ".join(MODELS)
 _NUMBERS: Final = ", ".join(OF_NUMBERS)
 _BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
@@ -40,7 +41,7 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("dict_type", "profile"): f"must be {_PROFILE}",
     ("model_attributes_type", "profile"): f"must be {_PROFILE}",
     ("literal_error", "bodies"): f"must be {_BODY}",
-    ("literal_error", "kind"): f"must be {_NUMBERS}; series and tables need a request in JSON",
+    ("literal_error", "kind"): f"must be {_NUMBERS}; {NOT_NUMBERS}",
     ("missing", "e_star"): f"is required, or {_BODIES}",
     ("missing", "kind"): f"is required, one of {_NUMBERS}",
     ("missing", "profile"): f"is required, {_PROFILE}",

@@ -222,6 +222,11 @@ BY_COMMAND: dict[str, tuple[str, list[str]]] = {
     "a wrong option": (f"normal {OPTIONS} --force 1", ["--force", "mdr normal --help"]),
     "a spreadsheet": (f"normal {OPTIONS} --normal-force 1 -o x.xlsx", ["xlsx", ".csv", "--format"]),
     "a table as the request": ("normal table.csv", ["table.csv", "JSON", "--table", "--help"]),
+    "a table as a kind": (
+        "normal --kind tabulated --e-star 1 --normal-force 1",
+        ["--kind", "--table", "paraboloid"],
+    ),
+    "a table beneath the surface": ("subsurface table.csv", ["table.csv", "JSON object"]),
     "a request that is not there": ("normal request.json", ["request.json", "No such file"]),
     "a wrong request": ("normal wrong.json", ["wrong.json", "load", "normal_force"]),
     "a request and options": (f"normal wrong.json {OPTIONS}", ["file", "options", "not both"]),

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 
 from mdr_core import history, normal
 from mdr_core.errors import InputError
-from mdr_core.profiles import Tabulated
+from mdr_core.profiles import FlatPunch, Paraboloid, Profile, RoundedPunch, Tabulated
 from tests.core.comparison import INPUT, profile_from
 from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES, solve
 from tests.oracles import slip_reference as slip
@@ -502,3 +502,57 @@ def test_dissipated_energy_of_a_cycle_on_a_rough_table(
     beside = float(below.energy_per_cycle[0] + above.energy_per_cycle[0]) / 2
     assert energy == pytest.approx(beside, rel=1e-3, abs=0)
     assert 0 <= result.energy_per_cycle[1] < 1e-12 * energy
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(1.3), RoundedPunch(0.2, 1.0), FlatPunch(0.7)])
+@pytest.mark.parametrize("samples", [1, 7])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_nothing_slips_where_the_loads_grow_in_the_ratio_of_friction(
+    profile: Profile, samples: int, sign: int
+) -> None:
+    """Eq. (5.71) at equality: all springs are at their limit at all times, and none slips."""
+    mu, e_star, g_star = 0.3, 1.1, 0.9
+    loads = np.array([0.7, 1.9, 2.0, 3.1])
+    forces = history.solve(
+        profile,
+        e_star,
+        g_star,
+        mu,
+        normal_force=loads,
+        tangential_force=sign * mu * loads,
+        samples_per_step=samples,
+    )
+    displacements = history.solve(
+        profile,
+        e_star,
+        g_star,
+        mu,
+        indentation_depth=loads / 10,
+        tangential_displacement=sign * mu * e_star / g_star * loads / 10,
+        samples_per_step=samples,
+    )
+    for result in (forces, displacements):
+        assert set(result.regime) == {"stick"}
+        assert result.dissipated_energy[-1] == pytest.approx(
+            0, abs=1e-15 * result.elastic_energy[-1]
+        )
+
+
+def test_growth_in_the_ratio_of_friction_leaves_the_regime_as_it_is() -> None:
+    """After partial slip the springs that come into contact at their limit do not slip."""
+    result = history.solve(
+        Paraboloid(1.3),
+        1.0,
+        1.0,
+        0.5,
+        normal_force=[1.0, 1.0, 2.0, 2.0, 3.0],
+        tangential_force=[0.0, 0.25, 0.75, 1.0, 1.5],
+    )
+    assert list(result.regime) == [
+        "stick",
+        "partial_slip",
+        "partial_slip",
+        "full_slip",
+        "full_slip",
+    ]
+    assert result.dissipation[[2, 4]] == pytest.approx(0, abs=1e-15 * result.elastic_energy[-1])

@@ -13,6 +13,7 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.workers import AT_ONCE_BYTES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
 MEGABYTE = 2**20
@@ -54,6 +55,18 @@ EXPENSIVE = (
         | {"resolution": 96, "cycles": [float(10 * n) for n in range(2000)]},
     ),
 )
+
+
+def new_table(number: int, points: int = 1_100) -> bytes:
+    """Return a query about a table that no other has, almost as long as the event loop parses."""
+    heights = [f"{n * n * (1 + 1e-4 * number):.6g}" for n in range(points)]
+    table = f'"kind":"tabulated","r":{list(range(points))},"f":[{",".join(heights)}]'
+    rest = '"material":{"e_star":1.0},"load":{"normal_force":1e3}'
+    body = f'{{"profile":{{{table}}},{rest}}}'.replace(" ", "").encode()
+    assert 12_000 < len(body) <= AT_ONCE_BYTES
+    return request("/v1/normal", body)
+
+
 UNKNOWN_FIELDS = request(
     "/v1/normal", b"{" + b",".join(b'"f%d":0' % n for n in range(100_000)) + b"}"
 )
@@ -207,6 +220,8 @@ ATTACKS: dict[str, Attack] = {
     "floods of pipelined requests": sending(
         b"", b"GET /health HTTP/1.1\r\nHost: x\r\n\r\n" * 10_000, 4 * MEGABYTE, clients=4
     ),
+    # More than the service keeps.
+    "new tables, 1 client": requesting(tuple(map(new_table, range(50))), clients=1),
     "10⁵ unknown fields, 4 clients": requesting(UNKNOWN_FIELDS, clients=4),
     "batches of 1000, 20 clients": requesting(BATCH, clients=20),
     "20 slow readers": slow_readers,

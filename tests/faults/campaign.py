@@ -235,6 +235,7 @@ CAMPAIGNS: dict[str, Campaign] = {
     "lines": small_beside("50 MB of header lines"),
     "trailers": small_beside("50 MB of trailers"),
     "floods": small_beside("floods of pipelined requests"),
+    "tables": small_beside("new tables, 1 client"),
     "fields": small_beside("10⁵ unknown fields, 4 clients"),
     "batches": small_beside("batches of 1000, 20 clients"),
     "readers": small_beside("20 slow readers"),

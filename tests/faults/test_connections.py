@@ -1,5 +1,6 @@
-"""Connections that are kept or closed after failed requests."""
+"""Connections: accepted together, and kept or closed after failed requests."""
 
+import asyncio
 import http.client
 import json
 import logging
@@ -8,9 +9,11 @@ import socket as sockets
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 
 import pytest
 import uvicorn
+from fastapi import FastAPI
 
 from mdr_service import observability
 from mdr_service.app import create_app
@@ -30,11 +33,16 @@ BODY = (
 
 
 @pytest.fixture(scope="module")
-def port() -> Iterator[int]:
+def app() -> FastAPI:
+    return create_app()
+
+
+@pytest.fixture(scope="module")
+def port(app: FastAPI) -> Iterator[int]:
     """Serve from a thread of this process, where a test can inject an error."""
     number = free_port()
     config = uvicorn.Config(
-        create_app(), port=number, loop="asyncio", http=BoundedProtocol, lifespan="on", ws="none"
+        app, port=number, loop="asyncio", http=BoundedProtocol, lifespan="on", ws="none"
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
@@ -199,3 +207,41 @@ def test_client_that_disconnects_causes_no_error(
     leaving.close()
     time.sleep(0.2)
     assert not [record for record in caplog.records if record.name.startswith("mdr_service")]
+
+
+def test_waiting_connections_are_accepted_together_and_before_other_work(
+    app: FastAPI, port: int
+) -> None:
+    """A loop that accepts one connection per turn lets the last one wait for as many turns."""
+    turns = 0
+    connected = threading.Event()
+    served: list[int] = []
+
+    async def busy() -> None:
+        nonlocal turns
+        started.set()
+        connected.wait(PATIENCE)
+        while len(served) < len(clients):
+            turns += 1
+            await asyncio.sleep(0)
+
+    async def turn() -> None:
+        served.append(turns)
+
+    started = threading.Event()
+    app.add_api_route("/busy", busy)
+    app.add_api_route("/turn", turn)
+    with ExitStack() as stack:
+
+        def connect(path: str) -> sockets.socket:
+            client = stack.enter_context(sockets.create_connection(("127.0.0.1", port), PATIENCE))
+            client.sendall(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+            return client
+
+        clients: list[sockets.socket] = [connect("/busy")]
+        assert started.wait(PATIENCE)
+        clients = [connect("/turn") for _ in range(100)]
+        connected.set()
+        for client in clients:
+            assert client.recv(100).startswith(b"HTTP/1.1 200 ")
+    assert max(served) < 20

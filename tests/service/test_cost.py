@@ -118,6 +118,7 @@ def test_batch_estimate_is_the_sum_of_its_queries() -> None:
     invalid = {"ask": "normal", "request": {}}
     batch = BatchQuery.model_validate({"queries": [*items, invalid]})
     expected = cost.seconds(query("normal", BALL)) + cost.seconds(query("stress", STRESS))
+    expected += cost._INVALID
     assert cost.seconds(batch) == pytest.approx(expected, rel=1e-12, abs=0)
 
 

@@ -192,21 +192,6 @@ def parse_svg(response: httpx.Response) -> ET.Element:
     return root
 
 
-# test_pictures.py draws every example in process.
-@pytest.mark.every(4)
-@EVERY_EXAMPLE
-def test_every_example_has_a_plot(client: Client, path: str, query: dict[str, object]) -> None:
-    response = ask(client, path, query, "image/svg+xml")
-    axes = [part.get("id", "") for part in parse_svg(response).iter(f"{SVG}g")]
-    panels = [name for name in axes if name.startswith("axes_")]
-    if path.startswith("/v1/wear"):
-        requested = set(query.get("quantities", ()))
-        always = {"profile", "pressure"} if path.endswith("evolution") else {"limiting_profile"}
-        assert len(panels) == len(always | requested - {"initial_profile"})
-    else:
-        assert len(panels) == len(query.get("quantities", ["force over displacement"]))
-
-
 def test_identical_queries_give_identical_plots(client: Client) -> None:
     path, _, query = CASES[0]
     first, second = (ask(client, path, query, "image/svg+xml") for _ in range(2))
@@ -303,15 +288,6 @@ def test_degenerate_wear_has_a_plot(client: Client, change: dict[str, object]) -
 def test_degenerate_wear_evolution_has_a_plot(client: Client, change: dict[str, object]) -> None:
     query = EXAMPLES["evolution"]["held_forces"]["value"]
     parse_svg(ask(client, "/v1/wear/evolution", query | change, "image/svg+xml"))
-
-
-def test_plot_shows_a_smooth_curve(client: Client) -> None:
-    response = ask(
-        client, "/v1/tangential/history", EXAMPLES["history"]["residual"]["value"], "image/svg+xml"
-    )
-    lines = [len(path.get("d", "").split("L")) for path in parse_svg(response).iter(f"{SVG}path")]
-    # As many samples are drawn as a smooth curve requires.
-    assert max(lines) > 20
 
 
 def test_problems_are_json_for_any_accept_header(client: Client) -> None:

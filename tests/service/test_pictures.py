@@ -1,332 +1,450 @@
-"""Content of the plots: curves, points, limits, markers, labels and legends."""
+"""Content of the pictures: the numbers of the response, their names and units, at any size."""
 
 import json
+import re
 import struct
-from collections.abc import Mapping
-from typing import Any
+from itertools import combinations, pairwise
+from pathlib import Path
+from typing import Any, get_args
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
-from mdr_service.plots import PLOTS, Map, Plot
+from mdr_core.errors import InputError
+from mdr_service.dispatch import respond
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.fields import FieldName
 from mdr_service.schemas.queries import SCHEMAS
-from mdr_service.serializers import picture
+from mdr_service.schemas.subsurface import SubsurfaceName
+from mdr_service.schemas.wear import WearField
+from mdr_service.serializers.panels import Units
+from mdr_service.serializers.picture import Appearance
 from tests.conftest import Client
 
-CASES = [
-    (name, example["value"])
+CASES = {
+    f"{name} {key}": (name, example["value"])
     for name in QUERIES
-    # A map has no curves.
-    if name != "subsurface"
-    for example in EXAMPLES[name].values()
-]
+    for key, example in EXAMPLES[name].items()
+}
 BALL = EXAMPLES["normal"]["hertz"]["value"]
 TANGENTIAL = EXAMPLES["tangential"]["cattaneo_mindlin"]["value"]
 STRESS = EXAMPLES["stress"]["cattaneo_mindlin"]["value"]
 PUNCH = EXAMPLES["stress"]["boussinesq"]["value"]
+CONE = EXAMPLES["stress"]["sneddon"]["value"]
+MAP = EXAMPLES["subsurface"]["partial_slip"]["value"]
 WEAR = EXAMPLES["wear"]["amplitudes"]["value"]
 EVOLUTION = EXAMPLES["evolution"]["held_forces"]["value"]
 HISTORY = EXAMPLES["history"]["mindlin_deresiewicz"]["value"]
+# The usual size, the smallest, and a column of a paper.
+SIZES = [None, (50, 50), (90, 60)]
+MILLIMETRES = Units("mm", "N", "MPa")
 
 
-def plotted(name: str, value: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
-    """Return the plot and the result of a query."""
-    kind = QUERIES[name]
-    query = SCHEMAS[name].model.model_validate_json(json.dumps(value).encode())
-    with np.errstate(all="ignore"):
-        source = kind.solve(query)
-        result = kind.result(query, source)
-        return PLOTS[name](query, source, result), result
-
-
-def drawn(plot: Plot | Map, monkeypatch: pytest.MonkeyPatch) -> list[Axes]:
-    """Return the axes that the serializer draws."""
+def drawn(
+    name: str,
+    query: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    appearance: Appearance = Appearance(),  # noqa: B008 -- immutable
+) -> Figure:
+    """Return the figure that the response to a query contains."""
     figures: list[Figure] = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
-    picture.write(plot, "svg")
+
+    def keep(figure: Figure, *_: object, **__: object) -> None:
+        # Extents of texts, with the style of the picture.
+        figure.draw_without_rendering()
+        figures.append(figure)
+
+    with monkeypatch.context() as context:
+        context.setattr(Figure, "savefig", keep)
+        respond(name, json.dumps(query).encode(), "image/svg+xml", appearance=appearance)
     (figure,) = figures
-    return figure.axes
+    return figure
 
 
-def points(plot: Plot, panel: int = 0) -> list[tuple[float, float]]:
-    curves = plot.panels[panel].curves
-    return [(x, y) for c in curves for x, y in zip(c.point_x, c.point_y, strict=True)]
+def answer(name: str, query: dict[str, Any]) -> dict[str, Any]:
+    """Return the numbers of a response; null is infinite."""
+    text = respond(name, json.dumps(query).encode(), "application/json")
+    found: dict[str, Any] = json.loads(text)
+    return found
 
 
-def labels(plot: Plot, panel: int = 0) -> list[str]:
-    return [curve.label for curve in plot.panels[panel].curves]
+def panels(figure: Figure) -> list[Axes]:
+    """Return the axes that are not a scale of colours."""
+    return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
 
-@pytest.mark.parametrize("value", [example["value"] for example in EXAMPLES["subsurface"].values()])
-def test_stress_map_marks_the_contact_and_its_maximum(
-    value: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+def curves(axes: Axes) -> list[np.ndarray[Any, Any]]:
+    """Return the points [n][2] of the curves, with their gaps, without lines across the axes."""
+    lines = [line for line in axes.lines if line.get_transform() == axes.transData]
+    return [np.array(line.get_xydata()) for line in lines if line.get_linewidth() > 0]
+
+
+def points(axes: Axes) -> set[tuple[float, float]]:
+    """Return all points of the curves, and marks in a plane."""
+    found = [each[np.isfinite(each).all(axis=1)] for each in curves(axes)]
+    found += [np.array(each.get_offsets()) for each in axes.collections]
+    return {(x, y) for each in found for x, y in each.tolist()}
+
+
+def texts(axes: Axes) -> list[str]:
+    return [text.get_text() for text in axes.texts]
+
+
+def rows(values: Any) -> np.ndarray[Any, Any]:
+    """Return an array, infinite where the response has null."""
+    return np.array(values, dtype=float)
+
+
+@pytest.mark.parametrize(("name", "query"), CASES.values(), ids=CASES)
+def test_points_are_the_numbers_of_the_response(
+    name: str, query: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    plot, result = plotted("subsurface", value)
-    assert isinstance(plot, Map)
-    axis = plot.x.size // 2
-    assert plot.x[axis] == 0
-    if "largest" in result:
-        largest = result["largest"]["von_mises"]
-        assert plot.peak == (largest["x"][0], largest["z"][0])
-    left, right = drawn(plot, monkeypatch)[:2]
-    marks = {line.get_label(): line for line in left.lines}
-    assert np.array_equal(marks["contact"].get_xdata(), [-plot.contact, plot.contact])
-    assert ("stick" in marks) == ("tangential" in value)
-    assert (marks["maximum"].get_xdata()[0], marks["maximum"].get_ydata()[0]) == plot.peak
-    assert np.array_equal(right.lines[0].get_ydata(), plot.z)
-    # The depth increases downwards.
-    low, high = left.get_ylim()
-    assert low > high
-
-
-@pytest.mark.parametrize(("name", "value"), CASES)
-def test_every_point_lies_on_its_curve(name: str, value: dict[str, Any]) -> None:
-    plot, _ = plotted(name, value)
-    for panel in plot.panels:
-        for curve in panel.curves:
-            finite = np.isfinite(curve.y)
-            if not finite.any():
-                continue
-            steps = np.hypot(
-                np.diff(curve.x[finite]) / (np.ptp(curve.x) or 1.0),
-                np.diff(curve.y[finite]) / (np.ptp(curve.y[finite]) or 1.0),
-            )
-            # The samples are dense: chords are short except at a jump or at a maximum that is
-            # infinite.
-            assert np.median(steps) < 0.01
-            for x, y in zip(curve.point_x, curve.point_y, strict=True):
-                if np.isfinite(y):
-                    away = np.hypot(
-                        (curve.x[finite] - x) / (np.ptp(curve.x) or 1.0),
-                        (curve.y[finite] - y) / (np.ptp(curve.y[finite]) or 1.0),
-                    )
-                    assert away.min() < 0.03
-
-
-@pytest.mark.parametrize(("name", "value"), CASES)
-def test_svg_draws_the_plot(
-    name: str, value: dict[str, Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    plot, _ = plotted(name, value)
-    axes = drawn(plot, monkeypatch)
-    assert [each.get_ylabel() for each in axes] == [panel.y_label for panel in plot.panels]
-    assert axes[-1].get_xlabel() == f"{plot.x_label}   (in the units of the request)"
-    for each, panel in zip(axes, plot.panels, strict=True):
-        if panel.y_limits:
-            assert each.get_ylim() == pytest.approx(panel.y_limits, rel=1e-12, abs=0)
-        if plot.x_limits:
-            assert each.get_xlim() == pytest.approx(plot.x_limits, rel=1e-12, abs=0)
-        lines = [(line.get_xdata(), line.get_ydata(), line.get_marker()) for line in each.lines]
-        for curve in panel.curves:
-            shown = np.where(np.isfinite(curve.y), curve.y, np.nan)
-            assert any(
-                np.array_equal(x, curve.x) and np.array_equal(y, shown, equal_nan=True)
-                for x, y, marker in lines
-                if marker == "None"
-            )
-            if 0 < curve.point_x.size <= 60:
-                assert any(
-                    np.array_equal(x, curve.point_x) and np.array_equal(y, curve.point_y)
-                    for x, y, marker in lines
-                    if marker == "o"
+    found = answer(name, query)
+    axes = panels(drawn(name, query, monkeypatch))
+    if "radius" in found:
+        fields = [each for each in query.get("quantities", found) if np.ndim(found.get(each)) == 2]
+        expected = [
+            {(r, v) for row in found[each] for r, v in zip(found["radius"], row, strict=True)}
+            for each in fields
+        ]
+        if "initial_profile" in found:
+            initial = zip(found["radius"], found["initial_profile"], strict=True)
+            expected[fields.index("limiting_profile")] |= set(initial)
+    elif "x" in found:
+        fields = [each for each, values in found.items() if np.ndim(values) == 3]
+        x, z = found["x"], found["z"]
+        if len(x) == 1:
+            expected = [{(z[i], row[0]) for i, row in enumerate(found[each][0])} for each in fields]
+        else:
+            expected = [{(each, depth) for each in x for depth in z} for _ in fields]
+            for each, values in zip(axes, fields, strict=True):
+                marks = each.collections[0]
+                assert isinstance(marks, PathCollection)
+                assert np.array_equal(marks.get_array(), np.ravel(found[values][0]))
+                peak = found.get("largest", {}).get(values)
+                expected[fields.index(values)] |= (
+                    {(peak["x"][0], peak["z"][0])} if peak and peak["y"] == [0.0] else set()
                 )
-        upright = [x[0] for x, _, _ in lines if len(x) == 2 and x[0] == x[1]]
-        assert set(upright) >= {mark.place for mark in plot.marks}
-        level = [y[0] for _, y, _ in lines if len(y) == 2 and y[0] == y[1]]
-        assert set(level) >= {mark.place for mark in panel.marks}
-
-
-def test_force_over_depth_runs_from_first_contact_to_the_largest_load() -> None:
-    forces = [10.0, 2.0, 5.0]
-    plot, result = plotted("normal", BALL | {"load": {"normal_force": forces}})
-    (curve,) = plot.panels[0].curves
-    assert (curve.x[0], curve.y[0]) == (0.0, 0.0)
-    assert curve.y[-1] == pytest.approx(10.0, rel=1e-12, abs=0)
-    assert curve.x[-1] == pytest.approx(result["indentation_depth"][0], rel=1e-12, abs=0)
-    # Hertz: F_N grows as d^(3/2).
-    inner = slice(10, None)
-    exact = 10.0 * (curve.x[inner] / curve.x[-1]) ** 1.5
-    assert curve.y[inner] == pytest.approx(exact, rel=1e-12, abs=0)
-    assert [y for _, y in points(plot)] == forces
-    assert (plot.x_label, plot.panels[0].y_label) == ("indentation depth d", "normal force F_N")
-    assert plot.points_label == "requested loads"
-
-
-def test_each_normal_force_has_a_curve_into_full_slip() -> None:
-    change = {"load": {"normal_force": [10.0, 20.0]}, "tangential": {"tangential_force": 2.0}}
-    plot, result = plotted("tangential", TANGENTIAL | change)
-    assert labels(plot) == ["F_N = 10", "F_N = 20"]
-    for curve, force in zip(plot.panels[0].curves, (10.0, 20.0), strict=True):
-        assert curve.y.max() == pytest.approx(0.3 * force, rel=1e-12, abs=0)
-        assert curve.x[0] == curve.y[0] == 0.0
-        # Beyond the onset of full slip the force is constant.
-        assert curve.y[-10] == curve.y[-1]
-    assert [y for _, y in points(plot)] == pytest.approx([2.0, 2.0], rel=1e-12, abs=0)
-    assert sorted(x for x, _ in points(plot)) == sorted(result["tangential_displacement"])
-    places = [(mark.place, mark.symbol, mark.curve) for mark in plot.panels[0].marks]
-    expected = [(3.0, "µ F_N", 0), (6.0, "µ F_N", 1)]
-    assert [place[1:] for place in places] == [place[1:] for place in expected]
-    assert [p for p, *_ in places] == pytest.approx([3.0, 6.0], rel=1e-12, abs=0)
-
-
-def test_forces_of_both_signs_show_both_limits() -> None:
-    plot, _ = plotted("tangential", TANGENTIAL | {"tangential": {"tangential_force": [-2.0, 1.0]}})
-    (curve,) = plot.panels[0].curves
-    assert curve.y.min() == pytest.approx(-3.0, rel=1e-12, abs=0)
-    assert curve.y.max() == pytest.approx(3.0, rel=1e-12, abs=0)
-    symbols = [mark.symbol for mark in plot.panels[0].marks]
-    assert symbols == ["µ F_N", "−µ F_N"]
-
-
-def test_history_is_a_smooth_curve_through_its_turning_points() -> None:
-    plot, _ = plotted("history", HISTORY)
-    (curve,) = plot.panels[0].curves
-    assert plot.points_label == "turning points"
-    assert set(curve.point_y) == {0.0, 2.0, -2.0}
-    assert curve.y.size > 1000
-    assert [mark.symbol for mark in plot.panels[0].marks] == ["µ F_N", "−µ F_N"]
-    low = HISTORY["cycles"] | {"tangential": {"tangential_force": 1.0}}
-    plot, _ = plotted("history", HISTORY | {"cycles": low})
-    assert plot.panels[0].marks == []
-
-
-def test_field_plot_is_dense_and_marks_the_edges() -> None:
-    radii = [0.0, 4e-5, 9e-5]
-    plot, result = plotted("stress", STRESS | {"radius": radii})
-    contact = plotted("tangential", {k: v for k, v in STRESS.items() if k in TANGENTIAL})[1]
-    a, c = contact["contact_radius"][0], contact["stick_radius"][0]
-    assert plot.x_limits == (0.0, 9e-5)
-    assert [(mark.place, mark.symbol) for mark in plot.marks] == [(a, "a"), (c, "c")]
-    for index, name in enumerate(STRESS["quantities"]):
-        (curve,) = plot.panels[index].curves
-        assert curve.x.size > 300
-        assert curve.point_x.tolist() == radii
-        assert curve.point_y.tolist() == result[name][0].tolist()
-    names = [panel.y_label for panel in plot.panels]
-    assert names == ["pressure p", "shear stress τ", "slip s"]
-    # Hertz: p = p_0 sqrt(1 - r^2/a^2).
-    pressure = plot.panels[0].curves[0]
-    inside = pressure.x < 0.99 * a
-    exact = pressure.y[0] * np.sqrt(1 - (pressure.x[inside] / a) ** 2)
-    assert pressure.y[inside] == pytest.approx(exact, rel=1e-4, abs=0)
-
-
-def test_single_radius_plots_the_whole_contact() -> None:
-    plot, _ = plotted("stress", STRESS | {"radius": [4e-5]})
-    contact = plotted("tangential", {k: v for k, v in STRESS.items() if k in TANGENTIAL})[1]
-    assert plot.x_limits is not None
-    assert plot.x_limits[0] == 0.0
-    assert plot.x_limits[1] > 1.4 * contact["contact_radius"][0]
-
-
-def test_no_line_crosses_an_infinite_pressure(monkeypatch: pytest.MonkeyPatch) -> None:
-    plot, _ = plotted("stress", PUNCH | {"quantities": ["pressure"]})
-    (curve,) = plot.panels[0].curves
-    radius = PUNCH["profile"]["radius"]
-    assert np.isinf(curve.y[curve.x == radius]).all()
-    # The limits show the typical pressures, not the maximum: the mean is 1.0, the centre 0.5 of it.
-    limits = plot.panels[0].y_limits
-    assert limits is not None
-    centre = curve.y[0]
-    assert limits[0] == 0.0
-    assert 1.5 * centre < limits[1] < 10 * centre
-    (axes,) = drawn(plot, monkeypatch)
-    texts = [text.get_text() for text in axes.texts]
-    assert texts.count("∞") == 1
-    assert "a, b" in texts
-
-
-def test_curves_are_labelled_by_the_varying_quantity(monkeypatch: pytest.MonkeyPatch) -> None:
-    loads = {"load": {"normal_force": [5.0, 10.0]}, "radius": [0.0, 1e-5]}
-    plot, _ = plotted("stress", STRESS | loads | {"tangential": {"tangential_force": 1.0}})
-    assert labels(plot) == ["F_N = 5", "F_N = 10"]
-    axes = drawn(plot, monkeypatch)
-    legend = axes[0].get_legend()
-    assert legend is not None
-    texts = [text.get_text() for text in legend.get_texts()]
-    assert texts == ["F_N = 5", "F_N = 10", "requested radii"]
-    # Edges have the colour of their curve.
-    edges = [(mark.symbol, mark.curve) for mark in plot.marks]
-    assert edges == [("a", 0), ("a", 1), ("c", 0), ("c", 1)]
+    else:
+        pairs = [("tangential_displacement", "tangential_force")]
+        if name == "normal":
+            pairs = [("indentation_depth", "normal_force")]
+        elif name == "wear":
+            pairs = [("stick_radius", "worn_volume"), ("stick_radius", "wear_radius")]
+        expected = [set(zip(found[x], found[y], strict=True)) for x, y in pairs]
+    assert len(axes) == len(expected)
+    for each, values in zip(axes, expected, strict=True):
+        assert points(each) == {point for point in values if None not in point}
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "note"),
+    ("name", "query", "quantities"),
     [
-        ("stress", STRESS | {"load": {"normal_force": [10.0 + i for i in range(9)]}}, "loads"),
-        (
-            "wear",
-            WEAR | {"oscillation": {"tangential_force": [0.1 * i for i in range(9)]}},
-            "loads",
-        ),
-        (
-            "tangential",
-            TANGENTIAL
-            | {"load": {"normal_force": [10.0 + i for i in range(9)]}}
-            | {"tangential": {"tangential_force": 1.0}},
-            "normal forces",
-        ),
-        ("evolution", EVOLUTION | {"cycles": [1e4 * i for i in range(9)]}, "numbers of cycles"),
+        ("stress", STRESS, get_args(FieldName)),
+        ("subsurface", MAP, get_args(SubsurfaceName)),
+        ("wear", WEAR | {"points": 50}, get_args(WearField)),
     ],
 )
-def test_legend_states_the_number_of_omitted_curves(
-    name: str, value: dict[str, Any], note: str, monkeypatch: pytest.MonkeyPatch
+def test_every_quantity_has_a_label_with_its_unit(
+    name: str, query: dict[str, Any], quantities: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    plot, _ = plotted(name, value)
-    assert plot.note == f"6 of 9 {note}"
-    legend = drawn(plot, monkeypatch)[0].get_legend()
-    assert legend is not None
-    assert legend.get_title().get_text() == plot.note
+    model = SCHEMAS[name].answer.model_json_schema()["properties"]
+    units = {"length": "mm", "pressure": "MPa", "force/length": "N/mm"}
+    request = query | {"quantities": list(quantities)}
+    figure = drawn(name, request, monkeypatch, Appearance(units=MILLIMETRES))
+    labels = [axes.get_ylabel() for axes in figure.axes]
+    if name == "subsurface":
+        labels = labels[len(quantities) :]
+    drawn_over = [each for each in quantities if each != "initial_profile"]
+    assert len(labels) == len(drawn_over)
+    for quantity, label in zip(drawn_over, labels, strict=True):
+        assert label.endswith(f"{units[model[quantity]['x-dimension']]})")
 
 
-def test_wear_shows_initial_and_limiting_profile() -> None:
-    plot, result = plotted("wear", WEAR | {"oscillation": {"tangential_force": 2.0}})
-    limiting, initial = plot.panels[0].curves
-    assert (limiting.label, initial.label) == ("limiting", "initial")
-    assert initial.style == "--"
-    c, worn = result["stick_radius"][0], result["wear_radius"][0]
-    assert [(mark.place, mark.symbol) for mark in plot.marks] == [
-        (c, "c"),
-        (worn, "ã"),
-    ]
-    spared = (initial.x < c) | (initial.x > worn)
-    assert limiting.y[spared].tolist() == initial.y[spared].tolist()
-    assert (limiting.y[~spared] >= initial.y[~spared]).all()
-    assert initial.y == pytest.approx(initial.x**2 / 0.02, rel=1e-12, abs=0)
+def test_few_points_are_marks_and_many_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    for count in (29, 30):
+        load = {"load": {"normal_force": np.linspace(1.0, 10.0, count).tolist()}}
+        (axes,) = panels(drawn("normal", BALL | load, monkeypatch))
+        line = axes.lines[0]
+        assert (line.get_linestyle() == "None", line.get_marker() == "o") == (count < 30,) * 2
 
 
-def test_unbounded_wear_is_labelled_and_not_drawn() -> None:
-    plot, _ = plotted("wear", WEAR | {"oscillation": {"tangential_force": [2.0, 3.0]}})
-    assert labels(plot) == ["F_x = 2", "F_x = 3: unbounded", "initial"]
-    assert np.isinf(plot.panels[0].curves[1].y).any()
-    assert {mark.curve for mark in plot.marks} == {0}
+def test_points_are_joined_in_the_order_of_the_abscissa(monkeypatch: pytest.MonkeyPatch) -> None:
+    radius = np.random.default_rng(1).permutation(np.linspace(0.0, 9e-5, 40)).tolist()
+    request = STRESS | {"radius": radius, "quantities": ["slip"]}
+    (axes,) = panels(drawn("stress", request, monkeypatch))
+    (curve,) = curves(axes)
+    assert np.all(np.diff(curve[:, 0]) > 0)
+    forces = [3.0, 1.0, 2.0] * 20
+    load = {"load": {"normal_force": forces}}
+    (axes,) = panels(drawn("normal", BALL | load, monkeypatch))
+    (curve,) = curves(axes)
+    assert np.all(np.diff(curve[:, 0]) >= 0)
 
 
-def test_evolution_shows_the_cycles_and_the_initial_profile() -> None:
-    plot, result = plotted("evolution", EVOLUTION | {"cycles": [1e4, 1e6]})
-    names = ["N = 1e+04", "N = 1e+06"]
-    assert labels(plot) == [*names, "initial"]
-    assert labels(plot, 1) == names
-    styles = [curve.style for curve in plot.panels[0].curves]
-    assert styles == ["-", "-", "--"]
-    assert [panel.y_label for panel in plot.panels] == ["profile f", "pressure p"]
-    edges = [result["stick_radius"][-1], result["contact_radius"][-1]]
-    assert [(mark.place, mark.symbol) for mark in plot.marks] == [(edges[0], "c"), (edges[1], "a")]
+@pytest.mark.parametrize(
+    ("query", "place"), [(PUNCH, PUNCH["profile"]["radius"]), (CONE, 0.0)], ids=["punch", "cone"]
+)
+def test_curve_is_cut_where_it_is_infinite(
+    query: dict[str, Any], place: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    load = (
+        {"load": {"normal_force": 1.0}} if query is PUNCH else {"load": {"contact_radius": 0.001}}
+    )
+    radii = {name: value for name, value in query.items() if name != "radius"}
+    request = radii | load | {"points": 200, "quantities": ["pressure"]}
+    (axes,) = panels(drawn("stress", request, monkeypatch))
+    (curve,) = curves(axes)
+    assert np.isnan(curve[curve[:, 0] == place, 1]).all()
+    assert [(text.get_text(), text.get_position()[0]) for text in axes.texts] == [("∞", place)]
+    # The limits show the mean pressure and several times as much, not the values beside infinity.
+    mean = answer("normal", {k: request[k] for k in ("profile", "material", "load")})
+    assert mean["mean_pressure"][0] < axes.get_ylim()[1] < 10 * mean["mean_pressure"][0]
+    assert axes.get_ylim()[1] < np.nanmax(curve[:, 1])
+
+
+def test_a_single_infinite_value_is_in_sight(monkeypatch: pytest.MonkeyPatch) -> None:
+    (axes,) = panels(drawn("stress", CONE, monkeypatch))
+    assert axes.get_xlim()[0] <= 0.0
+    assert "∞" in texts(axes)
+
+
+def test_jump_is_a_gap(monkeypatch: pytest.MonkeyPatch) -> None:
+    radius, edge = np.linspace(0.0, 0.01, 101).tolist(), PUNCH["profile"]["radius"]
+    request = PUNCH | {"radius": radius, "quantities": ["foundation_load"]}
+    (axes,) = panels(drawn("stress", request, monkeypatch))
+    (curve,) = curves(axes)
+    (gap,) = np.flatnonzero(np.isnan(curve[:, 1]))
+    assert curve[gap - 1, 0] <= edge < curve[gap + 1, 0]
+    # A root at the edge is none.
+    request = STRESS | {"radius": np.linspace(0, 1e-4, 101).tolist(), "quantities": ["pressure"]}
+    (axes,) = panels(drawn("stress", request, monkeypatch))
+    assert np.isfinite(curves(axes)[0]).all()
+
+
+def test_up_to_six_curves_have_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    for count in (2, 6, 7):
+        forces = np.linspace(8.0, 10.0, count).tolist()
+        request = STRESS | {"load": {"normal_force": forces}, "points": 100}
+        del request["radius"]
+        figure = drawn("stress", request, monkeypatch)
+        names = [f"$F_N$ = {force:.4g}" for force in forces] if count <= 6 else []
+        assert all(texts(axes) == names for axes in panels(figure))
+        scales = [axes for axes in figure.axes if axes not in panels(figure)]
+        assert [axes.get_ylabel() for axes in scales] == ["normal force $F_N$"] * (count > 6)
+        colors = [str(line.get_color()) for line in panels(figure)[0].lines[:count]]
+        assert len(set(colors)) == count
+
+
+def test_curves_are_named_by_every_load_that_varies(monkeypatch: pytest.MonkeyPatch) -> None:
+    loads = {"load": {"normal_force": [5.0, 10.0]}, "tangential": {"tangential_force": [1.0, 2.0]}}
+    figure = drawn("stress", STRESS | loads, monkeypatch, Appearance(units=MILLIMETRES))
+    names = ["$F_N$ = 5 N\n$F_x$ = 1 N", "$F_N$ = 10 N\n$F_x$ = 2 N"]
+    assert all(texts(axes) == names for axes in panels(figure))
+    # The pressure does not depend on the tangential force.
+    loads["load"] = {"normal_force": [10.0, 10.0]}
+    pressure, shear, _ = panels(drawn("stress", STRESS | loads, monkeypatch))
+    assert texts(pressure) == ["all loads"]
+    assert texts(shear) == ["$F_x$ = 1", "$F_x$ = 2"]
+    assert len(curves(pressure)) == 1
+
+
+def test_tangential_loads_of_each_normal_force_are_a_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    change = {
+        "load": {"normal_force": [10.0, 20.0] * 3},
+        "tangential": {"tangential_force": [1.0, 1.0, 2.0, 4.0, 0.0, 0.0]},
+    }
+    (axes,) = panels(drawn("tangential", TANGENTIAL | change, monkeypatch))
+    assert texts(axes) == ["$F_N$ = 10", "$F_N$ = 20"]
+    assert [each[:, 1].tolist() for each in curves(axes)] == [[0.0, 1.0, 2.0], [0.0, 1.0, 4.0]]
+
+
+def test_steps_of_a_history_follow_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    cycles = HISTORY["cycles"] | {"count": 1, "samples_per_step": 40}
+    (axes,) = panels(drawn("history", HISTORY | {"cycles": cycles}, monkeypatch))
+    assert texts(axes) == [rf"$\mathrm{{step}}$ = {step}" for step in range(4)]
+    steps = curves(axes)
+    for before, after in pairwise(steps):
+        assert before[-1].tolist() == after[0].tolist()
+
+
+def test_wear_shows_the_initial_profile(monkeypatch: pytest.MonkeyPatch) -> None:
+    (axes,) = panels(drawn("wear", WEAR | {"points": 100}, monkeypatch))
+    *limiting, initial = curves(axes)
+    assert len(limiting) == 4
+    assert initial[:, 1] == pytest.approx(initial[:, 0] ** 2 / 0.02, rel=1e-12, abs=0)
+    assert texts(axes)[-1] == "initial"
+    assert axes.lines[4].get_linestyle() == "--"
+
+
+def test_unbounded_wear_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = WEAR | {"oscillation": {"tangential_force": [2.0, 3.0]}, "points": 50}
+    (axes,) = panels(drawn("wear", request, monkeypatch))
+    assert axes.get_title("right") == "∞ for $F_x$ = 3"
+    assert texts(axes) == ["$F_x$ = 2", "initial"]
+
+
+def test_wear_without_radii_is_drawn_over_the_cycles(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = {name: value for name, value in EVOLUTION.items() if name != "points"}
+    volume, _ = panels(drawn("evolution", request, monkeypatch))
+    found = answer("evolution", request)
+    assert points(volume) == set(zip(found["cycles"], found["worn_volume"], strict=True))
+
+
+def test_many_curves_are_a_selection(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = STRESS | {"load": {"normal_force": np.linspace(8.0, 10.0, 1000).tolist()}}
+    figure = drawn("stress", request, monkeypatch)
+    assert all(len(curves(axes)) == 200 for axes in panels(figure))
+    assert figure.axes[-1].get_ylabel() == "normal force $F_N$, 200 of 1000 curves"
+
+
+def test_maps_share_the_depth_and_mark_the_largest_stress(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = MAP | {"points": 30, "largest": True, "quantities": ["stress_xx", "von_mises"]}
+    request["load"] = {"normal_force": [500.0, 600.0]}
+    figure = drawn("subsurface", request, monkeypatch, Appearance(units=MILLIMETRES))
+    first, second = panels(figure)
+    assert first.bbox.height == pytest.approx(second.bbox.height, rel=1e-9, abs=0)
+    assert first.get_ylim() == second.get_ylim()
+    # The depth increases downwards, in the scale of x.
+    low, high = first.get_ylim()
+    assert low > high == 0.0
+    assert first.get_aspect() == 1.0
+    peak = answer("subsurface", request)["largest"]["von_mises"]
+    (mark,) = second.lines
+    assert np.ravel(mark.get_xydata()).tolist() == [peak["x"][0], peak["z"][0]]
+    assert not first.lines
+    assert figure.get_suptitle() == "$F_N$ = 500 N (1 of 2 loads)"
+    for axes in panels(drawn("subsurface", request | {"y": 1e-4}, monkeypatch)):
+        assert not axes.lines
+
+
+def test_infinite_stresses_do_not_hide_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = {
+        "profile": {"kind": "flat_punch", "radius": 1.0},
+        "material": {"e_star": 1.0, "poissons_ratio": 0.3},
+        "load": {"normal_force": 1.0},
+        "x": np.linspace(-2.0, 2.0, 41).tolist(),
+        "z": np.linspace(0.0, 2.0, 21).tolist(),
+    }
+    figure = drawn("subsurface", request, monkeypatch)
+    (axes,) = panels(figure)
+    values = rows(answer("subsurface", request)["von_mises"][0])
+    assert np.isnan(values).any()
+    low, high = axes.collections[0].get_clim()
+    shown = (values < high) & (values > high / 10)
+    assert low == 0.0
+    assert shown.mean() > 0.3
+
+
+@pytest.mark.every(5)
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize(("name", "query"), CASES.values(), ids=CASES)
+def test_texts_do_not_collide(
+    name: str,
+    query: dict[str, Any],
+    size: tuple[int, int] | None,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    try:
+        figure = drawn(name, query, monkeypatch, Appearance(size, MILLIMETRES))
+    except InputError as error:
+        # Several panels need a larger picture.
+        width, height = re.findall(r"(\d+)x(\d+) mm", error.detail)[0]
+        larger = Appearance((int(width), int(height)), MILLIMETRES)
+        figure = drawn(name, query, monkeypatch, larger)
+    boxes = [(text.get_text(), Text.get_window_extent(text)) for text in visible(figure)]
+    for text, box in boxes:
+        assert box.x0 > -1 < box.y0, text
+        assert box.x1 < figure.bbox.x1 + 1, text
+        assert box.y1 < figure.bbox.y1 + 1, text
+    for (one, first), (other, second) in combinations(boxes, 2):
+        width = min(first.x1, second.x1) - max(first.x0, second.x0)
+        height = min(first.y1, second.y1) - max(first.y0, second.y0)
+        assert min(width, height) < 2, (one, other)
+    assert capfd.readouterr() == ("", "")
+
+
+def visible(figure: Figure) -> list[Text]:
+    """Return all texts of a figure that are drawn."""
+    found = [figure._suptitle] if figure._suptitle else []
+    for axes in figure.axes:
+        found += [*axes.texts, axes.title, axes._right_title]
+        for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+            found += [axis.label, axis.get_offset_text()]
+            ticks = axis.get_major_ticks()
+            ticks = [t for t in ticks if min(limits) <= t.get_loc() <= max(limits)]
+            found += [label for tick in ticks for label in (tick.label1, tick.label2)]
+    return [text for text in found if text.get_visible() and text.get_text().strip()]
+
+
+def test_labels_name_dimensions_or_units(monkeypatch: pytest.MonkeyPatch) -> None:
+    query = {name: value for name, value in STRESS.items() if name != "radius"} | {"points": 50}
+    query["quantities"] = ["pressure", "shear_stress", "foundation_load"]
+    for units, expected in (
+        (
+            None,
+            [
+                r"pressure $p$ (×10⁸)",
+                r"shear stress $\tau$ (×10⁸ pressure)",
+                "foundation load $q$ (×10⁴ force/length)",
+                "radius $r$ (×10⁻⁴ length)",
+            ],
+        ),
+        (
+            Units("µm", "mN", "GPa"),
+            [
+                "pressure $p$ (×10⁸ GPa)",
+                r"shear stress $\tau$ (×10⁸ GPa)",
+                "foundation load $q$ (×10⁴ mN/µm)",
+                "radius $r$ (×10⁻⁴ µm)",
+            ],
+        ),
+    ):
+        axes = panels(drawn("stress", query, monkeypatch, Appearance(units=units)))
+        labels = [*(each.get_ylabel() for each in axes), axes[-1].get_xlabel()]
+        assert list(map(plain, labels)) == expected
+        assert not any(each.yaxis.get_offset_text().get_visible() for each in axes)
+
+
+def plain(label: str) -> str:
+    """Return a label with its power of ten in plain text."""
+    head, _, tail = label.partition(r"$\times\mathdefault{10^{")
+    if not tail:
+        return label
+    power, _, rest = tail.partition("}}")
+    digits = power.translate(str.maketrans("−0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return head + "×10" + digits + rest.partition("$")[2]
+
+
+def test_units_of_products_are_derived(monkeypatch: pytest.MonkeyPatch) -> None:
+    axes = panels(drawn("wear", WEAR, monkeypatch, Appearance(units=MILLIMETRES)))
+    assert plain(axes[0].get_ylabel()) == "worn volume $V$ (×10⁻¹⁴ mm³)"
+
+
+def test_single_load_is_named_by_its_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    (axes,) = panels(drawn("normal", BALL, monkeypatch, Appearance(units=Units("m", "N", "Pa"))))
+    assert texts(axes) == ["$d$ = 7.504$\\times$$10^{-7}$ m\n$F_N$ = 10 N"]
+
+
+def words(svg: bytes) -> str:
+    """Return the text of an SVG picture without white space."""
+    return "".join("".join(ET.fromstring(svg).itertext()).split())  # noqa: S314 -- our own
 
 
 def test_svg_text_is_text() -> None:
-    plot, _ = plotted("normal", BALL)
-    root = ET.fromstring(picture.write(plot, "svg"))  # noqa: S314 -- our own
-    texts = {"".join(each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")}
-    assert texts >= {"requested loads", "normal force F_N"}
-    assert "indentation depth d   (in the units of the request)" in texts
+    text = words(respond("normal", json.dumps(BALL).encode(), "image/svg+xml"))
+    assert "normalforce" in text
+    assert "indentationdepth" in text
 
 
+PARAMETERS = {"kind": "paraboloid", "radius": "0.01", "e_star": "1e11", "normal_force": "10"}
 GET = "/v1/normal?kind=paraboloid&radius=0.01&e_star=1e11&normal_force=10"
 
 
@@ -339,7 +457,7 @@ def test_picture_has_the_requested_size(client: Client) -> None:
     assert 'width="510.236' in client.get(f"{GET}&format=svg&size=180x60").text
 
 
-@pytest.mark.parametrize("size", ["29x60", "90x401", "90", "90.5x60", "x"])
+@pytest.mark.parametrize("size", ["49x60", "90x401", "90", "90.5x60", "x", ""])
 def test_invalid_size_is_rejected(client: Client, size: str) -> None:
     for response in (
         client.request("POST", f"/v1/normal?format=svg&size={size}", json=BALL),
@@ -350,16 +468,58 @@ def test_invalid_size_is_rejected(client: Client, size: str) -> None:
         assert response.json()["errors"][0]["pointer"] == "/size"
 
 
-@pytest.mark.parametrize("force", [2.9999999999999996, 3.0])
-@pytest.mark.parametrize("kind", ["cone", "paraboloid", "sphere", "truncated_cone"])
-def test_onset_of_full_slip_has_a_plot(kind: str, force: float) -> None:
-    fields = {"radius": 0.01, "slope": 0.1, "flat_radius": 1e-5}
-    model = next(
-        m
-        for m in SCHEMAS["normal"].model.model_json_schema()["$defs"].values()
-        if m.get("properties", {}).get("kind", {}).get("const") == kind
-    )
-    profile = {"kind": kind} | {n: fields[n] for n in model["properties"] if n != "kind"}
-    value = TANGENTIAL | {"profile": profile, "tangential": {"tangential_force": force}}
-    plot, _ = plotted("tangential", value)
-    assert plot.panels[0].curves[0].y.max() == pytest.approx(3.0, rel=1e-12, abs=0)
+def test_panels_need_height(client: Client) -> None:
+    response = client.request("POST", "/v1/stress?format=svg&size=90x60", json=STRESS)
+    assert response.status_code == 422
+    (error,) = response.json()["errors"]
+    assert error["pointer"] == "/size"
+    assert "3 panels need at least 90x90 mm" in error["detail"]
+    fits = client.request("POST", "/v1/stress?format=svg&size=90x90", json=STRESS)
+    assert fits.status_code == 200
+
+
+def test_picture_names_the_requested_units(client: Client) -> None:
+    for units in ("mm,N,MPa", "µm, mN, kN/m²"):
+        parameters = {"format": "svg", "units": units}
+        path, force = "/v1/normal", units.split(",")[1].strip()
+        post = client.request("POST", path, params=parameters, json=BALL)
+        get = client.request("GET", path, params=parameters | PARAMETERS)
+        for response in (post, get):
+            assert response.status_code == 200
+            assert f"({force})" in words(response.content)
+
+
+def test_request_of_the_manual_names_its_units(client: Client) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "http.md").read_text("utf-8")
+    (path,) = re.findall(r"```http\nGET (\S*units=mm,N,MPa\S*)\n```", page)
+    response = client.get(path)
+    assert response.status_code == 200
+    assert "mm" in words(response.content)
+
+
+@pytest.mark.parametrize(
+    "units",
+    [
+        "mm",
+        "mm,N",
+        "mm,N,MPa,s",
+        "mm,,MPa",
+        "",
+        "mm,N,$x$",
+        "mm,N,<b>",
+        "mm,N,thirteen_char",
+        "㎜,N,a",
+    ],
+)
+def test_invalid_units_are_rejected(client: Client, units: str) -> None:
+    post = client.request("POST", "/v1/normal", params={"format": "svg", "units": units}, json=BALL)
+    for response in (
+        post,
+        client.request("GET", "/v1/normal", params={**PARAMETERS, "format": "svg", "units": units}),
+    ):
+        assert response.status_code == 422
+        (error,) = response.json()["errors"]
+        assert error["pointer"] == "/units"
+        assert "mm,N,MPa" in error["detail"]
+    (error,) = client.get(f"{GET}&units=mm,N,MPa").json()["errors"]
+    assert (error["pointer"], "pictures only" in error["detail"]) == ("/units", True)

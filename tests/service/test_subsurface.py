@@ -156,8 +156,7 @@ def test_formats(client: Client) -> None:
     headers = {"accept": "image/svg+xml"}
     picture = client.request("POST", PATH, json=given, headers=headers).text
     assert "<svg" in picture
-    for text in ("contact", "stick", "maximum", "von Mises stress", "1 of 2 loads"):
-        assert text in picture
+    assert picture.count('id="axes_') == 2 * len(given["quantities"])
 
 
 @pytest.mark.parametrize(

@@ -6,14 +6,18 @@ import numpy as np
 import pytest
 from prometheus_client import generate_latest
 
+from mdr_core import profiles
 from mdr_service import observability
 from mdr_service.dispatch import respond
 from mdr_service.queries import contacts
 from mdr_service.schemas.profiles import TabulatedProfile
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
+from tests.conftest import Client
 
 R = np.linspace(0, 1e-3, 40)
+MODULI = {"e_star": 1e11, "g_star": 8e10}
+LOAD = {"normal_force": 2.0}
 
 
 def table(curvature: float = 1.0, **rest: object) -> TabulatedProfile:
@@ -42,8 +46,8 @@ def test_different_table_is_fitted_separately(other: TabulatedProfile) -> None:
 def test_cached_table_gives_identical_bytes(name: str) -> None:
     request = {
         "profile": table().model_dump(),
-        "material": {"e_star": 1e11, "g_star": 8e10},
-        "load": {"normal_force": 2.0},
+        "material": MODULI,
+        "load": LOAD,
     }
     if name != "normal":
         request["friction_coefficient"] = 0.3
@@ -52,15 +56,54 @@ def test_cached_table_gives_identical_bytes(name: str) -> None:
     if name == "stress":
         request |= {"points": 20, "quantities": ["pressure", "shear_stress"]}
     query = SCHEMAS[name].model.model_validate_json(json.dumps(request).encode())
-    contacts._tabulated.cache_clear()
+    contacts._tables.clear()
     first = respond(name, query, FORMATS["json"])
-    assert contacts._tabulated.cache_info().misses == 1
+    assert len(contacts._tables) == 1
     assert respond(name, query, FORMATS["json"]) == first
-    assert contacts._tabulated.cache_info().misses == 1
+    assert len(contacts._tables) == 1
+
+
+def test_new_table_is_resolved_in_a_compute_process(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    contacts._tables.clear()
+    monkeypatch.setattr(profiles, "Tabulated", never)
+    request = {"profile": table(2.0).model_dump(), "material": MODULI, "load": LOAD}
+    first = client.post("/v1/normal", request)
+    assert first.status_code == 200
+    # The event loop has kept it, and answers alike.
+    monkeypatch.setattr(client.app.state.workers, "run_in_process", never)
+    assert client.post("/v1/normal", request).content == first.content
+
+
+def test_batch_with_a_new_table_is_computed_in_a_compute_process(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    contacts._tables.clear()
+    monkeypatch.setattr(profiles, "Tabulated", never)
+    short = {"kind": "tabulated", "r": [0.0, 1.0, 2.0, 3.0], "f": [0.0, 1.0, 4.0, 9.0]}
+    request = {"profile": short, "material": MODULI, "load": LOAD}
+    response = client.post("/v1/batch", {"queries": [{"ask": "normal", "request": request}]})
+    assert [each["status"] for each in response.json()["answers"]] == [200]
+
+
+def test_invalid_table_is_a_problem_of_its_field(client: Client) -> None:
+    profile = {"kind": "tabulated", "r": [0.0, 1.0, 2.0, 3.0], "f": [0.0, -1.0, -4.0, -9.0]}
+    response = client.post("/v1/normal", {"profile": profile, "material": MODULI, "load": LOAD})
+    assert response.status_code == 422
+    assert response.json()["errors"][0]["pointer"].startswith("/profile/")
+
+
+def never(*_arguments: object, **_options: object) -> None:
+    raise AssertionError("the event loop resolves it")
 
 
 def test_few_tables_are_kept_and_counted_in_the_metrics() -> None:
-    contacts._tabulated.cache_clear()
-    for factor in range(20):
-        contacts.profile(table(curvature=1.0 + factor))
+    contacts._tables.clear()
+    tables = [table(curvature=1.0 + factor) for factor in range(20)]
+    for each in tables:
+        contacts.profile(each)
+        # One that is used again stays.
+        contacts.profile(tables[0])
+    assert [contacts.is_new_table(each) for each in tables] == [False, *[True] * 4, *[False] * 15]
     assert b"\nmdr_tables 16.0\n" in generate_latest(observability.REGISTRY)

@@ -82,8 +82,34 @@ def test_limit_equals_the_core(client: Client, kind: str, control: str) -> None:
     assert document["initial_profile"] == expected.initial_profile(RADII).tolist()
     for name in names[1:]:
         assert document[name] == [as_json(getattr(expected, name)(RADII))], name
-    assert document["error_estimate"] == expected.error_estimate
+    of_fields = expected.field_error_estimate(RADII, names)
+    assert document["error_estimate"] == expected.error_estimate + of_fields
     assert ("path_dependent" in codes(document)) == (control == "force and displacement")
+
+
+def test_force_that_no_stick_zone_carries_ends_without_contact(client: Client) -> None:
+    """At a constant depth wear reduces the normal force, until the whole contact slips."""
+    limiting = {"tangential_force": 0.999 * FRICTION * force_at(1e-3)}
+    document = client.post(LIMIT, query("paraboloid", {"indentation_depth": 1e-3}, limiting)).json()
+    assert {"contact_lost"} <= codes(document)
+    assert document["regime"] == ["full_slip"]
+    assert (document["stick_radius"], document["normal_force"]) == ([0.0], [0.0])
+
+
+def force_at(depth: float) -> float:
+    return float(
+        normal.solve(PROFILES["paraboloid"][1], E_STAR, indentation_depth=depth).normal_force
+    )
+
+
+def test_radius_next_to_the_stick_edge_is_in_the_estimate(client: Client) -> None:
+    body = query("paraboloid", *CONTROLS["forces"], quantities=["pressure"])
+    c = client.post(LIMIT, body | {"points": 9}).json()["stick_radius"][0]
+    for gap, expected in ((1e-2, set()), (1e-8, {"accuracy"})):
+        document = client.post(LIMIT, body | {"radius": [c * (1 - gap)]}).json()
+        assert codes(document) == expected
+        # c has an error of a few units in the last place, the pressure the root of its distance.
+        assert document["error_estimate"] < 1e-11 + 1e-14 / gap
 
 
 @pytest.mark.every(9)

@@ -1,6 +1,7 @@
 """Invalid queries are rejected with a pointer, in a short response without the input."""
 
 import json
+import re
 
 import httpx
 import pytest
@@ -31,6 +32,8 @@ def problem(response: httpx.Response) -> dict[str, object]:
     assert document["type"].startswith("urn:mdr:problem:")
     assert document["title"]
     assert document["detail"]
+    # Sentences of pydantic begin with these words.
+    assert not re.search(r"Input should|Field required|after validation", response.text)
     return document
 
 

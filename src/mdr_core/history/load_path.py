@@ -106,21 +106,23 @@ class SampledPath:
         mu, e_star = self.start.friction_coefficient, self.start.e_star
         scale = mu * e_star / (1.0 if self.over_forces else self.start.g_star)
         normal, tangential = self._normal_coordinate, self.tangential / scale
-        # At the given points the rounding of `scale` does not decide between the regimes.
+        # The rounding of `scale` and of samples between the points does not decide between the
+        # regimes.
         apart = np.abs(tangential)
         apart -= normal
         near = indices(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
-        near = near[(near + 1) % self.per_step == 0]
-        n, at_limit, prescribed = normal[near], tangential[near], np.abs(self.tangential[near])
+        given = near[(near + 1) % self.per_step == 0]
+        n, at_limit, prescribed = normal[given], tangential[given], np.abs(self.tangential[given])
         limit = scale * n
         if self.over_forces:
             tangential = self.within_friction(normal, tangential, self.step)
-            limit = mu * (e_star * n if self.depth_prescribed else self.normal[near])
+            limit = mu * (e_star * n if self.depth_prescribed else self.normal[given])
         least, most = np.nextafter(n, 0.0), np.nextafter(n, 2 * n)
         size = np.where(prescribed < limit, np.minimum(np.abs(at_limit), least), n)
         if not self.over_forces:
             size = np.where(prescribed > limit, np.maximum(np.abs(at_limit), most), size)
-        tangential[near] = np.copysign(size, at_limit)
+        tangential[near] = np.copysign(normal[near], tangential[near])
+        tangential[given] = np.copysign(size, at_limit)
         return LoadPoints(normal, tangential, self.continues, self.step)
 
     def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:

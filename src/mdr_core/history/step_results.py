@@ -15,6 +15,8 @@ from mdr_core.typing import Array, Indices
 
 # Steps evaluated at once.
 _BLOCK: Final = 16_384
+# Rounding error of two loads that grow in proportion, over the larger one.
+_ROUNDING: Final = 16 * float(np.finfo(float).eps)
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
 
@@ -60,17 +62,24 @@ class StepResults:
     def regime(self) -> Indices:
         """Index in `REGIMES` of the slip regime.
 
-        Determined by the springs at their friction limit: none, the outermost, or all.
+        Determined by the springs at their friction limit: none, the outermost, or all. Springs that
+        reach it without slip, as where both forces grow in the ratio mu, leave the regime as it is.
         """
         slips = 1 if self.moments.profile.has_no_partial_slip else 2
 
         def code(block: TractionVertices) -> Array:
             tree, top = block.tree, block.tree.top
-            slipping = tree.on_face[top]
-            full = slipping & (tree.parent[tree.parent[top]] < 0)
-            return np.where(top >= 0, np.where(full, 3, np.where(slipping, slips, 1)), 0)
+            limited = tree.on_face[top]
+            full = limited & (tree.parent[tree.parent[top]] < 0)
+            return np.where(top >= 0, np.where(full, 3, np.where(limited, slips, 1)), 0)
 
-        return self._per_step(code).astype(np.intp)
+        codes = self._per_step(code).astype(np.intp)
+        deeper = np.diff(self.points.normal, prepend=0.0)
+        further = np.abs(np.diff(self.points.tangential, prepend=0.0))
+        rounding = np.where(deeper > 0, _ROUNDING * self.points.normal, 0.0)
+        known = (codes < 2) | (further - deeper > rounding)
+        last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
+        return np.maximum(np.where(last < 0, 1, codes[last]), codes > 0)
 
     @property
     def last(self) -> Polyline:

@@ -1,7 +1,7 @@
 """Profile through, or near, the points of a table."""
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar, Final, Self
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -123,6 +123,10 @@ class Tabulated(Profile):
     def __repr__(self) -> str:
         breaks = f", breaks={list(self._breaks)}" if self._breaks else ""
         return f"Tabulated({self.r.size} points up to radius {self._end:.6g}{breaks})"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Everything but the functions of the branches, so that a fitted table can be sent."""
+        return {name: value for name, value in vars(self).items() if name != "branches"}
 
     @property
     def normal_method(self) -> str:

@@ -1,5 +1,6 @@
 """Limiting state of fretting wear in partial slip: shape, pressure, radii and forces."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 from typing import Any, ClassVar, Final
@@ -13,9 +14,16 @@ from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
+from mdr_core.stick_zone import CONTROLS
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
-from mdr_core.validation import checked_radii, first_index, require_single_profile, require_type
+from mdr_core.validation import (
+    checked_radii,
+    extremes,
+    first_index,
+    require_single_profile,
+    require_type,
+)
 from mdr_core.wear import limit_fields, limiting_stick
 from mdr_core.wear.arguments import grid, one_amplitude
 
@@ -25,6 +33,14 @@ _NARROW: Final = 1.5
 # Part of the largest width of a worn annulus from which it is tested whether it reaches the end of
 # the profile; any part below 1 serves.
 _AT_END: Final = 0.99
+# Exponent of the slip width in the worn volume, with room.
+_OF_VOLUME: Final = 3.0
+_EPS: Final = float(np.finfo(float).eps)
+# Relative distance from the stick radius within which the error of a field is not estimated.
+_TOO_CLOSE: Final = 4 * _EPS
+# Least of the largest worn depth over (2/pi) (d - g(c)) arccos(c/r) at the outer edge: 0.38 of a
+# narrow annulus.
+_HIGHEST: Final = 0.2
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
     "the stick zone grows over worn material, and the limit depends on the load path: this is "
@@ -136,7 +152,7 @@ class LimitingWear(validity.ContactResults):
             return broadcast(displacement, stick_zone.step.shape)
         if not self.normal.profile.has_no_partial_slip:
             displacement = contact.displacement_ratio * stick_zone.step
-        return where(stick_zone.unbounded, inf, displacement)
+        return where(stick_zone.unbounded | stick_zone.separated, inf, displacement)
 
     @cached_property
     def tangential_force(self) -> Array:
@@ -235,8 +251,40 @@ class LimitingWear(validity.ContactResults):
 
     @property
     def error_estimate(self) -> float:
-        """Bound on the relative error of every quantity."""
-        return self.tangential_contact.error_estimate
+        """Bound on the relative error of every quantity without a radius."""
+        contact, width_error = self.tangential_contact, self.stick_zone.width_error
+        if CONTROLS[contact.control] == contact.normal.control:
+            return contact.error_estimate
+        # The stick radius before wear, which may be that of the onset of full slip, has no part.
+        return extremes(contact.step_error + _OF_VOLUME * width_error)[1]
+
+    def field_error_estimate(self, radius: ArrayLike, quantities: Iterable[str]) -> float:
+        """Return the error of fields by that of the stick radius [1].
+
+        It is relative to the largest worn depth, and to each value of the pressure, which is
+        infinite at the stick radius. Radii within four units in the last place of it are excluded.
+
+        Parameters
+        ----------
+        radius : radii of the fields [length], (m,).
+        quantities : names of the fields.
+        """
+        names, zone = set(quantities), self.stick_zone
+        c, error, step = (np.ravel(part)[:, None] for part in (zone.radius, zone.error, zone.step))
+        r, end = checked_radii(radius), np.ravel(self.wear_radius)[:, None]
+        away = np.abs(r - c)
+        product = np.where((away <= _TOO_CLOSE * c) | (step <= 0), inf, away * (r + c))
+        found = [0.0]
+        if "pressure" in names:
+            # Unlike the worn depth it follows from the radius, not from the coordinate.
+            moved = error + _EPS * c
+            found.append(np.max(np.where(r < c + moved, moved * c / product, 0.0)))
+        if names & {"worn_depth", "limiting_profile"}:
+            highest = _HIGHEST * zone.annulus.angle(np.ravel(self.wear_width))[:, None]
+            worn = (c > 0) & (c - error < r) & (r < end + error)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                found.append(np.max(np.where(worn, error / (highest * np.sqrt(product)), 0.0)))
+        return float(max(found))
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

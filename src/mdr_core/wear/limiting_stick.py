@@ -13,18 +13,19 @@ import numpy as np
 from mdr_core import equivalent_1d
 from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, full, where
-from mdr_core.errors import InputError
 from mdr_core.inversion import invert
+from mdr_core.normal import EDGE_ERROR
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
-from mdr_core.validation import first_index
 from mdr_core.wear.worn_annulus import WornAnnulus
 
 # Points of the search for the largest of several possible stick zones ...
 _POINTS: Final = 65
 # ... and bisections about the best of them.
 _HALVINGS: Final = 40
+# Relative rounding error of a load and of a step of the depth.
+_ROUNDING: Final = 16 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,10 @@ class LimitingStick:
     """Full slip at a constant depth: the contact wears until nothing touches."""
     unbounded: Flags
     """Full slip under a constant normal force: wear is unbounded."""
+    width_error: Array
+    """Relative error of the slip width by that of the stick radius, where that has moved [1]."""
+    error: Array
+    """Error of c [length]."""
 
     @cached_property
     def annulus(self) -> WornAnnulus:
@@ -59,8 +64,7 @@ def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> L
 
     Source: mdr-5, Eq. (5.80).
     """
-    depth = contact.normal.indentation_depth
-    step = where(contact.full_slip, depth, amplitude / contact.displacement_ratio)
+    step = amplitude / contact.displacement_ratio
     return _from(contact, step, separated=contact.full_slip)
 
 
@@ -109,8 +113,9 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     )
     moved = where(unbounded, contact.stick_coordinate, top - width)
     radius = where(width > 0, profile.contact_radius(moved), contact.stick_radius)
-    slip_width = profile.radius_width(top, width)
-    return _from(contact, step, unbounded=unbounded, moved=(moved, radius, slip_width))
+    found = moved, radius, profile.radius_width(top, width)
+    error = full(_ROUNDING, width)
+    return _from(contact, step, unbounded=unbounded, moved=found, width_error=error)
 
 
 def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -119,14 +124,14 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     Wear at a constant depth reduces F_N, and with it F_N(c) = F_N - F_x/mu: the stick zone shrinks,
     over unworn material, until it carries the whole remaining load. Source: notes, §9.
 
-    Raises InputError for a force that no stick zone carries: wear ends in full slip, without limit.
+    No stick zone carries a larger force than the largest 2 mu E* c (d - g(c)): then wear ends in
+    full slip.
     """
     normal, profile = contact.normal, contact.normal.profile
     target = _step_of_force(contact, amplitude, np.ones(()))
     target = broadcast(target, contact.width.shape)
     if profile.has_no_partial_slip:
-        _reject_overload(amplitude, contact.full_slip, contact.limiting_force)
-        return _from(contact, full(0.0, target))
+        return _from(contact, full(0.0, target), separated=contact.full_slip)
     top = broadcast(normal.coordinate, target.shape)
 
     def carried(width: Array) -> tuple[Array, Array]:
@@ -138,8 +143,8 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
 
     widest = top - profile.first_coordinate
     low, high, most = _first_crossing(carried, widest, target)
-    largest = 2 * contact.friction_coefficient * normal.e_star * most
-    _reject_overload(amplitude, most < target, largest)
+    separated = (most < target) | contact.full_slip
+    target = where(separated, 0.0, target)
     width = invert(
         carried,
         target,
@@ -150,8 +155,13 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     )
     edge = top - width
     radius = where(width > 0, profile.contact_radius(edge), normal.contact_radius)
-    moved = edge, radius, profile.radius_width(top, width)
-    return _from(contact, _step_of_force(contact, amplitude, radius), moved=moved)
+    step = _step_of_force(contact, amplitude, radius)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = np.abs(carried(width)[1])
+    # Next to the largest force the error is of second order.
+    error = _ROUNDING / (where(slope > 0, slope, 0.0) + np.sqrt(_ROUNDING))
+    found = edge, radius, profile.radius_width(top, width)
+    return _from(contact, step, separated=separated, moved=found, width_error=error)
 
 
 def _first_crossing(
@@ -183,17 +193,6 @@ def _first_crossing(
     return np.where(found, before, start), np.where(found, at, left), most
 
 
-def _reject_overload(force: Array, beyond: Flags, largest: Array) -> None:
-    if not np.any(beyond):
-        return
-    beyond, most = np.broadcast_arrays(beyond, largest)
-    raise InputError(
-        ("tangential", "tangential_force", *(first_index(beyond) if force.ndim else ())),
-        "wear at this depth reduces the normal force until the whole contact slips: a stick zone "
-        f"remains only under amplitudes below {float(most[beyond][0]):.6g}",
-    )
-
-
 # By the constant load and the amplitude.
 _BY_CONTROL: Final = {
     ("indentation_depth", "tangential_displacement"): by_depth_and_displacement,
@@ -221,15 +220,29 @@ def _from(
     separated: Flags | bool = False,
     unbounded: Flags | bool = False,
     moved: tuple[Array, Array, Array] | None = None,
+    width_error: Array | None = None,
 ) -> LimitingStick:
-    """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`."""
+    """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`.
+
+    With a `width_error` the stick radius has moved, else it is that before wear.
+    """
     unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
-    coordinate, radius, slip_width = moved or unworn
     normal = contact.normal
+    # In separation c = 0, and all of the depth is worn.
+    lost = normal.profile.first_coordinate, 0.0, normal.contact_radius, normal.indentation_depth
+    found = zip(lost, (*(moved or unworn), step), strict=True)
+    coordinate, radius, slip_width, step = (where(separated, *pair) for pair in found)
     # Without a normal load nothing wears.
     loaded = normal.coordinate > normal.profile.first_coordinate
     # A flat punch either sticks or is in full slip.
     rests = (slip_width <= 0) | ~loaded
+    if width_error is None:
+        # The coordinate resolves the distance from a flat.
+        flat = where(contact.full_slip, 0.0, normal.profile.first_radius)
+        width_error, error = full(0.0, slip_width), contact.stick_error - EDGE_ERROR * flat
+    else:
+        beyond = normal.contact_radius - normal.profile.first_radius
+        error = normal.edge_errors * beyond + width_error * slip_width
     parts = (
         where(rests, normal.coordinate, coordinate),
         where(rests, normal.contact_radius, radius),
@@ -237,6 +250,8 @@ def _from(
         where(rests, 0.0, slip_width),
         separated & loaded,
         unbounded & loaded,
+        width_error,
+        error,
     )
     spread = (broadcast(part, contact.width.shape) for part in parts)
     return LimitingStick(normal.profile, *spread)

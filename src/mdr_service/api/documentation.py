@@ -47,7 +47,7 @@ _SCHEMAS: Final = {
     },
     "svg": {
         "type": "string",
-        "description": "Picture: dense curves, with the requested values as points.",
+        "description": "Picture of the values of the response.",
     },
     "png": {"contentMediaType": FORMATS["png"], "description": "The same picture."},
     "pdf": {"contentMediaType": FORMATS["pdf"], "description": "The same picture."},

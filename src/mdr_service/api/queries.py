@@ -21,10 +21,11 @@ from mdr_service.api.documentation import (
     QUERY_TEXTS,
     Responses,
 )
-from mdr_service.content_negotiation import FORMAT, SIZE, Format, media_type, picture_size
+from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format, appearance, media_type
 from mdr_service.dispatch import respond
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import ServiceError
+from mdr_service.queries.contacts import is_new_table, keep_table, profile
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import contacts
 from mdr_service.schemas.answers import Answer
@@ -32,6 +33,7 @@ from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS, json
+from mdr_service.serializers.picture import AS_USUAL
 from mdr_service.transfers import LONG
 from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES
 
@@ -59,6 +61,7 @@ class Responder:
         request: Request,
         format_: Annotated[Format | None, Query(alias="format", description=FORMAT)] = None,
         size: Annotated[str | None, Query(description=SIZE)] = None,
+        units: Annotated[str | None, Query(description=UNITS)] = None,
     ) -> None:
         accept = header(request.scope, b"accept", _ANY)
         # Most clients accept anything.
@@ -66,7 +69,9 @@ class Responder:
             self.media_type = json.MEDIA_TYPE
         else:
             self.media_type = media_type(format_, accept, self.formats)
-        self.size = None if size is None else picture_size(size, self.media_type)
+        self.appearance = AS_USUAL
+        if size is not None or units is not None:
+            self.appearance = appearance(self.media_type, size, units)
         self.workers = request.app.state.workers
         self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 
@@ -77,10 +82,12 @@ class Responder:
         members: Sequence[str] = (),
     ) -> Response:
         """Return the content, of a long query or an unparsed one from a compute process."""
-        arguments = name, query, self.media_type, members, self.size
+        arguments = name, query, self.media_type, members, self.appearance
         if not isinstance(query, (bytes, dict)) and cost.is_short(
             cost.require_feasible(query, self.media_type), len(self.tasks)
         ):
+            if isinstance(query, contacts.Query) and is_new_table(table := query.profile):
+                keep_table(table, await self.workers.run_in_process(profile, table))
             content = respond(*arguments)
         else:
             content = await self.workers.run_in_process(respond, *arguments)
@@ -112,7 +119,7 @@ class QueryRoute(APIRoute):
 
         async def handle(request: Request) -> Response:
             given = await url_parameters(request)
-            options = given.pop("format", None), given.pop("size", None)
+            options = [given.pop(each, None) for each in ("format", "size", "units")]
             responder: Responder = responder_type(request, *options)
             if given:
                 raise _invalid(dict.fromkeys(given, "there is no such parameter"))
@@ -219,7 +226,7 @@ def _declare_get(name: str, title: str, model: Any) -> None:
 
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """
-        send = Responder(request, parameters.format, parameters.size)
+        send = Responder(request, parameters.format, parameters.size, parameters.units)
         with parameters.pointing():
             is_long = (parameters.n or 0) > _MAX_RANGE_AT_ONCE
             query = await url_parameters(request) if is_long else parameters.query()

@@ -21,9 +21,11 @@ from mdr_service.schemas.wear import WearQuery
 
 Arguments = dict[str, Any]
 
-# Fitting a table of 200 points takes several times as long as a contact.
-_tabulated: Final = lru_cache(maxsize=16)(profiles.Tabulated)
-observability.TABLES.set_function(lambda: _tabulated.cache_info().currsize)
+# Fitting a table takes up to a hundred times as long as a contact. The tables used last are kept,
+# by their arguments.
+_MAX_TABLES: Final = 16
+_tables: Final[dict[tuple[Any, ...], profiles.Profile]] = {}
+observability.TABLES.set_function(lambda: len(_tables))
 
 _NORMAL: Final = members(NormalAnswer, ["data_error"])
 _PARTIAL_SLIP: Final = members(TangentialAnswer, [*_NORMAL, "data_error"])
@@ -54,13 +56,30 @@ def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Res
 
 def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
-    if model.kind == "tabulated":
-        points = tuple(model.r), tuple(model.f)
-        return _tabulated(*points, tuple(model.breaks), model.uncertainty)
     given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
+    if model.kind == "tabulated":
+        table = _tables.pop(_key(model), None) or profiles.Tabulated(**given)
+        keep_table(model, table)
+        return table
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
     return _by_parameters(model.kind, **given)
+
+
+def is_new_table(model: Profile) -> bool:
+    """Return True if `profile` would have to resolve a table."""
+    return model.kind == "tabulated" and _key(model) not in _tables
+
+
+def keep_table(model: Profile, table: profiles.Profile) -> None:
+    """Keep a resolved table in place of the one whose last use is the longest ago."""
+    _tables[_key(model)] = table
+    if len(_tables) > _MAX_TABLES:
+        del _tables[next(iter(_tables))]
+
+
+def _key(model: Profile) -> tuple[Any, ...]:
+    return tuple(tuple(each) if isinstance(each, list) else each for each in vars(model).values())
 
 
 # Keeps what a profile computes on first use, such as its break and the contact coordinate there.

@@ -12,6 +12,7 @@ from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
+from mdr_core.validation import TIGHTEST
 from mdr_service.queries.contacts import solve_normal, solve_tangential
 from mdr_service.queries.load_paths import require_few_samples, solve_path
 from mdr_service.results import (
@@ -65,9 +66,10 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     contact, partial = end = at_end(source)
     radius = np.array(query.radius or fields.grid(partial or contact, query.points))
     values: Result = {}
-    shape = query.loads, radius.size
+    # The error of the edges adds to that of the integrals.
+    shape, rtol = (query.loads, radius.size), max(query.rtol / 2, TIGHTEST)
     for name in query.quantities:
-        rows = broadcast(field(name, end, radius, query.rtol), shape)
+        rows = broadcast(field(name, end, radius, rtol), shape)
         values[name] = np.ascontiguousarray(rows)
     infinite: dict[str, Flags] = {}
     if not all(every(np.isfinite(rows)) for rows in values.values()):
@@ -77,7 +79,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
         checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
-    integrated = 0.0 if method == "closed_form" else query.rtol
+    integrated = 0.0 if method == "closed_form" else rtol
     names = set(query.quantities)
     if "shear_stress" in names:
         # Its edges include those of the pressure.
@@ -87,9 +89,9 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         for name in names
     )
     warnings = notices(query, source) + singular(radius, values, infinite)
-    if source.error_estimate <= query.rtol < at_edges:
-        warnings.append(normal_contact.not_reached(query.rtol))
     error = max(source.error_estimate, integrated) + at_edges
+    if source.error_estimate <= query.rtol < error:
+        warnings.append(normal_contact.not_reached(query.rtol))
     return {"radius": radius} | values | response_metadata(method, error, warnings)
 
 

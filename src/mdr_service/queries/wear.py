@@ -87,7 +87,7 @@ def _result(
 ) -> Result:
     """Return the result of a wear query, with its fields if it has radii."""
     radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
-    warnings = notices(query, worn)
+    warnings, error = notices(query, worn), worn.error_estimate
     infinite: dict[str, Any] = {"pressure": True}
     if worn.normal.profile.has_no_partial_slip:
         infinite |= dict.fromkeys(_PROFILES, True)
@@ -98,13 +98,15 @@ def _result(
             for name, field in surface.items()
         }
         warnings += singular(radius, bounded, infinite)
+        if isinstance(worn, LimitingWear):
+            error += worn.field_error_estimate(radius, query.quantities)
+            if worn.error_estimate <= query.rtol < error:
+                warnings.append(normal_contact.not_reached(query.rtol))
         values |= {"radius": radius} | surface
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
         infinite[name] = flags | infinite.get(name, False)
-    return checked(query, values, infinite) | response_metadata(
-        worn.method, worn.error_estimate, warnings
-    )
+    return checked(query, values, infinite) | response_metadata(worn.method, error, warnings)
 
 
 def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:

@@ -300,7 +300,9 @@ class Problem(Answer):
     type: str = Field(description="Stable name of the type of problem, a URI.")
     title: str = Field(description="Title of the type of problem.")
     status: int = Field(description="The HTTP status.")
-    detail: str = Field(description="Explanation of this occurrence.")
+    detail: str = Field(
+        description="What is wrong and what to do: the first of `errors`, with its place."
+    )
     instance: str = Field(
         default="",
         description="URI of the request with its `X-Request-Id`, if the service is at fault.",

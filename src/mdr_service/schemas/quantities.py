@@ -66,7 +66,7 @@ def one_of(*names: str) -> dict[str, Any]:
 
 def _not_tiny(value: float) -> float:
     if -SMALLEST < value < SMALLEST and value != 0:
-        raise PydanticCustomError("tiny", f"Input should be 0 or at least {SMALLEST} in magnitude")
+        raise PydanticCustomError("tiny", f"must be 0 or at least {SMALLEST} in magnitude")
     return value
 
 

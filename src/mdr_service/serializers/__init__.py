@@ -1,4 +1,4 @@
-"""Response formats: each writes a complete result, or a plot of it, and computes nothing."""
+"""Response formats: each writes a complete result, or draws it, and computes nothing."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -15,10 +15,10 @@ FORMATS: Final[Mapping[str, str]] = {
 }
 """Media types by the name of the format."""
 PICTURES: Final = frozenset(picture.MEDIA_TYPES.values())
-"""Media types of plots."""
+"""Media types of pictures."""
 WRITE: Final[Mapping[str, Callable[..., bytes]]] = {
     **{module.MEDIA_TYPE: module.write for module in (json, csv, npz)},
     csv.PLAIN_TEXT: csv.write_cells,
     **{each: partial(picture.write, name=name) for name, each in picture.MEDIA_TYPES.items()},
 }
-"""Functions by the media type that they write; those of pictures take a size."""
+"""Functions by the media type that they write; pictures take the query and an appearance too."""
