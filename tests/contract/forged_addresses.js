@@ -8,8 +8,9 @@ async (addresses) => {
     const send = window.fetch;
     window.fetch = async (path, options) => {
         if (!/subsurface|evolution/.test(path)) return send(path, options);
-        const response = slow.get(path) ?? (await send(path, options));
-        if (response.ok) slow.set(path, response.clone());
+        const kind = `${path} ${JSON.parse(options.body).quantities}`;
+        const response = slow.get(kind)?.clone() ?? (await send(path, options));
+        if (response.ok) slow.set(kind, response.clone());
         return response;
     };
     const found = [];

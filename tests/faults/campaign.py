@@ -21,7 +21,7 @@ from mdr_service.settings import SETTINGS
 from tests.faults.attacks import SMALL, tangential
 from tests.faults.figures import MEBIBYTE, Row, say, table
 from tests.faults.kills import kills
-from tests.faults.load import HOST, Response, clients, percentile
+from tests.faults.load import HOST, Response, clients, percentile, request
 from tests.faults.mixed_requests import memory, mutated, parallel, schema
 from tests.faults.server import free_port, running, service
 
@@ -164,6 +164,33 @@ def connections_beside(attack: str) -> Campaign:
     return campaign
 
 
+async def first_visits(port: int, server: psutil.Process) -> list[Row]:
+    """Fifty browsers that download the largest file of the explorer at once, before any other."""
+    text = request("/explorer/plotly.min.js", None, ("Accept-Encoding: gzip",))
+    before, taken = server.memory_info().rss, sum(server.cpu_times()[:2])
+    watching = asyncio.create_task(largest_memory(server))
+    answers = await asyncio.gather(*(once(port, text) for _ in range(50)))
+    watching.cancel()
+    growth = (await watching - before) / MEBIBYTE
+    taken = sum(server.cpu_times()[:2]) - taken
+    right = {(answer.status, len(answer.body)) for answer in answers}
+    return [
+        Row(
+            "50 first visits at once: processor time",
+            f"{taken:.2f} s",
+            "<= 1.5 s, all answered",
+            taken <= 1.5 and len(right) == 1 and answers[0].status == 200,
+            f"{right}",
+        ),
+        Row(
+            "50 first visits at once: growth of memory",
+            f"{growth:.1f} MiB",
+            "<= 64 MiB",
+            growth <= 64,
+        ),
+    ]
+
+
 async def hostile(port: int, _server: psutil.Process) -> list[Row]:
     """Two connections with the most expensive queries, beside four with long and short ones."""
     counts: Counter[tuple[str, int]] = Counter()
@@ -245,6 +272,7 @@ CAMPAIGNS: dict[str, Campaign] = {
     "queries": connections_beside("200 clients of small queries"),
     "readme": connections_beside("50 readers of /readme"),
     "openapi": connections_beside("50 readers of /openapi.json"),
+    "visits": first_visits,
     "hostile": hostile,
     "overload": overload,
     "kills": kills,

@@ -177,7 +177,7 @@ export async function solveCycle(inputs, query) {
     responses: [path, field, ...surface.map(({ response }) => response)],
     known: end,
     numbers: [
-      ["Energy per cycle, the last closed loop", ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
+      ["Energy per cycle", ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
       ...numbersOf(end, ["tangential_displacement", "dissipated_energy"]),
       ["Regime at the end", end.regime.replace("_", " ")],
       ...numbersOf(end, ["contact_radius", "normal_force", "tangential_force"]),
