@@ -100,18 +100,6 @@ MESSAGES: list[tuple[str, dict[str, Any], str]] = [
         {"profile": PARABOLOID, "load": {"normal_force": 2000}, "points": 20},
         "the stresses meet Tresca's criterion under a normal force of 2 kN",
     ),
-    (
-        "wear",
-        {
-            "profile": PARABOLOID,
-            "load": {"indentation_depth": 1e-6},
-            "friction_coefficient": 0.3,
-            "oscillation": {"tangential_force": 4},
-        },
-        (
-            "wear at this depth reduces the normal force until the whole contact slips: a stick "
-            "zone remains only under amplitudes below 0.0026647 kN"
-        ),
     ),
 ]
 

@@ -20,7 +20,7 @@ from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
 from mdr_core.validation import require_inside
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
-_ROUNDING: Final = 1e-12
+_ROUNDING: Final = 2e-13
 # The increase of g'(x)/x is found at some points of each piece, and may be larger between them.
 _SAMPLES, _MARGIN = 8, 1.5
 # Deviation that is within a standard uncertainty.
