@@ -100,7 +100,6 @@ MESSAGES: list[tuple[str, dict[str, Any], str]] = [
         {"profile": PARABOLOID, "load": {"normal_force": 2000}, "points": 20},
         "the stresses meet Tresca's criterion under a normal force of 2 kN",
     ),
-    ),
 ]
 
 

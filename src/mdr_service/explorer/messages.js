@@ -9,7 +9,6 @@ const WORDS = [
   [/(?:radius|radii)(?: of the body,| =|,)? /, "length", ""],
   [/deviates by /, "displacement", ""],
   [/a normal force of /, "force", ""],
-  [/amplitudes below /, "oscillation", ""],
   ["", "displacement", / in the root mean square/],
 ];
 const PATTERNS = WORDS.map(([before, dimension, after]) =>
