@@ -110,7 +110,9 @@ class SampledPath:
         # regimes.
         apart = np.abs(tangential)
         apart -= normal
-        near = indices(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
+        near = np.zeros(0, dtype=np.intp)
+        if apart.max() >= -2 * _ROUNDING * normal.max():
+            near = indices(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
         given = near[(near + 1) % self.per_step == 0]
         n, at_limit, prescribed = normal[given], tangential[given], np.abs(self.tangential[given])
         limit = scale * n

@@ -195,7 +195,7 @@ class PolylineStack:
         own_low = self.rows[POINT, LOW + own]
         self._put(upper, own, own_high, own_low, keep)
         self._put(upper, other, high, low, rest)
-        self._lay(upper, further)
+        self.rows[upper, ANCHOR] = further if rest > 0 else keep * (0.5 - own)
         self.rows[upper, NORMAL] = self._normal(upper)
         self.top = self.changed = upper
         point_high = self.rows[POINT, other]
@@ -211,7 +211,7 @@ class PolylineStack:
         self._put(self.top, other, point_high, point_low, reach)
         self.rows[self.top, NORMAL] = self.x
         self.rows[self.top, STEP] = self.rows[upper, STEP]
-        self._lay(self.top, 0.0)
+        self.rows[self.top, ANCHOR] = reach * (0.5 - other)
 
     def _cut(self, lower: int, upper: int, own: int, other: int, keep: float) -> None:
         """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
@@ -222,8 +222,8 @@ class PolylineStack:
         base = lower if near else upper
         distance = keep if near else -over
         # On the whole segment both sums differ by twice the growth of the anchor.
-        anchor = self.rows[upper, ANCHOR] if own == FORWARD else -self.rows[upper, ANCHOR]
-        less = distance * (2 * anchor / self.rows[upper, GROWTH + own])
+        twice = self.rows[upper, ANCHOR] * (2 - 4 * own)
+        less = distance * (twice / self.rows[upper, GROWTH + own])
         if 2 * abs(less) < abs(distance):
             # The sums grow nearly alike: to both parts of the own step a small one is added, so
             # that small slopes keep their digits and none arises from rounding errors.

@@ -1,6 +1,7 @@
 """Results of the tangential foundation at every load point of a sequence of straight steps."""
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -13,10 +14,13 @@ from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
 
-# Steps evaluated at once.
+# Steps evaluated at once, so that their arrays stay in the processor's cache.
 _BLOCK: Final = 16_384
 # Rounding error of two loads that grow in proportion, over the larger one.
 _ROUNDING: Final = 16 * float(np.finfo(float).eps)
+# Steps whose vertices are kept for later results, which take 40 MB. Those of more steps take longer
+# to be stored and fetched than to be computed again, and their memory has to have a bound.
+_KEPT: Final = 262_144
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
 
@@ -32,7 +36,7 @@ class _Block(NamedTuple):
 class StepResults:
     """Results after each straight load step from no load, in reduced units.
 
-    Each is computed on first use; the slip memory is followed once for all.
+    Each is computed on first use; the slip memory is followed once for all, up to `_KEPT` steps.
     """
 
     moments: IntervalMoments
@@ -84,23 +88,32 @@ class StepResults:
     @property
     def last(self) -> Polyline:
         """Polyline after the last step, over normal coordinates."""
-        return self._blocks[-1].line
+        return self._end.line
 
     @property
     def last_vertices(self) -> tuple[TractionVertices, Indices]:
         """Results at the vertices of the last block, and the indices of the last polyline."""
-        vertices = self._blocks[-1].vertices
+        vertices = self._end.vertices
         return vertices, vertices.tree.last
 
     @cached_property
-    def _blocks(self) -> list[_Block]:
-        """Blocks of the steps, whose arrays stay in the processor's cache."""
-        line, blocks = slip_memory.separated(0.0, 0.0), []
+    def _end(self) -> _Block:
+        return deque(self._blocks, maxlen=1)[0]
+
+    @property
+    def _blocks(self) -> Iterable[_Block]:
+        return self._kept if self.points.normal.size <= _KEPT else self._follow()
+
+    @cached_property
+    def _kept(self) -> list[_Block]:
+        return list(self._follow())
+
+    def _follow(self) -> Iterator[_Block]:
+        line = slip_memory.separated(0.0, 0.0)
         for begin in range(0, self.points.normal.size, _BLOCK):
             points = LoadPoints._make(row[begin : begin + _BLOCK] for row in self.points)
             tree, line = slip_memory.follow(line, points)
-            blocks.append(_Block(TractionVertices(self.moments, tree), line))
-        return blocks
+            yield _Block(TractionVertices(self.moments, tree), line)
 
     def _per_step(self, result: Callable[[TractionVertices], Array]) -> Array:
         """Return a result of every step, zero in blocks without contact."""
