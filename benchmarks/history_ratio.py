@@ -16,21 +16,20 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import sys
 from pathlib import Path
-from time import perf_counter
 
 import measure
 import numpy as np
 
 from mdr_core import history
-from mdr_core.profiles import Paraboloid
+from mdr_core.profiles import Paraboloid, Profile, Sphere
 
 Array = np.ndarray
 
-STEPS, PART, SPRINGS, ROUNDS = 1_000_000, 20_000, 1000, 3
+STEPS, PART, SPRINGS = 1_000_000, 5_000, 1000
 #: Steps of the reference, and its number of springs.
 CHECKED, MANY = 300, 400_000
 R, E_STAR, G_STAR, MU = 0.01, 1.1e11, 0.9e11, 0.3
-DEPTH = 1e-6
+DEPTH, PARABOLOID = 1e-6, Paraboloid(R)
 FULL_SLIP = MU * E_STAR / G_STAR * DEPTH
 
 
@@ -91,53 +90,72 @@ def springs_plain(d: Array, u: Array, count: int) -> Array:
     return force
 
 
-def mdr(d: Array, u: Array) -> Array:
+def mdr(d: Array, u: Array, profile: Profile = PARABOLOID) -> history.LoadHistory:
     return history.solve(
-        Paraboloid(R),
-        E_STAR,
-        G_STAR,
-        MU,
-        indentation_depth=d,
-        tangential_displacement=u,
-    ).tangential_force
+        profile, E_STAR, G_STAR, MU, indentation_depth=d, tangential_displacement=u
+    )
+
+
+def all_results(d: Array, u: Array) -> None:
+    result = mdr(d, u)
+    for name in result.quantities:
+        getattr(result, name)
+
+
+def steps(profile: Profile, d: Array, u: Array) -> Array:
+    """F_x after each step of `history.advance`."""
+    state, force = history.unloaded(profile, E_STAR, G_STAR, MU), np.empty(d.size)
+    for step, end in enumerate(zip(d.tolist(), u.tolist(), strict=True)):
+        state = history.advance(state, *end)
+        force[step] = state.tangential_force
+    return force
 
 
 def rows() -> list[measure.Row]:
     d, u = random_path()
-    few = slice(CHECKED)
+    few, part, more = slice(CHECKED), slice(PART), slice(STEPS // 10)
     truth = springs(d[few], u[few], MANY)
     size = np.max(np.abs(truth))
     # The whole path is requested, so that the checked results are those that are timed.
     errors = [
         float(np.max(np.abs(found - truth)) / size)
-        for found in (mdr(d, u)[few], springs(d[few], u[few], SPRINGS))
+        for found in (mdr(d, u).tangential_force[few], springs(d[few], u[few], SPRINGS))
     ]
-    part = slice(PART)
-    rounds: dict[str, list[tuple[float, float]]] = {"plain": [], "in place": []}
-    for _ in range(ROUNDS):
-        for how, simulate in (("plain", springs_plain), ("in place", springs)):
-            start = perf_counter()
-            simulate(d[part], u[part], SPRINGS)
-            middle = perf_counter()
-            mdr(d, u)
-            end = perf_counter()
-            rounds[how].append(((middle - start) * (STEPS / PART), end - middle))
     detail = (
         f"against {MANY} springs: MDR within {errors[0]:.0e}, {SPRINGS} springs {errors[1]:.0e}"
     )
-    return [
-        measure.row(
-            f"{SPRINGS} springs in NumPy, {how} / F_x after 1e6 random steps",
-            "",
-            times,
-            ">= 200",
-            detail,
+    found = []
+    for how, simulate, target in (
+        ("plain", springs_plain, ">= 150"),
+        ("in place", springs, ">= 60"),
+    ):
+        rounds = measure.interleaved(
+            lambda run=simulate: run(d[part], u[part], SPRINGS),
+            lambda: mdr(d, u).tangential_force,
+            4.0,
         )
-        for how, times in rounds.items()
-    ]
+        whole = [(first * (STEPS / PART), second) for first, second in rounds]
+        name = f"{SPRINGS} springs in NumPy, {how} / F_x after 1e6 random steps"
+        found.append(measure.row(name, "", whole, target, detail))
+    rounds = measure.interleaved(
+        lambda: all_results(d[more], u[more]), lambda: mdr(d[more], u[more]).tangential_force, 2.0
+    )
+    found.append(measure.row("1e5 random steps, all results / F_x alone", "", rounds, "<= 10"))
+    for profile, target in ((PARABOLOID, "<= 3"), (Sphere(R), "<= 9")):
+        rounds = measure.interleaved(
+            lambda body=profile: steps(body, d[few], u[few]),
+            lambda: springs(d[few], u[few], SPRINGS),
+            2.0,
+        )
+        name = f"history.advance with F_x, {profile.kind} / a step of {SPRINGS} springs in NumPy"
+        found.append(measure.row(name, "", rounds, target))
+    return found
 
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parent))
     for one in rows():
-        print(f"{one.name}: {one.ratio:.3g} ({one.low:.3g} .. {one.high:.3g}), {one.detail}")
+        print(
+            f"{one.name}: {one.ratio:.3g} ({one.low:.3g} .. {one.high:.3g}), {one.target}; "
+            f"{one.detail}"
+        )

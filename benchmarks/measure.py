@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from statistics import median
 from time import perf_counter_ns, thread_time_ns
@@ -10,6 +11,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+# `ratios.py --gate` takes a small part of the usual rounds, and of their time.
+GATE = "--gate" in sys.argv
+PART = 0.05 if GATE else 1.0
+# Factor by which a ratio may miss its bound before the gate takes it for lost.
+SPARE = 3.0
 # A batch of this length is resolved to a fraction of a percent and is rarely preempted.
 BATCH_SECONDS = 4e-4
 # Longer runs need no warm-up, which would waste time.
@@ -20,7 +26,10 @@ ROUNDS = 60
 
 @dataclass(frozen=True)
 class Row:
-    """One row of the table: `ratio` with its quartiles over the rounds."""
+    """One row of the table: `ratio` with its quartiles over the rounds, and its bound.
+
+    `target` is "<= " or ">= " and a number.
+    """
 
     name: str
     state: str
@@ -30,35 +39,53 @@ class Row:
     target: str
     detail: str
 
+    @property
+    def is_lost(self) -> bool:
+        """True if the better half of the rounds misses the bound by more than a factor of 3."""
+        sign, bound = self.target.split()
+        if sign == "<=":
+            return self.low > SPARE * float(bound)
+        return self.high < float(bound) / SPARE
+
 
 def interleaved(
     first_run: Callable[[], object], second_run: Callable[[], object], seconds: float
 ) -> list[tuple[float, float]]:
-    """Seconds per call of both, in rounds A B A B ..., for about `seconds` of wall time."""
-    fastest = [min(_time(run, 1) for _ in range(5)) for run in (first_run, second_run)]
+    """Seconds per call of both, in rounds A B A B ..., for about `seconds` of wall time.
+
+    CPU time of this thread, since wall time would include other processes.
+    """
+    once = [fastest(run, _tries(run)) for run in (first_run, second_run)]
     # Equal batches: neither run finds the caches colder than its own calls leave them.
-    batch = max(BATCH_SECONDS, *fastest)
-    repeats = [max(1, round(batch / one)) for one in fastest]
+    batch = max(BATCH_SECONDS, *once)
+    repeats = [max(1, round(batch / one)) for one in once]
     rounds: list[tuple[float, float]] = []
-    end = perf_counter_ns() + int(seconds * 1e9)
-    while perf_counter_ns() < end or len(rounds) < 9:
+    end = perf_counter_ns() + int(seconds * PART * 1e9)
+    while perf_counter_ns() < end or len(rounds) < count(9):
         rounds.append((_time(first_run, repeats[0]), _time(second_run, repeats[1])))
     return rounds
+
+
+def count(rounds: int) -> int:
+    """Number of rounds, at least three."""
+    return max(3, round(rounds * PART))
+
+
+def fastest(run: Callable[[], object], calls: int) -> float:
+    """Processor time of the fastest of some calls [s]."""
+    return min(_time(run, 1) for _ in range(calls))
 
 
 def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[str, float]:
     """Median seconds per call of each run, interleaved, for about `seconds` in total.
 
-    CPU time of this thread, since wall time would include other processes for runs longer than a
-    time slice. Slow runs are repeated less often, at least once, so that all runs get equal time.
+    CPU time, as `interleaved`. Slow runs are repeated less often, at least once, so that all runs
+    get equal time.
     """
-    fastest = {
-        name: min(_time(run, 1, thread_time_ns) for _ in range(_tries(run)))
-        for name, run in runs.items()
-    }
-    repeats = {name: max(1, round(BATCH_SECONDS / one)) for name, one in fastest.items()}
+    once = {name: fastest(run, _tries(run)) for name, run in runs.items()}
+    repeats = {name: max(1, round(BATCH_SECONDS / one)) for name, one in once.items()}
     share = seconds / len(runs)
-    target_count = {name: share / max(one, BATCH_SECONDS) for name, one in fastest.items()}
+    target_count = {name: share / max(one, BATCH_SECONDS) for name, one in once.items()}
     samples: dict[str, list[float]] = {name: [] for name in runs}
     for number in range(ROUNDS):
         for name, run in runs.items():
@@ -68,7 +95,7 @@ def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[st
                 if repeats[name] > 1:
                     # The previous run may have displaced the caches.
                     run()
-                samples[name].append(_time(run, repeats[name], thread_time_ns))
+                samples[name].append(_time(run, repeats[name]))
     return {name: median(times) for name, times in samples.items()}
 
 
@@ -98,13 +125,11 @@ def spread(rounds: list[tuple[float, float]]) -> tuple[float, float, float]:
     return median(ratios), ratios[quarter], ratios[-1 - quarter]
 
 
-def _time(
-    run: Callable[[], object], repeats: int, clock: Callable[[], int] = perf_counter_ns
-) -> float:
-    start = clock()
+def _time(run: Callable[[], object], repeats: int) -> float:
+    start = thread_time_ns()
     for _ in range(repeats):
         run()
-    return max(clock() - start, 1) / repeats / 1e9
+    return max(thread_time_ns() - start, 1) / repeats / 1e9
 
 
 def _readable(seconds: float) -> str:

@@ -43,7 +43,8 @@ def rows() -> list[measure.Row]:
         for target in targets:
             wire_ratio.check(target, body)
             load(target)
-        rounds = [(load(targets[0]), load(targets[1])) for _ in range(ROUNDS)]
+        count = measure.count(ROUNDS)
+        rounds = [(load(targets[0]), load(targets[1])) for _ in range(count)]
     rates = " / ".join(f"{median(column):.0f}" for column in zip(*rounds, strict=True))
     return [
         measure.Row(

@@ -45,7 +45,7 @@ def rows() -> list[measure.Row]:
         for target in targets:
             check(target, BODY)
             load(target)
-        rounds = [[load(target) for target in targets] for _ in range(ROUNDS)]
+        rounds = [[load(target) for target in targets] for _ in range(measure.count(ROUNDS))]
     return [
         _row(load, f"bare FastAPI endpoint, {kind}", [(one[0], one[index]) for one in rounds])
         for index, kind in ((1, "declared response"), (2, "plain dict"))
@@ -116,7 +116,7 @@ def load_generator(body: str) -> Iterator[Load]:
 
         def _asyncio_client(target: str) -> float:
             """A client in Python, which costs as much CPU time as a small server."""
-            return rate(target, itertools.repeat(body), ROUND_SECONDS)
+            return rate(target, itertools.repeat(body), max(ROUND_SECONDS * measure.PART, 0.2))
 
         yield _asyncio_client
         return
