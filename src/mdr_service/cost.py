@@ -57,7 +57,7 @@ _PICTURE: Final = 0.3
 _NONLINEAR_STEP, _NODE = 2.5e-3, 7.5e-3
 # Factors by which times grow for profiles without closed inverses, per term of a series, and for
 # tables. Times of integrals grow with the fourth root.
-_IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 80.0
+_IMPLICIT, _TERM, _TABLE = 6.0, 2.0, 12.0
 _EXPLICIT: Final = frozenset({"flat_punch", "cone", "paraboloid", "power"})
 # Profiles whose largest pressure may have to be searched off the axis.
 _SEARCHED_PROFILES: Final = frozenset({"series", "spherical_tip_cone"})
@@ -82,7 +82,7 @@ def seconds(query: Query | BatchQuery) -> float:
         ]
         # A query that is rejected alone takes no time.
         return sum(time for time in times if time <= _LONGEST)
-    if isinstance(query, SubsurfaceQuery):
+    if isinstance(query, SubsurfaceQuery) and not query.path:
         return _START[SubsurfaceQuery] * query.loads + _beneath(query)
     scale, path, loads = _complexity(query.profile), query.path, query.loads
     # Times that grow with the factor of the profile, and with its fourth root. A table is resolved

@@ -5,6 +5,7 @@ from statistics import median
 from time import thread_time
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mdr_core.errors import InputError
@@ -15,7 +16,9 @@ from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, Query
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.queries import SCHEMAS
+from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
@@ -186,3 +189,18 @@ def test_maximum_number_of_loads_on_a_smooth_table_is_accepted(control: str) -> 
     loads = {control: [1e-3] * SETTINGS.max_loads}
     query = {"profile": table, "material": {"e_star": 1.0}, "load": loads}
     assert cost.require_feasible(NormalQuery.model_validate(query), "application/json") < 5.0
+
+
+def test_history_under_a_query_beneath_the_surface_counts() -> None:
+    """A path of thousands of nonlinear steps must not run on the event loop."""
+    loads = np.linspace(1.0, 2.0, 200).tolist()
+    path = {"normal": {"normal_force": loads}, "tangential": {"tangential_displacement": loads}}
+    common = {
+        "profile": {"kind": "sphere", "radius": 1.0},
+        "material": {"e_star": 1.0, "g_star": 0.8, "poissons_ratio": 0.3},
+        "friction_coefficient": 0.3,
+        "history": path,
+    }
+    alone = cost.seconds(HistoryQuery.model_validate(common))
+    beneath = cost.seconds(SubsurfaceQuery.model_validate(common | {"x": [0.0], "z": [0.1]}))
+    assert beneath >= alone > 0.1
