@@ -58,9 +58,11 @@ LOST_LINES: Final = Counter(
 )
 # Some megabytes of lines.
 _MAX_LINES: Final = 10_000
+# Time between two writes, so that a burst of lines is one [s].
 _WRITE_INTERVAL: Final = 0.1
 # Time for the last lines at the end of the process.
 _FLUSH_SECONDS: Final = 1.0
+# Its file descriptor in POSIX.
 _STANDARD_ERROR: Final = 2
 Info("mdr_build", "Version of the service.", registry=REGISTRY).info({"version": __version__})
 _requests: Final = logging.getLogger("mdr_service.requests")

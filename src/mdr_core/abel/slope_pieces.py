@@ -271,7 +271,13 @@ class SlopePieces:
         return total
 
     def annulus(self, low: float, width: float, kernels: Sequence[Kernel]) -> list[float]:
-        """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, for each kernel K."""
+        """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, for each kernel K.
+
+        Parameters
+        ----------
+        low, width : inner radius and width, as accurate as it is narrow [length].
+        kernels : K of each integral.
+        """
         parts = self._parts(low, low + width, width)
         every = np.arange(parts.left.size)
         gap = width - (parts.left - low)

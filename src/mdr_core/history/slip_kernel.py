@@ -481,7 +481,7 @@ class SlipFront:
         return self.f * self.b_end - self.b * self.f_end
 
     def _is_in_backward(self, side: float) -> bool:
-        """Whether friction acts in b: by the side, where both sums decrease."""
+        """True where friction acts in b: by the side, where both sums decrease."""
         return self.f_end <= 0 or (self.b_end > 0 and side >= 0)
 
     def _gap(self, in_backward: bool, side: float) -> float:  # noqa: FBT001 -- as C takes it
