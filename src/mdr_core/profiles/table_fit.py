@@ -295,7 +295,10 @@ def _interpolated(points: _Points) -> TableFit:
     splines, largest = coefficients[: basis.size - 1], np.abs(coefficients).max()
     rounded = (splines <= 0) & (splines > -_NEGATIVE * largest)
     splines[rounded] = _TINY * largest * basis.places[1:][rounded]
-    if _slopes(basis, coefficients).min() <= 0:
+    jumps = coefficients[basis.size - 1 : -2 : 2]
+    jumps[np.abs(jumps) < _NEGATIVE * largest] = 0.0
+    # Where the slope falls by a step, g' is infinite and negative beyond it.
+    if _slopes(basis, coefficients).min() <= 0 or jumps.min(initial=0.0) < 0:
         return _measured(points, 0.0, sharp=coefficients[-1] > 0)
     # The error of every second point, which is larger than that of all.
     half = np.zeros(points.x.size, dtype=bool)
@@ -393,7 +396,7 @@ def _measured(points: _Points, uncertainty: float | None, *, sharp: bool | None 
     coefficients, spread = chosen.coefficients, chosen.deviations()
     used = ~basis.free
     used[-1] = chosen.sharp
-    if coefficients[used].min() < _FLOOR:
+    if min(coefficients[used].min(), _slopes(basis, coefficients).min()) < _FLOOR:
         coefficients = _not_negative(basis, rough, chosen)
         scatter = _mean(points.weight * basis.deviation(coefficients))
         spread = spread * max(scatter / chosen.sigma, 1.0)
@@ -411,11 +414,18 @@ def _not_negative(basis: _Basis, rough: Array, chosen: "_Spectrum") -> Array:
     system = np.vstack([basis.heights * points.weight[:, None], rough])[:, used]
     right = np.concatenate([-basis.deviation(result) * points.weight, -rough @ result])
     reduced = _triangle(np.column_stack([system, right]))
-    free = basis.free[used]
-    columns = np.hstack([reduced[:, :-1], -reduced[:, :-1][:, free]])
-    found, _ = nnls(columns, reduced[:, -1], maxiter=100 * columns.shape[1])
-    found[: free.size][free] -= found[free.size :]
-    result[used] += found[: free.size]
+    floor, size = result, int(used.sum())
+    for only_offset in (False, True):
+        # A curvature that drops at a break may bring the slope below zero: then it must not drop.
+        free = basis.free[used]
+        free[: basis.size - 1 + 2 * len(points.breaks)] &= not only_offset
+        columns = np.hstack([reduced[:, :-1], -reduced[:, :-1][:, free]])
+        found, _ = nnls(columns, reduced[:, -1], maxiter=100 * columns.shape[1])
+        found[:size][free] -= found[size:]
+        result = floor.copy()
+        result[used] += found[:size]
+        if _slopes(basis, result).min() > 0:
+            break
     return result
 
 
@@ -431,7 +441,9 @@ class _Spectrum:
         matrix, rough = (basis.heights * points.weight[:, None])[:, :last], rough[:, :last]
         # One triangle for both, so that their squares are those of a sine and a cosine.
         balance = np.linalg.norm(matrix) / np.linalg.norm(rough)
-        triangle = _triangle(np.vstack([matrix, balance * rough]))
+        # Few points leave directions without misfit and roughness.
+        ridge = _FEWEST**2 * float(np.linalg.norm(matrix)) * np.eye(matrix.shape[1])
+        triangle = _triangle(np.vstack([matrix, balance * rough, ridge]))
         inverse = solve_triangular(triangle, np.eye(len(triangle)))
         left, cosine, right = np.linalg.svd(matrix @ inverse, full_matrices=False)
         part = left.T @ (points.y * points.weight)
