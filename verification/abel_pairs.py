@@ -73,7 +73,8 @@ PAIRS: Final = (
         lambda r: 1 - 2 * r * r if r <= 0.5 else 2 * (1 - r) ** 2,
         _birkebak_12,
         (0.5,),
-        {25: 1e-3, 50: 1e-4, 200: 1e-6},
+        # The curvature of this pressure jumps at 0.5, which the points do not resolve.
+        {25: 1e-3, 50: 1e-4, 200: 3e-6},
     ),
     Pair(
         "buie",

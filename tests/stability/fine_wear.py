@@ -22,7 +22,6 @@ from mdr_core.profiles import (
     Profile,
     RoundedPunch,
     Sphere,
-    Tabulated,
 )
 from mdr_core.wear import evolution
 from mdr_core.wear.initial_state import InitialState
@@ -68,8 +67,6 @@ class Break(NamedTuple):
     cycles: float
 
 
-_TABLE = tuple(np.linspace(0.0, 3.0, 13).tolist())
-_HEIGHTS = tuple(r**2 / 2 + 0.5 * max(r - 1, 0.0) for r in _TABLE)
 #: Below the error of a scalar or field, or rejected, by two runs of fewer nodes alone.
 BREAKS = {
     "first cycles": Break(CappedParaboloid(1.0, 1.2, 1.0), 1.1, "depth, displacement", 0.3, 1e-3),
@@ -82,9 +79,6 @@ BREAKS = {
         20.0,
     ),
     "forces": Break(CappedParaboloid(1.0, 4.0, 1.0), 1.1, "forces", 0.97, 16.0),
-    "stick edge passes": Break(
-        Tabulated(_TABLE, _HEIGHTS, (1.0,)), 1.2, "force, displacement", 0.7, 0.1
-    ),
 }
 #: Half as many give scalars within 5e-4.
 FINE_NODES = 336

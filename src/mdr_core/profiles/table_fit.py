@@ -25,6 +25,8 @@ from mdr_core.typing import Array, Flags
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
 _DEGREE: Final = 5
+# Diagonal of a triangle, over the largest, that is rounding error.
+_SINGULAR: Final = 1e-15
 # Weight against what few points leave open, beside the roughness.
 _FEWEST: Final = 1e-6
 # Derivative of the slope whose mean square is the roughness of measured heights: a parabola has
@@ -335,12 +337,14 @@ def _least_roughness(basis: _Basis) -> Array:
     system = np.vstack([rows[inner] * weight[:, None], jumps])[:, used]
     right = np.concatenate([goal[inner] * weight, np.zeros(len(jumps))])
     size = system.shape[1]
-    if len(system) < size:
-        # A jump of the slope explains more than all else.
-        rest = np.eye(size)
-        rest[range(basis.size - 1, size - 2, 2)] = 0.0
-        system, right = np.vstack([system, _FEWEST * rest]), np.append(right, np.zeros(size))
     triangle = _triangle(system)
+    scale = np.abs(np.diag(triangle))
+    if len(system) < size or scale.min() <= _SINGULAR * scale.max():
+        # Few points leave coefficients open: a jump of the slope explains more than all else.
+        rest = _FEWEST * np.eye(size)
+        rest[range(basis.size - 1, size - 2, 2)] *= _FEWEST
+        system, right = np.vstack([system, rest]), np.append(right, np.zeros(size))
+        triangle = _triangle(system)
 
     def solved(count: int) -> Array:
         """Solution by the first columns; the last one is the slope on the axis."""
