@@ -34,8 +34,8 @@ LONGER = {
     "material": {"e_star": 1.0, "g_star": 0.8},
     "friction_coefficient": 0.3,
     "history": {
-        "normal": {"indentation_depth": [0.01, 0.02] * 60},
-        "tangential": {"tangential_force": [0.0, 1e-4] * 60},
+        "normal": {"indentation_depth": [0.01, 0.02] * 150},
+        "tangential": {"tangential_force": [0.0, 1e-4] * 150},
     },
 }
 PATIENT = {
