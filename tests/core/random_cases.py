@@ -97,15 +97,6 @@ def _spherical_tip(draw: Draw) -> dict[str, Any]:
     return {"slope": slope, "tip_radius": _break(draw) * hypot(1, 1 / slope)}
 
 
-def _table(draw: Draw) -> dict[str, Any]:
-    """Few points of a smooth profile, of one with a kink, or of a cone, at any spacing."""
-    r = 1.2 * np.linspace(0.0, 1.0, draw.choice([4, 6, 10])) ** draw.choice([0.7, 1.0, 2.0])
-    kinked = np.square(np.maximum(r - r[1], 0.0))
-    f = draw.choice([r * r, 0.3 * r, kinked, r * r / 2 + 0.1 * r**3])
-    breaks = [float(r[1])] if f is kinked else []
-    return {"r": r.tolist(), "f": f.tolist(), "breaks": breaks}
-
-
 PROFILE_GENERATORS: dict[str, Callable[[Draw], dict[str, Any]]] = {
     "paraboloid": lambda draw: {"radius": _spread(draw, -1, 3)},
     "cone": lambda draw: {"slope": _spread(draw, -3, 0)},
@@ -133,7 +124,6 @@ PROFILE_GENERATORS: dict[str, Callable[[Draw], dict[str, Any]]] = {
         "tip_radius": _spread(draw, 0.5, 3),
         "radius": _spread(draw, -2, 0.4),
     },
-    "tabulated": _table,
 }
 
 
@@ -142,7 +132,7 @@ def scene(draw: Draw) -> Scene:
     kind = draw.choice(list(PROFILE_GENERATORS))
     profile = {"kind": kind, **PROFILE_GENERATORS[kind](draw)}
     made = profile_from(profile)
-    breaks = [float(b) for b in profile.get("r", made.breaks) if 0 < b < EDGE]
+    breaks = [float(b) for b in made.breaks if 0 < b < EDGE]
     sticks = [draw.uniform(0.02, 0.98), 1 - _spread(draw, -12, -1), _spread(draw, -6, -0.5)]
     stick = draw.choice([*sticks, *(_near(draw, b) for b in breaks)])
     flat = float(made.contact_radius(np.asarray(made.first_coordinate)))
