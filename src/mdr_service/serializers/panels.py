@@ -58,7 +58,6 @@ _DIMENSIONS: Final = {
 _OVER_LOADS: Final = (
     ("cycles", ("worn_volume", "contact_radius"), None),
     ("stick_radius", ("worn_volume", "wear_radius"), None),
-    ("tangential_displacement", ("tangential_force",), "step"),
     ("tangential_displacement", ("tangential_force",), "normal_force"),
     ("indentation_depth", ("normal_force",), None),
 )
@@ -96,12 +95,14 @@ class Panel(NamedTuple):
 class Map(NamedTuple):
     """Values [z][x] of a stress, place (x, z) of the largest of the body, and name of the load."""
 
-    x: Array
-    z: Array
-    values: Array
     name: str
+    at_x: Array
+    at_z: Array
+    values: Array
     peak: tuple[float, float] | None
     load: str
+    x: str = "x"
+    y: str = "z"
 
 
 def panels_of(query: Any, result: Mapping[str, Any], units: Units | None) -> list[Panel | Map]:
@@ -125,7 +126,7 @@ def panels_of(query: Any, result: Mapping[str, Any], units: Units | None) -> lis
             in_plane = peak and abs(peak["y"][0] - query.y) < _ACCURACY * np.ptp(result["x"])
             place = (peak["x"][0], peak["z"][0]) if in_plane else None
             values = field[0][np.ix_(z, x)]
-            maps.append(Map(result["x"][x], result["z"][z], values, name, place, load))
+            maps.append(Map(name, result["x"][x], result["z"][z], values, place, load))
     return maps
 
 
@@ -157,30 +158,28 @@ def _over_positions(
 
 
 def _over_loads(result: Mapping[str, Any], units: Units | None) -> list[Panel | Map]:
-    """Return curves over the loads: one for each load step or normal force."""
+    """Return curves over the loads: one for each normal force with several tangential loads."""
     x, ordinates, load = next(
         (x, ys, load) for x, ys, load in _OVER_LOADS if {x, *ys, load or x} <= result.keys()
     )
     at = np.asarray(result[x], dtype=float)
     values, group = np.unique(result[load] if load else np.zeros(at.size), return_inverse=True)
-    if NAMED < values.size == at.size:
-        # Each load has a point of its own: these follow each other as requested.
-        load, values, group = "step", np.zeros(1), np.zeros_like(group)
-    order = np.lexsort((np.arange(at.size) if load == "step" else at, group))
+    is_path = "step" in result
+    if is_path or values.size == 1 or 2 * values.size > at.size:
+        load, values, group = None, np.zeros(1), np.zeros_like(group)
+    # The samples of a history follow each other as on its path.
+    order = np.lexsort((np.arange(at.size) if is_path else at, group))
     parts = np.split(order, np.flatnonzero(np.diff(group[order])) + 1)
-    if load == "step" and len(parts[0]) >= LINE:
-        # The line of each step begins where the previous one ends.
-        parts = [order[max(part[0] - 1, 0) : part[-1] + 1] for part in parts]
     panels = list[Panel | Map]()
     for y in ordinates:
         field = np.asarray(result[y])
-        loads = {load: values} if load and values.size > 1 else {}
-        names = _names({x: at, y: field} if at.size == 1 else loads, units)
+        loads = {x: at, y: field} if at.size == 1 else {load: values} if load else {}
+        names = _names(loads, units)
         curves = [
             Curve(at[part], field[part], name, value)
             for part, name, value in zip(parts, names, values.tolist(), strict=True)
         ]
-        panels.append(Panel(x, y, curves, None if any(names) or values.size == 1 else load))
+        panels.append(Panel(x, y, curves, None if any(names) else load))
     return panels
 
 
@@ -197,29 +196,21 @@ def _names(loads: Mapping[str, Any], units: Units | None) -> list[str]:
         return [""] * count
     unit = {name: _unit(name, units) if units else "" for name in loads}
     parts = (
-        [f"{symbol(_LABELS[name])} = {_number(value)} {unit[name]}".strip() for value in values]
+        [f"{_symbol(name)} = {value:.4g} {unit[name]}".strip() for value in values]
         for name, values in loads.items()
     )
-    return ["\n".join(each) for each in zip(*parts, strict=True)]
+    return [", ".join(each) for each in zip(*parts, strict=True)]
 
 
-def label(name: str, units: Units | None) -> str:
-    """Return words, symbol and unit of a quantity, or dimension, unless a word names it."""
-    text, unit = _LABELS[name], _unit(name, units)
-    return text if not unit or (unit in text and not units) else f"{text} ({unit})"
+def label(name: str, units: Units | None, *, with_words: bool = True) -> str:
+    """Return words, on a line of their own, and symbol and unit of a quantity, or dimension."""
+    unit = _unit(name, units)
+    symbol = f"{_symbol(name)} ({unit})" if unit else _symbol(name)
+    return f"{_LABELS[name].partition('$')[0].strip()}\n{symbol}" if with_words else symbol
 
 
-def symbol(text: str) -> str:
-    """Return a label from its symbol on, without the words."""
-    return text[text.find("$") :]
-
-
-def _number(value: float) -> str:
-    digits, _, exponent = f"{value:.4g}".partition("e")
-    if not exponent:
-        return digits
-    power = f"$10^{{{int(exponent)}}}$"
-    return power if digits == "1" else rf"{digits}$\times${power}"
+def _symbol(name: str) -> str:
+    return "$" + _LABELS[name].partition("$")[2]
 
 
 def _unit(name: str, units: Units | None) -> str:
