@@ -17,7 +17,8 @@ from pydantic.fields import FieldInfo
 
 from mdr_command import ExitStatus
 from mdr_core.errors import InputError
-from mdr_core.table_reader import read_table
+from mdr_core.profiles import Tabulated
+from mdr_core.table_reader import Points, metres, read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
@@ -36,7 +37,10 @@ _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
 # Options beside the parameters of the request.
-_OTHER_OPTIONS: Final = frozenset({"output", "size", "units", "table", "length_unit"})
+_OTHER_OPTIONS: Final = frozenset(
+    {"output", "size", "units", "table", "area_coefficients", "largest_height", "length_unit"}
+)
+_AREA_OPTIONS: Final = {"profile.largest_height": "largest_height"}
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
 _REQUEST: Final = "a request is a JSON object"
@@ -77,7 +81,18 @@ def declare(parser: argparse.ArgumentParser) -> None:
         group.add_argument(
             "--length-unit",
             metavar="m|mm|um|nm",
-            help="unit of the table, where its heading names none; two, as mm,um, for r and f",
+            help="unit of the table, where its heading names none; two, as mm,um, for r and f; "
+            "and of a tip's area function",
+        )
+        group.add_argument(
+            "--area-coefficients",
+            metavar="C0,C1,...",
+            help="tip with the area A(h) = C0 h^2 + C1 h + C2 h^(1/2) + ..., in place of --kind",
+        )
+        group.add_argument(
+            "--largest-height",
+            metavar="NUMBER",
+            help="height h up to which the area function describes the tip",
         )
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
@@ -140,18 +155,41 @@ def _content(arguments: argparse.Namespace) -> bytes:
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
-    """Return the profile of `--table`, or None without; the parameters then need some kind."""
-    file, unit = (vars(arguments).get(name) for name in ("table", "length_unit"))
-    if not file:
+    """Return the profile of a table or an area function, or None without.
+
+    The parameters then need some kind.
+    """
+    file, area, unit = (
+        vars(arguments).get(name) for name in ("table", "area_coefficients", "length_unit")
+    )
+    if not (file or area):
         if unit:
-            raise InputError(("length_unit",), "is valid only with --table")
+            raise InputError(("length_unit",), "is valid only with --table or --area-coefficients")
         return None
+    option = "table" if file else "area_coefficients"
     fields = PARAMETERS[arguments.command].fields
     if replaced := [name for name in given if fields.get(name, "").startswith("profile.")]:
-        raise InputError(("table",), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
+        raise InputError((option,), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
     given["kind"] = OF_NUMBERS[0]
-    table = read_table(file, unit.split(",") if unit and "," in unit else unit)
-    return {"kind": "tabulated", "r": table.r.tolist(), "f": table.f.tolist()}
+    if file:
+        r, f = read_table(file, unit.split(",") if unit and "," in unit else unit)
+    else:
+        r, f = _tip(str(area), arguments.largest_height, unit or "m")
+    return {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}
+
+
+def _tip(coefficients: str, largest_height: str | None, unit: str) -> Points:
+    """Return the points of a tip, in metres, from the coefficients of its area function."""
+    try:
+        numbers, most = (
+            [float(each) for each in coefficients.split(",")],
+            float(largest_height or 0),
+        )
+    except ValueError as error:
+        detail = "gives numbers with commas between them, with --largest-height"
+        raise InputError(("area_coefficients",), detail) from error
+    tip, scale = Tabulated.from_area_coefficients(numbers, most), metres(unit)
+    return Points(scale * tip.r, scale * tip.values)
 
 
 def _options(command: str) -> dict[str, FieldInfo]:
@@ -192,11 +230,14 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     by_options = any(name in arguments for name in names)
     file = arguments.file or _STANDARD_INPUT
     table = vars(arguments).get("table")
+    area = vars(arguments).get("area_coefficients")
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
         if error.type is problems.MALFORMED_JSON:
             parts.append(_REQUEST + (_BY_OPTIONS if names else ""))
+        elif area and f"{place}.".startswith(("kind.", "profile.")):
+            parts = [_option(_AREA_OPTIONS.get(place, "area_coefficients"), _OTHER_OPTIONS), detail]
         elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
             parts = [table, place.partition(".")[2], detail]
         elif by_options or place in _OTHER_OPTIONS:

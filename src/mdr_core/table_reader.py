@@ -27,9 +27,12 @@ _COLUMN_NAMES: Final = [
     [rf"(?i)(?<![a-z])({words})(?![a-z])" for words in names]
     for names in (
         ("r|radius|radial|rho", "x|distance|position|lateral"),
-        ("f|z|h|height|depth|profile", "y"),
+        ("f|z|h|hc|height|depth|profile", "y"),
     )
 ]
+# Name and unit of the cross-section in a table of a tip's area function.
+_AREA: Final = r"(?<![A-Za-z])(A|[Aa]reas?|[Ss]ection)(?![A-Za-z])"
+_SQUARE: Final = r"(²|\^2|\*\*2|(?<=m)2)$"
 _POINT: Final = r"(?i)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
 _COMMA: Final = r"(?i)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
 _BLANKS: Final = r",?\s+"
@@ -63,7 +66,8 @@ def read_table(
     r"""Return the radii and heights of a table in a file, in metres or the unit `to`.
 
     The file may have decimal commas, any separator, headings, a row of units, comments, quotes and
-    further columns, which are named in a heading.
+    further columns, which are named in a heading. A column named A or area, in place of the radii,
+    holds the cross-sections A(h) of a tip: the radii are sqrt(A/pi).
 
     Parameters
     ----------
@@ -89,7 +93,7 @@ def read_table(
         content = stream.read(_LARGEST + 1)
     if len(content) > _LARGEST:
         raise InputError(("table",), f"longer than {_LARGEST} bytes: reduce the number of points")
-    rows, columns = _parsed(_decoded(content))
+    rows, columns, of_areas = _parsed(_decoded(content))
     given = (length_unit, length_unit) if isinstance(length_unit, str) else length_unit or ("", "")
     points = []
     for name, (place, heading), unit in zip("rf", columns, given, strict=True):
@@ -99,10 +103,17 @@ def read_table(
         if not (heading or unit):
             detail = f"is required: no heading names the unit of {name}"
             raise InputError(("length_unit",), detail)
-        scale = _metres(heading or unit) / _metres(to)
+        scale = metres(heading or unit) / metres(to)
         cells = (row[place].replace(",", ".").lower().replace("d", "e") for _, row in rows)
         # The product of a decimal number and a power of ten, without its rounding error.
-        points.append(np.array([float(f"{float(cell) * scale:.15g}") for cell in cells]))
+        numbers = np.array([float(cell) for cell in cells])
+        if of_areas and name == "r":
+            if negative := [
+                line for (line, _), area in zip(rows, numbers, strict=True) if area < 0
+            ]:
+                raise _refuse(negative[0], "an area is negative")
+            numbers = np.sqrt(numbers / np.pi)
+        points.append(np.array([float(f"{number * scale:.15g}") for number in numbers]))
     return Points(*points)
 
 
@@ -111,7 +122,8 @@ def _unit(name: str) -> str | None:
     return next(units, None)
 
 
-def _metres(name: str) -> float:
+def metres(name: str) -> float:
+    """Return a unit of length in metres."""
     if unit := _unit(name):
         return UNITS[unit]
     raise InputError(("length_unit",), f"{name} is none of {', '.join(UNITS)}")
@@ -146,8 +158,8 @@ def _cells(text: str, separator: str) -> list[str]:
     return [cell.strip() for cell in re.split(separator, re.sub(r"[\s;,]+$", "", text))]
 
 
-def _parsed(text: str) -> tuple[list[_Row], list[tuple[int, str | None]]]:
-    """Return the rows of a table, and index and unit of the columns of radii and heights."""
+def _parsed(text: str) -> tuple[list[_Row], list[tuple[int, str | None]], bool]:
+    """Return the rows of a table, index and unit of its columns, and whether one holds areas."""
     lines = list(enumerate(re.split(r"\r\n|\r|\n", text), 1))
     errors = [(0, InputError(("table",), "no line holds two numbers, a radius and a height"))]
     for separator, form in _DIALECTS:
@@ -155,7 +167,7 @@ def _parsed(text: str) -> tuple[list[_Row], list[tuple[int, str | None]]]:
         if error:
             errors.append((len(rows), error))
         elif rows:
-            return rows, _columns(rows, heading, separator)
+            return rows, *_columns(rows, heading, separator)
     # Of the dialects, the one in which most lines are numbers is probably meant.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
@@ -182,8 +194,8 @@ def _rows(
 
 def _columns(
     rows: Sequence[_Row], heading: Sequence[tuple[int, str]], separator: str
-) -> list[tuple[int, str | None]]:
-    """Return index and unit of the columns of radii and heights."""
+) -> tuple[list[tuple[int, str | None]], bool]:
+    """Return index and unit of the columns of radii, or areas, and heights."""
     first, count = rows[0][0], len(rows[0][1])
     whole = all(re.fullmatch(r"[-+]?\d+", cell) for _, cells in rows for cell in cells)
     if separator == "," and count > 2 and whole:
@@ -198,25 +210,38 @@ def _columns(
         joined = re.sub(r"\s*/\s*|\s+in\s+", "/", re.sub(r"\s+(?=[\[(])", "", text))
         titles = _cells(joined, separator)
         for i, title in enumerate(titles if len(titles) == count else ()):
-            units[i] = units[i] or _unit_of(title, number)
             names[i] += f" {title}"
+            units[i] = units[i] or _unit_of(title, number, of_area=_is_area(names[i]))
     places = [
         next((i for p in patterns for i in range(count) if re.search(p, names[i])), None)
         for patterns in _COLUMN_NAMES
     ]
+    areas = next((i for i in range(count) if _is_area(names[i])), None)
+    of_areas = places[0] is None and None not in {areas, places[1]}
+    places[0] = areas if of_areas else places[0]
     if None in places or places[0] == places[1]:
         if count > 2:
             detail = f"{count} columns; name the radius r and the height f in a line above"
             raise _refuse(first, detail)
         places = [0, 1]
-    return [(place, units[place]) for place in places if place is not None]
+    return [(place, units[place]) for place in places if place is not None], of_areas
 
 
-def _unit_of(title: str, line: int) -> str | None:
-    """Return the unit that a title names: `mm`, `r [mm]`, `r (mm)`, `r, mm` or `r_mm`."""
+def _is_area(name: str) -> bool:
+    radius, _ = _COLUMN_NAMES
+    return bool(re.search(_AREA, name)) and not any(re.search(p, name) for p in radius)
+
+
+def _unit_of(title: str, line: int, *, of_area: bool) -> str | None:
+    """Return the unit that a title names: `mm`, `r [mm]`, `r (mm)`, `r, mm`, `r_mm` or `A [mm²]`.
+
+    The unit of an area is that of the length.
+    """
     found = re.search(r"([\[(]?)\s*([^\[(/_,\s\])]*)\s*[\])]?$", title)
     bracket, word = found.groups() if found else ("", "")
-    unit = _unit(word)
+    length = re.sub(_SQUARE, "", word)
+    unit = _unit(length) if (length != word) == of_area else None
     if not unit and bracket == "[":
-        raise _refuse(line, f"the unit {word} is none of {', '.join(UNITS)}")
+        known = ", ".join(f"{each}²" if of_area else each for each in UNITS)
+        raise _refuse(line, f"the unit {word} is none of {known}")
     return unit

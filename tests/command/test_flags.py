@@ -1,6 +1,7 @@
 """Requests by options, files for responses, the list of profiles, and completion."""
 
 import json
+import math
 import shlex
 from pathlib import Path
 
@@ -112,6 +113,15 @@ def test_a_table_in_any_unit_is_the_profile_in_metres(tmp_path: Path) -> None:
         assert by_table.read_bytes() == by_file.read_bytes()
 
 
+def test_an_area_function_is_a_profile_in_metres(capsys: Capture) -> None:
+    # A = C0 h^2 is a cone, with F = (2/pi) E* d^2 sqrt(C0/pi).
+    options = ["--area-coefficients", "24.5", "--largest-height", "300", "--length-unit", "nm"]
+    assert main(["normal", *options, "--e-star", "7e10", "--indentation-depth", "1e-7"]) == 0
+    force = 2 / math.pi * 7e10 * 1e-14 * math.sqrt(24.5 / math.pi)
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["normal_force"] == pytest.approx([force], rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
@@ -121,6 +131,16 @@ def test_a_table_in_any_unit_is_the_profile_in_metres(tmp_path: Path) -> None:
         (["--table", "none.csv"], "none.csv: No such file or directory"),
         (["--table", "tabs.txt", "--slope", "1"], "tabs.txt: is a profile: leave out --slope"),
         (["--length-unit", "mm"], "--length-unit: is valid only with --table"),
+        (["--area-coefficients", "24.5;3"], "--area-coefficients: gives numbers with commas"),
+        (["--area-coefficients", "24.5"], "--largest-height: must be positive"),
+        (
+            ["--area-coefficients", "24.5,-9", "--largest-height", "1"],
+            "--area-coefficients: must not be negative",
+        ),
+        (
+            ["--area-coefficients", "24.5", "--slope", "1"],
+            "--area-coefficients: is a profile: leave out --slope",
+        ),
     ],
 )
 def test_errors_name_the_table_or_the_option(

@@ -1,6 +1,7 @@
 """The explorer in a browser: every tab is drawn, and every interaction works."""
 
 import json
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -43,7 +44,7 @@ def test_tab_draws_its_charts_and_passes_axe(visit: Visit, tab: str) -> None:
         visit.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
         visit.open(f"?tab={tab}")
         assert visit.page.locator("figure .main-svg").count() >= 3
-        visit.page.locator("details summary").first.click()
+        visit.page.locator("figure summary").first.click()
         visit.page.locator(".data table tr").nth(2).wait_for()
         findings = Axe().run(visit.page).response["violations"]
         assert [(each["id"], each["nodes"][0]["html"]) for each in findings] == []
@@ -116,6 +117,24 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
     pasted(visit, "\n".join(f"{r:.6g} {f * 1e3:.6g}" for r, f in points))
     assert "choose them above" in note.inner_text()
     assert visit.number("Contact radius a").startswith("0.186")
+
+
+def test_area_function_fills_the_table(visit: Visit) -> None:
+    visit.open("?kind=tabulated&control=indentation_depth&load=1e-7")
+    note = visit.page.locator("#table-note")
+    # A = pi h^2 is a cone of slope 1, in nm: a = 2 d/pi.
+    visit.page.select_option("#unit-f", "nm")
+    visit.page.get_by_text("From a tip’s area function").click()
+    visit.page.fill("#coefficients", f"{math.pi} x")
+    visit.page.click("#use-area")
+    visit.page.get_by_text("the coefficients are numbers with blanks").wait_for()
+    visit.page.fill("#coefficients", str(math.pi))
+    visit.page.fill("#largest-height", "300")
+    with visit.changing():
+        visit.page.click("#use-area")
+    assert note.inner_text() == "200 points; r = √(A/π) from the areas; units from the heading."
+    assert visit.page.input_value("#unit-r") == "nm"
+    assert visit.number("Contact radius a").startswith("6.366")
 
 
 def test_line_of_a_table_that_cannot_be_used_is_named(visit: Visit) -> None:

@@ -1,6 +1,7 @@
 """Each figure of the gallery is the response to its request, and its Python computes the same."""
 
 import re
+import shutil
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -14,6 +15,7 @@ from tests.conftest import Client
 from tests.contract.test_readme import curl_command
 
 FOLDER = Path(__file__).parents[2] / "docs"
+EXAMPLES = FOLDER.parent / "examples"
 PAGE = (FOLDER / "gallery.md").read_text("utf-8")
 REQUESTS = dict(re.findall(r'```json title="(\w+)\.json"\n(.*?)```', PAGE, re.DOTALL))
 COMMANDS = {
@@ -66,6 +68,7 @@ def test_python_computes_the_response(
 ) -> None:
     path, _ = curl_command(COMMANDS[name])
     response = client.post_text(path.partition("?")[0], REQUESTS[name].encode()).json()
+    shutil.copy(EXAMPLES / "tip.csv", tmp_path)
     monkeypatch.chdir(tmp_path)
     with mpl.rc_context({"backend": "agg"}):
         exec(PROGRAMS[name], {})  # noqa: S102 -- our own page

@@ -13,8 +13,11 @@ const UNIT_NAMES = {
 // Names of the radius and of the height, those that leave no doubt first.
 const COLUMN_NAMES = [
   [/(?<![a-z])(r|radius|radial|rho)(?![a-z])/i, /(?<![a-z])(x|distance|position|lateral)(?![a-z])/i],
-  [/(?<![a-z])(f|z|h|height|depth|profile)(?![a-z])/i, /(?<![a-z])y(?![a-z])/i],
+  [/(?<![a-z])(f|z|h|hc|height|depth|profile)(?![a-z])/i, /(?<![a-z])y(?![a-z])/i],
 ];
+// Name and unit of the cross-section in a table of a tip's area function.
+const AREA = /(?<![A-Za-z])(A|[Aa]reas?|[Ss]ection)(?![A-Za-z])/;
+const SQUARE = /(²|\^2|\*\*2|(?<=m)2)$/;
 
 const POINT = /^[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?$/i;
 const COMMA = /^[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?$/i;
@@ -70,12 +73,21 @@ function unitOf(name) {
   return Object.keys(UNIT_NAMES).find((unit) => UNIT_NAMES[unit].test(name));
 }
 
-/** Return the unit that a cell of a heading names: `mm`, `r [mm]`, `r (mm)`, `r, mm`, `r_mm`. */
-function unitOfCell(cell, line) {
+function isArea({ name }) {
+  return AREA.test(name) && !COLUMN_NAMES[0].some((radius) => radius.test(name));
+}
+
+/**
+ * Return the unit that a cell of a heading names: `mm`, `r [mm]`, `r (mm)`, `r, mm`, `r_mm`, or
+ * `A [mm²]`, of which it is that of the length.
+ */
+function unitOfCell(cell, line, ofArea) {
   const [, bracket, word] = cell.match(/([[(]?)\s*([^[(/_,\s\])]*)\s*[\])]?$/);
-  const unit = unitOf(word);
+  const length = word.replace(SQUARE, "");
+  const unit = (length !== word) === ofArea ? unitOf(length) : undefined;
   if (!unit && bracket === "[") {
-    throw new Error(`Line ${line}: the unit ${word} is none of ${Object.keys(LENGTHS).join(", ")}`);
+    const known = Object.keys(LENGTHS).map((each) => each + (ofArea ? "²" : ""));
+    throw new Error(`Line ${line}: the unit ${word} is none of ${known.join(", ")}`);
   }
   return unit;
 }
@@ -91,25 +103,28 @@ function columnsOf({ heading, separator, rows }) {
     const cells = cellsOf(joined, separator);
     if (cells.length !== columns.length) continue;
     columns.forEach((column, i) => {
-      column.unit ??= unitOfCell(cells[i], number);
       column.name += ` ${cells[i]}`;
+      column.unit ??= unitOfCell(cells[i], number, isArea(column));
     });
   }
   return columns;
 }
 
-/** Return the indices of the columns of radii and heights. */
+/** Return the indices of the columns of radii, or areas, and heights. */
 function chosen(columns, line) {
   const place = (patterns) => patterns.map((p) => columns.findIndex(({ name }) => p.test(name))).find((i) => i >= 0);
-  const [r, f] = COLUMN_NAMES.map(place);
+  let [r, f] = COLUMN_NAMES.map(place);
+  const areas = columns.findIndex(isArea);
+  if (r === undefined && areas >= 0) r = areas;
   if (r !== undefined && f !== undefined && r !== f) return [r, f];
   if (columns.length === 2) return [0, 1];
   throw new Error(`Line ${line}: ${columns.length} columns; name the radius r and the height f in a line above`);
 }
 
 /**
- * Return the table that a text holds: `r` and `f` as written, `units` of both where a heading
- * names them, else undefined, and the number of each `lines`. An error names the line.
+ * Return the table that a text holds: `r` and `f` as written, or r = √(A/π) if `ofAreas`, `units`
+ * of both where a heading names them, else undefined, and the number of each `lines`. An error
+ * names the line.
  */
 export function readTable(text) {
   const lines = linesOf(text);
@@ -129,7 +144,14 @@ export function readTable(text) {
   const columns = columnsOf(found);
   const [r, f] = chosen(columns, rows[0].number);
   const numbers = (i) => rows.map(({ cells }) => Number(cells[i].replace(",", ".").replace(/d/i, "e")));
+  let radii = numbers(r);
+  const ofAreas = isArea(columns[r]);
+  if (ofAreas) {
+    const least = radii.indexOf(Math.min(...radii));
+    if (radii[least] < 0) throw new Error(`Line ${rows[least].number}: an area is negative`);
+    radii = radii.map((area) => Math.sqrt(area / Math.PI));
+  }
   return {
-    r: numbers(r), f: numbers(f), units: [columns[r].unit, columns[f].unit], lines: rows.map(({ number }) => number),
+    r: radii, f: numbers(f), ofAreas, units: [columns[r].unit, columns[f].unit], lines: rows.map(({ number }) => number),
   };
 }
