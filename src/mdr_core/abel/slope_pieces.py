@@ -39,7 +39,6 @@ _BLOCK: Final = 16
 _RATIO: Final = 2.0
 # Least denominator.
 _LEAST: Final = float(np.finfo(float).tiny)
-# Least denominator.
 # Distance from the axis, over the first piece, within which a smooth stress is constant.
 _AXIS: Final = 1e-8
 

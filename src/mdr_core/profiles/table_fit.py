@@ -9,22 +9,20 @@ Source: notes, §5.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
-from scipy.interpolate import BSpline, PPoly
+from scipy.interpolate import BSpline
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 from scipy.sparse.linalg import spsolve
 
-from mdr_core.abel.slope_pieces import heights
-from mdr_core.cached import cached_property
 from mdr_core.errors import InputError
-from mdr_core.typing import Array, Flags
+from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
+from mdr_core.profiles.table_points import ROUNDED, Points, cleaned, scatter
+from mdr_core.typing import Array
 
-# Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
-_DEGREE: Final = 5
 # Diagonal of a triangle, over the largest, that is rounding error.
 _SINGULAR: Final = 1e-15
 # Weight against what few points leave open, beside the roughness.
@@ -38,16 +36,8 @@ _KNOTS, _KNOTS_OF_MEASURED = 200, 80
 _FEW: Final = 12
 # Weight of a degree of freedom in cross-validation, against overfitting. Source: kim-gu.
 _GCV: Final = 1.2
-# Part of the possible degrees of freedom above which no noise is found, and scatter, over the
-# height, that is rounding error.
-_NO_NOISE, _ROUNDED = 0.8, 1e-8
-# Neighbours on each side from which a height is predicted.
-_NEIGHBOURS: Final = 3
-# Rounded numbers: largest unit over the step between neighbours, remainder that is rounding error,
-# and part of a unit within which a number is a multiple.
-_FINEST_STEP, _EQUAL, _OF_UNIT = 0.05, 1e-9, 0.05
-# Smallest error of a rounded height, over that of most.
-_LEAST_ERROR: Final = 1e-2
+# Part of the possible degrees of freedom above which no noise is found.
+_NO_NOISE: Final = 0.8
 # Ratios of the weights of roughness and misfit that are tried.
 _WEIGHTS: Final = 10.0 ** np.arange(-16, 16.1, 0.25)
 # Weight of the points against the roughness of an interpolant.
@@ -55,8 +45,6 @@ _HEAVY: Final = 1e6
 # Factor by which a sharp tip has to lower the roughness of an interpolant at the first knots to be
 # believed, and variances of the noise by which it has to lower the sum of squares.
 _SHARPER, _TIP_KNOTS, _SHARPER_MEASURED = 10.0, 4, 12.0
-# Gaps between radii that are merged, over their mean spacing at equal radii.
-_SAME: Final = 1e-2
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
 # Part of the largest slope that keeps the slope of a flat positive.
@@ -68,57 +56,6 @@ _NEGATIVE: Final = 1e-9
 _NO_DISC: Final = 0.025
 # Standard deviations in the estimate of the error of the data.
 _SPREAD: Final = 2.0
-# Points of a piece at which the sign of an interpolant is tested.
-_TESTED: Final = 8
-
-
-@dataclass(frozen=True, eq=False)
-class TableFit:
-    """Slope of a table's equivalent profile, and what the points leave open. Dimensional."""
-
-    edges: Array
-    """Knots [length], shape (k + 1,)."""
-    rows: Array
-    """Coefficients of g' by powers of the distance from the knot below, shape (6, k)."""
-    flanks: tuple[tuple[float, float, float], ...]
-    """Break [length], jump of the slope [1] and of the curvature [1/length]."""
-    rms: float
-    """Root mean square of the deviation from the points [length]."""
-    largest: tuple[float, float]
-    """Largest deviation and its radius [length]."""
-    spread: tuple[BSpline, BSpline]
-    """Possible deviations of g and of its integral, as functions of a over the last radius."""
-    scale: tuple[float, float]
-    """Last radius and height of the table [length]."""
-
-    def spread_at(self, radius: Array) -> tuple[Array, Array, Array]:
-        """Sizes of the errors of g, int_0^a x g' dx and int_0^a g dx that the points leave open."""
-        end, height = self.scale
-        a = np.ravel(radius) / end
-        depth, moment = (each(a).reshape(a.size, -1) for each in self.spread)
-        errors = depth, a[:, None] * depth - moment, moment
-        units = height, end * height, end * height
-        return tuple(
-            (unit * np.sqrt(np.square(error).sum(axis=1))).reshape(np.shape(radius))
-            for unit, error in zip(units, errors, strict=True)
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class _Points:
-    """Points of a table over its last radius and its height, ascending; equal radii merged."""
-
-    x: Array
-    y: Array
-    weight: Array
-    """Weight of the deviation: square root of the number of points that were merged."""
-    breaks: tuple[float, ...]
-    offset_known: bool
-    """True if the first point lies on the axis."""
-    rounded: bool
-    """True if radii or heights show that they are rounded; the weights are those of that error."""
-    scale: tuple[float, float]
-    """Last radius and height [length]."""
 
 
 def fit_table(
@@ -136,7 +73,7 @@ def fit_table(
     ------
     InputError : points of no body whose contact area is a single disc.
     """
-    points = _cleaned(np.abs(r), f, breaks)
+    points = cleaned(np.abs(r), f, breaks)
     if uncertainty is None:
         exact = points.x.size <= _FEW or _has_no_noise(points)
     else:
@@ -156,132 +93,7 @@ def fit_table(
     return found
 
 
-def _cleaned(r: Array, f: Array, breaks: Sequence[float]) -> _Points:
-    """Sort the points and merge those whose radii differ by less than the spacing resolves."""
-    end, height = float(r.max()), float(f.max() - f.min())
-    x, y = given = r / end, (f - f.min()) / height
-    order = np.argsort(x, kind="stable")
-    x, y = x[order], y[order]
-    new = np.append(True, np.diff(x) > _SAME * x[1:] / x.size)
-    group = np.cumsum(new) - 1
-    count = np.bincount(group)
-    x, y = np.bincount(group, x) / count, np.bincount(group, y) / count
-    x[-1] = 1.0
-    curved = np.square(x) - np.mean(np.square(x))
-    if y @ curved <= 0:
-        raise InputError(
-            ("profile", "f"), "the heights fall away from the axis: reverse their sign"
-        )
-    weight = np.sqrt(count)
-    of_radius, of_height = _rounding(*given, x.size) if x.size > 2 else (0.0, 0.0)
-    rounded = max(of_radius, of_height) > _ROUNDED
-    if rounded:
-        # An error of the radius is one of the height on a slope.
-        error = np.hypot(of_radius * np.gradient(y, x), of_height)
-        typical = float(np.median(error))
-        weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
-    scaled = tuple(b / end for b in breaks)
-    return _Points(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
-
-
-class _Basis:
-    """B-splines of the slope and the images of jumps at breaks, with their heights at the points.
-
-    Columns: the splines but the first, two jumps for each break, the offset of the heights, and the
-    first spline, which is the slope on the axis.
-    """
-
-    def __init__(self, points: _Points, knots: Array) -> None:
-        self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 1), _DEGREE)
-        self.points, self.knots = points, knots
-        self.t = np.concatenate([[0.0] * k, knots, [1.0] * k])
-        self.size = self.t.size - k - 1
-        x = points.x
-        splines = heights(knots, x, lambda at: BSpline.design_matrix(at, self.t, k))
-        past = [np.maximum(x - b, 0.0) for b in points.breaks]
-        jumps = [column for each in past for column in (each, each * each / 2)]
-        self.heights = np.column_stack([splines[:, 1:], *jumps, np.ones_like(x), splines[:, 0]])
-
-    @cached_property
-    def places(self) -> Array:
-        """Coefficients of the slope x."""
-        return np.array([self.t[i + 1 : i + 1 + self.degree].mean() for i in range(self.size)])
-
-    @property
-    def free(self) -> Flags:
-        """Columns whose coefficients may be negative: jumps of the curvature and the offset."""
-        free = np.zeros(self.heights.shape[1], dtype=bool)
-        free[self.size : -2 : 2] = True
-        free[-2] = True
-        return free
-
-    def padded(self, splines: Array) -> Array:
-        """Return rows over the splines (n, size) as rows over all columns."""
-        rest = np.zeros((len(splines), self.heights.shape[1] - self.size))
-        return np.hstack([splines[:, 1:], rest, splines[:, :1]])
-
-    def _differences(self, order: int) -> Array:
-        """Coefficients of a derivative of the splines."""
-        k, t, rows = self.degree, self.t, np.eye(self.size)
-        for o in range(1, order + 1):
-            span = t[k + 1 : k + 1 + self.size - o] - t[o : self.size]
-            rows = np.diff(rows, axis=0) * ((k - o + 1) / span)[:, None]
-        return rows
-
-    def derivative(self, order: int) -> Array:
-        """Coefficients of a derivative, weighted by the root of the support of its splines."""
-        inner, degree = self.t[order : self.t.size - order], self.degree - order
-        support = (inner[degree + 1 :] - inner[: self.size - order]) / (degree + 1)
-        return self.padded(self._differences(order) * np.sqrt(support)[:, None])
-
-    def jumps(self) -> Array:
-        """Jumps of the last derivative at the inner knots, times its power of their spacing."""
-        spacing = (self.knots[2:] - self.knots[:-2]) / 2
-        steps = np.diff(self._differences(self.degree), axis=0)
-        return self.padded(steps * spacing[:, None] ** self.degree)
-
-    def spline(self, coefficients: Array) -> BSpline:
-        """Slope, or several, of coefficients over all columns."""
-        splines = np.concatenate([coefficients[-1:], coefficients[: self.size - 1]])
-        return BSpline(self.t, splines, self.degree)
-
-    def deviation(self, coefficients: Array) -> Array:
-        """Heights less those of the points."""
-        return self.heights @ coefficients - self.points.y
-
-    def fit(self, coefficients: Array, spread: Array) -> TableFit:
-        """Return the fit of coefficients; `spread` are possible deviations of them."""
-        end, height = self.points.scale
-        polynomials: Any = PPoly.from_spline(self.spline(coefficients).tck)
-        rows = polynomials.c[::-1, np.diff(polynomials.x) > 0]
-        rows[0, 0] = coefficients[-1]
-        powers = height / end * end ** -np.arange(float(len(rows)))[:, None]
-        jumps = coefficients[self.size - 1 : -2].reshape(-1, 2) * [height / end, height / end**2]
-        flanks = tuple(
-            (b * end, slope, bend)
-            for b, (slope, bend) in zip(self.points.breaks, jumps.tolist(), strict=True)
-            if slope or bend
-        )
-        off = self.deviation(coefficients)
-        worst = int(np.argmax(np.abs(off)))
-        possible = self.spline(spread)
-        return TableFit(
-            self.knots * end,
-            rows * powers,
-            flanks,
-            height * _mean(off * np.minimum(self.points.weight, 1.0)),
-            (height * float(abs(off[worst])), end * float(self.points.x[worst])),
-            (possible.antiderivative(), possible.antiderivative(2)),
-            self.points.scale,
-        )
-
-
-def _mean(off: Array) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(np.square(off))))
-
-
-def _knots(points: _Points, most: int) -> Array:
+def _knots(points: Points, most: int) -> Array:
     """Return knots at the axis and at points, every n-th one if there are more than `most`."""
     x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
     if x.size > most:
@@ -289,9 +101,9 @@ def _knots(points: _Points, most: int) -> Array:
     return x
 
 
-def _interpolated(points: _Points) -> TableFit:
+def _interpolated(points: Points) -> TableFit:
     """Return the interpolant of least roughness, or the nearest fit if that is not admissible."""
-    basis = _Basis(points, _knots(points, _KNOTS))
+    basis = TableBasis(points, _knots(points, _KNOTS))
     coefficients = _least_roughness(basis)
     # A flat is flat up to rounding errors: g increases there too.
     splines, largest = coefficients[: basis.size - 1], np.abs(coefficients).max()
@@ -300,7 +112,7 @@ def _interpolated(points: _Points) -> TableFit:
     jumps = coefficients[basis.size - 1 : -2 : 2]
     jumps[np.abs(jumps) < _NEGATIVE * largest] = 0.0
     # Where the slope falls by a step, g' is infinite and negative beyond it.
-    if _slopes(basis, coefficients).min() <= 0 or jumps.min(initial=0.0) < 0:
+    if basis.slopes(coefficients).min() <= 0 or jumps.min(initial=0.0) < 0:
         return _measured(points, 0.0, sharp=coefficients[-1] > 0)
     # The error of every second point, which is larger than that of all.
     half = np.zeros(points.x.size, dtype=bool)
@@ -308,20 +120,20 @@ def _interpolated(points: _Points) -> TableFit:
     spread = np.zeros_like(coefficients)
     if half.sum() > 2:
         coarse = replace(points, x=points.x[half], y=points.y[half], weight=points.weight[half])
-        other = _Basis(coarse, _knots(coarse, _KNOTS))
+        other = TableBasis(coarse, _knots(coarse, _KNOTS))
         found = _least_roughness(other)
         spread = _between(basis, other, found) - coefficients
     return basis.fit(coefficients, spread)
 
 
-def _between(basis: _Basis, other: _Basis, coefficients: Array) -> Array:
+def _between(basis: TableBasis, other: TableBasis, coefficients: Array) -> Array:
     """Return the coefficients, in a basis, of a slope in another one with fewer knots."""
     matrix = BSpline.design_matrix(basis.places, basis.t, basis.degree)
     splines = spsolve(matrix.tocsc(), other.spline(coefficients)(basis.places))
     return np.concatenate([splines[1:], coefficients[other.size - 1 : -1], splines[:1]])
 
 
-def _least_roughness(basis: _Basis) -> Array:
+def _least_roughness(basis: TableBasis) -> Array:
     """Return the coefficients of the interpolant whose last derivative jumps least."""
     points, rows = basis.points, basis.heights
     inner = points.x > 0
@@ -359,7 +171,7 @@ def _least_roughness(basis: _Basis) -> Array:
     smooth, sharp = solved(size - 1), solved(size)
     next_to_tip = jumps[:_TIP_KNOTS, used]
     roughness = [float(np.linalg.norm(next_to_tip @ each)) for each in (smooth, sharp)]
-    is_sharp = roughness[0] > max(_SHARPER * roughness[1], _ROUNDED * largest)
+    is_sharp = roughness[0] > max(_SHARPER * roughness[1], ROUNDED * largest)
     found = sharp if is_sharp else smooth
     result = np.zeros(rows.shape[1])
     result[used] = found
@@ -373,25 +185,9 @@ def _triangle(system: Array) -> Array:
     return np.asarray(np.linalg.qr(system, mode="r"))
 
 
-def _slopes(basis: _Basis, coefficients: Array) -> Array:
-    """Return g' at places in every piece."""
-    knots = basis.knots
-    x = (knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(_TESTED) + 0.5) / _TESTED).ravel()
-    x = np.append(x, 1.0)
-    slope = basis.spline(coefficients)(x)
-    for b, (jump, bend) in zip(
-        basis.points.breaks, coefficients[basis.size - 1 : -2].reshape(-1, 2), strict=True
-    ):
-        past = x > b
-        s = np.sqrt((x[past] - b) * (x[past] + b))
-        angle = np.arctan2(s, b)
-        slope[past] += jump * (angle + b / s) + bend * (2 * s - b * angle)
-    return slope
-
-
-def _measured(points: _Points, uncertainty: float | None, *, sharp: bool | None = None) -> TableFit:
+def _measured(points: Points, uncertainty: float | None, *, sharp: bool | None = None) -> TableFit:
     """Return the smoothest admissible fit within the uncertainty, or the scatter."""
-    basis = _Basis(points, _knots(points, _KNOTS_OF_MEASURED))
+    basis = TableBasis(points, _knots(points, _KNOTS_OF_MEASURED))
     rough = basis.derivative(min(_ROUGH, basis.degree))
     without, with_tip = (_Spectrum(basis, rough, uncertainty, sharp=tip) for tip in (False, True))
     if sharp is None:
@@ -400,14 +196,14 @@ def _measured(points: _Points, uncertainty: float | None, *, sharp: bool | None 
     coefficients, spread = chosen.coefficients, chosen.deviations()
     used = ~basis.free
     used[-1] = chosen.sharp
-    if min(coefficients[used].min(), _slopes(basis, coefficients).min()) < _FLOOR:
+    if min(coefficients[used].min(), basis.slopes(coefficients).min()) < _FLOOR:
         coefficients = _not_negative(basis, rough, chosen)
-        scatter = _mean(points.weight * basis.deviation(coefficients))
+        scatter = root_mean_square(points.weight * basis.deviation(coefficients))
         spread = spread * max(scatter / chosen.sigma, 1.0)
     return basis.fit(coefficients, spread)
 
 
-def _not_negative(basis: _Basis, rough: Array, chosen: "_Spectrum") -> Array:
+def _not_negative(basis: TableBasis, rough: Array, chosen: "_Spectrum") -> Array:
     """Return the fit of the same weight of roughness with g' above the floor."""
     points = basis.points
     result = np.zeros(basis.heights.shape[1])
@@ -428,7 +224,7 @@ def _not_negative(basis: _Basis, rough: Array, chosen: "_Spectrum") -> Array:
         found[:size][free] -= found[size:]
         result = floor.copy()
         result[used] += found[:size]
-        if _slopes(basis, result).min() > 0:
+        if basis.slopes(result).min() > 0:
             break
     return result
 
@@ -437,7 +233,7 @@ class _Spectrum:
     """Solutions of a penalised least-squares problem for every weight of the penalty."""
 
     def __init__(
-        self, basis: _Basis, rough: Array, uncertainty: float | None, *, sharp: bool
+        self, basis: TableBasis, rough: Array, uncertainty: float | None, *, sharp: bool
     ) -> None:
         self.basis, self.sharp = basis, sharp
         points = basis.points
@@ -485,51 +281,11 @@ class _Spectrum:
         return spread if self.sharp else np.vstack([spread, np.zeros(spread.shape[1])])
 
 
-def _scatter(points: _Points) -> float:
-    """Median deviation of the points from the polynomial through their neighbours, over its norm.
-
-    Neither smooth shapes nor a few kinks have one; noise and rounding have.
-    """
-    x, y = points.x, points.y
-    around = np.delete(np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1), _NEIGHBOURS)
-    own = np.arange(_NEIGHBOURS, x.size - _NEIGHBOURS)
-    near = own[:, None] + around
-    gaps = x[near][:, :, None] - x[near][:, None, :]
-    gaps[:, range(around.size), range(around.size)] = 1.0
-    to_own = x[own, None] - x[near]
-    weights = to_own.prod(axis=1)[:, None] / (to_own * gaps.prod(axis=2))
-    off = y[own] - (weights * y[near]).sum(axis=1)
-    return float(np.median(np.abs(off) / np.sqrt(1 + np.square(weights).sum(axis=1))))
-
-
-def _has_no_noise(points: _Points) -> bool:
+def _has_no_noise(points: Points) -> bool:
     """True if the points deviate from a smooth shape by rounding errors, or less than it does."""
-    if points.rounded or _scatter(points) < _ROUNDED:
-        return _scatter(points) < _ROUNDED
+    if points.rounded or scatter(points) < ROUNDED:
+        return scatter(points) < ROUNDED
     most = min(_KNOTS_OF_MEASURED, points.x.size // 2)
-    basis = _Basis(points, _knots(points, most))
+    basis = TableBasis(points, _knots(points, most))
     spectrum = _Spectrum(basis, basis.derivative(_ROUGH), None, sharp=True)
     return spectrum.freedom > _NO_NOISE * spectrum.most
-
-
-def _rounding(x: Array, y: Array, count: int) -> tuple[float, float]:
-    """Standard errors of radii and heights that are multiples of a unit, zero if they are not.
-
-    `count` radii differ. On an even grid the unit is the spacing, which is no rounding.
-    """
-    found = []
-    for values, steps in ((x, 1 / count), (y, 1.0)):
-        unit = _common_unit(values)
-        found.append(unit / np.sqrt(12) if unit < _FINEST_STEP * steps else 0.0)
-    return found[0], found[1]
-
-
-def _common_unit(values: Array) -> float:
-    """Largest number of which all values are multiples up to rounding, by Euclid's algorithm."""
-    unit = 0.0
-    for value in np.unique(values).tolist():
-        rest = value
-        while rest > _EQUAL:
-            unit, rest = rest, abs(unit - rest * round(unit / rest))
-    parts = values / unit
-    return unit if np.abs(parts - parts.round()).max() < _OF_UNIT else 0.0

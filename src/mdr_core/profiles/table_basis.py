@@ -1,0 +1,163 @@
+"""B-splines of a table's slope g', with the images of jumps at declared breaks.
+
+Source: notes, §5.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from scipy.interpolate import BSpline, PPoly
+
+from mdr_core.abel.slope_pieces import heights
+from mdr_core.cached import cached_property
+from mdr_core.profiles.table_points import Points
+from mdr_core.typing import Array, Flags
+
+# Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
+_DEGREE: Final = 5
+# Points of a piece at which the sign of an interpolant is tested.
+_TESTED: Final = 8
+
+
+@dataclass(frozen=True, eq=False)
+class TableFit:
+    """Slope of a table's equivalent profile, and what the points leave open. Dimensional."""
+
+    edges: Array
+    """Knots [length], shape (k + 1,)."""
+    rows: Array
+    """Coefficients of g' by powers of the distance from the knot below, shape (6, k)."""
+    flanks: tuple[tuple[float, float, float], ...]
+    """Break [length], jump of the slope [1] and of the curvature [1/length]."""
+    rms: float
+    """Root mean square of the deviation from the points [length]."""
+    largest: tuple[float, float]
+    """Largest deviation and its radius [length]."""
+    spread: tuple[BSpline, BSpline]
+    """Possible deviations of g and of its integral, as functions of a over the last radius."""
+    scale: tuple[float, float]
+    """Last radius and height of the table [length]."""
+
+    def spread_at(self, radius: Array) -> tuple[Array, Array, Array]:
+        """Sizes of the errors of g, int_0^a x g' dx and int_0^a g dx that the points leave open."""
+        end, height = self.scale
+        a = np.ravel(radius) / end
+        depth, moment = (each(a).reshape(a.size, -1) for each in self.spread)
+        errors = depth, a[:, None] * depth - moment, moment
+        units = height, end * height, end * height
+        return tuple(
+            (unit * np.sqrt(np.square(error).sum(axis=1))).reshape(np.shape(radius))
+            for unit, error in zip(units, errors, strict=True)
+        )
+
+
+class TableBasis:
+    """B-splines of the slope and the images of jumps at breaks, with their heights at the points.
+
+    Columns: the splines but the first, two jumps for each break, the offset of the heights, and the
+    first spline, which is the slope on the axis.
+    """
+
+    def __init__(self, points: Points, knots: Array) -> None:
+        self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 1), _DEGREE)
+        self.points, self.knots = points, knots
+        self.t = np.concatenate([[0.0] * k, knots, [1.0] * k])
+        self.size = self.t.size - k - 1
+        x = points.x
+        splines = heights(knots, x, lambda at: BSpline.design_matrix(at, self.t, k))
+        past = [np.maximum(x - b, 0.0) for b in points.breaks]
+        jumps = [column for each in past for column in (each, each * each / 2)]
+        self.heights = np.column_stack([splines[:, 1:], *jumps, np.ones_like(x), splines[:, 0]])
+
+    @cached_property
+    def places(self) -> Array:
+        """Coefficients of the slope x."""
+        return np.array([self.t[i + 1 : i + 1 + self.degree].mean() for i in range(self.size)])
+
+    @property
+    def free(self) -> Flags:
+        """Columns whose coefficients may be negative: jumps of the curvature and the offset."""
+        free = np.zeros(self.heights.shape[1], dtype=bool)
+        free[self.size : -2 : 2] = True
+        free[-2] = True
+        return free
+
+    def padded(self, splines: Array) -> Array:
+        """Return rows over the splines (n, size) as rows over all columns."""
+        rest = np.zeros((len(splines), self.heights.shape[1] - self.size))
+        return np.hstack([splines[:, 1:], rest, splines[:, :1]])
+
+    def _differences(self, order: int) -> Array:
+        """Coefficients of a derivative of the splines."""
+        k, t, rows = self.degree, self.t, np.eye(self.size)
+        for o in range(1, order + 1):
+            span = t[k + 1 : k + 1 + self.size - o] - t[o : self.size]
+            rows = np.diff(rows, axis=0) * ((k - o + 1) / span)[:, None]
+        return rows
+
+    def derivative(self, order: int) -> Array:
+        """Coefficients of a derivative, weighted by the root of the support of its splines."""
+        inner, degree = self.t[order : self.t.size - order], self.degree - order
+        support = (inner[degree + 1 :] - inner[: self.size - order]) / (degree + 1)
+        return self.padded(self._differences(order) * np.sqrt(support)[:, None])
+
+    def jumps(self) -> Array:
+        """Jumps of the last derivative at the inner knots, times its power of their spacing."""
+        spacing = (self.knots[2:] - self.knots[:-2]) / 2
+        steps = np.diff(self._differences(self.degree), axis=0)
+        return self.padded(steps * spacing[:, None] ** self.degree)
+
+    def spline(self, coefficients: Array) -> BSpline:
+        """Slope, or several, of coefficients over all columns."""
+        splines = np.concatenate([coefficients[-1:], coefficients[: self.size - 1]])
+        return BSpline(self.t, splines, self.degree)
+
+    def slopes(self, coefficients: Array) -> Array:
+        """Return g' at places in every piece."""
+        knots = self.knots
+        share = (np.arange(_TESTED) + 0.5) / _TESTED
+        x = np.append((knots[:-1, None] + np.diff(knots)[:, None] * share).ravel(), 1.0)
+        slope = self.spline(coefficients)(x)
+        jumps = coefficients[self.size - 1 : -2].reshape(-1, 2)
+        for b, (jump, bend) in zip(self.points.breaks, jumps, strict=True):
+            past = x > b
+            s = np.sqrt((x[past] - b) * (x[past] + b))
+            angle = np.arctan2(s, b)
+            slope[past] += jump * (angle + b / s) + bend * (2 * s - b * angle)
+        return slope
+
+    def deviation(self, coefficients: Array) -> Array:
+        """Heights less those of the points."""
+        return self.heights @ coefficients - self.points.y
+
+    def fit(self, coefficients: Array, spread: Array) -> TableFit:
+        """Return the fit of coefficients; `spread` are possible deviations of them."""
+        end, height = self.points.scale
+        polynomials: Any = PPoly.from_spline(self.spline(coefficients).tck)
+        rows = polynomials.c[::-1, np.diff(polynomials.x) > 0]
+        rows[0, 0] = coefficients[-1]
+        powers = height / end * end ** -np.arange(float(len(rows)))[:, None]
+        jumps = coefficients[self.size - 1 : -2].reshape(-1, 2) * [height / end, height / end**2]
+        flanks = tuple(
+            (b * end, slope, bend)
+            for b, (slope, bend) in zip(self.points.breaks, jumps.tolist(), strict=True)
+            if slope or bend
+        )
+        off = self.deviation(coefficients)
+        worst = int(np.argmax(np.abs(off)))
+        possible = self.spline(spread)
+        return TableFit(
+            self.knots * end,
+            rows * powers,
+            flanks,
+            height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
+            (height * float(abs(off[worst])), end * float(self.points.x[worst])),
+            (possible.antiderivative(), possible.antiderivative(2)),
+            self.points.scale,
+        )
+
+
+def root_mean_square(off: Array) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(off))))

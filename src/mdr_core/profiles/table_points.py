@@ -1,0 +1,113 @@
+"""Points of a table in normal form: sorted, merged, over their last radius and height.
+
+What the numbers themselves tell of their errors is found here: a common unit to which they are
+rounded, and a scatter that no smooth shape has.
+
+Source: notes, §5.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from mdr_core.errors import InputError
+from mdr_core.typing import Array
+
+# Scatter of the heights, over their range, that is rounding error.
+ROUNDED: Final = 1e-8
+# Gaps between radii that are merged, over their mean spacing at equal radii.
+_SAME: Final = 1e-2
+# Neighbours on each side from which a height is predicted.
+_NEIGHBOURS: Final = 3
+# Rounded numbers: largest unit over the step between neighbours, remainder that is rounding error,
+# and part of a unit within which a number is a multiple.
+_FINEST_STEP, _EQUAL, _OF_UNIT = 0.05, 1e-9, 0.05
+# Smallest error of a rounded height, over that of most.
+_LEAST_ERROR: Final = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Points of a table over its last radius and its height, ascending; equal radii merged."""
+
+    x: Array
+    y: Array
+    weight: Array
+    """Weight of the deviation: square root of the number of points that were merged."""
+    breaks: tuple[float, ...]
+    offset_known: bool
+    """True if the first point lies on the axis."""
+    rounded: bool
+    """True if radii or heights show that they are rounded; the weights are those of that error."""
+    scale: tuple[float, float]
+    """Last radius and height [length]."""
+
+
+def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> Points:
+    """Sort the points and merge those whose radii differ by less than the spacing resolves."""
+    end, height = float(r.max()), float(f.max() - f.min())
+    x, y = given = r / end, (f - f.min()) / height
+    order = np.argsort(x, kind="stable")
+    x, y = x[order], y[order]
+    new = np.append(True, np.diff(x) > _SAME * x[1:] / x.size)
+    group = np.cumsum(new) - 1
+    count = np.bincount(group)
+    x, y = np.bincount(group, x) / count, np.bincount(group, y) / count
+    x[-1] = 1.0
+    curved = np.square(x) - np.mean(np.square(x))
+    if y @ curved <= 0:
+        raise InputError(
+            ("profile", "f"), "the heights fall away from the axis: reverse their sign"
+        )
+    weight = np.sqrt(count)
+    of_radius, of_height = _rounding(*given, x.size) if x.size > 2 else (0.0, 0.0)
+    rounded = max(of_radius, of_height) > ROUNDED
+    if rounded:
+        # An error of the radius is one of the height on a slope.
+        error = np.hypot(of_radius * np.gradient(y, x), of_height)
+        typical = float(np.median(error))
+        weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
+    scaled = tuple(b / end for b in breaks)
+    return Points(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
+
+
+def scatter(points: Points) -> float:
+    """Median deviation of the points from the polynomial through their neighbours, over its norm.
+
+    Neither smooth shapes nor a few kinks have one; noise and rounding have.
+    """
+    x, y = points.x, points.y
+    around = np.delete(np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1), _NEIGHBOURS)
+    own = np.arange(_NEIGHBOURS, x.size - _NEIGHBOURS)
+    near = own[:, None] + around
+    gaps = x[near][:, :, None] - x[near][:, None, :]
+    gaps[:, range(around.size), range(around.size)] = 1.0
+    to_own = x[own, None] - x[near]
+    weights = to_own.prod(axis=1)[:, None] / (to_own * gaps.prod(axis=2))
+    off = y[own] - (weights * y[near]).sum(axis=1)
+    return float(np.median(np.abs(off) / np.sqrt(1 + np.square(weights).sum(axis=1))))
+
+
+def _rounding(x: Array, y: Array, count: int) -> tuple[float, float]:
+    """Standard errors of radii and heights that are multiples of a unit, zero if they are not.
+
+    `count` radii differ. On an even grid the unit is the spacing, which is no rounding.
+    """
+    found = []
+    for values, steps in ((x, 1 / count), (y, 1.0)):
+        unit = _common_unit(values)
+        found.append(unit / np.sqrt(12) if unit < _FINEST_STEP * steps else 0.0)
+    return found[0], found[1]
+
+
+def _common_unit(values: Array) -> float:
+    """Largest number of which all values are multiples up to rounding, by Euclid's algorithm."""
+    unit = 0.0
+    for value in np.unique(values).tolist():
+        rest = value
+        while rest > _EQUAL:
+            unit, rest = rest, abs(unit - rest * round(unit / rest))
+    parts = values / unit
+    return unit if np.abs(parts - parts.round()).max() < _OF_UNIT else 0.0
