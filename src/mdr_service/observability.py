@@ -41,9 +41,6 @@ PROBLEMS: Final = Counter(
 QUEUE: Final = Gauge(
     "mdr_queue_length", "Queries waiting for a compute process.", registry=REGISTRY
 )
-TABLES: Final = Gauge(
-    "mdr_tables", "Resolved tables that the process of the event loop keeps.", registry=REGISTRY
-)
 PROCESSES: Final = Gauge(
     "mdr_compute_processes", "Compute processes that are idle or at work.", registry=REGISTRY
 )

@@ -29,8 +29,6 @@ _Result = TypeVar("_Result")
 
 AT_ONCE_BYTES: Final = 16_384
 """Longest query that is parsed on the event loop; the worst one is rejected in 2 ms."""
-AT_ONCE_BATCH_BYTES: Final = 4_096
-"""Longest batch that is parsed on the event loop; the worst one is rejected in 1 ms."""
 # Interval at which idle processes are checked.
 _BEAT_INTERVAL: Final = 5.0
 # A start takes a second or two, most of it for SciPy.

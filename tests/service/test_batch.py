@@ -6,10 +6,12 @@ from collections.abc import Sequence
 import httpx
 import pytest
 
+from mdr_service.dispatch import respond
 from mdr_service.problems import MEDIA_TYPE
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchAnswer
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_formats import BALL, CASES
@@ -136,9 +138,7 @@ def test_batch_is_available_as_json_only(client: Client, accept: str) -> None:
     assert client.request("POST", "/v1/batch?format=json", json=example).status_code == 200
 
 
-def test_internal_error_of_one_query_leaves_the_others(
-    client: Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_internal_error_of_one_query_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(_query: object) -> object:
         raise ZeroDivisionError
 
@@ -149,10 +149,10 @@ def test_internal_error_of_one_query_leaves_the_others(
         "friction_coefficient": 0.3,
         "tangential": {"tangential_force": 1e-3},
     }
-    queries = [("/v1/normal", BALL), ("/v1/tangential", pushed)]
-    # Short enough to be computed in this process, where the function is replaced.
-    texts = [(path, json.dumps(query).encode()) for path, query in queries]
-    first, second = batch(client, texts).json()["answers"]
+    queries = [{"ask": "normal", "request": BALL}, {"ask": "tangential", "request": pushed}]
+    # In this process, where the function is replaced.
+    text = respond("batch", json.dumps({"queries": queries}).encode(), FORMATS["json"])
+    first, second = json.loads(text)["answers"]
     assert first["status"] == 200
     assert second["status"] == second["problem"]["status"] == 500
     assert set(second["problem"]) == {"type", "title", "status", "detail"}

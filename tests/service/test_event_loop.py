@@ -25,7 +25,6 @@ def test_long_range_is_expanded_in_a_compute_process(
         patch.setattr(Parameters, "query", never)
         response = client.get(f"{FORCES}&n=2000{options}")
     assert response.status_code == 200
-    # Up to a thousand values the event loop expands it; shared values are the same.
     if not options:
         short = client.get(f"{FORCES}&n=1000").json()
         assert response.json()["normal_force"][::1999] == short["normal_force"][::999]

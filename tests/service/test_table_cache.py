@@ -4,10 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from prometheus_client import generate_latest
 
 from mdr_core import profiles
-from mdr_service import observability
 from mdr_service.dispatch import respond
 from mdr_service.queries import contacts
 from mdr_service.schemas.profiles import TabulatedProfile
@@ -56,30 +54,26 @@ def test_cached_table_gives_identical_bytes(name: str) -> None:
     if name == "stress":
         request |= {"points": 20, "quantities": ["pressure", "shear_stress"]}
     query = SCHEMAS[name].model.model_validate_json(json.dumps(request).encode())
-    contacts._tables.clear()
+    contacts._by_parameters.cache_clear()
     first = respond(name, query, FORMATS["json"])
-    assert len(contacts._tables) == 1
+    assert contacts._by_parameters.cache_info().misses == 1
     assert respond(name, query, FORMATS["json"]) == first
-    assert len(contacts._tables) == 1
+    assert contacts._by_parameters.cache_info().misses == 1
 
 
-def test_new_table_is_resolved_in_a_compute_process(
+def test_table_is_fitted_in_a_compute_process(
     client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    contacts._tables.clear()
     monkeypatch.setattr(profiles, "Tabulated", never)
     request = {"profile": table(2.0).model_dump(), "material": MODULI, "load": LOAD}
     first = client.post("/v1/normal", request)
     assert first.status_code == 200
-    # The event loop has kept it, and answers alike.
-    monkeypatch.setattr(client.app.state.workers, "run_in_process", never)
     assert client.post("/v1/normal", request).content == first.content
 
 
-def test_batch_with_a_new_table_is_computed_in_a_compute_process(
+def test_batch_with_a_table_is_computed_in_a_compute_process(
     client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    contacts._tables.clear()
     monkeypatch.setattr(profiles, "Tabulated", never)
     short = {"kind": "tabulated", "r": [0.0, 1.0, 2.0, 3.0], "f": [0.0, 1.0, 4.0, 9.0]}
     request = {"profile": short, "material": MODULI, "load": LOAD}
@@ -98,12 +92,11 @@ def never(*_arguments: object, **_options: object) -> None:
     raise AssertionError("the event loop resolves it")
 
 
-def test_few_tables_are_kept_and_counted_in_the_metrics() -> None:
-    contacts._tables.clear()
-    tables = [table(curvature=1.0 + factor) for factor in range(20)]
+def test_tables_used_last_are_kept() -> None:
+    tables = [table(curvature=1.0 + factor) for factor in range(40)]
     for each in tables:
         contacts.profile(each)
         # One that is used again stays.
-        contacts.profile(tables[0])
-    assert [contacts.is_new_table(each) for each in tables] == [False, *[True] * 4, *[False] * 15]
-    assert b"\nmdr_tables 16.0\n" in generate_latest(observability.REGISTRY)
+        kept = contacts.profile(tables[0])
+    assert contacts._by_parameters.cache_info().currsize == 32
+    assert contacts.profile(tables[0]) is kept

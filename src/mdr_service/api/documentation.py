@@ -19,7 +19,6 @@ PAGE_HEADERS: Final = {
 _COMPUTATION: Final = (
     problems.NOT_ACCEPTABLE,
     problems.INVALID_REQUEST,
-    problems.TOO_COSTLY,
     problems.ACCURACY,
     problems.BUSY,
     problems.LOST,

@@ -13,7 +13,7 @@ from fastapi.routing import APIRoute
 from pydantic import ValidationError
 from starlette.responses import Response
 
-from mdr_service import cost, problems
+from mdr_service import problems
 from mdr_service.api.documentation import (
     BATCH_RESPONSES,
     GET_RESPONSES,
@@ -22,28 +22,25 @@ from mdr_service.api.documentation import (
     Responses,
 )
 from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format, appearance, media_type
-from mdr_service.dispatch import respond
+from mdr_service.dispatch import is_short, respond
 from mdr_service.middleware import header, read_body
 from mdr_service.problems import ServiceError
-from mdr_service.queries.contacts import is_new_table, keep_table, profile
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import contacts
 from mdr_service.schemas.answers import Answer
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.queries import SCHEMAS
-from mdr_service.serializers import FORMATS, json
+from mdr_service.serializers import FORMATS, PICTURES, json
 from mdr_service.serializers.picture import AS_USUAL
 from mdr_service.transfers import LONG
-from mdr_service.workers import AT_ONCE_BATCH_BYTES, AT_ONCE_BYTES
+from mdr_service.workers import AT_ONCE_BYTES
 
 _ANY: Final = "*/*"
 # Bound; the longest query has about forty.
 _MAX_PARAMETERS: Final = 100
 # A list of errors on the event loop takes 0.1 ms up to this number.
 _MAX_ERRORS_AT_ONCE: Final = 100
-# Longest range of URL parameters whose values are validated on the event loop, in 0.1 ms.
-_MAX_RANGE_AT_ONCE: Final = 1_000
 # A response depends on the query and on the version of the service alone.
 _CACHE_CONTROL: Final = "max-age=3600"
 
@@ -83,11 +80,8 @@ class Responder:
     ) -> Response:
         """Return the content, of a long query or an unparsed one from a compute process."""
         arguments = name, query, self.media_type, members, self.appearance
-        if not isinstance(query, (bytes, dict)) and cost.is_short(
-            cost.require_feasible(query, self.media_type), len(self.tasks)
-        ):
-            if isinstance(query, contacts.Query) and is_new_table(table := query.profile):
-                keep_table(table, await self.workers.run_in_process(profile, table))
+        is_drawn = self.media_type in PICTURES
+        if isinstance(query, contacts.Query) and not is_drawn and is_short(query, len(self.tasks)):
             content = respond(*arguments)
         else:
             content = await self.workers.run_in_process(respond, *arguments)
@@ -99,7 +93,7 @@ class BatchResponder(Responder):
 
     formats = ("json",)
     responses = BATCH_RESPONSES
-    at_once_bytes = AT_ONCE_BATCH_BYTES
+    at_once_bytes = 0
 
 
 class QueryRoute(APIRoute):
@@ -228,8 +222,7 @@ def _declare_get(name: str, title: str, model: Any) -> None:
         """
         send = Responder(request, parameters.format, parameters.size, parameters.units)
         with parameters.pointing():
-            is_long = (parameters.n or 0) > _MAX_RANGE_AT_ONCE
-            query = await url_parameters(request) if is_long else parameters.query()
+            query = await url_parameters(request) if parameters.n else parameters.query()
             response = await send(name, query, parameters.members)
         return await _cacheable(request, response)
 

@@ -11,7 +11,6 @@ from mdr_core import tangential as tangential_contact
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
-from mdr_service import observability
 from mdr_service.results import Result, by_load, checked, members, notices, response_metadata
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
@@ -20,12 +19,6 @@ from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.wear import WearQuery
 
 Arguments = dict[str, Any]
-
-# Fitting a table takes up to a hundred times as long as a contact. The tables used last are kept,
-# by their arguments.
-_MAX_TABLES: Final = 16
-_tables: Final[dict[tuple[Any, ...], profiles.Profile]] = {}
-observability.TABLES.set_function(lambda: len(_tables))
 
 _NORMAL: Final = members(NormalAnswer, ["data_error"])
 _PARTIAL_SLIP: Final = members(TangentialAnswer, [*_NORMAL, "data_error"])
@@ -58,32 +51,15 @@ def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
     given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
     if model.kind == "tabulated":
-        table = _tables.pop(_key(model), None) or profiles.Tabulated(**given)
-        keep_table(model, table)
-        return table
+        given = {name: tuple(v) if isinstance(v, list) else v for name, v in given.items()}
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
     return _by_parameters(model.kind, **given)
 
 
-def is_new_table(model: Profile) -> bool:
-    """Return True if `profile` would have to resolve a table."""
-    return model.kind == "tabulated" and _key(model) not in _tables
-
-
-def keep_table(model: Profile, table: profiles.Profile) -> None:
-    """Keep a resolved table in place of the one whose last use is the longest ago."""
-    _tables[_key(model)] = table
-    if len(_tables) > _MAX_TABLES:
-        del _tables[next(iter(_tables))]
-
-
-def _key(model: Profile) -> tuple[Any, ...]:
-    return tuple(tuple(each) if isinstance(each, list) else each for each in vars(model).values())
-
-
-# Keeps what a profile computes on first use, such as its break and the contact coordinate there.
-@lru_cache(maxsize=64)
+# Fitting a table takes up to a hundred times as long as a contact, and a profile computes its break
+# and the contact coordinate there on first use.
+@lru_cache(maxsize=32)
 def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
     return profiles.KINDS[kind](**given)
 

@@ -1,0 +1,129 @@
+"""Queries that run on the event loop, by their kind and size, and bounds of sizes."""
+
+import json
+from time import thread_time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core.errors import InputError
+from mdr_service.dispatch import is_short, respond
+from mdr_service.queries import QUERIES
+from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
+from mdr_service.serializers import FORMATS
+from mdr_service.settings import SETTINGS
+from tests.core.evaluations import PROFILES
+
+BALL = EXAMPLES["normal"]["hertz"]["value"]
+TANGENTIAL = EXAMPLES["tangential"]["cattaneo_mindlin"]["value"]
+STRESS = EXAMPLES["stress"]["cattaneo_mindlin"]["value"]
+SUBSURFACE = next(iter(EXAMPLES["subsurface"].values()))["value"]
+WEAR = EXAMPLES["wear"]["held_force"]["value"]
+EVOLUTION = EXAMPLES["evolution"]["shakedown"]["value"]
+HISTORY = EXAMPLES["history"]["mindlin_deresiewicz"]["value"]
+TABLE = EXAMPLES["normal"]["table"]["value"]["profile"]
+POINTS = {"normal": {"normal_force": [8.0, 9.0]}, "tangential": {"tangential_force": [0.1, 0.2]}}
+MIXED = POINTS | {"normal": {"indentation_depth": [1e-6, 2e-6]}}
+PATH = {name: HISTORY[name] for name in ("profile", "material", "friction_coefficient")}
+STRENGTH = {"material": STRESS["material"] | {"yield_strength": 1e9}}
+WEAR_LOADS = {
+    "friction_coefficient": 0.3,
+    "oscillation": {"tangential_force": np.linspace(1e-4, 5e-3, 250).tolist()},
+}
+# Time on the event loop when no other request is in progress; the bound on small queries beside a
+# client is ten times as long [s].
+LONGEST = 10e-3
+
+
+def query(name: str, value: dict[str, Any]) -> Query:
+    return SCHEMAS[name].model.model_validate_json(json.dumps(value).encode())
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "short"),
+    [
+        ("normal", BALL, True),
+        ("normal", BALL | {"load": {"normal_force": [10.0] * 250}}, True),
+        ("normal", BALL | {"load": {"normal_force": [10.0] * 251}}, False),
+        ("normal", BALL | {"profile": TABLE}, False),
+        ("normal", BALL | STRENGTH, False),
+        ("tangential", TANGENTIAL, True),
+        ("stress", STRESS | {"radius": [1e-5] * 800}, True),
+        ("stress", STRESS | {"radius": [1e-5] * 900}, False),
+        ("history", PATH | {"history": POINTS}, True),
+        ("history", PATH | {"history": POINTS | {"samples_per_step": 200}}, False),
+        # A nonlinear step takes some milliseconds.
+        ("history", PATH | {"history": MIXED}, False),
+        ("stress", PATH | {"history": MIXED, "radius": [0.0], "quantities": ["slip"]}, False),
+        ("subsurface", SUBSURFACE, False),
+        ("wear", WEAR, True),
+        ("evolution", EVOLUTION, False),
+    ],
+)
+def test_short_queries_run_on_the_event_loop(
+    name: str,
+    value: dict[str, Any],
+    short: bool,  # noqa: FBT001 -- of a table of cases
+) -> None:
+    assert is_short(query(name, value), 1) == short
+
+
+def test_fewer_loads_run_on_the_event_loop_the_more_requests_there_are() -> None:
+    longest = [
+        max(
+            n
+            for n in range(5, 255, 5)
+            if is_short(query("normal", BALL | {"load": {"normal_force": [1.0] * n}}), requests)
+        )
+        for requests in (1, 2, 10, 1000)
+    ]
+    assert longest == [250, 125, 25, 10]
+
+
+@pytest.mark.long
+@pytest.mark.alone
+@pytest.mark.parametrize("kind", sorted(PROFILES.keys() - {"tabulated"}))
+def test_short_queries_take_milliseconds(kind: str) -> None:
+    part = {"profile": {"kind": kind, **PROFILES[kind]}, "material": {"e_star": 1.0, "g_star": 0.9}}
+    rubbed = part | {"friction_coefficient": 0.3, "tangential": {"tangential_displacement": 1e-9}}
+    path = {
+        "normal": {"normal_force": [8e-3, 9e-3]},
+        "tangential": {"tangential_force": [0.0, 1e-3]},
+        "samples_per_step": 125,
+    }
+    load = {"load": {"normal_force": np.linspace(0.01, 0.02, 250).tolist()}}
+    radii = {"radius": np.linspace(0.0, 1.0, 1200).tolist()}
+    for name, value in (
+        ("normal", part | load),
+        ("tangential", rubbed | load),
+        (
+            "stress",
+            rubbed | {"load": {"normal_force": 0.02}, "quantities": ["pressure", "slip"]} | radii,
+        ),
+        ("history", part | {"friction_coefficient": 0.3, "history": path}),
+        ("wear", part | WEAR_LOADS | {"load": {"normal_force": 0.02}}),
+    ):
+        given = query(name, value)
+        assert is_short(given, 1)
+        times = []
+        for _ in range(5):
+            start = thread_time()
+            respond(name, given, FORMATS["json"])
+            times.append(thread_time() - start)
+        assert min(times) < LONGEST, name
+
+
+def test_every_number_of_a_response_counts() -> None:
+    # A third quantity exceeds the limit, where loads times radii alone would not.
+    most = SETTINGS.max_numbers
+    loads, radii = 10, most // 20
+    value = STRESS | {
+        "load": {"normal_force": [10.0] * loads},
+        "radius": [1e-5] * radii,
+        "quantities": ["pressure", "slip", "shear_stress"],
+    }
+    with pytest.raises(InputError, match=f"must not exceed {most}"):
+        QUERIES["stress"].solve(query("stress", value))
