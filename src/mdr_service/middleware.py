@@ -3,8 +3,7 @@
 import logging
 import os
 import re
-from asyncio import CancelledError, Future, get_running_loop
-from collections import deque
+from asyncio import CancelledError
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -32,8 +31,6 @@ from mdr_service.transfers import LONG, Transfers
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
 # Status in the log for a client that disconnected before the response, as in nginx.
 _CLIENT_CLOSED_REQUEST: Final = 499
-# Some milliseconds of small queries.
-_REQUESTS_PER_TURN: Final = 16
 # Status sent before the body was read to its end.
 _UNREAD: Final = problems.BODY_TOO_LARGE.status
 # Time for a client on the same continent to read a response.
@@ -65,37 +62,6 @@ def install(app: FastAPI) -> None:
         )
 
 
-class _Turns:
-    """Turns of the event loop, in each of which a few requests begin, in the order of arrival.
-
-    A new connection takes five turns to its response. Beside hundreds of clients, each turn would
-    otherwise hold a request of every second client.
-    """
-
-    def __init__(self) -> None:
-        self._begun = 0
-        self._waiting: deque[Future[None]] = deque()
-
-    async def take(self) -> None:
-        """Wait for the turn of a request."""
-        self._begun += 1
-        if self._begun == 1:
-            get_running_loop().call_soon(self._next)
-        elif self._begun > _REQUESTS_PER_TURN:
-            turn = get_running_loop().create_future()
-            self._waiting.append(turn)
-            await turn
-
-    def _next(self) -> None:
-        self._begun = min(len(self._waiting), _REQUESTS_PER_TURN)
-        for _ in range(self._begun):
-            turn = self._waiting.popleft()
-            if not turn.cancelled():
-                turn.set_result(None)
-        if self._begun:
-            get_running_loop().call_soon(self._next)
-
-
 class ServiceMiddleware:
     """Outermost layer of the application, but for CORS.
 
@@ -106,7 +72,6 @@ class ServiceMiddleware:
     def __init__(self, app: ASGIApp, transfers: Transfers) -> None:
         self.app = app
         self.transfers = transfers
-        self.turns = _Turns()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Handle one request; respond with a problem document if it fails."""
@@ -122,9 +87,6 @@ class ServiceMiddleware:
             # The server leaves out the body.
             scope = {**scope, "method": "GET"}
         try:
-            # Beside few others there is no need to wait.
-            if len(scope.get("state", {}).get("tasks", ())) > _REQUESTS_PER_TURN:
-                await self.turns.take()
             await self.app(scope, receive, sender)
         except ClientDisconnect:
             record.status = _CLIENT_CLOSED_REQUEST
@@ -140,7 +102,8 @@ class ServiceMiddleware:
             _logger.exception("internal error, response 500")
             await problem_response(problems.INTERNAL_ERROR)(scope, receive, sender)
         finally:
-            self.transfers.remove(record)
+            if record.held:
+                self.transfers.remove(record)
             route = scope.get("route")
             observability.end(record, route.path if isinstance(route, Route) else None)
 
@@ -168,7 +131,7 @@ class _Sender:
         size = len(message.get("body", b""))
         if size > LONG and not self.record.status:
             try:
-                self.transfers.add_response(self.record, size)
+                self.transfers.add(self.record, size)
             except ServiceError as error:
                 response = problem_response(error)
                 self.start.update(status=response.status_code, headers=response.raw_headers)
@@ -255,7 +218,7 @@ async def read_body(request: Request) -> bytes:
         if size > SETTINGS.max_body_bytes:
             raise _too_large()
         if size > LONG:
-            request.app.state.transfers.add_received(observability.CURRENT.get(), len(chunk))
+            request.app.state.transfers.add(observability.CURRENT.get(), len(chunk))
         chunks.append(chunk)
     return b"".join(chunks)
 

@@ -122,10 +122,8 @@ class RequestRecord:
     status: int = 0
     queued: float = 0.0
     """Time in the queue [s]."""
-    received: int = 0
-    """Length of a long request body in memory [bytes]."""
-    response: int = 0
-    """Length of a long response in memory [bytes]."""
+    held: int = 0
+    """Length of its long bodies in memory [bytes]."""
 
 
 CURRENT: Final[ContextVar[RequestRecord | None]] = ContextVar("request", default=None)

@@ -25,20 +25,9 @@ class Transfers:
         self._total = 0
         self._sending: dict[CancelScope, float] = {}
 
-    def add_received(self, record: RequestRecord, size: int) -> None:
-        """Add a part of a request body; raise ServiceError if the limit is exceeded."""
-        self._add(record, size)
-        record.received += size
-
-    def add_response(self, record: RequestRecord, size: int) -> None:
-        """Add the response, once; raise ServiceError if the limit is exceeded."""
-        if not record.response:
-            self._add(record, size)
-            record.response = size
-
-    def _add(self, record: RequestRecord, size: int) -> None:
-        own = record.received + record.response
-        if self._total > own and self._total + size > self._limit:
+    def add(self, record: RequestRecord, size: int) -> None:
+        """Add a body, or a part of one, of a request; raise ServiceError beyond the limit."""
+        if self._total > record.held and self._total + size > self._limit:
             # A slow client must not block the others for long.
             oldest = next(iter(self._sending), None)
             if oldest and monotonic() - self._sending[oldest] > _READ_SECONDS:
@@ -46,10 +35,11 @@ class Transfers:
             detail = "other long bodies are being transferred; try again in 1 s"
             raise ServiceError(problems.BUSY, detail, retry_after=1)
         self._total += size
+        record.held += size
 
     def remove(self, record: RequestRecord) -> None:
         """Remove the bodies of a request."""
-        self._total -= record.received + record.response
+        self._total -= record.held
 
     @contextmanager
     def sending(self) -> Iterator[CancelScope]:

@@ -1,46 +1,29 @@
-"""Number of source files on the call path of a small query, and requests that need no thread."""
+"""Number of source files that a request passes, and requests that need no thread."""
 
 import asyncio
 import json
 import sys
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
 import pytest
+import uvicorn
+from uvicorn.server import ServerState
 
 import mdr_core
 import mdr_service
-from mdr_core import normal
-from mdr_core.profiles import Paraboloid
 from mdr_service.app import create_app
+from mdr_service.dispatch import respond
+from mdr_service.protocol import BoundedProtocol
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.serializers.json import MEDIA_TYPE
 from tests.conftest import JSON, Client
 
 SERVICE, CORE = (Path(str(each.__file__)).parent for each in (mdr_service, mdr_core))
 BODY = json.dumps(EXAMPLES["normal"]["hertz"]["value"]).encode()
-SCOPE: dict[str, Any] = {
-    "type": "http",
-    "method": "POST",
-    "path": "/v1/normal",
-    "query_string": b"",
-    "headers": [(b"content-type", b"application/json")],
-}
-
-
-def statuses(app: Any) -> list[int]:
-    """Return the status of the response to a Hertz query."""
-    messages: list[Any] = []
-
-    async def receive() -> dict[str, Any]:
-        return {"type": "http.request", "body": BODY}
-
-    async def send(message: Any) -> None:
-        messages.append(message)
-
-    asyncio.run(app(dict(SCOPE), receive, send))
-    return [message["status"] for message in messages if "status" in message]
 
 
 def own(files: Iterable[str]) -> list[str]:
@@ -55,40 +38,71 @@ def own(files: Iterable[str]) -> list[str]:
     )
 
 
-def callers(frame: FrameType | None) -> Iterator[str]:
-    """Yield the files of a frame and of the frames that wait for it."""
-    while frame:
-        yield frame.f_code.co_filename
-        frame = frame.f_back
+@contextmanager
+def recorded(files: set[str]) -> Iterator[None]:
+    """Add the files of all functions that are called in this thread within the context."""
+
+    def record(frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            files.add(frame.f_code.co_filename)
+
+    sys.setprofile(record)
+    try:
+        yield
+    finally:
+        sys.setprofile(None)
+
+
+async def served(path: str, body: bytes) -> set[str]:
+    """Return the files from the bytes of a request on its socket to the end of its response."""
+    app, state, files = create_app(), dict[str, Any](), set[str]()
+    config = uvicorn.Config(app, http=BoundedProtocol, lifespan="off", log_config=None)
+    config.load()
+    head = f"POST {path} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+    text = f"{head}Content-Length: {len(body)}\r\nConnection: close\r\n\r\n".encode() + body
+
+    def protocol() -> BoundedProtocol:
+        return BoundedProtocol(config, ServerState(), state)
+
+    async def ask() -> bytes:
+        reader, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
+        writer.write(text)
+        response = await reader.read()
+        writer.close()
+        return response
+
+    async with app.router.lifespan_context(app):
+        server = await asyncio.get_running_loop().create_server(protocol, "127.0.0.1", 0)
+        async with server:
+            # The first requests build the framework's middleware stack, and fit a table.
+            for _ in range(4):
+                assert (await ask()).startswith(b"HTTP/1.1 200 ")
+            with recorded(files):
+                await ask()
+    return files
 
 
 def test_small_query_passes_few_files() -> None:
-    app = create_app()
-    # The first request builds the framework's middleware stack.
-    assert statuses(app) == [200]
-    called: set[str] = set()
-    stacked: set[str] = set()
-    solved: list[bool] = []
+    files = own(asyncio.run(served("/v1/normal", BODY)))
+    assert {"mdr_service/protocol.py", "mdr_core/profiles/powers.py"} <= set(files)
+    assert {"mdr_service/serializers/json.py", "mdr_service/observability.py"} <= set(files)
+    assert len(files) <= 19, files
 
-    def profile(frame: FrameType, event: str, _: object) -> None:
-        if event == "call" and not solved:
-            called.add(frame.f_code.co_filename)
-            if frame.f_code is Paraboloid.coordinate_from_reduced_force.__code__:
-                stacked.update(callers(frame))
-        elif event == "return" and frame.f_code is normal.solve.__code__:
-            solved.append(True)
 
-    sys.setprofile(profile)
-    try:
-        assert statuses(app) == [200]
-    finally:
-        sys.setprofile(None)
-    assert solved
-    # The frames from the application to the number, and all that they call on the way.
-    assert len(own(stacked)) <= 7, own(stacked)
-    assert len(own(called)) <= 12, own(called)
-    assert {"mdr_service/middleware.py", "mdr_service/dispatch.py"} <= set(own(stacked))
-    assert {"mdr_core/normal.py", "mdr_core/profiles/powers.py"} <= set(own(stacked))
+@pytest.mark.long
+def test_history_of_a_table_passes_few_files() -> None:
+    """The files of the server and of its compute process."""
+    cycles = {"normal": {"normal_force": 1.0}, "tangential": {"tangential_force": 0.1}}
+    query = EXAMPLES["history"]["mindlin_deresiewicz"]["value"] | {"cycles": cycles}
+    query |= {"profile": EXAMPLES["normal"]["table"]["value"]["profile"]}
+    body = json.dumps(query).encode()
+    files = asyncio.run(served("/v1/tangential/history", body))
+    assert own(files)
+    respond("history", body, MEDIA_TYPE)
+    with recorded(files):
+        respond("history", body, MEDIA_TYPE)
+    assert {"mdr_service/compute_process.py", "mdr_core/profiles/tabulated.py"} <= set(own(files))
+    assert len(own(files)) <= 37, own(files)
 
 
 @pytest.mark.parametrize(

@@ -178,40 +178,6 @@ def test_body_is_rejected_by_type_and_length(
     assert ((b"connection", b"close") in result.sent[0]["headers"]) == (status == 413)
 
 
-def test_few_requests_begin_in_a_turn_of_the_loop_in_their_order() -> None:
-    """A new connection waits for some turns, and each would hold all waiting requests."""
-
-    async def test() -> None:
-        begun: list[int] = []
-        turns = [0]
-
-        async def endpoint(request: Request) -> Response:
-            begun.append(request.scope["number"])
-            turns[-1] += 1
-            return Response()
-
-        app = application(endpoint)
-        connections = [Connection(app) for _ in range(100)]
-        for number, connection in enumerate(connections):
-            connection.scope |= {"number": number, "state": {"tasks": connections}}
-        async with asyncio.TaskGroup() as tasks:
-            for connection in connections:
-                tasks.create_task(connection.run())
-            while sum(turns) < len(connections):
-                await asyncio.sleep(0)
-                turns.append(0)
-        assert begun == list(range(100))
-        assert max(turns) == middleware._REQUESTS_PER_TURN
-        # A request that leaves while it waits holds nobody up.
-        late = [asyncio.create_task(connection.run()) for connection in connections[:40]]
-        await asyncio.sleep(0)
-        late[30].cancel()
-        await asyncio.gather(*late, return_exceptions=True)
-        assert len(begun) == 139
-
-    asyncio.run(test())
-
-
 def test_client_that_disconnects_gets_no_response() -> None:
     connection = Connection(application(echo), "POST", content_type="application/json")
     connection.incoming.clear()

@@ -1,187 +1,200 @@
-"""Endpoints of the queries: by POST, with a route class of their own, and by URL parameters."""
+"""Endpoints of the queries, by POST and by URL parameters."""
 
-from collections import Counter
-from collections.abc import Callable, Sequence, Sized
 from functools import partial
 from hashlib import blake2b
-from inspect import signature
-from typing import Annotated, Any, ClassVar, Final, get_args
+from typing import Annotated, Any, Final
 
 from anyio import to_thread
 from fastapi import APIRouter, Body, Depends, Query, Request
-from fastapi.routing import APIRoute
-from pydantic import ValidationError
 from starlette.responses import Response
 
-from mdr_service import problems
-from mdr_service.api.documentation import (
-    BATCH_RESPONSES,
-    GET_RESPONSES,
-    POST_RESPONSES,
-    QUERY_TEXTS,
-    Responses,
-)
-from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format, appearance, media_type
-from mdr_service.dispatch import is_short, respond
-from mdr_service.middleware import header, read_body
-from mdr_service.problems import ServiceError
+from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
+from mdr_service.api.query_route import BatchResponder, QueryRoute, Responder, url_parameters
+from mdr_service.middleware import header
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.schemas import contacts
-from mdr_service.schemas.answers import Answer
+from mdr_service.schemas import answers
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
+from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.queries import SCHEMAS
-from mdr_service.serializers import FORMATS, PICTURES, json
-from mdr_service.serializers.picture import AS_USUAL
+from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 from mdr_service.transfers import LONG
-from mdr_service.workers import AT_ONCE_BYTES
 
-_ANY: Final = "*/*"
-# Bound; the longest query has about forty.
-_MAX_PARAMETERS: Final = 100
-# A list of errors on the event loop takes 0.1 ms up to this number.
-_MAX_ERRORS_AT_ONCE: Final = 100
 # A response depends on the query and on the version of the service alone.
 _CACHE_CONTROL: Final = "max-age=3600"
 
-
-class Responder:
-    """Response to a query in the format that a parameter or the header ``Accept`` requests."""
-
-    formats: ClassVar[tuple[str, ...]] = tuple(FORMATS)
-    responses: ClassVar[Responses] = POST_RESPONSES
-    at_once_bytes: ClassVar[int] = AT_ONCE_BYTES
-    """Length of the longest body that is parsed on the event loop."""
-
-    def __init__(
-        self,
-        request: Request,
-        format_: Annotated[Format | None, Query(alias="format", description=FORMAT)] = None,
-        size: Annotated[str | None, Query(description=SIZE)] = None,
-        units: Annotated[str | None, Query(description=UNITS)] = None,
-    ) -> None:
-        accept = header(request.scope, b"accept", _ANY)
-        # Most clients accept anything.
-        if format_ is None and accept == _ANY:
-            self.media_type = json.MEDIA_TYPE
-        else:
-            self.media_type = media_type(format_, accept, self.formats)
-        self.appearance = AS_USUAL
-        if size is not None or units is not None:
-            self.appearance = appearance(self.media_type, size, units)
-        self.workers = request.app.state.workers
-        self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
-
-    async def __call__(
-        self,
-        name: str,
-        query: contacts.Query | BatchQuery | bytes | dict[str, str],
-        members: Sequence[str] = (),
-    ) -> Response:
-        """Return the content, of a long query or an unparsed one from a compute process."""
-        arguments = name, query, self.media_type, members, self.appearance
-        is_drawn = self.media_type in PICTURES
-        if isinstance(query, contacts.Query) and not is_drawn and is_short(query, len(self.tasks)):
-            content = respond(*arguments)
-        else:
-            content = await self.workers.run_in_process(respond, *arguments)
-        return Response(content, media_type=self.media_type)
+router = APIRouter(route_class=QueryRoute, responses=POST_FAILURES)
+Send = Annotated[Responder, Depends()]
 
 
-class BatchResponder(Responder):
-    """Response to a batch, which is JSON only."""
-
-    formats = ("json",)
-    responses = BATCH_RESPONSES
-    at_once_bytes = 0
+def _examples(name: str) -> Any:
+    return Body(openapi_examples=EXAMPLES[name])
 
 
-class QueryRoute(APIRoute):
-    """Route of an endpoint that takes a query and a responder, and is named as the query.
+# `QueryRoute` reads the signatures of these functions and does the same, faster.
 
-    The framework's own handler works as well, but parses a body to a dictionary first, solves
-    dependencies and validates the response. This one parses the bytes straight into the model: 20
-    instead of 50 µs per request, apart from the computation. It hands long bodies to a compute
-    process unparsed, so that they do not block the event loop.
+
+@router.post(
+    "/v1/normal",
+    operation_id="normal",
+    tags=["contact"],
+    summary="Normal contact under a depth, a force or a contact radius",
+    response_model=answers.NormalAnswer,
+    responses=RESULT,
+)
+async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send) -> Response:
+    """Compute the frictionless contact of a profile with an elastic half-space.
+
+    Every list of the response has one entry per load. `method` names the most expensive method
+    used, `error_estimate` is an upper bound on the relative error of every number.
     """
-
-    def get_route_handler(self) -> Callable[[Request], Any]:
-        """Return the handler of a request."""
-        parameters = signature(self.endpoint).parameters.values()
-        model, responder_type = (get_args(each.annotation)[0] for each in parameters)
-        name = str(self.operation_id)
-
-        async def handle(request: Request) -> Response:
-            given = await url_parameters(request)
-            options = [given.pop(each, None) for each in ("format", "size", "units")]
-            responder: Responder = responder_type(request, *options)
-            if given:
-                raise _invalid(dict.fromkeys(given, "there is no such parameter"))
-            query: Any = await read_body(request)
-            if len(query) <= responder.at_once_bytes:
-                try:
-                    query = model.model_validate_json(query)
-                except ValidationError as error:
-                    # A compute process finds and lists more of them.
-                    if error.error_count() <= _MAX_ERRORS_AT_ONCE:
-                        raise
-            return await responder(name, query)
-
-        return handle
+    return await send("normal", query)
 
 
-async def url_parameters(request: Request) -> dict[str, str]:
-    """Return the parameters of the URL, each of which can be given once.
+@router.post(
+    "/v1/tangential",
+    operation_id="tangential",
+    tags=["contact"],
+    summary="Partial slip under a tangential force or displacement, or a stick radius",
+    response_model=answers.TangentialAnswer,
+    responses=RESULT,
+)
+async def tangential(
+    query: Annotated[TangentialQuery, _examples("tangential")], send: Send
+) -> Response:
+    """Compute a contact with friction, loaded normally first and then tangentially once.
 
-    A coroutine: the framework runs plain dependencies in a thread, which takes longer than a query.
+    Every list of the response has one entry per pair of loads. A tangential force beyond µ F_N has
+    no equilibrium and is rejected; a displacement beyond full slip has the regime `full_slip`.
     """
-    text: bytes = request.scope["query_string"]
-    if not text:
-        return {}
-    if text.count(b"&") >= _MAX_PARAMETERS:
-        raise _invalid({"": f"at most {_MAX_PARAMETERS} parameters are allowed"})
-    pairs = request.query_params.multi_items()
-    numbers = Counter(name for name, _ in pairs)
-    if len(numbers) < len(pairs):
-        repeated = [name for name, number in numbers.items() if number > 1]
-        raise _invalid(dict.fromkeys(repeated, "is given more than once"))
-    return dict(pairs)
+    return await send("tangential", query)
 
 
-def _invalid(errors: dict[str, str]) -> ServiceError:
-    found = [(problems.pointer([name]), detail) for name, detail in errors.items()]
-    return problems.invalid(found, len(found))
+@router.post(
+    "/v1/tangential/history",
+    operation_id="history",
+    tags=["contact"],
+    summary="Load history: an arbitrary load path or identical cycles",
+    response_model=answers.HistoryAnswer,
+    responses=RESULT,
+)
+async def history(query: Annotated[HistoryQuery, _examples("history")], send: Send) -> Response:
+    """Follow a load path from first contact, and return samples along it.
+
+    The controls vary linearly from point to point. Paths of depths and displacements, and of
+    normal and tangential forces, are solved exactly. Where a depth changes with a tangential force,
+    or a normal force with a displacement, the path is replaced by chords: the error is mostly 1e-9
+    to 1e-7 and within `error_estimate`. A negative depth is a separation, which erases the slip
+    memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
+    rejected.
+
+    `error_estimate` is relative to the largest value on the path. It does not include
+    `slip_fronts`. `energy_per_cycle` and `secant_stiffness` belong to
+    `cycles`.
+    """
+    return await send("history", query)
 
 
-router = APIRouter(route_class=QueryRoute)
+@router.post(
+    "/v1/stress",
+    operation_id="stress",
+    tags=["contact"],
+    summary="Surface stresses, slip and displacement over the radius",
+    response_model=answers.StressAnswer,
+    responses=RESULT,
+)
+async def stress(query: Annotated[StressQuery, _examples("stress")], send: Send) -> Response:
+    """Compute the fields named in `quantities`, and nothing else, by load and radius.
+
+    `error_estimate` bounds the error of each field relative to its largest value. A rounding error
+    of a requested radius near a, c or a break is not included.
+    """
+    return await send("stress", query)
 
 
-def _declare(
-    name: str, path: str, tag: str, model: Any, answer: type[Answer], responder: Any = Responder
-) -> None:
-    """Declare the endpoint of a query, whose signature describes the request in OpenAPI."""
-    summary, description = QUERY_TEXTS[name]
+@router.post(
+    "/v1/subsurface",
+    operation_id="subsurface",
+    tags=["contact"],
+    summary="Stresses beneath the surface of either body, their peaks and the onset of yield",
+    response_model=answers.SubsurfaceAnswer,
+    responses=RESULT,
+)
+async def subsurface(
+    query: Annotated[SubsurfaceQuery, _examples("subsurface")], send: Send
+) -> Response:
+    """Compute the stresses named in `quantities` by load, depth z and x, in the plane of one y.
 
-    @router.post(
-        path,
-        operation_id=name,
-        tags=[tag],
-        summary=summary,
-        description=description,
-        response_model=answer,
-        responses=responder.responses,
-    )
-    async def post(
-        query: Annotated[model, Body(openapi_examples=EXAMPLES[name])],
-        send: Annotated[responder, Depends()],
-    ) -> Response:
-        # `QueryRoute` reads the signature and does the same, faster.
-        return await send(name, query)
+    `error_estimate` is relative to the largest stress of the response. With a `yield_strength` of
+    the material, and without `history`, the response holds the normal force at the onset of yield,
+    at the same ratio of tangential to normal force. The tangential force acts on body 1 along x,
+    its reaction on body 2.
+    """
+    return await send("subsurface", query)
 
 
-for _name, (_path, _model, _answer, _tag) in SCHEMAS.items():
-    _declare(_name, _path, _tag, _model, _answer)
-_declare("batch", "/v1/batch", "batch", BatchQuery, BatchAnswer, BatchResponder)
+@router.post(
+    "/v1/wear",
+    operation_id="wear",
+    tags=["wear"],
+    summary="Limiting state of fretting wear under a small oscillation",
+    response_model=answers.WearAnswer,
+    responses=RESULT,
+)
+async def wear(query: Annotated[WearQuery, _examples("wear")], send: Send) -> Response:
+    """Compute the limiting profile: the annulus outside the stick zone wears until it is unloaded.
+
+    The given controls are held constant. With a constant depth and displacement amplitude, and with
+    constant forces, the limiting state is unique and does not depend on the wear law. With a
+    constant normal force and displacement amplitude it depends on the path: the response is the
+    approximation of Popov and Heß (2015), Eq. (5.90), with a warning `path_dependent`;
+    `/v1/wear/evolution` computes the path itself.
+
+    In full slip, wear is unbounded under a constant force (`endless_wear`), and ends in separation
+    at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).
+    """
+    return await send("wear", query)
+
+
+@router.post(
+    "/v1/wear/evolution",
+    operation_id="evolution",
+    tags=["wear"],
+    summary="Fretting wear over the cycles: profile and pressure up to the limiting state",
+    response_model=answers.EvolutionAnswer,
+    responses=RESULT,
+)
+async def evolution(
+    query: Annotated[EvolutionQuery, _examples("evolution")], send: Send
+) -> Response:
+    """Integrate the wear law dh/dN = K µ p S over the cycles.
+
+    h is the worn depth at a radius, and S the sliding distance of a cycle there. The given controls
+    are held constant. A query takes about a second, more with the `resolution` and the numbers of
+    cycles. A warning `limit_reached` reports after how many cycles wear stops.
+    """
+    return await send("evolution", query)
+
+
+@router.post(
+    "/v1/batch",
+    operation_id="batch",
+    tags=["batch"],
+    summary="Queries of any kind, each with its own answer or problem",
+    response_model=BatchAnswer,
+)
+async def batch(
+    query: Annotated[BatchQuery, _examples("batch")], send: Annotated[BatchResponder, Depends()]
+) -> Response:
+    """Compute each query as at its own endpoint, in the given order.
+
+    The status is 200 if the list itself is valid. Each entry has its own `status`, with the
+    `answer` or the `problem`, whose pointers are into its own `request`.
+    """
+    return await send("batch", query)
 
 
 async def _cacheable(request: Request, response: Response) -> Response:
@@ -202,18 +215,19 @@ async def _cacheable(request: Request, response: Response) -> Response:
     return response
 
 
-_get_router: Final = APIRouter(responses=GET_RESPONSES, dependencies=[Depends(url_parameters)])
+_get_router: Final = APIRouter(responses=GET_FAILURES, dependencies=[Depends(url_parameters)])
 
 
-def _declare_get(name: str, title: str, model: Any) -> None:
-    """Declare the endpoint of a query by URL parameters."""
+def _declare_get(name: str, tag: str, title: str, model: Any) -> None:
+    """Declare the endpoint of a query by URL parameters, whose model is made from the request."""
 
     @_get_router.get(
         SCHEMAS[name].path,
         operation_id=f"get_{name}",
-        tags=[SCHEMAS[name].tag],
+        tags=[tag],
         summary=f"{title} by parameters, for spreadsheets and browsers",
         response_model=SCHEMAS[name].answer,
+        responses=RESULT,
     )
     async def get(parameters: Annotated[model, Query()], request: Request) -> Response:
         """Return the response of `POST` for numbers and at most one range.
@@ -227,13 +241,12 @@ def _declare_get(name: str, title: str, model: Any) -> None:
         return await _cacheable(request, response)
 
 
-_TITLES: Final = {
-    "normal": "Normal contact",
-    "tangential": "Partial slip",
-    "history": "Cycles of the tangential load",
-    "stress": "Fields over the radius",
-    "wear": "Limiting state of fretting wear",
-}
-for _name, _title in _TITLES.items():
-    _declare_get(_name, _title, PARAMETERS[_name])
+for _name, _tag, _title in (
+    ("normal", "contact", "Normal contact"),
+    ("tangential", "contact", "Partial slip"),
+    ("history", "contact", "Cycles of the tangential load"),
+    ("stress", "contact", "Fields over the radius"),
+    ("wear", "wear", "Limiting state of fretting wear"),
+):
+    _declare_get(_name, _tag, _title, PARAMETERS[_name])
 router.routes += _get_router.routes

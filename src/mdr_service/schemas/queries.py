@@ -12,12 +12,11 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 
 class QuerySchema(NamedTuple):
-    """Path of a query, models of its request and its response, and its tag in OpenAPI."""
+    """Path of a query, and models of its request and its response."""
 
     path: str
     model: type[Query]
     answer: type[Answer]
-    tag: str = "contact"
 
 
 SCHEMAS: Final = {
@@ -26,6 +25,6 @@ SCHEMAS: Final = {
     "history": QuerySchema("/v1/tangential/history", HistoryQuery, answers.HistoryAnswer),
     "stress": QuerySchema("/v1/stress", StressQuery, answers.StressAnswer),
     "subsurface": QuerySchema("/v1/subsurface", SubsurfaceQuery, answers.SubsurfaceAnswer),
-    "wear": QuerySchema("/v1/wear", WearQuery, answers.WearAnswer, "wear"),
-    "evolution": QuerySchema("/v1/wear/evolution", EvolutionQuery, answers.EvolutionAnswer, "wear"),
+    "wear": QuerySchema("/v1/wear", WearQuery, answers.WearAnswer),
+    "evolution": QuerySchema("/v1/wear/evolution", EvolutionQuery, answers.EvolutionAnswer),
 }
