@@ -77,7 +77,7 @@ sweeps: .venv/development
 	$(BIN)/python docs/figures/sweep_map.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
-CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability routes
+CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 

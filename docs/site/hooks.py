@@ -19,7 +19,7 @@ ROOT_FILES: Final = {
     "changelog.md": "CHANGELOG.md",
 }
 # Their columns need the width, and their numbers are found too often.
-LONG_TABLES: Final = {"routes.md", "verification.md"}
+LONG_TABLES: Final = {"verification.md"}
 _FORMULA: Final = re.compile(
     r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</(?:span|div)>', re.DOTALL
 )
