@@ -6,7 +6,6 @@ from math import comb, inf
 from typing import Any, Final
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, InnerEnd
@@ -24,22 +23,13 @@ _RTOL: Final = 1e-13
 _SAMPLES: Final = 64
 # Samples in each interval of a table, whose interpolation may have a peak in every one.
 _FEWEST: Final = 6
-# Nodes of the polynomial through a stress around its peak.
-_NODES: Final = 9
-# Intervals in which the highest point of that polynomial is searched.
-_FINE: Final = 128
-# Factor by which a round narrows the bracket of a smooth peak: two rounds reach rounding error.
-_NARROWER: Final = 16.0
-# Factor by which the bracket widens next to a discontinuity of the curvature, where the polynomial
-# misses the peak.
-_WIDER: Final = 4.0
-# Bound on the number of rounds.
-_ROUNDS: Final = 12
-# Part of a polynomial's height up to which its last two coefficients are those of a series that has
-# converged to rounding error: they fall by more than a factor of five each.
-_CONVERGED: Final = 1e-12
-# Relative change that ends the search, a few units in the last place.
-_SETTLED: Final = 4 * float(np.finfo(float).eps)
+# Points across the bracket of a peak, in parts of it.
+_NINE: Final = np.linspace(0.0, 1.0, 9)
+# Part of the stress by which it varies in the last bracket; a parabola exceeds its highest point by
+# 64 times less.
+_SETTLED: Final = 1e-13
+# Bound on the number of rounds, each of which narrows a bracket by a factor of four.
+_ROUNDS: Final = 24
 # Size of log(s/b) up to which one curve of Bernstein polynomials serves all rounded punches, whose
 # contacts are similar; number and degree of the polynomials, which leave 2e-14.
 _CURVED, _PIECES, _DEGREE = 14.0, 28, 16
@@ -47,9 +37,9 @@ _CURVED, _PIECES, _DEGREE = 14.0, 28, 16
 _BLOCK: Final = 65_536
 
 
-# Intervals of the contact coordinate that may hold the highest peak of a load: the load, both ends
-# and the stress at a point inside, all (k,).
-_Brackets = tuple[Indices, Array, Array, Array]
+# Intervals of the contact coordinate that may hold the highest peak of a load: the load and both
+# ends, all (k,).
+_Brackets = tuple[Indices, Array, Array]
 
 
 def largest_stress(
@@ -141,7 +131,7 @@ def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
     The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    refined by polynomial interpolation.
+    bracketed more and more closely.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
@@ -188,66 +178,31 @@ def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brac
     row, at = np.nonzero(peak & (reach >= best[load][:, None]))
     last = samples.shape[1] - 1
     ends = samples[row, np.maximum(at - 1, 0)], samples[row, np.minimum(at + 1, last)]
-    return load[row], *ends, values[row, at]
+    return load[row], *ends
 
 
 def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
-    """Refine each peak to its top, whose value goes to `best`.
+    """Zoom into each bracket around its highest point; the top of its peak goes to `best`.
 
-    `outer` brackets the top; [low, high] is the part of it around the top of a polynomial.
+    The peak is taken to exceed the highest of the nine points by no more than that exceeds the
+    lowest one: a bracket that stays below the highest peak is left.
     """
-    load, low, high, sample = brackets
-    outer, highest, peak = np.array([low, high]), low, np.zeros(load.size)
+    load, low, high = brackets
     for _ in range(_ROUNDS):
-        rows, middle, half = np.arange(load.size), (low + high) / 2, (high - low) / 2
-        at = _within(middle[:, None] + half[:, None] * _LOBATTO, low[:, None], high[:, None])
-        values = field(np.repeat(load, _NODES), at.ravel()).reshape(at.shape)
-        place = np.argmax(values, axis=1)
-        rises = values[rows, place] >= peak
-        peak = np.where(rises, values[rows, place], peak)
-        highest = np.where(rises, at[rows, place], highest)
-        np.maximum.at(best, load, peak)
-        # The top lies between the points on either side of the highest one.
-        below, above = at < highest[:, None], at > highest[:, None]
-        outer[0] = np.where(below, at, outer[0][:, None]).max(axis=1)
-        outer[1] = np.where(above, at, outer[1][:, None]).min(axis=1)
-        series = values @ _TO_SERIES.T
-        top, height = _vertex(series)
-        top = middle + half * top
-        # Else it lies beyond the nodes, or the polynomial is no approximation yet.
-        inside = (low <= outer[0]) & (outer[1] <= high) & (outer[0] <= top) & (top <= outer[1])
-        converged = inside & (np.abs(series[:, -2:]).sum(axis=1) <= _CONVERGED * height)
-        np.maximum.at(best, load[converged], height[converged])
-        centre = np.where(inside, top, highest)
-        reach = half * np.where(inside, 1 / _NARROWER, _WIDER)
-        low, high = _within(centre - reach, *outer), _within(centre + reach, *outer)
-        left = ~inside | (peak < sample) | (height > best[load] * (1 + _SETTLED))
+        at = _within(low[:, None] + (high - low)[:, None] * _NINE, low[:, None], high[:, None])
+        values = field(np.repeat(load, _NINE.size), at.ravel()).reshape(at.shape)
+        rows, place = np.arange(load.size), values.argmax(axis=1)
+        top = values[rows, place]
+        np.maximum.at(best, load, top)
+        rise = top - values.min(axis=1)
+        before, after = np.maximum(place - 1, 0), np.minimum(place + 1, _NINE.size - 1)
+        low, high = at[rows, before], at[rows, after]
+        left = (rise > _SETTLED * top) & (top + rise > best[load])
         if not left.any():
             break
-        load, low, high, sample = load[left], low[left], high[left], sample[left]
-        outer, highest, peak = outer[:, left], highest[left], peak[left]
-
-
-def _vertex(series: Array) -> tuple[Array, Array]:
-    """Place in [-1, 1] and height of the highest point of each Chebyshev series."""
-    curve = series @ _FINE_GRID.T
-    rows, at = np.arange(len(curve)), _within(np.argmax(curve, axis=1), 1, _FINE - 1)
-    before, highest, after = (curve[rows, at + step] for step in (-1, 0, 1))
-    bend = 2 * highest - before - after
-    with np.errstate(divide="ignore", invalid="ignore"):
-        offset = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
-    top = (at + _within(offset, -1.0, 1.0)) * (2 / _FINE) - 1
-    angle = np.multiply.outer(np.arccos(_within(top, -1.0, 1.0)), np.arange(_NODES))
-    return top, (series * np.cos(angle)).sum(axis=1)
+        load, low, high = load[left], low[left], high[left]
 
 
 def _within(values: Any, low: Any, high: Any) -> Any:
     """Values clipped to an interval; NumPy's own function takes four times as long for a few."""
     return np.minimum(np.maximum(values, low), high)
-
-
-_LOBATTO: Final = -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))
-# From values at the nodes to the coefficients of the polynomial, and from these to its values at
-# evenly spaced points of [-1, 1].
-_TO_SERIES: Final = np.linalg.inv(chebyshev.chebvander(_LOBATTO, _NODES - 1))
-_FINE_GRID: Final = chebyshev.chebvander(np.linspace(-1, 1, _FINE + 1), _NODES - 1)
