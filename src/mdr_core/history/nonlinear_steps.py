@@ -96,33 +96,6 @@ class NonlinearSteps:
         order = np.argsort(owner, kind="stable")
         return owner[order], starts[order], stops[order]
 
-    @cached_property
-    def _pieces(self) -> tuple[Indices, Array, Array, Array]:
-        """Pieces of the parts between the breaks of the profile, where chords converge regularly.
-
-        The part, both ends as fractions of pi/2, and the contact coordinate of the second end. The
-        squared sine of the angle is the fraction of the part's length: chords that are even in the
-        angle cluster at both ends, the axis and load points from which slip starts.
-        """
-        owner, start, stop = self._parts
-        breaks = self.profile.coordinate_breaks
-        low, high = np.sort([start, stop], axis=0)
-        first, last = np.searchsorted(breaks, low, "right"), np.searchsorted(breaks, high)
-        count = np.where(self.rate[owner] == 0, 0, np.maximum(last - first, 0))
-        if count.sum() << _HALVINGS > _MAX_TOTAL_CHORDS:
-            count[:] = 0
-        broken = np.repeat(np.arange(start.size), count)
-        number = np.arange(broken.size) - np.repeat(np.cumsum(count) - count, count)
-        at = breaks[first[broken] + number]
-        share = (at - start[broken]) / (stop - start)[broken]
-        begin = np.append(np.zeros(start.size), np.arcsin(np.sqrt(share)) / (np.pi / 2))
-        part = np.append(np.arange(start.size), broken)
-        order = np.lexsort((begin, part))
-        part, begin, at = part[order], begin[order], np.append(start, at)[order]
-        final = np.append(np.diff(part) > 0, True)
-        end = np.where(final, 1.0, np.roll(begin, -1))
-        return part, begin, end, np.where(final, stop[part], np.roll(at, -1))
-
     def chords(self, finest: int, halvings: int) -> tuple[LoadPoints, Indices]:
         """Return the ends of the chords, and which of them are the samples.
 
@@ -131,17 +104,14 @@ class NonlinearSteps:
         owner, start, stop = self._parts
         fewest = min(_MIN_CHORDS_ON_STEP, _MAX_TOTAL_CHORDS / (start.size << _HALVINGS))
         needed = np.abs(stop - start) / np.max(self.coordinate) * finest / 2**_HALVINGS
-        part, begin, end, place = self._pieces
-        count = np.maximum(np.ceil(np.maximum(needed, fewest))[part] * (end - begin), 1)
-        count = np.rint(count).astype(int) << halvings
-        count[self.rate[owner[part]] == 0] = 1
-        piece = np.repeat(np.arange(count.size), count)
-        last = np.cumsum(count) - 1
-        share = (np.arange(piece.size) - np.append(-1, last[:-1])[piece]) / count[piece]
-        angle = np.pi / 2 * (begin[piece] + (end - begin)[piece] * share)
-        part = part[piece]
-        s = start[part] + (stop - start)[part] * np.square(np.sin(angle))
-        s[last] = place
+        count = np.ceil(np.maximum(needed, fewest)).astype(int) << halvings
+        count[self.rate[owner] == 0] = 1
+        part, last = np.repeat(np.arange(count.size), count), np.cumsum(count) - 1
+        share = (np.arange(part.size) - np.append(-1, last[:-1])[part]) / count[part]
+        # Chords that are even in the angle cluster at both ends of a part: the axis, and load
+        # points from which slip starts.
+        s = start[part] + (stop - start)[part] * np.square(np.sin(np.pi / 2 * share))
+        s[last] = stop
         arc = owner[part]
         samples = np.flatnonzero(np.append(np.diff(arc) > 0, True))
         moments, rise = self.path.moments, np.diff(self.conjugate)[arc]
