@@ -5,12 +5,13 @@ near full slip, the rounding of the load is part of their error, whatever the me
 """
 
 from collections.abc import Callable
+from math import inf
 from typing import Final
 
 import numpy as np
 
 from mdr_core.elementwise import full, some, where
-from mdr_core.equivalent_1d import load_and_slope, stick_edge
+from mdr_core.equivalent_1d import EARLY, load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
@@ -151,21 +152,23 @@ def of_edge_slope(contact: NormalContact, width: Array) -> Array:
     return where(np.isfinite(change), change, 0.0)
 
 
-def of_coordinate_width(profile: Profile, ends: tuple[Array, Array], width: Array) -> Array:
-    """Return the relative error of a - c by the rounding of a coordinate far larger than a [1].
-
-    That of a capped paraboloid is beyond the break, from which a coordinate within it is taken.
+def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> Array:
+    """Return the relative error of wide annuli by the rounding of c where loads rise steeply [1].
 
     Parameters
     ----------
     profile : parameters broadcast with the loads.
-    ends : a and c in the contact coordinate.
-    width : a - c [length].
+    edge : c in the contact coordinate.
+    steps : d(a) - d(c) [length] and (F(a) - F(c))/E* [length^2].
     """
-    with np.errstate(all="ignore"):
-        excess = ends[0] * profile.radius_slope(ends[1]) - 2 * profile.contact_radius(ends[0])
-        lost = _EPS * excess / width
-    return where((width > 0) & (lost > 0), lost, 0.0)
+    last, error = profile.last_coordinate, full(0.0, edge)
+    beyond = np.minimum(edge * (1 + _LOAD), inf if last is None else last)
+    for load, step in zip((profile.depth, profile.reduced_force), steps, strict=True):
+        below = load(edge)
+        wide = step > EARLY / 2 * below
+        rise = (load(beyond) - below) / where(wide, step, 1.0)
+        error = np.maximum(error, where(wide, rise, 0.0))
+    return error
 
 
 def product_remainder(x: Parameter, y: Parameter) -> Parameter:

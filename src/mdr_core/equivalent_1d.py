@@ -8,7 +8,6 @@ Source: notes, §1 and §4.
 """
 
 from collections.abc import Callable
-from functools import lru_cache
 from math import inf
 from typing import Final
 
@@ -29,12 +28,9 @@ _NARROW: Final = 0.05
 # Gauss-Legendre nodes of that integral: they integrate powers up to 100 to rounding error.
 _NODES: Final = 16
 # Fraction of the load at full slip up to which the width, not the stick edge, is the unknown.
-_EARLY: Final = 0.05
+EARLY: Final = 0.05
 # Distance from a break, as a part of it, beyond which Newton's method converges as elsewhere.
 _NEAR_BREAK: Final = 0.01
-# Logarithms of the contact coordinate over the scale between which the curve of a kind bends,
-# their spacing, for linear interpolation to 2e-5, and the ends of linear extrapolation.
-_CURVED, _SPACING, _MAX_LOG = 14.0, 0.02, 150.0
 
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
@@ -140,7 +136,7 @@ def stick_edge(
         total, first = function(coordinate)
     if not is_number(ratio * total):
         coordinate, total, ratio, rest = np.broadcast_arrays(coordinate, total, ratio, rest)
-    early = ratio < _EARLY
+    early = ratio < EARLY
     with np.errstate(divide="ignore", invalid="ignore"):
         late = coordinate
         if not every(early):
@@ -148,8 +144,6 @@ def stick_edge(
             inverse = _closed_inverse(profile, goal, of_force=of_force)
             if inverse is not None:
                 late = inverse
-            elif profile.similar:
-                late = _root(profile, goal, of_force=of_force)
             else:
                 # From the power that rises as the load does at the edge.
                 start = coordinate * raised(rest, total / (coordinate * first))
@@ -207,31 +201,12 @@ def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
 
 
 def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
-    """First approximation of the contact coordinate: good to 2e-5 where one curve serves a kind.
-
-    Otherwise that of the power that rises as the load does at the scale.
-    """
+    """First approximation of the contact coordinate, by the power that the load is at the scale."""
     scale = number(1.0) * profile.scale
     with np.errstate(all="ignore"):
-        at_scale, slope = profile.force_at_scale if of_force else profile.depth_at_scale
-        height = np.log(target / at_scale)
-        if not profile.curves:
-            start = scale * np.exp(height * (at_scale / (scale * slope)))
-            return where((start > 0) & (start < inf), start, scale)
-    place = sum(
-        weight * np.interp(height, *_curve(kind, of_force=of_force))
-        for kind, weight in profile.curves
-    )
-    return scale * np.exp(place)
-
-
-@lru_cache(maxsize=32)
-def _curve(kind: type[Profile], *, of_force: bool) -> tuple[Array, Array]:
-    """Logarithms of the load and of the contact coordinate, over those at the scale."""
-    unit = kind(*[1.0] * len(kind.__match_args__))  # type: ignore[attr-defined]
-    function, scale = unit.reduced_force if of_force else unit.depth, number(1.0) * unit.scale
-    places = np.concatenate([[-_MAX_LOG], np.arange(-_CURVED, _CURVED, _SPACING), [_MAX_LOG]])
-    return np.log(function(scale * np.exp(places)) / function(scale)), places
+        at_scale, slope = load_and_slope(profile, of_force=of_force)(scale)
+        start = scale * np.exp(np.log(target / at_scale) * (at_scale / (scale * slope)))
+        return where((start > 0) & (start < inf), start, scale)
 
 
 def _step(
@@ -241,6 +216,10 @@ def _step(
     high, width, low = ends if is_number(sum(ends)) else np.broadcast_arrays(*ends)
     below, before = break_below(profile, high)
     limit = (high - before) / 2 if has_many_breaks(profile) else _NARROW * high
+    if profile.steepens:
+        # A steep load is not smooth over as much of the radius.
+        rate = slope(high, below, high - below)
+        limit = np.minimum(limit, _NARROW * function(high) / where(rate > 0, rate, inf))
     narrow = width <= limit
     if every(narrow):
         return _narrow_step(slope, high, width, below)

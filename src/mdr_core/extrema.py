@@ -99,10 +99,10 @@ def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
     if not slip:
         at_axis = profile.falls_from_axis(edge)
         if every(at_axis):
-            return profile.axis_stress(edge, _RTOL)
+            return profile.axis_stress(edge)
         if some(at_axis):
             result = np.empty_like(edge)
-            result[at_axis] = profile.axis_stress(edge[at_axis], _RTOL)
+            result[at_axis] = profile.axis_stress(edge[at_axis])
             result[~at_axis] = _search(profile, edge[~at_axis])
             return result
     return _search(profile, *map(np.atleast_1d, (edge, *slip))).reshape(edge.shape)[()]

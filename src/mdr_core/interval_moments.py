@@ -40,9 +40,6 @@ _WIDE_FROM_AXIS: Final = 400.0
 _WIDE_BEYOND_BREAK: Final = 2.5
 # Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
 _SHALLOW: Final = 1.5
-# The width of an interval is taken from its ends if it is larger than this part of them, otherwise
-# from the slope at one of them.
-_THIN: Final = 1e-10
 # So far below a break, as a part of it, all functions are those of the panel that ends there.
 _BELOW: Final = 1e-11
 _EPS: Final = float(np.finfo(float).eps)
@@ -280,7 +277,7 @@ class IntervalMoments:
         """
         profile, (start, stop) = self.profile, ends
         width = stop - start
-        thin = width < _THIN * stop
+        thin = width * width < _EPS * stop * (stop - base)
         if some(thin):
             slope = self._slope(stop)
             # An interval may end where g becomes constant.

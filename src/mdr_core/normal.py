@@ -147,15 +147,22 @@ class NormalContact(validity.ContactResults):
         profile, rounding = self.profile, self.profile.rounding
         if self.control == "contact_radius" or not (profile.flattens or profile.steepens):
             return rounding
-        # Where g' falls to zero, the contact radius changes more than the load; just beyond a break
-        # of a table, the load more than the contact radius.
-        nearest = _NEAR_ROOT * np.sqrt(rounding) if profile.flattens else 0.0
-        inside = self.coordinate * (1 - nearest)
+        function, error = load_and_slope(profile, of_force=self.control == "normal_force"), rounding
         with np.errstate(divide="ignore", invalid="ignore"):
-            load, slope = load_and_slope(profile, of_force=self.control == "normal_force")(inside)
-            condition = load / (inside * slope)
-        error = rounding * where(condition > 1, condition, 1.0)
-        return np.maximum(error, where(condition > 0, _RADIUS / condition, 0.0))
+            if profile.flattens:
+                # Where g' falls to zero, the contact radius changes more than the load.
+                inside = self.coordinate * (1 - _NEAR_ROOT * np.sqrt(rounding))
+                load, slope = function(inside)
+                condition = load / (inside * slope)
+                error = error * where(condition > 1, condition, 1.0)
+            if profile.steepens:
+                # Just beyond a break the load may change more than the contact radius.
+                end = inf if profile.last_coordinate is None else profile.last_coordinate
+                beyond = np.minimum(self.coordinate * (1 + _RADIUS), end)
+                load = function(self.coordinate)[0]
+                rise = function(beyond)[0] / load - 1
+                error = np.maximum(error, where(load > 0, rise, 0.0))
+        return error
 
     @property
     def edge_errors(self) -> Parameter:

@@ -6,9 +6,8 @@ length two then converge as 3.3^-2n.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, inf, log2, pi
+from math import ceil, log, log2
 from typing import Final
 
 import numpy as np
@@ -25,31 +24,19 @@ _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
 PIECE: Final = 2.0
 """Length of those pieces."""
 # Growth up to which a piece has that length.
-_STEEP: Final = 8.0
+STEEP: Final = 8.0
+# Part of the tolerance up to which a contribution is omitted.
+_NEGLIGIBLE: Final = 1e-2
+# Logarithm of the ratio of radii that is considered: exp(-600) of 1e-50 is next to underflow.
+_LOG_RANGE: Final = 600.0
 # Distance from the end of a piece below which a singularity lies on it.
 _NEAREST: Final = 2.0**-52
 # Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
 
 
-@dataclass(frozen=True)
-class Analytic:
-    """Strip |Im y| < strip in which an integrand is analytic, and its growth exp(growth |Re y|).
-
-    `before` is the distance of a near singularity on the real axis before y = 0.
-    """
-
-    growth: float = 2.0
-    strip: float = pi / 2
-    before: float = inf
-
-    @property
-    def piece(self) -> float:
-        """Length of the pieces that the nodes of a tolerance resolve."""
-        return PIECE * min(1.0, self.strip / (pi / 2), _STEEP / self.growth)
-
-
-DEFAULT: Final = Analytic()
+DEFAULT_GROWTH: Final = 2.0
+"""Growth of an integrand that is bounded beside the powers of its kernel."""
 
 
 @lru_cache(maxsize=64)
@@ -80,9 +67,11 @@ def integrate(
     rtol: float,
     lower: Array | None = None,
     *,
-    analytic: Analytic = DEFAULT,
+    growth: float = DEFAULT_GROWTH,
 ) -> Array:
     """Return the integrals of h over [lower, lower + length], h analytic in the strip.
+
+    A steep power is significant only next to the upper end, from which the pieces grow.
 
     Source: notes, §5; trefethen, Thm 19.3.
 
@@ -92,13 +81,13 @@ def integrate(
     length : lengths, accurate also where the ends are close, shape (m,).
     rtol : relative tolerance.
     lower : lower ends, shape (m,); None for zero.
-    analytic : strip and growth of h.
+    growth : power of exp|Re y| that h resembles over part of the interval.
     """
-    if analytic.before < inf:
-        rule = rule_towards(analytic.before, float(length.max(initial=0.0)), rtol)
-        return _apply(h, rule, lower, length, slice(0, length.size))
-    points = nodes_of_pieces(rtol)
-    counts = np.maximum(np.ceil(length / analytic.piece), 1).astype(int)
+    points, longest = nodes_of_pieces(rtol), float(length.max(initial=0.0))
+    if growth > STEEP and longest > 0:
+        nodes, weights = rule_of_powers(growth, reach_of_power(1.0, rtol), longest, points)
+        return _apply(h, (1 - nodes, weights), lower, length, slice(0, length.size))
+    counts = np.maximum(np.ceil(length / PIECE), 1).astype(int)
     result = np.empty_like(length)
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = _chosen((counts == count).nonzero()[0])
@@ -188,3 +177,20 @@ def rule_towards(distance: float, length: float, rtol: float) -> tuple[Array, Ar
     count = max(ceil(length / PIECE), 1)
     halvings = halvings_towards(distance * count / length) if length > 0 else 0
     return graded_rule(nodes_of_pieces(rtol), halvings, count)
+
+
+def reach_of_power(exponent: float, rtol: float) -> float:
+    """Return log(x0/x) at which (x/x0)^exponent is negligible, or the range of doubles ends."""
+    negligible = -log(_NEGLIGIBLE * rtol)
+    return min(negligible / exponent, _LOG_RANGE) if exponent > 0 else _LOG_RANGE
+
+
+def rule_of_powers(growth: float, reach: float, length: float, points: int) -> tuple[Array, Array]:
+    """Return nodes and weights on [0, 1], from the upper end downwards, for sums of powers.
+
+    At the distance y from the edge powers above reach/y are negligible, so that pieces grow with y.
+    """
+    ends = [0.0]
+    while ends[-1] < length:
+        ends.append(ends[-1] + PIECE * STEEP * max(1 / growth, ends[-1] / reach))
+    return piecewise_rule(points, np.array(ends) / ends[-1])

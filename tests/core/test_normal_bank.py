@@ -6,7 +6,7 @@ from typing import Any
 
 from mdr_core.normal import solve
 from tests.core.batches import batched
-from tests.core.comparison import allowance, assert_each, overstated, profile_from, wrong
+from tests.core.comparison import allowance, assert_each, bound_of, overstated, profile_from, wrong
 from tests.oracles import bank
 
 BOUND = 1e-13
@@ -18,12 +18,13 @@ def failures_of(case: dict[str, Any]) -> list[str]:
     load = {case["control"]: case["load"]}
     contact = solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
     allowances = {name: allowance(condition) for name, condition in case["condition"].items()}
+    bound = bound_of(case, BOUND)
     failures = overstated(
-        contact.error_estimate, (BOUND + each for each in allowances.values()), OVERSTATED
+        contact.error_estimate, (bound + each for each in allowances.values()), OVERSTATED
     )
     for name, expected in case["expected"].items():
         value = float(getattr(contact, name))
-        failures += wrong(name, value, expected, BOUND, allowances[name], contact.error_estimate)
+        failures += wrong(name, value, expected, bound, allowances[name], contact.error_estimate)
     return failures
 
 

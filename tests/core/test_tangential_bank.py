@@ -12,6 +12,7 @@ from tests.core.comparison import (
     LARGEST_ALLOWANCE,
     allowance,
     assert_each,
+    bound_of,
     overstated,
     profile_from,
     wrong,
@@ -44,7 +45,7 @@ def failures_of(case: dict[str, Any]) -> list[str]:
     controls = (case["control"], case["tangential_control"])
     computed = controls[0] != "normal_force" and controls[1] == "tangential_force"
     largest = COMPUTED_FORCE if computed else LARGEST_ALLOWANCE
-    bound = BOUND
+    bound = bound_of(case, BOUND)
     failures, allowed = [], [bound]
     for name, row in case["expected"].items():
         values = getattr(result, name)

@@ -63,17 +63,7 @@ class Annulus:
             return mpf(self.profile.radius) * mp.tanh(coordinate)
         if self.kind in {"rounded_punch", "truncated_cone"}:
             return mp.sqrt(self.body.b**2 + coordinate**2)
-        if self.kind == "capped_paraboloid":
-            b = self.body.b
-            return mp.sqrt(b**2 + (coordinate - b) ** 2) if coordinate > b else coordinate
-        if self.kind == "spherical_tip_cone":
-            return self._spherical_tip(coordinate)
         return coordinate
-
-    def _spherical_tip(self, v: mpf) -> mpf:
-        b, h, big = self.body.b, self.body.h, self.body.big
-        start = mp.asinh(self.body.t)
-        return big * mp.tanh(v) if v <= start else b + (v - start) * h**2 / big
 
     def slope(self, x: mpf) -> mpf:
         return self.body.dg(x)

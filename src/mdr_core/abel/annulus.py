@@ -2,7 +2,9 @@
 
 from typing import Any, NamedTuple
 
-from mdr_core.typing import Array, Flags, Indices
+import numpy as np
+
+from mdr_core.typing import Array, Flags, Indices, Parameter
 
 
 class InnerEnd(NamedTuple):
@@ -39,3 +41,36 @@ class Annulus(NamedTuple):
 
         inner = None if self.inner is None else InnerEnd(*map(pick, self.inner))
         return Annulus(pick(self.outer), inner, pick(self.outer_radius))
+
+
+def inverse_hypot(x: Array, b: Parameter) -> Array:
+    """Return sqrt(x^2 - b^2), zero for x < b, accurate next to b.
+
+    >>> inverse_hypot(np.array([0.5, 5.0]), 3.0).tolist()
+    [0.0, 4.0]
+    """
+    return np.sqrt(np.maximum(x - b, 0.0) * (x + b))
+
+
+def root_step(annulus: Annulus, r: Array) -> Array:
+    """Return sqrt(a^2 - r^2) - sqrt(c^2 - r^2), the second term for r < c only [length]."""
+    a, inner, _ = annulus
+    root_a = np.sqrt((a - r) * (a + r))
+    if inner is None:
+        return root_a
+    width, c, _ = inner
+    root_c = inverse_hypot(c, r)
+    return np.where(c > r, width * (a + c) / (root_a + root_c), root_a)
+
+
+def log_ratio(annulus: Annulus, r: Array) -> Array:
+    """Return arccosh(a/r) - arccosh(c/r) [1], also at r = 0."""
+    a, inner, _ = annulus
+    if inner is None:
+        low, root_low, step = r, np.zeros(1), (a - r) + np.sqrt((a - r) * (a + r))
+    else:
+        low = np.maximum(r, inner.radius)
+        root_low = np.sqrt((low - r) * (low + r))
+        step = np.minimum(a - r, inner.width) + root_step(annulus, r)
+    with np.errstate(divide="ignore"):
+        return np.log1p(step / (low + root_low))

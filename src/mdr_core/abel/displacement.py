@@ -17,32 +17,28 @@ import numpy as np
 from mdr_core.abel.two_root import Weight
 from mdr_core.quadrature import (
     PIECE,
+    STEEP,
     composite_rule,
     graded_rule,
     halvings_towards,
     nodes_of_pieces,
-    piecewise_rule,
+    reach_of_power,
+    rule_of_powers,
     rule_towards,
 )
 from mdr_core.typing import Array, Indices
 
 # Part of s(r) above which an angle removes the root at r, and below which log(s) resolves g'.
 _UPPER: Final = 0.5
-# Highest power that such a piece resolves.
-_STEEP: Final = 8.0
 # Pieces of one e-fold of the radius, relative to those of the whole upper part.
 _SPARE: Final = 1.5
 # Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
 _BLOCK: Final = 12_288
-# Part of the tolerance up to which a contribution is omitted.
-_NEGLIGIBLE: Final = 1e-2
-# Logarithm of the ratio of radii that is considered: exp(-600) of 1e-50 is next to underflow.
-_LOG_RANGE: Final = 600.0
 
 
 @dataclass(frozen=True)
 class Branch:
-    """Interval base <= x <= stop on which weight(x, s, index) = g'(x) s/x is analytic in s.
+    """Interval base <= x <= stop on which weight(x, s) = g'(x) s/x is analytic in s.
 
     s = sqrt(x^2 - base^2), and the interval may begin only at `start`. At the axis g has an
     exponent of at least `tip`, and elsewhere one of up to about `steepness`. g' is infinite at
@@ -202,10 +198,10 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
     upper = (split < s_high) | (split <= s_low)
     span = np.where(upper, root_split / (split + s_r) - top, 0.0)
     pieces = 1
-    if branch.steepness > _STEEP:
+    if branch.steepness > STEEP:
         with np.errstate(divide="ignore", invalid="ignore"):
             stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
-        pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / _STEEP), 1)
+        pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / STEEP), 1)
     points = nodes_of_pieces(rtol)
     if branch.pole < inf and np.any(span > 0):
         distance = _pole_distance(branch, s_r, top, span)
@@ -218,7 +214,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         run = 2 / (1 + half * half)
         s, root = s_r[part] * (run - 1), s_r[part] * (half * run)
         x = np.sqrt(base * base + s * s)
-        slope = branch.weight(x, s, part) * root * run
+        slope = branch.weight(x, s) * root * run
         return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
     total = span * integrals_in_blocks(values, weights.size, s_r.size)
@@ -249,16 +245,18 @@ def _lower(
     else:
         upper = np.log(high)
         with np.errstate(divide="ignore"):
-            length = np.minimum(upper - np.log(low), _reach(branch.tip, rtol))
+            length = np.minimum(upper - np.log(low), reach_of_power(branch.tip, rtol))
     longest = float(length.max())
     if not longest > 0:
         # Two neighbouring doubles may have the same logarithm.
         return np.zeros((len(kernels), s_r.size))
-    piece = PIECE * min(1.0, _STEEP / branch.steepness)
+    piece = PIECE * min(1.0, STEEP / branch.steepness)
     count = max(ceil(longest / piece), 1)
     part = count / longest
-    if branch.steepness > _STEEP:
-        nodes, weights = _rule_of_powers(piece, _reach(1.0, rtol), longest, points)
+    if branch.steepness > STEEP:
+        nodes, weights = rule_of_powers(
+            branch.steepness, reach_of_power(1.0, rtol), longest, points
+        )
     elif branch.pole < inf:
         # The distance of the pole from the upper end is log(pole/x).
         distance = log(branch.pole / float(np.hypot(base, high.max())))
@@ -275,7 +273,7 @@ def _lower(
         s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
         x = np.sqrt(base * base + s * s)
         root = np.sqrt((s_r[part] - s) * (s_r[part] + s))
-        slope = branch.weight(x, s, part) * run
+        slope = branch.weight(x, s) * run
         return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
 
     return length * integrals_in_blocks(values, weights.size, s_r.size)
@@ -286,20 +284,3 @@ def integrals_in_blocks(values: Callable[[slice], Array], nodes: int, count: int
     step = max(_BLOCK // nodes, 1)
     parts = [values(slice(start, start + step)) for start in range(0, max(count, 1), step)]
     return np.concatenate(parts, axis=-1)
-
-
-def _reach(exponent: float, rtol: float) -> float:
-    """Logarithm of x0/x at which (x/x0)^exponent is negligible, or the range of doubles ends."""
-    negligible = -log(_NEGLIGIBLE * rtol)
-    return min(negligible / exponent, _LOG_RANGE) if exponent > 0 else _LOG_RANGE
-
-
-def _rule_of_powers(piece: float, reach: float, length: float, points: int) -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1], from the upper end downwards, for sums of powers.
-
-    At the distance y from the edge powers above reach/y are negligible, so that pieces grow with y.
-    """
-    ends = [0.0]
-    while ends[-1] < length:
-        ends.append(ends[-1] + max(piece, PIECE * _STEEP * ends[-1] / reach))
-    return piecewise_rule(points, np.array(ends) / ends[-1])

@@ -19,8 +19,9 @@ from mdr_core.abel.displacement import (
     arcsine,
     slope_integral,
 )
+from mdr_core.abel.stress import stress_integral
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import full, number
+from mdr_core.elementwise import full, number, some
 from mdr_core.errors import Notice
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
@@ -61,8 +62,6 @@ class Profile(ABC):
     formula: ClassVar[str]
     # Quantities in closed form; the others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
-    # True if the profiles of the kind are one curve at different scales.
-    similar: ClassVar[bool] = False
     # Stick edges by u_x/u_max and by F_x/(mu F_N), in contact coordinates, where they are closed.
     stick_ratios: ClassVar[StickRatios | None] = None
     # Bound on the relative rounding error of the closed forms.
@@ -218,15 +217,6 @@ class Profile(ABC):
         raise NotImplementedError(f"a {self.kind} has no scale, because its inverses are closed")
 
     @property
-    def curves(self) -> tuple[tuple[type["Profile"], Parameter], ...]:
-        """Kinds at unit parameters whose loads are about those of this profile, with weights.
-
-        The curves are those of the logarithms of load and contact coordinate, over the values at
-        the `scale`. Empty where no such curve is known.
-        """
-        return ((type(self), 1.0),) if self.similar else ()
-
-    @property
     def coordinate_breaks(self) -> Array:
         """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
         return _NO_BREAKS
@@ -301,16 +291,6 @@ class Profile(ABC):
         """`reduced_force` and `force_slope`, which share parts of their formulas."""
         return self.reduced_force(coordinate), self.force_slope(coordinate)
 
-    @cached_property
-    def depth_at_scale(self) -> tuple[Array, Array]:
-        """`depth_and_slope` at the `scale`."""
-        return self.depth_and_slope(number(1.0) * self.scale)
-
-    @cached_property
-    def force_at_scale(self) -> tuple[Array, Array]:
-        """`force_and_slope` at the `scale`."""
-        return self.force_and_slope(number(1.0) * self.scale)
-
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)
@@ -373,14 +353,14 @@ class Profile(ABC):
     def branches(self) -> tuple[Branch, ...]:
         """Intervals on which g' is smooth except for the root at the start of each."""
         tip, steepness = self.tip_exponent, self.steepness
-        return (Branch(0.0, lambda x, _s, _: self.dg(x), tip=tip, steepness=steepness),)
+        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=steepness),)
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
         """Weights g'(x) s/x at places (n, m) of the branches `owner` (m,)."""
         found = np.empty_like(x)
         for i, branch in enumerate(self.branches):
             own = owner == i
-            found[:, own] = branch.weight(x[:, own], s[:, own], slice(0, 1))
+            found[:, own] = branch.weight(x[:, own], s[:, own])
         return found
 
     def annulus_integrals(
@@ -425,7 +405,7 @@ class Profile(ABC):
         value = slope_integral(self.branches, near, r, r, arccosine, rtol)
         if np.any(near > c):
             value += np.pi / 2 * (self.g(near) - self.g(c))
-            step = self._force_within(near) - self._force_within(c)
+            step = self.force_within(near) - self.force_within(c)
             value -= step / (2 * np.where(r > 0, r, 1.0))
         return 2 / np.pi * value
 
@@ -443,10 +423,10 @@ class Profile(ABC):
         # Next to the axis arcsin(x/r) = x/r, of which the integral is closed.
         near = np.minimum(a, np.sqrt(rtol) * r)
         value = slope_integral(self.branches, near, a, r, arcsine, rtol)
-        value += self._force_within(near) / (2 * r)
+        value += self.force_within(near) / (2 * r)
         return 2 / np.pi * value
 
-    def _force_within(self, x: Array) -> Array:
+    def force_within(self, x: Array) -> Array:
         """2 int_0^x x g'(x) dx, zero on a flat [length^2]."""
         flat = self.contact_radius(np.zeros_like(x))
         return self.reduced_force(self.coordinate_from_radius(np.maximum(x, flat)))
@@ -459,13 +439,11 @@ class Profile(ABC):
         """
         return coordinate < 0
 
-    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
-        """Stress integral at the axis of each contact, for `falls_from_axis` [1]."""
-        edge = np.atleast_1d(coordinate)
-        values = self.pressure_kernel(Annulus(edge), np.zeros(edge.size), rtol)
-        return values.reshape(coordinate.shape)[()]
+    def axis_stress(self, coordinate: Array) -> Array:
+        """Stress integral at the axis of each contact, (1/pi) int_0^a g'(x)/x dx [1]."""
+        a = self.contact_radius(coordinate)
+        return power_law_integral(lambda x: self.dg(x) / x, a, self.scale) / np.pi
 
-    @abstractmethod
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Stress integral (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1].
 
@@ -477,6 +455,10 @@ class Profile(ABC):
         radius : radii 0 <= r < a [length], shape (m,).
         rtol : relative tolerance.
         """
+        total = stress_integral(self.branches, self.radial(annulus), radius, rtol) / np.pi
+        if annulus.inner is None and some(axis := radius == 0):
+            total[axis] = self.axis_stress(annulus.at(axis).outer)
+        return total
 
     def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
         """Stress integral at places given as contact coordinates, zero at the edge [1].

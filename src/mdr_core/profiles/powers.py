@@ -7,8 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus
-from mdr_core.abel.power_moments import log_ratio, power_moment, root_step
+from mdr_core.abel.annulus import Annulus, log_ratio, root_step
 from mdr_core.elementwise import full, some, where
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
@@ -231,6 +230,9 @@ class Paraboloid(Profile):
         gap = atan_gap(a, np.where(root > 0, root, 1.0))
         return (a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius)
 
+    def axis_stress(self, coordinate: Array) -> Array:
+        return self.dg(coordinate) / pi
+
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)].
 
@@ -325,10 +327,7 @@ class Power(Profile):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return (coordinate >= 0) & (self.exponent <= 2)
 
-    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
-        return self.dg(coordinate) / (pi * (self.exponent - 1))
-
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """Source: mdr-5, Eqs. (5.68), (5.70). Parameters: see `Profile`."""
-        moment = power_moment(float(self.exponent) - 1, annulus, radius, rtol)
-        return self.dg(annulus.outer) / pi * moment
+    def axis_stress(self, coordinate: Array) -> Array:
+        n = self.exponent
+        finite = self.dg(coordinate) / (pi * where(n > 1, n - 1, 1.0))
+        return where(n > 1, finite, np.inf)

@@ -7,10 +7,8 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus
-from mdr_core.abel.power_moments import power_moment
 from mdr_core.cached import cached_property
-from mdr_core.elementwise import where
+from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_functions import kappa, power, power_slope
@@ -19,8 +17,6 @@ from mdr_core.typing import Array, Flags, Parameter
 
 # Largest ratio of the terms to their sum for which ten digits of the sum are accurate.
 _MAX_CANCELLATION: Final = 1e5
-# Tolerance below which rounding error dominates.
-_FINEST: Final = 1e-15
 # Bound on the logarithm of a starting radius, which nearly equal exponents leave undetermined.
 _MAX_LOG: Final = 70.0
 _EPS: Final = float(np.finfo(float).eps)
@@ -222,20 +218,8 @@ class Series(Profile):
             self._total(n * (n - 3 if n >= 4 else -1) * d for d, n in self._depths(coordinate)) <= 0
         )
 
-    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
+    def axis_stress(self, coordinate: Array) -> Array:
+        if self.infinite_pressure_radii:
+            return full(inf, coordinate)
         slopes = ((power_slope(c, coordinate, n), n) for c, n in self._powers_of_g)
         return self._total(slope / (pi * (n - 1)) for slope, n in slopes)
-
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """Source: mdr-5, Eqs. (5.68), (5.70), superposed. Parameters: see `Profile`."""
-        # Where the terms cancel, each has to be more accurate.
-        tolerance = max(rtol / (1 + self._cancellation), _FINEST)
-        total = np.zeros(radius.shape)
-        with np.errstate(all="ignore"):
-            for c, n in self._powers_of_g:
-                moment = power_moment(n - 1, annulus, radius, tolerance)
-                total += power_slope(c, annulus.outer, n) / pi * moment
-        if annulus.inner is None and self.infinite_pressure_radii:
-            # At the axis the term of lowest exponent dominates.
-            total[radius == 0] = inf
-        return total

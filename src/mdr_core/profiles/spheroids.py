@@ -7,9 +7,8 @@ from typing import ClassVar, Final
 import numpy as np
 from scipy.special import spence
 
-from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.two_root import arcsinh_difference, inverse_hypot
 from mdr_core.elementwise import piecewise, some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
@@ -58,7 +57,7 @@ class Spheroid(Profile):
     @property
     def branches(self) -> tuple[Branch, ...]:
         equator = float(np.asarray(self.radius))
-        return (Branch(0.0, lambda x, _s, _index: self.dg(x), pole=equator),)
+        return (Branch(0.0, lambda x, _: self.dg(x), pole=equator),)
 
     def f(self, radius: Array) -> Array:
         q = np.square(radius / self.radius)
@@ -126,8 +125,8 @@ class Spheroid(Profile):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return np.tanh(coordinate) <= _SHALLOW
 
-    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
-        """(h/(pi R)) [v + chi_2(tanh v)]. Source: notes, §2. Parameters: see `Profile`."""
+    def axis_stress(self, coordinate: Array) -> Array:
+        """(h/(pi R)) [v + chi_2(tanh v)]. Source: notes, §2."""
         total = coordinate + _legendre_chi(coordinate)
         return self.height / (pi * self.radius) * total
 
@@ -175,6 +174,23 @@ def artanh_ratio_difference(
     return where(difference < 0.5, narrow, wide)
 
 
+def _arcsinh_difference(
+    top: Array, cosh_top: Array, bottom: Array, cosh_bottom: Array, square_difference: Array
+) -> Array:
+    """Return arcsinh(top) - arcsinh(bottom), free of cancellation.
+
+    Parameters
+    ----------
+    top, bottom : top >= bottom >= 0 [1].
+    cosh_top, cosh_bottom : sqrt(1 + top^2) and sqrt(1 + bottom^2) [1].
+    square_difference : top^2 - bottom^2, or a larger number if bottom = 0 [1].
+    """
+    gap2 = np.minimum(square_difference, top * top)
+    # Both ends vanish only together.
+    denominator = np.maximum(top * cosh_bottom + bottom * cosh_top, np.finfo(float).tiny)
+    return np.arcsinh(np.divide(gap2, denominator, out=denominator))
+
+
 def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -> Array:
     """Return the stress integral of a sphere [1].
 
@@ -215,7 +231,7 @@ def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -
         cosh_top = np.cosh(v) / stretch
         cosh_bottom = np.maximum(np.cosh(inmost) / stretch, 1.0)
         gap2 = np.sinh(width) * np.sinh(2 * v - width) / (stretch * stretch)
-        length = arcsinh_difference(top, cosh_top, bottom, cosh_bottom, gap2)
+        length = _arcsinh_difference(top, cosh_top, bottom, cosh_bottom, gap2)
         smooth = integrate(h, length, rtol, np.arcsinh(bottom))
     return stretch * (length + smooth) / pi
 

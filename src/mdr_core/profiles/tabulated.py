@@ -6,17 +6,16 @@ from typing import Any, ClassVar, Final, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
-from mdr_core.abel.two_root import inverse_hypot
 from mdr_core.cached import cached_property
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
-from mdr_core.typing import Array, Chosen, Flags, Indices, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import require_inside
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
@@ -279,7 +278,7 @@ class Tabulated(Profile):
     def _branch(self, start: float, stop: float) -> Branch:
         base = max((b for b in self._breaks if b <= start), default=0.0)
 
-        def weight(x: Array, s: Array, _index: Chosen) -> Array:
+        def weight(x: Array, s: Array) -> Array:
             return self._weight(base, x, s)
 
         return Branch(float(base), weight, float(stop), float(start))
@@ -373,10 +372,10 @@ class Tabulated(Profile):
         beyond[0] = 0.0
         return max(float(steps[0].max()), 0.0), np.maximum.accumulate(beyond)
 
-    def axis_stress(self, coordinate: Array, rtol: float) -> Array:
-        """Stress integral at the axis, in closed form. Parameters: see `Profile`."""
+    def axis_stress(self, coordinate: Array) -> Array:
+        """Stress integral at the axis, in closed form."""
         if self._flanks:
-            return super().axis_stress(coordinate, rtol)
+            return super().axis_stress(coordinate)
         return self._spline.over_axis(coordinate) / np.pi
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:

@@ -7,9 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch
-from mdr_core.abel.two_root import inverse_hypot, two_root_integral
+from mdr_core.abel.two_root import two_root_integral
 from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
@@ -18,14 +18,43 @@ from mdr_core.typing import Array, Parameter
 from mdr_core.validation import first_index
 
 
-class FlatEnded(Profile):
-    """Profile with f = 0 up to b = `flat_radius`, which is zero in a table without a flat.
+class Truncated(Profile):
+    """Profile with f = 0 up to b = `flat_radius` and a closed dg/ds = g'(x) s/x beyond it.
 
     The contact coordinate is s = sqrt(a^2 - b^2), because a alone is not accurate as a -> b.
     Source: notes, §4.
     """
 
     flat_radius: Parameter
+
+    similar: ClassVar[bool] = True
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        return (self.flat_radius,)
+
+    @property
+    def scale(self) -> Parameter:
+        return self.flat_radius
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        return (Branch(float(np.asarray(self.flat_radius)), self.weight),)
+
+    @abstractmethod
+    def weight(self, x: Array, s: Array) -> Array:
+        """Slope dg/ds = g'(x) s/x beyond the flat [1], analytic and even in s."""
+
+    def g(self, x: Array) -> Array:
+        return self.depth(inverse_hypot(x, self.flat_radius))
+
+    def dg(self, x: Array) -> Array:
+        s = inverse_hypot(x, self.flat_radius)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return where(x < self.flat_radius, 0.0, self.weight(x, s) * x / s)
+
+    def depth_slope(self, coordinate: Array) -> Array:
+        return self.weight(self.contact_radius(coordinate), coordinate)
 
     def contact_radius(self, coordinate: Array) -> Array:
         return np.sqrt(self.flat_radius * self.flat_radius + coordinate * coordinate)
@@ -52,68 +81,17 @@ class FlatEnded(Profile):
         return width * (2 * s_a - width) / where(total > 0, total, 1.0)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """Source: notes, §5. Parameters: see `Profile`."""
-        return self._kernel(annulus, radius, rtol)
+        """In the contact coordinate. Source: notes, §5. Parameters: see `Profile`."""
+        b = float(self.flat_radius)
+        return two_root_integral(self.weight, b, radius, annulus, rtol=rtol) / pi
 
     def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
         """Parameters: see `Profile`."""
-        radius, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
-        inside = coordinate < annulus.outer
-        chosen = annulus.at(inside), radius[inside], rtol
-        values[inside] = self._kernel(*chosen, coordinate[inside])
+        inside, values = coordinate < annulus.outer, np.zeros(coordinate.shape)
+        s, b = coordinate[inside], float(self.flat_radius)
+        at = self.contact_radius(s), annulus.at(inside)
+        values[inside] = two_root_integral(self.weight, b, *at, rtol=rtol, beyond=s) / pi
         return values
-
-    @abstractmethod
-    def _kernel(
-        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
-    ) -> Array:
-        """`pressure_kernel`; `beyond` are the contact coordinates of the radii, if known [1]."""
-
-
-class Truncated(FlatEnded):
-    """Flat-ended profile with a closed dg/ds = g'(x) s/x beyond it, s = sqrt(x^2 - b^2)."""
-
-    similar: ClassVar[bool] = True
-
-    @property
-    def breaks(self) -> tuple[Parameter, ...]:
-        return (self.flat_radius,)
-
-    @property
-    def scale(self) -> Parameter:
-        return self.flat_radius
-
-    @property
-    def branches(self) -> tuple[Branch, ...]:
-        return (Branch(float(np.asarray(self.flat_radius)), lambda x, s, _: self.weight(x, s)),)
-
-    @abstractmethod
-    def weight(self, x: Array, s: Array) -> Array:
-        """Slope dg/ds = g'(x) s/x beyond the flat [1], analytic and even in s."""
-
-    def g(self, x: Array) -> Array:
-        return self.depth(inverse_hypot(x, self.flat_radius))
-
-    def dg(self, x: Array) -> Array:
-        s = inverse_hypot(x, self.flat_radius)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return where(x < self.flat_radius, 0.0, self.weight(x, s) * x / s)
-
-    def depth_slope(self, coordinate: Array) -> Array:
-        return self.weight(self.contact_radius(coordinate), coordinate)
-
-    def _kernel(
-        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
-    ) -> Array:
-        integral = two_root_integral(
-            lambda x, s, _: self.weight(x, s),
-            float(self.flat_radius),
-            radius,
-            annulus,
-            rtol=rtol,
-            beyond=beyond,
-        )
-        return integral / pi
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import fields, normal
-from mdr_core.abel.two_root import inverse_hypot
+from mdr_core.abel.annulus import inverse_hypot
 from mdr_core.cached import cached_property
 from mdr_core.typing import Array
 from mdr_core.validation import checked_radii

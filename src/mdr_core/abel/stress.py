@@ -1,0 +1,73 @@
+"""Stress integral of a slope g' that is smooth on intervals. Source: notes, §5."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import asinh, inf, pi
+from typing import Final
+
+import numpy as np
+
+from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
+from mdr_core.abel.displacement import Branch
+from mdr_core.abel.two_root import two_root_integral
+from mdr_core.elementwise import some
+from mdr_core.typing import Array
+
+# Closer to the axis than this part of the radius at which an interval starts its stress is that on
+# the axis.
+_NEAR_AXIS: Final = 1e-8
+# The same for an interval that starts on the axis, as a part of the radius at which it ends.
+_NEXT_TO_AXIS: Final = 1e-120
+_TINY: Final = float(np.finfo(float).tiny)
+
+
+def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol: float) -> Array:
+    """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx.
+
+    Source: mdr-5, Eqs. (5.68), (5.70); notes, §5.
+
+    Parameters
+    ----------
+    branches : intervals of g'.
+    annulus : a and c as radii; where c is a single number, so is a.
+    r : radii 0 <= r < a [length], shape (m,); on the axis that next to it, if a tip is sharp.
+    rtol : relative tolerance.
+    """
+    outer, inner, _ = annulus
+    width, c = (outer, 0.0 * outer) if inner is None else inner[:2]
+    a, width, c = (np.broadcast_to(part, r.shape) for part in (outer, width, c))
+    narrow, total = width < a / 2, np.zeros(r.shape)
+    for branch in branches:
+        for start, stop in _smooth_parts(branch, c.min(), a.max()):
+            low, high = np.maximum(c, start), np.minimum(a, stop)
+            # The width of a narrow annulus has more digits than its radii.
+            gap = np.where(narrow, width - (a - high) - (low - c), high - low)
+            seen = np.flatnonzero((gap > 0) & (r < high))
+            if seen.size:
+                ends = low[seen], high[seen], gap[seen]
+                total[seen] += _on_part(branch, *ends, r[seen], rtol)
+    return total
+
+
+def _smooth_parts(branch: Branch, c: float, a: float) -> Iterator[tuple[float, float]]:
+    """Parts of a branch whose length is at most their distance from a singularity beyond them."""
+    start, stop = max(branch.base, branch.start), min(branch.stop, a)
+    if max(start, c) > stop:
+        return iter(())
+    near = branch.opposite_singularity
+    if branch.base and near < inf and asinh(near / branch.base) > pi / 2:
+        near = inf
+    return pairwise([*branch.cuts(start, stop, near), stop])
+
+
+def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol: float) -> Array:
+    """Stress integral over low < x < high, gap = high - low, at radii below high."""
+    base = branch.base
+    if base == 0:
+        r = np.maximum(r, np.where(low > 0, _NEAR_AXIS * low, _NEXT_TO_AXIS * high))
+    top, inner = inverse_hypot(high, base), None
+    if some(low > base):
+        roots = np.maximum(top + inverse_hypot(low, base), _TINY)
+        inner = InnerEnd(gap * (low + high) / roots, low)
+    ends = Annulus(top, inner, high)
+    return two_root_integral(branch.weight, base, r, ends, rtol=rtol, growth=branch.steepness)
