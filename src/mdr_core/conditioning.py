@@ -162,7 +162,7 @@ def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> 
     steps : d(a) - d(c) [length] and (F(a) - F(c))/E* [length^2].
     """
     last, error = profile.last_coordinate, full(0.0, edge)
-    beyond = np.minimum(edge * (1 + _LOAD), inf if last is None else last)
+    beyond = np.minimum(edge * (1 + 2 * _COORDINATE), inf if last is None else last)
     for load, step in zip((profile.depth, profile.reduced_force), steps, strict=True):
         below = load(edge)
         wide = step > EARLY / 2 * below

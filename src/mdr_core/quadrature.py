@@ -7,7 +7,7 @@ length two then converge as 3.3^-2n.
 
 from collections.abc import Callable
 from functools import lru_cache
-from math import ceil, log, log2
+from math import log
 from typing import Final
 
 import numpy as np
@@ -153,30 +153,11 @@ def nodes_of_pieces(rtol: float) -> int:
     return next(count for limit, count in _NODES_OF_PIECES if rtol >= limit)
 
 
-@lru_cache(maxsize=256)
-def graded_rule(points: int, halvings: int, count: int = 1) -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1], in equal pieces of which the first halves towards 0."""
-    first = np.append(0.0, 0.5 ** np.arange(halvings, -1, -1))
-    return piecewise_rule(points, np.append(first, np.arange(2, count + 1)) / count)
-
-
 def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
     """Return nodes and weights on the pieces between the ends."""
     nodes, weights = gauss_legendre(points)
     width = np.diff(ends)[:, None]
     return (ends[:-1, None] + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
-
-
-def halvings_towards(distance: float) -> int:
-    """Return the halvings of a piece of length 1 for a singularity at a distance before it."""
-    return max(ceil(-log2(max(distance, _NEAREST))), 0)
-
-
-def rule_towards(distance: float, length: float, rtol: float) -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1] for [0, length], singular at a distance before 0."""
-    count = max(ceil(length / PIECE), 1)
-    halvings = halvings_towards(distance * count / length) if length > 0 else 0
-    return graded_rule(nodes_of_pieces(rtol), halvings, count)
 
 
 def reach_of_power(exponent: float, rtol: float) -> float:

@@ -96,9 +96,10 @@ def test_stresses_next_to_a_flat(*, force: float, part: float, tabulated: bool) 
     contact = solve(body, 1.0, normal_force=force)
     partial = tangential.solve(contact, 1.0, 1.0, tangential_force=part * force)
     found = fields.pressure(contact, radii), fields.shear_stress(partial, radii)
-    # The contact radius of a table does not resolve its distance from the flat.
+    # The contact and stick radius of a table do not resolve their distance from the flat, here
+    # 1e-10 and 1e-15.
     bound = max(1e-11, 10 * contact.error_estimate, 10 * partial.error_estimate)
-    assert bound <= (1e-3 if force < 1e-4 else 1e-9)
+    assert bound <= (1e-2 if force < 1e-4 else 1e-9)
 
     def root(load: mpf) -> mpf:
         return mp.findroot(lambda s: 2 * s * (2 * s * s + 3 * b * b) / 3 - load, load / (2 * b * b))

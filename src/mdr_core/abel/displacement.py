@@ -7,9 +7,10 @@ int_0^a (g(a) - g(x))/sqrt(r^2 - x^2) dx = int_0^a g'(x) arcsin(x/r) dx.
 Source: notes, §7.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from math import asinh, ceil, inf, log, sqrt
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import asinh, ceil, inf, pi, sqrt
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -19,12 +20,9 @@ from mdr_core.quadrature import (
     PIECE,
     STEEP,
     composite_rule,
-    graded_rule,
-    halvings_towards,
     nodes_of_pieces,
     reach_of_power,
     rule_of_powers,
-    rule_towards,
 )
 from mdr_core.typing import Array, Indices
 
@@ -72,6 +70,21 @@ class Branch:
         return found
 
 
+def smooth_parts(branches: Iterable[Branch], high: float) -> Iterator[Branch]:
+    """Return parts of branches up to `high`, no longer than their distance from a singularity."""
+    for branch in branches:
+        near = branch.opposite_singularity
+        if branch.base and asinh(near / branch.base) > pi / 2:
+            near = inf
+        start = max(branch.base, branch.start)
+        cuts = branch.cuts(start, min(branch.stop, high), near) if start < high else []
+        if len(cuts) == 1:
+            yield branch
+        else:
+            for low, stop in pairwise([*cuts, branch.stop]):
+                yield replace(branch, start=low, stop=stop)
+
+
 # K(x, sqrt(r^2 - x^2)), by which the slope is multiplied.
 Kernel = Callable[[Array, Array], Array]
 
@@ -111,7 +124,7 @@ def slope_integral(
     rtol : relative tolerance.
     """
     total = np.zeros_like(r)
-    for branch in branches:
+    for branch in smooth_parts(branches, high.max(initial=0.0)):
         start = np.maximum(low, max(branch.base, branch.start))
         end = np.minimum(high, branch.stop)
         index = np.flatnonzero(end > start)
@@ -149,7 +162,7 @@ def annulus_integrals(
     rtol : relative tolerance.
     """
     total = np.zeros((len(kernels), low.size))
-    for branch in branches:
+    for branch in smooth_parts(branches, (low + width).max(initial=0.0)):
         begin = max(branch.base, branch.start)
         inside = below(begin) + width > 0
         if branch.stop < inf:
@@ -202,12 +215,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         with np.errstate(divide="ignore", invalid="ignore"):
             stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
         pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / STEEP), 1)
-    points = nodes_of_pieces(rtol)
-    if branch.pole < inf and np.any(span > 0):
-        distance = _pole_distance(branch, s_r, top, span)
-        nodes, weights = graded_rule(points, halvings_towards(distance * pieces) + 1, pieces)
-    else:
-        nodes, weights = composite_rule(points, pieces)
+    nodes, weights = composite_rule(nodes_of_pieces(rtol), pieces)
 
     def values(part: slice) -> Array:
         half = top[part] + nodes[:, None] * span[part]
@@ -223,15 +231,6 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         lower = _lower(branch, s_low[index], split[index], s_r[index], kernels, rtol)
         total[:, index] += lower
     return np.asarray(total)
-
-
-def _pole_distance(branch: Branch, s_r: Array, top: Array, span: Array) -> float:
-    """Smallest distance of the pole from the upper end in tan(alpha/2), relative to the span."""
-    seen = span > 0
-    s_pole = sqrt((branch.pole - branch.base) * (branch.pole + branch.base))
-    # Imaginary for a radius below the pole.
-    at_pole = np.sqrt((s_r[seen] - s_pole) / (s_r[seen] + s_pole) + 0j)
-    return float((np.abs(at_pole - top[seen]) / span[seen]).min())
 
 
 def _lower(
@@ -250,23 +249,11 @@ def _lower(
     if not longest > 0:
         # Two neighbouring doubles may have the same logarithm.
         return np.zeros((len(kernels), s_r.size))
-    piece = PIECE * min(1.0, STEEP / branch.steepness)
-    count = max(ceil(longest / piece), 1)
-    part = count / longest
     if branch.steepness > STEEP:
-        nodes, weights = rule_of_powers(
-            branch.steepness, reach_of_power(1.0, rtol), longest, points
-        )
-    elif branch.pole < inf:
-        # The distance of the pole from the upper end is log(pole/x).
-        distance = log(branch.pole / float(np.hypot(base, high.max())))
-        nodes, weights = graded_rule(points, halvings_towards(distance * part) + 1, count)
-    elif branch.opposite_singularity < inf:
-        distance = asinh(branch.opposite_singularity / base)
-        nodes, weights = rule_towards(distance, longest, rtol)
-        nodes = 1 - nodes
+        reach = reach_of_power(1.0, rtol)
+        nodes, weights = rule_of_powers(branch.steepness, reach, longest, points)
     else:
-        nodes, weights = composite_rule(points, count)
+        nodes, weights = composite_rule(points, ceil(longest / PIECE))
 
     def values(part: slice) -> Array:
         y = upper[part] - nodes[:, None] * length[part]

@@ -1,14 +1,12 @@
 """Stress integral of a slope g' that is smooth on intervals. Source: notes, §5."""
 
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
-from math import asinh, inf, pi
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
-from mdr_core.abel.displacement import Branch
+from mdr_core.abel.displacement import Branch, smooth_parts
 from mdr_core.abel.two_root import two_root_integral
 from mdr_core.elementwise import some
 from mdr_core.typing import Array
@@ -37,27 +35,16 @@ def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol
     width, c = (outer, 0.0 * outer) if inner is None else inner[:2]
     a, width, c = (np.broadcast_to(part, r.shape) for part in (outer, width, c))
     narrow, total = width < a / 2, np.zeros(r.shape)
-    for branch in branches:
-        for start, stop in _smooth_parts(branch, c.min(), a.max()):
-            low, high = np.maximum(c, start), np.minimum(a, stop)
-            # The width of a narrow annulus has more digits than its radii.
-            gap = np.where(narrow, width - (a - high) - (low - c), high - low)
-            seen = np.flatnonzero((gap > 0) & (r < high))
-            if seen.size:
-                ends = low[seen], high[seen], gap[seen]
-                total[seen] += _on_part(branch, *ends, r[seen], rtol)
+    for branch in smooth_parts(branches, a.max()):
+        low = np.maximum(c, max(branch.base, branch.start))
+        high = np.minimum(a, branch.stop)
+        # The width of a narrow annulus has more digits than its radii.
+        gap = np.where(narrow, width - (a - high) - (low - c), high - low)
+        seen = np.flatnonzero((gap > 0) & (r < high))
+        if seen.size:
+            ends = low[seen], high[seen], gap[seen]
+            total[seen] += _on_part(branch, *ends, r[seen], rtol)
     return total
-
-
-def _smooth_parts(branch: Branch, c: float, a: float) -> Iterator[tuple[float, float]]:
-    """Parts of a branch whose length is at most their distance from a singularity beyond them."""
-    start, stop = max(branch.base, branch.start), min(branch.stop, a)
-    if max(start, c) > stop:
-        return iter(())
-    near = branch.opposite_singularity
-    if branch.base and near < inf and asinh(near / branch.base) > pi / 2:
-        near = inf
-    return pairwise([*branch.cuts(start, stop, near), stop])
 
 
 def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol: float) -> Array:

@@ -4,13 +4,17 @@ g' dx = h (v sech^2 v + tanh v) dv has no pole at the equator, and v resolves th
 Source: notes, §7.
 """
 
-from math import ceil
+from math import ceil, log2
+from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.displacement import integrals_in_blocks
-from mdr_core.quadrature import composite_rule, nodes_of_pieces, rule_towards
+from mdr_core.quadrature import PIECE, composite_rule, nodes_of_pieces, piecewise_rule
 from mdr_core.typing import Array, Parameter
+
+# Closer to the edge a root lies on it.
+_EPS: Final = float(np.finfo(float).eps)
 
 
 def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: float) -> Array:
@@ -29,8 +33,11 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
     # Next to the equator R - a is accurate, next to the axis a is.
     past = (r - big_radius) + edge if v > 1 else r - big_radius * np.tanh(v)
     beyond = np.maximum(past, 0.0)
-    # The pieces halve towards the edge, down to the nearest root.
-    places, weights = rule_towards(_nearest_root(big_radius, edge, beyond), v, rtol)
+    # The first piece halves towards the edge, down to the nearest root.
+    count = max(ceil(v / PIECE), 1)
+    halvings = max(ceil(-log2(max(_nearest_root(big_radius, edge, beyond) * count / v, _EPS))), 0)
+    ends = np.concatenate([[0.0], 0.5 ** np.arange(halvings, 0, -1), np.arange(1, count + 1)])
+    places, weights = piecewise_rule(nodes_of_pieces(rtol), ends / count)
     x, short, density = _stepped(big_radius, np.asarray(v), v * places)
 
     def values(part: slice) -> Array:
