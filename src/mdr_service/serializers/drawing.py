@@ -9,23 +9,17 @@ from typing import Any, Final
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
-from mdr_service.serializers.panels import LINE, NAMED, Map, Panel, Units, label
+from mdr_service.serializers.panels import LINE, Map, Panel, Units, label
 
-# Of more curves than this an evenly spaced selection is drawn.
-_CURVES: Final = 200
 # Beside infinite values the axes end at this multiple of the highest decile, and the colours of a
 # map at one of the highest fiftieth.
 _HEADROOM: Final = 1.5
 # Usual width of a picture, and heights of a panel and of what surrounds the panels [mm].
 _WIDTH, _PANEL, _FRAME = 180, 65, 35
-# Below these sizes of a picture and of a panel, labels are symbols in small type [mm].
+# Below these sizes of a picture and of a panel, labels are in small type [mm].
 _NARROW, _LOW = 120, 50
-# A scale of colours is logarithmic for loads of a greater ratio.
-_WIDE: Final = 100
 # Maps less square than this have unequal scales.
 _FLAT: Final = 0.2
 # Millimetres in an inch.
@@ -59,12 +53,17 @@ _Axes = Any
 
 
 def draw(
-    panels: Sequence[Panel | Map], name: str, size: tuple[int, int] | None, units: Units | None
+    title: str,
+    panels: Sequence[Panel | Map],
+    name: str,
+    size: tuple[int, int] | None,
+    units: Units | None,
 ) -> bytes:
     """Return a picture with its panels above each other.
 
     Parameters
     ----------
+    title : title of the legend.
     panels : the panels, which share the abscissa.
     name : format: ``svg``, ``png`` or ``pdf``.
     size : width and height [mm]; by default the usual size.
@@ -72,7 +71,12 @@ def draw(
     """
     width, height = size or (_WIDTH, _FRAME + len(panels) * _PANEL)
     is_small = width < _NARROW or height < _FRAME + len(panels) * _LOW
-    first, content = panels[0], io.BytesIO()
+    content = io.BytesIO()
+
+    def text(quantity: str) -> str:
+        found = label(quantity, units)
+        return found.replace(" ", "\n") if is_small else found
+
     with mpl.rc_context(_STYLE | {"font.size": 6.5 if is_small else 9.0}):
         figure = Figure((width / _INCH, height / _INCH), layout="constrained")
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
@@ -80,59 +84,41 @@ def draw(
         for each, panel in zip(axes, panels, strict=True):
             if isinstance(panel, Map):
                 colors = _draw_map(each, panel)
-                scale = label(panel.name, units, with_words=not is_small)
-                figure.colorbar(colors, ax=each, aspect=12, label=scale)
+                figure.colorbar(colors, ax=each, aspect=12, label=text(panel.name))
             else:
                 _draw_curves(each, panel)
-            each.set_ylabel(label(panel.y, units, with_words=not is_small))
+            each.set_ylabel(text(panel.y))
             named |= {line.get_label(): line for line in each.get_legend_handles_labels()[0]}
-        axes[-1].set_xlabel(label(first.x, units, with_words=not is_small).replace("\n", " "))
-        if isinstance(first, Map):
-            figure.suptitle(first.load, fontsize="medium")
-        elif first.load:
-            total = len(first.curves)
-            some = f", {_CURVES} of {total} curves" if total > _CURVES else ""
-            text = label(first.load, units, with_words=not is_small) + some
-            figure.colorbar(_scale(first), ax=axes.tolist(), label=text)
-        if named:
-            columns = 1 if is_small else 3
-            figure.legend(named.values(), named, loc="outside upper center", ncols=columns)
+        # At the right end stands a power of ten.
+        axes[-1].set_xlabel(text(panels[0].x), loc="left" if is_small else "center")
+        if named or title:
+            style: Any = {"loc": "outside upper center", "ncols": 1 if is_small else 3}
+            figure.legend(list(named.values()), list(named), title=title or None, **style)
         figure.savefig(content, format=name, metadata=_METADATA[name])
     return content.getvalue()
 
 
-def _scale(panel: Panel) -> ScalarMappable:
-    """Return the colours of loads, without the brightest, which are pale on white."""
-    loads = [curve.load for curve in panel.curves if curve.load is not None]
-    is_log = 0 < _WIDE * min(loads) < max(loads)
-    colors = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.8, 256)))
-    return ScalarMappable((LogNorm if is_log else Normalize)(min(loads), max(loads)), colors)
-
-
 def _draw_curves(axes: _Axes, panel: Panel) -> None:
-    """Draw curves in the colours of their loads, with gaps at infinite values."""
-    count, bound, places = len(panel.curves), 0.0, set[float]()
-    scale = _scale(panel) if panel.load else None
-    for index in np.unique(np.linspace(0, count - 1, min(count, _CURVES)).astype(int)):
-        x, y, name, load = panel.curves[index]
-        style = "o" if x.size < LINE else "--" if load is None and count > 1 else "-"
-        color = "0.4" if load is None else scale.to_rgba(load) if scale else f"C{index}"
+    """Draw curves, with gaps at infinite values."""
+    bound, places = 0.0, set[float]()
+    for index, (x, y, name, is_reference) in enumerate(panel.curves):
+        style = "o" if x.size < LINE else "--" if is_reference else "-"
         finite = np.isfinite(y)
-        if not finite.any():
-            name = f"{name} (∞)".strip()
-        else:
+        if finite.any():
             places |= set(x[~finite].tolist())
             heights = np.abs(y[finite])
             if not finite.all() and y.size >= LINE:
                 even = np.interp(np.linspace(x[0], x[-1], y.size), x[finite], heights)
                 heights = _HEADROOM * np.quantile(even[even > 0], [0.9])
             bound = max(bound, *heights)
-        axes.plot(x, np.where(finite, y, np.nan), style, color=color, label=name)
+        shown = name if finite.any() else f"{name} (∞)".strip()
+        color = "0.4" if is_reference else f"C{index}"
+        axes.plot(x, np.where(finite, y, np.nan), style, color=color, label=shown)
     # Zero is in sight.
     axes.axhline(0.0, linewidth=0.0)
     if panel.x not in {"radius", "x", "z"}:
         axes.axvline(0.0, linewidth=0.0)
-    for place in sorted(places)[:NAMED]:
+    for place in places:
         axes.axvline(place, linestyle=":", linewidth=0.8, color="0.4", label="∞")
     if places:
         axes.set_ylim(*np.clip(axes.dataLim.intervaly, -bound, bound or 1.0))

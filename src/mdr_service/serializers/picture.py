@@ -41,11 +41,11 @@ def write(query: Any, result: Mapping[str, Any], appearance: Appearance, name: s
     from mdr_service.serializers.drawing import draw  # noqa: PLC0415 -- Matplotlib loads slowly
 
     size, units = appearance
-    panels = panels_of(query, result, units)
+    title, panels = panels_of(query, result, units)
     count = len(panels)
     wide = _MAPS if count > 1 and isinstance(panels[0], Map) else 0
     high = _FRAME + count * _PANEL
     if size and (size[0] < wide or size[1] < high):
         detail = f"{count} panels need at least {max(wide, size[0])}x{max(high, size[1])}"
         raise InputError(("size",), f"{detail} mm: enlarge it, or request fewer quantities")
-    return draw(panels, name, size, units)
+    return draw(title, panels, name, size, units)
