@@ -101,6 +101,7 @@ figures: .venv/development
 	$(BIN)/python docs/figures/make_figures.py
 	$(BIN)/python docs/figures/beneath.py
 	$(BIN)/python docs/figures/gallery.py
+	PYTHONPATH=. $(BIN)/python docs/figures/explorer_page.py
 
 # Published cases, each sent to the service; fails if one misses its bound.
 verification: .venv/development
