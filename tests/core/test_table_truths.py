@@ -110,6 +110,18 @@ def test_declared_breaks(name: str, *, on_point: bool) -> None:
         assert max(errors(profile, body, part)) <= DECLARED
 
 
+@pytest.mark.parametrize("name", ["rounded punch", "truncated cone", "capped paraboloid"])
+def test_energy_beyond_a_declared_break_is_the_work(name: str) -> None:
+    """dU/dd = F_N, by a quotient of fourth order."""
+    r, f = sampled(KINKED[name], 50, extra=(B,))
+    profile, step = Tabulated(r, f, breaks=(B,)), 1e-4
+    contact = solve(profile, 1.0, contact_radius=[0.45, PART, 0.79])
+    depth = np.add.outer(step * np.array([-2, -1, 1, 2]), contact.indentation_depth)
+    energy = solve(profile, 1.0, indentation_depth=depth).elastic_energy
+    slope = (energy[0] - energy[3] + 8 * (energy[2] - energy[1])) / (12 * step)
+    np.testing.assert_allclose(slope, contact.normal_force, rtol=1e-9)
+
+
 @pytest.mark.parametrize("name", KINKED)
 def test_undeclared_kinks(name: str) -> None:
     body = KINKED[name]
