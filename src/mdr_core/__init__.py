@@ -14,7 +14,7 @@ time. Use one consistent system of units.
 
 from typing import Final
 
-from mdr_core import fields, history, normal, subsurface, tangential, validity, wear
+from mdr_core import adhesion, fields, history, normal, subsurface, tangential, validity, wear
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
@@ -69,6 +69,7 @@ __all__ = [
     "TruncatedCone",
     "TruncatedParaboloid",
     "__version__",
+    "adhesion",
     "fields",
     "from_bodies",
     "history",

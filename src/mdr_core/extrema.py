@@ -94,6 +94,22 @@ def largest_stress(
     return result
 
 
+def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Array) -> Array:
+    """Return the largest stress less the tension rim/sqrt(1 - (r/a)^2) of adhesion [1].
+
+    Parameters
+    ----------
+    profile, edge, loaded : see `largest_stress`.
+    rim : tension at the axis, where it is smallest [1].
+    """
+    whole = np.atleast_1d(largest_stress(profile, edge, loaded))
+    ends, found = np.atleast_1d(edge), np.atleast_1d(loaded) & np.isfinite(whole)
+    found &= ~np.atleast_1d(profile.falls_from_axis(ends))
+    if found.any():
+        whole[found] = _search(profile, ends[found], rim=np.atleast_1d(rim)[found])
+    return whole.reshape(np.shape(edge))[()] - rim
+
+
 def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape of `edge`."""
     if not slip:
@@ -127,17 +143,22 @@ def _curve() -> BPoly:
     return BPoly(np.linalg.solve(np.transpose(basis), height), ends, extrapolate=False)
 
 
-def _search(profile: Profile, edge: Array, *slip: Array) -> Array:
+def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = None) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
     The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    bracketed more and more closely.
+    bracketed more and more closely. With `rim`, rim [1/sqrt(1 - (r/a)^2) - 1] is subtracted.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
     def field(load: Indices, at: Array) -> Array:
         inner = InnerEnd(slip[0][load], c[0][load], slip[1][load]) if slip else None
-        return profile.pressure_kernel_at(Annulus(edge[load], inner), at, _RTOL)
+        stress = profile.pressure_kernel_at(Annulus(edge[load], inner), at, _RTOL)
+        if rim is None:
+            return stress
+        ratio = profile.contact_radius(at) / profile.contact_radius(edge[load])
+        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _RTOL))
+        return stress - rim[load] * (1 / height - 1)
 
     best = np.zeros(edge.size)
     fixed = np.append(profile.first_coordinate, profile.coordinate_breaks)

@@ -27,7 +27,7 @@ from mdr_core.validation import (
     require_type,
 )
 
-_CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
+CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
 # Rounding error of a contact radius that follows from a load.
 _RADIUS: Final = 4 * float(np.finfo(float).eps)
 # Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
@@ -245,7 +245,7 @@ def solve(
     # A plain number is by far the most frequent case.
     e_star = e_star if isinstance(e_star, float) else normal_modulus(e_star)
     loads = (indentation_depth, normal_force, contact_radius)
-    name, load = only_one(("load",), dict(zip(_CONTROLS, loads, strict=True)))
+    name, load = only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
     if load.size == 0:
         raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
@@ -273,7 +273,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         require_not_negative(("load", name), load)
         contact = NormalContact(profile, e_star, coordinate)
         with np.errstate(all="ignore"):
-            depth, force, a = (getattr(contact, result) for result in _CONTROLS)
+            depth, force, a = (getattr(contact, result) for result in CONTROLS)
             # An energy may underflow, but not overflow.
             results = a, a * a, depth, force, np.maximum(depth * force, 1.0)
         # A prescribed radius may be that of a flat, which is in contact without a load.

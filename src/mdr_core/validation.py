@@ -29,7 +29,12 @@ TIGHTEST, LOOSEST = 1e-13, 1e-3
 
 
 def require_type(name: str, value: object, types: Any, needed: str) -> None:
-    """Raise InputError unless a value is of one of the types, which `needed` describes."""
+    """Raise InputError unless a value is of one of the types, which `needed` describes.
+
+    A value with a reason why it is `unusable` here is rejected as well.
+    """
+    if reason := getattr(value, "unusable", ""):
+        raise InputError((name,), reason)
     if not isinstance(value, types):
         raise InputError((name,), f"must be {needed}, not {type(value).__name__}")
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel.annulus import Annulus
+from mdr_core.adhesion import AdhesiveContact
 from mdr_core.elementwise import every, number
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -37,7 +38,8 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
     """Return p(r) = (E*/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx [pressure].
 
     Positive in compression, zero outside the contact, infinite at sharp tips, slope
-    discontinuities and the edge of a flat punch.
+    discontinuities and the edge of a flat punch. Adhesion subtracts
+    E* Delta_l/(pi sqrt(a^2 - r^2)), which is infinite at the edge.
 
     Source: mdr-5, Eqs. (5.68), (5.79).
 
@@ -67,8 +69,10 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
-    contact = _pressed(contact)
     require_tolerance(rtol)
+    if isinstance(contact, AdhesiveContact):
+        return contact.superposed(lambda part: pressure(part, radius, rtol=rtol))
+    contact = _pressed(contact)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
 
@@ -102,8 +106,10 @@ def normal_displacement(contact: Contact, radius: ArrayLike, *, rtol: float = 1e
     InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
         parameter of the profile.
     """
-    contact = _pressed(contact)
     require_tolerance(rtol)
+    if isinstance(contact, AdhesiveContact):
+        return contact.superposed(lambda part: normal_displacement(part, radius, rtol=rtol))
+    contact = _pressed(contact)
     profile, shape = contact.profile, contact.contact_radius.shape
     columns = contact.contact_radius, contact.coordinate, contact.indentation_depth
     a, coordinate, depth = by_load(profile, shape, *columns)
@@ -139,6 +145,8 @@ def foundation_load(contact: Contact, radius: ArrayLike) -> Array:
     ------
     InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
+    if isinstance(contact, AdhesiveContact):
+        return contact.superposed(lambda part: foundation_load(part, radius))
     contact = _pressed(contact)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)

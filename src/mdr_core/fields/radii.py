@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.adhesion import AdhesiveContact
 from mdr_core.elementwise import broadcast, some
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
@@ -49,6 +50,9 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
         end = solve(contact.profile, contact.e_star, indentation_depth=depth)
         return Edges(radius, end.edge_errors * radius, scale)
     needed = "a contact, or the state of a load history"
+    if isinstance(contact, AdhesiveContact):
+        a = np.ravel(contact.contact_radius)
+        return Edges(a, a * np.ravel(contact.edge_errors), 0 * a)
     require_type("contact", contact, (NormalContact, TangentialContact), needed)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
@@ -81,7 +85,20 @@ def edge_error(
         return 0.0
     stress = name in ("pressure", "shear_stress")
     radius = np.atleast_1d(np.asarray(radius, dtype=float))
-    return error_near(edges(contact), radius, root=stress)
+    known = edges(contact)
+    if isinstance(contact, AdhesiveContact):
+        return rim_error(known, radius[:, None] - known.radius)
+    return error_near(known, radius, root=stress)
+
+
+def rim_error(edges: Edges, distance: Array) -> float:
+    """Return the error of a stress 1/sqrt(distance) from the edges (m, k) by their own error [1].
+
+    Relative to the stress there; points within four units in the last place are excluded.
+    """
+    gap = np.abs(distance)
+    gap = np.where(gap > edges.radius * (_TOO_CLOSE * _EPS), gap, inf)
+    return float((edges.error / gap).max())
 
 
 def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
@@ -135,6 +152,8 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     place = np.searchsorted(stops, moving)
     gap = np.minimum(gaps[place], gaps[place - 1])
     clear = (EDGE_ERROR / (2 * _GRID_ERROR)) ** 2 * np.square(moving) / gap
+    if isinstance(contact, AdhesiveContact):
+        clear = known.error.max() / _GRID_ERROR
     stops[place] = moving - np.minimum(clear, gap / 4)
     return graded(np.append(stops[stops < end], end), points)
 

@@ -27,6 +27,7 @@ from mdr_core.profiles import Cone, Paraboloid
 from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Chosen, Indices, Numbers
+from mdr_core.validation import require_type
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
@@ -192,6 +193,7 @@ def foundations(contact: Contact, body: int) -> tuple[list[Foundation], tuple[in
     """Return the foundation under each load, as it acts on body 1 or 2, and the loads' shape."""
     if body not in (1, 2):
         raise InputError(("body",), "must be 1 or 2")
+    require_type("contact", contact, Contact, "a contact, or the state of a load history")
     if isinstance(contact, NormalContact):
         # It sticks under no tangential force.
         contact = tangential.solve(contact, contact.e_star, 1.0, tangential_force=0.0)

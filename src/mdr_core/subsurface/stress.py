@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import fields
+from mdr_core.adhesion import AdhesiveContact
 from mdr_core.errors import InputError
-from mdr_core.fields.radii import Edges, error_near
+from mdr_core.fields.radii import Edges, error_near, rim_error
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array, Numbers
@@ -86,7 +87,8 @@ def stress(
 
     Parameters
     ----------
-    contact : normal or tangential contact under any loads, or state at the end of a history.
+    contact : normal, tangential or adhesive contact under any loads, or state at the end of a
+        history.
     x, y : coordinates on the surface from the axis, x along the tangential force [length].
     z : depth in the body, >= 0 [length]. The three broadcast to the shape of the points.
     poissons_ratio : of this body, -1 to 1/2 [1].
@@ -108,6 +110,13 @@ def stress(
     >>> [float(f"{one:.6g}") for one in at.zz / contact.maximum_pressure]
     [-1.0, -0.5]
     """
+    if isinstance(contact, AdhesiveContact):
+
+        def tensor(part: Contact) -> Array:
+            found = stress(part, x, y, z, poissons_ratio=poissons_ratio, body=body)
+            return np.stack(found, axis=-1)
+
+        return StressTensor(*np.moveaxis(contact.superposed(tensor), -1, 0))
     where = [np.asarray(part, dtype=float) for part in (x, y, z)]
     for name, given in zip("xyz", where, strict=True):
         if not np.isfinite(given).all():
@@ -176,6 +185,9 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
     """
     r, z = map(np.ravel, np.broadcast_arrays(np.hypot(x, y), z))
     known, near = fields.edges(contact), 0.0
+    if isinstance(contact, AdhesiveContact):
+        away = np.hypot(np.subtract.outer(r, known.radius), z[:, None])
+        return _ROUNDING + rim_error(known, away) + 4 * contact.error_estimate
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))
         near = max(near, error_near(edge, at + np.hypot(r - at, z), root=True))

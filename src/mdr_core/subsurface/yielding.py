@@ -110,7 +110,6 @@ def yield_onset_force(
     InputError : another measure, no load, or a yield strength that is not positive.
     AccuracyError : see `largest`.
     """
-    require_type("contact", contact, _Loaded, "a contact under loads")
     require_positive(("yield_strength",), yield_strength)
     profile, (columns, shape) = contact.normal.profile, _columns(contact)
     if not np.all(contact.normal.loaded):
@@ -181,6 +180,7 @@ def yield_finding(
 
 def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:
     """F_N, |F_x|/(mu F_N), mu, E* and swept parameters by load, and the shape of the loads."""
+    require_type("contact", contact, _Loaded | LoadHistory, "a contact under loads")
     pressed, ratio, friction = contact.normal, np.zeros(()), np.ones(())
     if not isinstance(contact, normal.NormalContact):
         start = contact.path.start if isinstance(contact, LoadHistory) else contact

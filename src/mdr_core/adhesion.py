@@ -1,0 +1,409 @@
+"""Adhesive contact of any profile after Johnson, Kendall and Roberts (JKR).
+
+An adhesive contact of radius a is the contact without adhesion of the same radius, its reference,
+less the state of a flat punch that is retracted by
+
+    Delta_l(a) = sqrt(2 pi a w/E*),    d = g(a) - Delta_l,    F_N = F_0(a) - 2 E* a Delta_l,
+
+so that the energy release rate at its edge is the work of adhesion w. With phi = g'(a) sqrt(a) and
+c = sqrt(2 pi w/E*) a state is stable under a prescribed force for phi > (3/2) c, under a prescribed
+depth for phi > c/2. Every crossing of these levels is found, between nodes that resolve phi; the
+state under a load is the outermost stable one, which unloading from a large contact reaches, and
+the pull-off is the lowest load of all stable branches.
+
+Source: notes, §15.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, pi, sqrt
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_root
+
+from mdr_core.breaks import has_many_breaks
+from mdr_core.cached import cached_property
+from mdr_core.elementwise import full, number, some, where
+from mdr_core.equivalent_1d import coordinate_from_radius
+from mdr_core.errors import InputError, Notice
+from mdr_core.extrema import largest_less_tension
+from mdr_core.materials import Material, normal_modulus
+from mdr_core.normal import CONTROLS, NormalContact
+from mdr_core.profiles import FlatPunch, Profile
+from mdr_core.profiles.base import NORMAL_QUANTITIES
+from mdr_core.typing import Array
+from mdr_core.validation import (
+    FINITE,
+    extremes,
+    first_index,
+    only_one,
+    require_inside,
+    require_positive,
+    require_single_profile,
+    require_tolerance,
+    require_type,
+)
+
+# Parts of c at which a state loses its stability.
+_SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
+# Decades of contact coordinates in which states are searched on either side of 1, and nodes in
+# each: phi bends over a factor of e or more, except next to a break.
+_DECADES, _PER_DECADE = 75, 12
+# Relative distances of nodes from a break, and nodes in each interval of a table.
+_NEXT, _IN_PIECE = np.logspace(-15, -0.5, 59), 9
+# Nodes around an extremum of phi next to a level.
+_FINE: Final = 201
+# Bound of the logarithm of phi over its level: root finding takes no infinite values.
+_STEEPEST: Final = 50.0
+# Delta_l of a paraboloid at pull-off over the range of adhesion, for Tabor's number 1.
+_TABOR: Final = sqrt(2 * pi) * (9 * pi / 8) ** (1 / 6)
+# Tabor's number from which JKR holds. Source: johnson-greenwood.
+_JKR: Final = 5.0
+# Rounding error of a load, and of the distance from pull-off, relative [1].
+_LOAD, _ROUNDING = 2.0**-49, 1e-13
+# Distance of a g'/Delta_l from pull-off, over the root of the rounding error, below which the error
+# of the contact radius is of that order: room for a slow change of phi.
+_NEAR: Final = 0.1
+
+
+class _Curve:
+    """Equilibrium states of one profile over the contact coordinate, with c = `c`.
+
+    Loads are depths [length], and F_N/E* [length^2] under the name `normal_force`.
+    """
+
+    def __init__(self, profile: Profile, c: float) -> None:
+        self.profile, self.c = profile, c
+        end, breaks = profile.last_coordinate, profile.coordinate_breaks
+        top = 10.0**_DECADES if end is None else end
+        count = 2 * _DECADES * _PER_DECADE + 1
+        parts: list[Any] = [[top], breaks, np.logspace(-_DECADES, _DECADES, count)]
+        if has_many_breaks(profile):
+            edges = np.concatenate([[0.0], breaks, [top]])
+            parts.append(np.linspace(edges[:-1], edges[1:], _IN_PIECE).ravel())
+            breaks = np.array(profile.breaks, dtype=float)
+        parts += [np.multiply.outer(breaks, 1 + sign * _NEXT).ravel() for sign in (-1, 1)]
+        nodes = np.unique(np.concatenate(parts))
+        self._nodes = nodes[(nodes >= 10.0**-_DECADES) & (nodes <= top)]
+        # The edge of a flat punch stays until the energy release rate reaches w.
+        fixed = (np.zeros(1), np.full(1, inf)) if profile.has_no_partial_slip else None
+        self.stable = {name: fixed or self._branches(name) for name in _SHARES}
+        """Coordinates between which states are stable, under a prescribed depth or force."""
+        lows = {name: self.load(name, low) for name, (low, _) in self.stable.items()}
+        self.least = {name: float(low.min()) for name, low in lows.items()}
+        self.at_pull_off = self.stable["normal_force"][0][np.argmin(lows["normal_force"])]
+
+    def retraction(self, coordinate: Array) -> Array:
+        """Delta_l [length]."""
+        return self.c * np.sqrt(self.profile.contact_radius(coordinate))
+
+    def load(self, name: str, coordinate: Array) -> Array:
+        """Depth or F_N/E*."""
+        with np.errstate(all="ignore"):
+            retraction = self.retraction(coordinate)
+            if name == "indentation_depth":
+                return self.profile.depth(coordinate) - retraction
+            arm = 2 * self.profile.contact_radius(coordinate)
+            return self.profile.reduced_force(coordinate) - arm * retraction
+
+    def excess(self, share: float, coordinate: Array) -> Array:
+        """phi/c less a share: a g'/Delta_l in excess of that at pull-off [1]."""
+        with np.errstate(all="ignore"):
+            slope = self.profile.depth_slope(coordinate) / self.profile.radius_slope(coordinate)
+            return slope * np.sqrt(self.profile.contact_radius(coordinate)) / self.c - share
+
+    def _branches(self, name: str) -> tuple[Array, Array]:
+        share = _SHARES[name]
+
+        def height(coordinate: Array) -> Array:
+            """Logarithm of phi over its level, bounded."""
+            with np.errstate(all="ignore"):
+                ratio = np.log1p(self.excess(share, coordinate) / share)
+            return np.clip(ratio, -_STEEPEST, _STEEPEST)
+
+        nodes, values = self._nodes, height(self._nodes)
+        # An extremum between nodes may reach the level although they lie on one side of it.
+        size = np.abs(values)
+        before, own, after = size[:-2], size[1:-1], size[2:]
+        near = (own <= before) & (own <= after) & (2 * own <= np.maximum(before, after))
+        at = np.flatnonzero(near) + 1
+        nodes = np.union1d(nodes, np.linspace(nodes[at - 1], nodes[at + 1], _FINE))
+        values = height(nodes)
+        stable = values > 0
+        end = self.profile.last_coordinate is not None and extremes(self.profile.domain)[1]
+        if not stable[-1] or (stable[0] and values[0] < values[1]):
+            reason = (
+                f"to radius {end:.6g}, where the profile ends: extend it, or reduce the work"
+                if end
+                else "without bound, or its radius at pull-off is not representable"
+            )
+            detail = f"adhesion spreads the contact {reason}"
+            raise InputError(("material", "work_of_adhesion"), detail)
+        at = np.flatnonzero(stable[1:] != stable[:-1])
+        ends = _roots(height, nodes[at], nodes[at + 1])
+        first = [self.profile.first_coordinate] if stable[0] else []
+        return np.append(first, ends[~stable[at]]), np.append(ends[stable[at]], nodes[-1])
+
+    def outermost(self, name: str, load: Array) -> tuple[Array, int]:
+        """Return the outermost stable coordinate of each load (n,), and the most states of one."""
+        low, high = self.stable[name]
+        least = self.load(name, low)
+        holds = load[:, None] >= least - _LOAD * np.abs(least)
+        holds &= load[:, None] <= self.load(name, high)
+        branch = low.size - 1 - np.argmax(holds[:, ::-1], axis=1)
+        found = low[branch]
+        for k in np.unique(branch):
+            own = (branch == k) & (load - least[k] > _LOAD * abs(least[k]))
+            inside = self._nodes[(self._nodes > low[k]) & (self._nodes < high[k])]
+            stops = np.concatenate([low[k : k + 1], inside, high[k : k + 1]])
+            values = np.maximum.accumulate(self.load(name, stops))
+            place = np.clip(np.searchsorted(values, load[own]), 1, stops.size - 1)
+            found[own] = _roots(
+                lambda s, goal: self.load(name, s) - goal,
+                *(stops[place - 1], stops[place], load[own]),
+            )
+        return found, int(holds.sum(axis=1).max())
+
+
+def _roots(function: Callable[..., Array], low: Array, high: Array, *given: Array) -> Array:
+    """Return the roots in brackets; the nearer end where rounding leaves no change of sign."""
+    if not low.size:
+        return low
+    found = find_root(function, (low, high), args=given)
+    nearer = np.abs(function(low, *given)) <= np.abs(function(high, *given))
+    return np.asarray(np.where(found.success, found.x, np.where(nearer, low, high)))
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class AdhesiveContact(NormalContact):
+    """Profile in adhesive contact with a half-space, under any number of loads.
+
+    Results are those of a `NormalContact`, and the pull-off.
+    """
+
+    curve: _Curve
+    retraction: Array
+    """Retraction from the reference [length]: Delta_l, or less on a flat punch."""
+    tabor_number: float = inf
+    """Tabor's number from Delta_l at pull-off; infinite without a range of adhesion [1]."""
+    states: int = 1
+    """Largest number of stable states under one of the loads."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        *(*NORMAL_QUANTITIES, "pull_off_force", "pull_off_depth", "retraction"),
+    )
+    unusable: ClassVar[str] = (
+        "adhesion with friction, yield or wear is not exact: the tension at the edge is infinite"
+    )
+
+    @cached_property
+    def reference(self) -> NormalContact:
+        """Contact without adhesion of the same radius."""
+        known = self.profile, self.e_star, self.coordinate, self.rtol, self.control, self.material
+        vars(reference := NormalContact(*known))["contact_radius"] = self.contact_radius
+        return reference
+
+    @property
+    def pull_off_force(self) -> Array:
+        """Lowest force of a contact, negative in tension [force]."""
+        return np.multiply(self.e_star, self.curve.least["normal_force"])
+
+    @property
+    def pull_off_depth(self) -> Array:
+        """Lowest depth of a contact [length]."""
+        return number(self.curve.least["indentation_depth"])
+
+    @cached_property
+    def indentation_depth(self) -> Array:
+        """d = g(a) - Delta_l [length]."""
+        return self.reference.indentation_depth - self.retraction
+
+    @cached_property
+    def normal_force(self) -> Array:
+        """F_N = F_0(a) - 2 E* a Delta_l [force], negative in tension."""
+        return self.reference.normal_force - self.reference.normal_stiffness * self.retraction
+
+    @cached_property
+    def maximum_pressure(self) -> Array:
+        """Largest pressure in the contact [pressure]; the tension at its edge is infinite."""
+        rim = self.retraction / (pi * self.contact_radius)
+        return self.e_star * largest_less_tension(self.profile, self.coordinate, self.loaded, rim)
+
+    @cached_property
+    def normal_stiffness(self) -> Array:
+        """dF_N/dd = 2 E* [a - Delta_l/(g' - Delta_l/(2a))] [force/length].
+
+        -inf at pull-off under a prescribed depth; 2 E* a on a flat punch, whose edge is fixed.
+        """
+        with np.errstate(divide="ignore"):
+            return self.reference.normal_stiffness * (1 - 1 / self._excess("indentation_depth"))
+
+    def _excess(self, name: str) -> Array:
+        """a g'/Delta_l in excess of that at pull-off; infinite under a flat punch [1]."""
+        if self.profile.has_no_partial_slip:
+            return full(inf, self.coordinate)
+        excess = self.curve.excess(_SHARES[name], self.coordinate)
+        return where(excess > _ROUNDING, excess, 0.0)
+
+    @cached_property
+    def elastic_energy(self) -> Array:
+        """E* int_0^a (d - g)^2 dx = U_0 - (F_0 + F_N) Delta_l/2 [force length]."""
+        total = self.reference.normal_force + self.normal_force
+        return self.reference.elastic_energy - total * self.retraction / 2
+
+    @property
+    def data_error(self) -> Array | None:
+        """That of the reference."""
+        return self.reference.data_error
+
+    @property
+    def method(self) -> str:
+        """Method: closed forms only under a flat punch."""
+        return "closed_form" if self.profile.has_no_partial_slip else "quadrature"
+
+    @cached_property
+    def edge_errors(self) -> Array:
+        """Relative error of the contact radius, of the order of a root next to pull-off [1]."""
+        rounding, name = self.profile.rounding, self.control
+        if name not in _SHARES:
+            return full(2.0**-52, self.coordinate)
+        punch = self.reference.normal_stiffness if name == "normal_force" else 1.0
+        size = 1 + getattr(self.reference, name) / (punch * self.curve.retraction(self.coordinate))
+        return rounding * size / np.maximum(self._excess(name), _NEAR * np.sqrt(rounding))
+
+    @cached_property
+    def error_estimates(self) -> Array:
+        """Bound of the error of each load's results [1].
+
+        Results that may vanish are compared with the sum of the sizes of their two parts, those of
+        the reference and of the retraction. The stiffness is infinite at pull-off.
+        """
+        change = 3 * self.profile.steepness * self.edge_errors
+        stable = self._excess("indentation_depth")
+        near = 2 + where(stable > 0, 1 / where(stable > 0, stable, 1.0), 0.0)
+        return (self.reference.error_estimates + change) * near
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        found = {
+            "singular": "normal_stiffness is infinite at pull-off under a prescribed depth",
+            "jkr_range": f"Tabor's number is {self.tabor_number:.2g}: below {_JKR:g} the range of "
+            "adhesion changes the pull-off; use boundary elements with a law of its tractions",
+            "several_states": f"{self.states} stable states exist under one load: the result is "
+            "the one with the largest contact, which unloading reaches",
+        }
+        holds = some(self._excess("indentation_depth") == 0), self.tabor_number < _JKR
+        flags = zip(found.items(), (*holds, self.states > 1), strict=True)
+        own = (Notice(*each) for each, flag in flags if flag)
+        return (*super().warnings_without_bodies, *own)
+
+    def superposed(self, field: Callable[[NormalContact], Any]) -> Array:
+        """Return a field of the reference, by load, less that of the retracted flat punch."""
+        whole = np.asarray(field(self.reference))
+        ends = zip(*map(np.ravel, (self.contact_radius, self.retraction)), strict=True)
+        punches = (NormalContact(FlatPunch(a), self.e_star, step, self.rtol) for a, step in ends)
+        taken = np.reshape([field(punch) for punch in punches], whole.shape)
+        # At the edge the tension outweighs a logarithmic pressure.
+        infinite = np.isinf(taken)
+        return np.where(infinite, -taken, whole - np.where(infinite, 0.0, taken))
+
+
+def solve(
+    profile: Profile,
+    e_star: float | Material,
+    work_of_adhesion: float,
+    *,
+    indentation_depth: ArrayLike | None = None,
+    normal_force: ArrayLike | None = None,
+    contact_radius: ArrayLike | None = None,
+    range_of_adhesion: float = 0.0,
+    rtol: float = 1e-10,
+) -> AdhesiveContact:
+    """Return the adhesive contact under a prescribed depth, force or contact radius.
+
+    The state is the outermost stable one, in which the contact is after unloading.
+
+    Source: jkr; popov-adhesion; notes, §15.
+
+    Parameters
+    ----------
+    profile : any kind, with single numbers as parameters.
+    e_star : effective modulus [pressure], > 0, or the material that has it.
+    work_of_adhesion : w, energy per area [force/length], > 0.
+    indentation_depth, normal_force, contact_radius : exactly one [length], [force], [length]; a
+        number or an array. The first two may be negative down to the pull-off; the contact radius
+        is one that is stable under a prescribed depth.
+    range_of_adhesion : distance over which surfaces attract [length], for the warning `jkr_range`.
+    rtol : see `normal.solve`.
+
+    Raises
+    ------
+    InputError : a load below the pull-off, which the message contains; a contact that adhesion
+        spreads beyond the profile; or what `normal.solve` rejects.
+
+    Examples
+    --------
+    The pull-off force of a sphere is -(3/2) pi w R.
+
+    >>> from mdr_core.profiles import Paraboloid
+    >>> contact = solve(Paraboloid(2e-6), 1e6, 0.05, normal_force=0.0)
+    >>> round(float(contact.pull_off_force) / (np.pi * 0.05 * 2e-6), 12)
+    -1.5
+    """
+    require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
+    require_tolerance(rtol)
+    require_single_profile(profile.swept)
+    material = e_star if isinstance(e_star, Material) else None
+    modulus: Any = normal_modulus(e_star)
+    for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
+        require_positive(("material", field), value)
+        if np.ndim(value):
+            raise InputError(("material", field), "must be a single number with adhesion")
+    loads = (indentation_depth, normal_force, contact_radius)
+    name, load = only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
+    if not (np.size(load) and np.isfinite(load).all()):
+        raise InputError(("load", name), FINITE if np.size(load) else "at least one load is needed")
+    curve = _Curve(profile, sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus))
+    coordinate, retraction, states = _state(curve, name, load, modulus)
+    at_pull_off = float(curve.retraction(curve.at_pull_off))
+    contact = AdhesiveContact(
+        *(profile, modulus, coordinate, rtol, name, material),
+        curve=curve,
+        retraction=retraction,
+        tabor_number=at_pull_off / (_TABOR * range_of_adhesion) if range_of_adhesion else inf,
+        states=states,
+    )
+    # The prescribed load is returned bit-identical.
+    vars(contact)[name] = load
+    return contact
+
+
+def _state(curve: _Curve, name: str, load: Array, e_star: float) -> tuple[Array, Array, int]:
+    """Coordinate and retraction under each load, and the most states under one of them."""
+    profile, states = curve.profile, 1
+    if name == "contact_radius":
+        require_positive(("load", name), load)
+        at = coordinate_from_radius(profile, load)
+        low, high = curve.stable["indentation_depth"]
+        near = np.multiply.outer(at, [1 + sqrt(_ROUNDING), 1 - sqrt(_ROUNDING)])
+        bad = ~((near[..., :1] >= low) & (near[..., 1:] <= high)).any(axis=-1)
+        if some(bad):
+            radius = profile.contact_radius(low[np.argmin(curve.load("indentation_depth", low))])
+            detail = f"is not stable: at pull-off under a prescribed depth it is {radius:.9g}"
+            raise InputError(("load", name, *first_index(np.asarray(bad))), detail)
+        return at, curve.retraction(at), states
+    of_force = name == "normal_force"
+    unit = e_star if of_force else 1.0
+    amount, least = load / unit, curve.least[name]
+    below = np.asarray(amount < least * (1 + _LOAD))
+    if some(below):
+        detail = f"is below the pull-off, {least * unit:.9g}: there is no contact"
+        raise InputError(("load", name, *first_index(below)), detail, below)
+    if profile.has_no_partial_slip:
+        depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount
+        return np.maximum(depth, 0.0), np.maximum(-depth, 0.0), states
+    require_inside(name, amount > curve.load(name, curve.stable[name][1][-1]), profile.domain)
+    at, states = curve.outermost(name, np.ravel(amount))
+    return (at := at.reshape(np.shape(load))[()]), curve.retraction(at), states
