@@ -74,25 +74,6 @@ def piecewise(
     return np.where(first, below(np.minimum(place, start)), beyond(np.maximum(place, start)))
 
 
-def piecewise_pair(
-    place: Any,
-    start: Any,
-    below: Callable[[Any], tuple[Any, Any]],
-    beyond: Callable[[Any], tuple[Any, Any]],
-) -> tuple[Any, Any]:
-    """Return the two values of below(place) up to `start`, and those of beyond(place) from there.
-
-    Parameters: see `piecewise`.
-    """
-    first = place < start
-    if every(first):
-        return below(place)
-    if not some(first):
-        return beyond(place)
-    within, outside = below(np.minimum(place, start)), beyond(np.maximum(place, start))
-    return np.where(first, within[0], outside[0]), np.where(first, within[1], outside[1])
-
-
 def common_shape(*values: Any) -> tuple[int, ...]:
     """Return the shape to which numbers and arrays broadcast, or raise ValueError."""
     shapes = {getattr(value, "shape", ()) for value in values}

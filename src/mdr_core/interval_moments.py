@@ -11,14 +11,13 @@ however narrow the interval and however small the amplitude. Source: notes, §6 
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import every, indices, some, where
 from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
 from mdr_core.inversion import Function

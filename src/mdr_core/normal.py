@@ -1,6 +1,7 @@
 """Normal contact under a prescribed depth, force or contact radius."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, isfinite
 from typing import ClassVar, Final, Self
 
@@ -8,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, common_shape, some, where
 from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice

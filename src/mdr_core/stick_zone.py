@@ -1,12 +1,11 @@
 """Stick zone and slip annulus under one monotonic tangential load."""
 
-from collections.abc import Sequence
-from math import inf, prod
-from typing import Any, Final
+from math import inf
+from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import common_shape, full, number, some, where
+from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
@@ -22,9 +21,6 @@ CONTROLS: Final = {
 }
 # Stick edge, width, sign, full slip and excess: see `TangentialContact`.
 StickZone = tuple[Array, Array, Array, Flags, Array]
-# Cases solved at once: their arrays fit into the processor's cache, and a million contacts take two
-# thirds of the time.
-_BLOCK: Final = 65_536
 _NO_EXCESS: Final = number(0.0)
 _POSITIVE: Final = number(1.0)
 _NO_FULL_SLIP: Final = _NO_EXCESS > 0
@@ -47,48 +43,8 @@ def solve(
     if name == "stick_radius":
         return _by_radius(contact, _sign_and_size(name, given)[1])
     ratio = friction if name == "tangential_force" else friction * contact.e_star / g_star
-    columns = contact.coordinate, ratio, getattr(contact, CONTROLS[name]), given
-    if max(contact.coordinate.size, given.size) <= _BLOCK:
-        return _by_load(name, contact.profile, *columns)
-    try:
-        return _in_blocks(name, contact.profile, columns)
-    except InputError:
-        # For the index of the case among all.
-        return _by_load(name, contact.profile, *columns)
-
-
-def _in_blocks(name: str, profile: Profile, columns: tuple[Any, ...]) -> StickZone:
-    """Results of `_by_load`, solved in blocks; a number that is that of every block stays one."""
-    swept = {key: profile.parameters[key] for key in profile.swept}
-    shape = common_shape(*swept.values(), *columns)
-
-    def flat(column: Any) -> Any:
-        return np.broadcast_to(column, shape).reshape(-1) if np.ndim(column) else column
-
-    def part(column: Any, start: int) -> Any:
-        return column[start : start + _BLOCK] if np.ndim(column) else column
-
-    flat_columns = [flat(column) for column in columns]
-    flat_swept = {key: flat(value) for key, value in swept.items()}
-    found = []
-    for start in range(0, prod(shape), _BLOCK):
-        named = {key: part(value, start) for key, value in flat_swept.items()}
-        block = [part(column, start) for column in flat_columns]
-        found.append(_by_load(name, profile.with_parameters(named), *block))
-    edge, width, sign, full_slip, excess = (
-        _joined(parts, shape) for parts in zip(*found, strict=True)
-    )
-    return edge, width, sign, full_slip, excess
-
-
-def _joined(parts: Sequence[Any], shape: tuple[int, ...]) -> Any:
-    """Results of all blocks in a shape."""
-    if all(not part.ndim and part == parts[0] for part in parts):
-        return parts[0]
-    cases = prod(shape)
-    sizes = [min(_BLOCK, cases - start) for start in range(0, cases, _BLOCK)]
-    full_parts = [np.broadcast_to(part, n) for part, n in zip(parts, sizes, strict=True)]
-    return np.concatenate(full_parts).reshape(shape)
+    normal = getattr(contact, CONTROLS[name])
+    return _by_load(name, contact.profile, contact.coordinate, ratio, normal, given)
 
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ import pytest
 
 from mdr_core.profiles.cancellation_free import atan_gap, tanh_gap
 
-THRESHOLD = 0.5
+THRESHOLD = 0.4
 # From underflow of the cube to far beyond the threshold.
 PLACES = np.concatenate([np.logspace(-50, 2, 105), np.linspace(0.01, 0.6, 119)])
 # Below the threshold, roundings of the square, the two polynomials, weighted by the shares of their

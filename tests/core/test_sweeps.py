@@ -27,14 +27,10 @@ from mdr_core.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from mdr_core.stick_zone import _BLOCK
 from mdr_core.typing import Array
 
 MANY = 2055
 PLACE = 1029
-# A block of cases and a part of the next, and a case of the latter.
-BLOCKS = _BLOCK + 8
-BEYOND = _BLOCK + 3
 E_STAR = 1.1e11
 
 
@@ -279,50 +275,14 @@ def test_invalid_tangential_force_is_rejected_with_its_index(wrong: float) -> No
 
 
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
-@pytest.mark.parametrize("swept", ["loads", "radii", "grid"])
-def test_sweep_in_blocks_equals_single_cases(swept: str, control: str) -> None:
-    shape = (BLOCKS,) if swept != "grid" else (2, BLOCKS // 2)
-    radii = np.linspace(0.01, 0.02, BLOCKS).reshape(shape)
-    forces = np.linspace(1.0, 2.0, BLOCKS)
-    unit = 1.0 if control == "tangential_force" else 1e-5
-    loads = unit * np.linspace(0.1, 0.2, BLOCKS).reshape(shape)
-    R, F = (0.01, forces) if swept == "loads" else (radii, 1.0)
-    contact = normal.solve(Paraboloid(R), E_STAR, normal_force=F)
-    result = tangential.solve(contact, 0.9e11, 0.3, **{control: loads})
-    R, F, loads = np.broadcast_arrays(R, F, loads)
-    assert result.stick_radius.shape == R.shape == shape
-    for i in (0, _BLOCK - 1, _BLOCK, R.size - 1):
-        alone = tangential.solve(
-            normal.solve(Paraboloid(R.flat[i]), E_STAR, normal_force=F.flat[i]),
-            0.9e11,
-            0.3,
-            **{control: loads.flat[i]},
-        )
-        for name in ("contact_radius", "indentation_depth"):
-            found = np.broadcast_to(getattr(contact, name), shape)
-            assert found.flat[i] == getattr(alone.normal, name), name
-        for name in TANGENTIAL:
-            assert getattr(result, name).flat[i] == getattr(alone, name), name
-
-
-def test_invalid_tangential_force_beyond_the_first_block_is_rejected_with_its_index() -> None:
-    contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=10.0)
-    loads = np.full(BLOCKS, 1.0)
-    loads[BEYOND] = 1e3
-    with pytest.raises(InputError) as refused:
-        tangential.solve(contact, 0.9e11, 0.3, tangential_force=loads)
-    assert refused.value.path == ("tangential", "tangential_force", BEYOND)
-
-
-@pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
-def test_flags_of_one_block_hold_for_its_cases_alone(control: str) -> None:
-    """Sign and full slip are single values of a block without such cases."""
+def test_flags_hold_for_their_case_alone(control: str) -> None:
+    """Sign and full slip are single values where no case differs."""
     contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=10.0)
     limit = tangential.solve(contact, 0.9e11, 0.3, stick_radius=0.0)
-    loads = np.full(BLOCKS, 0.5 * float(getattr(limit, control)))
-    loads[BEYOND] *= -2
+    loads = np.full(MANY, 0.5 * float(getattr(limit, control)))
+    loads[PLACE] *= -2
     result = tangential.solve(contact, 0.9e11, 0.3, **{control: loads})
-    beyond = np.arange(BLOCKS) == BEYOND
+    beyond = np.arange(MANY) == PLACE
     assert np.array_equal(result.full_slip, beyond)
     assert np.array_equal(result.sign, np.where(beyond, -1.0, 1.0))
     assert np.array_equal(result.tangential_force < 0, beyond)

@@ -15,12 +15,12 @@ Source: notes, §5.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from scipy import sparse
 
-from mdr_core.cached import cached_property
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Indices
 

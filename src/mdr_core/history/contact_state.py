@@ -1,12 +1,12 @@
 """State of a contact after a load history, and one straight step from it."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import isfinite
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import number
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError

@@ -1,11 +1,11 @@
 """Cycles between two tangential loads, under a constant or an oscillating normal load."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.errors import InputError
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material

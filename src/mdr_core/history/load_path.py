@@ -5,12 +5,12 @@ of each pair is prescribed and both change, it is nonlinear in either plane: see
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 from typing import Final
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import indices
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError

@@ -8,13 +8,13 @@ with the third to fourth power of the number of chords. Source: notes, §10.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
 from mdr_core.breaks import has_many_breaks
-from mdr_core.cached import cached_property
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments
 from mdr_core.history.load_path import SampledPath

@@ -17,12 +17,12 @@ are. Source: notes, §10.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import fsum
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.history import slip_kernel as kernel
 from mdr_core.history.slip_layout import ANCHOR, AXIS, COLUMNS, GROWTH, LOW, MIRROR, NORMAL, STEP
 from mdr_core.typing import Array, Flags, Indices

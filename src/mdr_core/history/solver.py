@@ -1,13 +1,13 @@
 """Load histories: forces, displacements, energies and slip regimes at every sample."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, nonlinear_steps, slip_memory

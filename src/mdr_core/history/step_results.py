@@ -3,11 +3,11 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.traction_vertices import TractionVertices

@@ -10,11 +10,11 @@ follow from the same slopes: u_x G*/(mu E*) = sum k_i (w_i - w_i-1). Source: not
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import indices
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.history.slip_memory import VertexTree

@@ -5,6 +5,7 @@ The interface is one class, and therefore one long file.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
 
@@ -20,7 +21,6 @@ from mdr_core.abel.displacement import (
     slope_integral,
 )
 from mdr_core.abel.stress import stress_integral
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import full, number, some
 from mdr_core.errors import Notice
 from mdr_core.profiles.power_functions import StickRatios

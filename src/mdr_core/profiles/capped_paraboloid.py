@@ -1,11 +1,11 @@
 """Paraboloid with a flatter parabolic cap, as worn at the tip."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.powers import Paraboloid

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from math import exp, inf, isfinite, log, pi
 from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile

@@ -1,11 +1,11 @@
 """Spherical-tip cone: a cone whose tip is a sphere."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Final
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroids import Sphere
 from mdr_core.profiles.tipped import TippedCone

@@ -4,13 +4,13 @@ Source: notes, §5.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from scipy.interpolate import BSpline, PPoly
 
 from mdr_core.abel.slope_pieces import heights
-from mdr_core.cached import cached_property
 from mdr_core.profiles.table_points import Points
 from mdr_core.typing import Array, Flags
 

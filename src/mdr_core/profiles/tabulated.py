@@ -1,6 +1,7 @@
 """Profile through, or near, the points of a table."""
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any, ClassVar, Final, Self
 
 import numpy as np
@@ -9,7 +10,6 @@ from numpy.typing import ArrayLike
 from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
-from mdr_core.cached import cached_property
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.profiles.base import Profile

@@ -3,13 +3,13 @@
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, pi
 from typing import ClassVar
 
 import numpy as np
 
 from mdr_core.abel.displacement import Branch
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import piecewise, where
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral

@@ -8,12 +8,12 @@ divided by mu E*/G*. Source: notes, §11.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mdr_core.cached import cached_property
 from mdr_core.typing import Array
 from mdr_core.wear.initial_state import TILT_TERMS, InitialState
 

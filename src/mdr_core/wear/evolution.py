@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import isfinite
 from typing import ClassVar, Final
 
@@ -9,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
-from mdr_core.cached import cached_property
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.materials import Material, shear_modulus
 from mdr_core.normal import NormalContact

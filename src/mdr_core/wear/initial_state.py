@@ -5,11 +5,11 @@ in units of D_0 = d_0 - g_0(c_0), cycles in units of b_0/(kappa E* D_0), kappa =
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.normal import NormalContact
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.tangential import TangentialContact

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final
 
@@ -9,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.materials import Material

@@ -6,12 +6,12 @@ d - g(c) at the stick edge describe the whole limiting state. Source: notes, §9
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from mdr_core import equivalent_1d
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import broadcast, full, where
 from mdr_core.inversion import invert
 from mdr_core.normal import EDGE_ERROR

@@ -4,11 +4,11 @@ The contact's edge, the stick edge and the depth follow from the quantities that
 the units of `mdr_core.wear.initial_state`. Source: notes, §11.
 """
 
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from mdr_core.cached import cached_property
 from mdr_core.errors import AccuracyError
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState

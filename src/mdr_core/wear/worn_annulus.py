@@ -6,6 +6,7 @@ Source: notes, §9.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import factorial
 from typing import Any, Final
 
@@ -13,7 +14,6 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from mdr_core.abel.displacement import Kernel, arccosine
-from mdr_core.cached import cached_property
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices

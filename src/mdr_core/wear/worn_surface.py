@@ -5,7 +5,7 @@ Functions of a state alone are in the units of `mdr_core.wear.initial_state`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from math import inf
 from typing import Final
 
@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from mdr_core import fields, normal
 from mdr_core.abel.annulus import inverse_hypot
-from mdr_core.cached import cached_property
 from mdr_core.typing import Array
 from mdr_core.validation import checked_radii
 from mdr_core.wear.annulus_state import AnnulusState
