@@ -16,6 +16,7 @@ Source: notes, §15.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, pi, sqrt
 from typing import Any, ClassVar, Final
 
@@ -24,7 +25,6 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from mdr_core.breaks import has_many_breaks
-from mdr_core.cached import cached_property
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
