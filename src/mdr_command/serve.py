@@ -48,6 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
         http=BoundedProtocol,
         # Without a limit, a client that never reads its response would prevent the shutdown.
         timeout_graceful_shutdown=SETTINGS.shutdown_seconds,
+        # Longer than the pauses of clients and proxies that reuse connections; nginx has 75 s.
+        timeout_keep_alive=75,
         server_header=False,
         access_log=False,
         # No response and no log line depends on the client's address.
@@ -65,6 +67,8 @@ def run(arguments: argparse.Namespace) -> int:
     # The service runs whether or not the line can be written.
     with suppress(OSError):
         os.write(sys.stdout.fileno(), line.encode())
+    # A reader of the log that stops reading must not stop the service.
+    os.set_blocking(sys.stderr.fileno(), sys.stderr.isatty())
     # `nohup` makes the server ignore the end of its terminal.
     ignored = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     if arguments.workers > 1:

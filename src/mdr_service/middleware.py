@@ -57,8 +57,8 @@ def install(app: FastAPI) -> None:
             CORSMiddleware,
             allow_origins=SETTINGS.cors_origins,
             allow_methods=("GET", "POST"),
-            allow_headers=("Content-Type", "If-None-Match", "X-Request-Id"),
-            expose_headers=("ETag", "MDR-Version", "Retry-After", "X-Request-Id"),
+            allow_headers=("Content-Type", "X-Request-Id"),
+            expose_headers=("MDR-Version", "Retry-After", "X-Request-Id"),
         )
 
 

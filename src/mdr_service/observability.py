@@ -1,18 +1,13 @@
 """Observability: request log and Prometheus metrics. Neither contains queries or results."""
 
-import atexit
 import logging
 import logging.config
 import os
-from collections import deque
 from collections.abc import Mapping
-from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache
-from select import PIPE_BUF
-from threading import Event, Thread
 from time import perf_counter
 from typing import Any, Final
 
@@ -53,12 +48,6 @@ RESTARTS: Final = Counter(
 LOST_LINES: Final = Counter(
     "mdr_log_lines_lost", "Log lines lost because standard error was not read.", registry=REGISTRY
 )
-# Some megabytes of lines.
-_MAX_LINES: Final = 10_000
-# Time between two writes, so that a burst of lines is one [s].
-_WRITE_INTERVAL: Final = 0.1
-# Time for the last lines at the end of the process.
-_FLUSH_SECONDS: Final = 1.0
 # Its file descriptor in POSIX.
 _STANDARD_ERROR: Final = 2
 Info("mdr_build", "Version of the service.", registry=REGISTRY).info({"version": __version__})
@@ -66,47 +55,19 @@ _requests: Final = logging.getLogger("mdr_service.requests")
 
 
 class LogStream:
-    """Standard error, written by a thread.
-
-    A reader that stops reading must not stop the service: while nobody reads, the oldest lines are
-    lost.
-    """
-
-    def __init__(self, max_lines: int = _MAX_LINES) -> None:
-        self._lines: deque[bytes] = deque(maxlen=max_lines)
-        self._ended = Event()
-        self._thread = Thread(target=self._run, daemon=True)
+    """Standard error, where the server does not wait for its reader: lines beyond are lost."""
 
     def write(self, text: str) -> None:
-        """Write a line soon."""
-        if not self._thread.ident:
-            self._thread.start()
-            atexit.register(self._end)
-        if len(self._lines) == self._lines.maxlen:
+        """Write a line. A pipe takes it whole, unless it is longer than `PIPE_BUF`."""
+        block = text.encode()
+        try:
+            while block:
+                block = block[os.write(_STANDARD_ERROR, block) :]
+        except OSError:
             LOST_LINES.inc()
-        self._lines.append(text.encode())
 
     def flush(self) -> None:
-        """Do nothing: the lines are written soon."""
-
-    def _run(self) -> None:
-        while not self._ended.wait(_WRITE_INTERVAL):
-            self._write_lines()
-        self._write_lines()
-
-    def _write_lines(self) -> None:
-        while self._lines:
-            block = self._lines.popleft()
-            # Lines of several processes are not mixed in a pipe up to this length.
-            while self._lines and len(block) + len(self._lines[0]) <= PIPE_BUF:
-                block += self._lines.popleft()
-            with suppress(OSError):
-                while block:
-                    block = block[os.write(_STANDARD_ERROR, block) :]
-
-    def _end(self) -> None:
-        self._ended.set()
-        self._thread.join(_FLUSH_SECONDS)
+        """Do nothing: the line is written."""
 
 
 LOG: Final = LogStream()

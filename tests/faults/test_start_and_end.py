@@ -148,6 +148,18 @@ def test_log_is_whole_lines_of_json() -> None:
     assert messages[-1].startswith("Stopping parent process")
 
 
+def test_log_that_nobody_reads_does_not_stop_the_service() -> None:
+    port = free_port()
+    with running(service(port), port, **FEW), connected(port) as client:
+        # A pipe holds some 300 lines.
+        for _ in range(600):
+            client.request("GET", "/health")
+            assert client.getresponse().read()
+        client.request("GET", "/metrics")
+        text = client.getresponse().read().decode()
+        assert float(text.split("\nmdr_log_lines_lost_total ")[1].split()[0]) > 100
+
+
 def failed(*commands: list[str], **environment: str) -> list[subprocess.CompletedProcess[str]]:
     """Run commands in parallel, since most of their time is spent on imports."""
     run = partial(subprocess.run, capture_output=True, text=True, check=False)

@@ -430,23 +430,10 @@ def test_documented_number_pattern_accepts_exponents(query: str) -> None:
     )
 
 
-def test_matching_etag_returns_304(client: Client) -> None:
+def test_response_may_be_cached(client: Client) -> None:
     response = client.get(at("normal", NORMAL))
-    tag = response.headers["etag"]
-    assert tag.startswith('W/"')
     assert response.headers["cache-control"] == "max-age=3600"
     assert "accept" in response.headers["vary"].lower()
-    for known in (tag, f'"other", {tag}', tag.removeprefix("W/"), "*"):
-        headers = {"if-none-match": known}
-        again = client.request("GET", at("normal", NORMAL), headers=headers)
-        assert again.status_code == 304
-        assert not again.content
-        assert again.headers["etag"] == tag
-    headers = {"if-none-match": '"other"'}
-    assert client.request("GET", at("normal", NORMAL), headers=headers).status_code == 200
-    other = client.get(at("normal", {**NORMAL, "normal_force": 11}))
-    assert other.headers["etag"] != tag
-    assert client.get(at("normal", {**NORMAL, "format": "csv"})).headers["etag"] != tag
 
 
 def test_problem_is_not_cached(client: Client) -> None:
@@ -456,7 +443,7 @@ def test_problem_is_not_cached(client: Client) -> None:
 def test_head_has_the_headers_of_get(client: Client) -> None:
     get, head = (client.request(method, at("normal", NORMAL)) for method in ("GET", "HEAD"))
     assert head.status_code == 200
-    assert head.headers["etag"] == get.headers["etag"]
+    assert head.headers["cache-control"] == get.headers["cache-control"]
 
 
 def test_problem_without_pointers_has_none_for_parameters() -> None:

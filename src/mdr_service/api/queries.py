@@ -1,16 +1,12 @@
 """Endpoints of the queries, by POST and by URL parameters."""
 
-from functools import partial
-from hashlib import blake2b
 from typing import Annotated, Any, Final
 
-from anyio import to_thread
 from fastapi import APIRouter, Body, Depends, Query, Request
 from starlette.responses import Response
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
 from mdr_service.api.query_route import BatchResponder, QueryRoute, Responder, url_parameters
-from mdr_service.middleware import header
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas import answers
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
@@ -21,10 +17,9 @@ from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-from mdr_service.transfers import LONG
 
 # A response depends on the query and on the version of the service alone.
-_CACHE_CONTROL: Final = "max-age=3600"
+_CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 router = APIRouter(route_class=QueryRoute, responses=POST_FAILURES)
 Send = Annotated[Responder, Depends()]
@@ -197,24 +192,6 @@ async def batch(
     return await send("batch", query)
 
 
-async def _cacheable(request: Request, response: Response) -> Response:
-    """Return the response with a validator, or 304 if the client has it already.
-
-    The tag is weak, since a proxy may compress the same numbers.
-    """
-    digest_of = partial(blake2b, response.body, digest_size=16)
-    # In a thread, which the hash does not keep from running beside the event loop.
-    is_long = len(response.body) > LONG
-    digest = (await to_thread.run_sync(digest_of) if is_long else digest_of()).hexdigest()
-    headers = {"ETag": f'W/"{digest}"', "Cache-Control": _CACHE_CONTROL, "Vary": "Accept"}
-    known = header(request.scope, b"if-none-match")
-    tags = {tag.strip().removeprefix("W/") for tag in known.split(",")}
-    if tags & {f'"{digest}"', "*"}:
-        return Response(status_code=304, headers=headers)
-    response.headers.update(headers)
-    return response
-
-
 _get_router: Final = APIRouter(responses=GET_FAILURES, dependencies=[Depends(url_parameters)])
 
 
@@ -238,7 +215,8 @@ def _declare_get(name: str, tag: str, title: str, model: Any) -> None:
         with parameters.pointing():
             query = await url_parameters(request) if parameters.n else parameters.query()
             response = await send(name, query, parameters.members)
-        return await _cacheable(request, response)
+        response.headers.update(_CACHED)
+        return response
 
 
 for _name, _tag, _title in (
