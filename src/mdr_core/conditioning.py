@@ -57,7 +57,7 @@ def near_full_slip(
     edges : True to include c and a - c beside forces, displacements and energies.
     """
     late = partial & (ratio > _LATE)
-    if profile.has_no_partial_slip or not some(late):
+    if not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], _TINY)
     other = load_and_slope(profile, of_force=not force_prescribed)
@@ -83,7 +83,7 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     partial = (limit > 0) & (size < limit)
     ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
     worst = np.argmax(ratio)
-    if contact.profile.has_no_partial_slip or not ratio[worst] > _LATE:
+    if not ratio[worst] > _LATE:
         return 0.0
     coordinate, part = np.broadcast_to(contact.coordinate, ratio.shape)[worst], ratio[worst]
     edge, _ = stick_edge(contact.profile, coordinate, part, 1 - part, of_force=True)
@@ -115,12 +115,6 @@ def narrow_annulus(coordinate: Array, width: Array) -> Array:
     """Return the condition number 3 a/(a - c) of each annulus between two edges [1]."""
     slips = width > 0
     return where(slips, _CUBE * coordinate / where(slips, width, 1.0), 0.0)
-
-
-def of_excess_displacement(displacement: Array, excess: Array) -> Array:
-    """Return the condition number u/(u - u_max) of each displacement beyond full slip [1]."""
-    slides = excess > 0
-    return where(slides, np.abs(displacement) / where(slides, excess, 1.0), 0.0)
 
 
 def of_edge_slope(contact: NormalContact, width: Array) -> Array:

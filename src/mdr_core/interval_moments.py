@@ -101,9 +101,6 @@ class IntervalMoments:
 
         The parameters of the profile may be arrays over the intervals.
         """
-        if self.profile.has_no_partial_slip:
-            # The contact radius is constant.
-            return Moments(span, np.zeros((3, span.size)))
         with np.errstate(divide="ignore", invalid="ignore"):
             closed = self.profile.interval_moments(span, ends, over_forces=self.over_forces)
         if closed is not None:

@@ -167,7 +167,7 @@ class NormalContact(validity.ContactResults):
     @property
     def edge_errors(self) -> Parameter:
         """Relative error of the contact radius of each case."""
-        if self.control == "contact_radius" or self.profile.has_no_partial_slip:
+        if self.control == "contact_radius":
             return 0.0
         return self.error_estimates if self.profile.flattens else EDGE_ERROR
 

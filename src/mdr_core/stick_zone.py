@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import full, number, some, where
+from mdr_core.elementwise import number, some, where
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
@@ -84,8 +84,6 @@ def _by_load(
         excess = np.maximum(-left, 0.0)
         size = np.minimum(size, limit)
         left, limit = where(loaded, np.maximum(left, 0.0), 1.0), where(loaded, limit, 1.0)
-    if profile.has_no_partial_slip:
-        return coordinate, size / limit, sign, full_slip, excess
     ratios = size / limit, left / limit
     edge, width = stick_edge(profile, coordinate, *ratios, of_force=force_prescribed)
     return edge, width, sign, full_slip, excess
@@ -105,7 +103,7 @@ def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
         index = first_index(bad) if radius.ndim else ()
         raise InputError(("tangential", "stick_radius", *index), detail, bad)
     if profile.has_no_partial_slip:
-        return contact.coordinate, full(1.0, radius + a), _POSITIVE, all_slips, _NO_EXCESS
+        return 0 * radius, contact.coordinate + 0 * radius, _POSITIVE, all_slips, _NO_EXCESS
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":

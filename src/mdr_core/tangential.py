@@ -43,10 +43,7 @@ class TangentialContact(validity.ContactResults):
     stick_coordinate: Array
     """Stick radius in the contact coordinate of the profile; undefined in full slip."""
     width: Array
-    """Distance of the stick edge from the contact edge in that coordinate, without cancellation.
-
-    For a flat punch, the load over that of full slip [1].
-    """
+    """Distance of the stick edge from the contact edge in that coordinate, without cancellation."""
     sign: Array
     """Direction of the load; a single 1 if all are positive."""
     full_slip: Flags
@@ -89,11 +86,7 @@ class TangentialContact(validity.ContactResults):
     @cached_property
     def tangential_force(self) -> Array:
         """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
-        profile = self.normal.profile
-        if profile.has_no_partial_slip:
-            partial = self.limiting_force * self.width
-        else:
-            partial = self._over_annulus(equivalent_1d.force_step, 1.0)
+        partial = self._over_annulus(equivalent_1d.force_step, 1.0)
         if some(self.full_slip):
             partial = where(self.full_slip, self.limiting_force, partial)
         return self._signed(partial)
@@ -101,12 +94,7 @@ class TangentialContact(validity.ContactResults):
     @cached_property
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
-        profile = self.normal.profile
-        if profile.has_no_partial_slip:
-            # F_x/(2 G* a), which is mu (E*/G*) d at the limit.
-            partial = self._full_slip_displacement * self.width
-        else:
-            partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
+        partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
         if some(self.full_slip):
             partial = where(self.full_slip, self._full_slip_displacement, partial) + self.excess
         return self._signed(partial)
@@ -130,8 +118,6 @@ class TangentialContact(validity.ContactResults):
     def slip_width(self) -> Array:
         """a - c [length]."""
         a = self.normal.contact_radius
-        if self.normal.profile.has_no_partial_slip:
-            return where(self.full_slip, a, 0 * self.width)
         width = self.normal.profile.radius_width(self._coordinate, self.width)
         return where(self.full_slip, a, width) if some(self.full_slip) else width
 
@@ -139,9 +125,6 @@ class TangentialContact(validity.ContactResults):
     def stick_radius(self) -> Array:
         """c [length]: zero in full slip. Source: mdr-5, Eqs. (5.11), (5.16), (5.31), (5.49)."""
         profile = self.normal.profile
-        if profile.has_no_partial_slip:
-            a = broadcast(self.normal.contact_radius, self.width.shape)
-            return where(self.full_slip, 0.0, a)
         c = profile.contact_radius(self.stick_coordinate)
         if c is not self.stick_coordinate:
             # By rounding error c may exceed a. Without slip both are bit-identical.
@@ -179,9 +162,7 @@ class TangentialContact(validity.ContactResults):
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Regime: "stick", "partial_slip" or "full_slip"."""
-        at_once = self.normal.profile.has_no_partial_slip
-        partial = np.str_("stick" if at_once else "partial_slip")
-        slipping = where(self.width > 0, partial, np.str_("stick"))
+        slipping = where(self.slip_width > 0, np.str_("partial_slip"), np.str_("stick"))
         return where(self.full_slip, np.str_("full_slip"), slipping)
 
     @cached_property
@@ -193,12 +174,9 @@ class TangentialContact(validity.ContactResults):
         notes, §6.
         """
         profile, e_star = self.normal.profile, self.normal.e_star
-        if profile.has_no_partial_slip:
-            slipping = 0 * self.width
-        else:
-            energy = self.normal.elastic_energy / e_star
-            moment = slip_moment(profile, self._coordinate, *self._slipping, energy)
-            slipping = 2 * self.friction_coefficient * self.displacement_ratio * e_star * moment
+        energy = self.normal.elastic_energy / e_star
+        moment = slip_moment(profile, self._coordinate, *self._slipping, energy)
+        slipping = 2 * self.friction_coefficient * self.displacement_ratio * e_star * moment
         return slipping + self.limiting_force * self.excess
 
     @property
@@ -241,7 +219,7 @@ class TangentialContact(validity.ContactResults):
     @property
     def stick_error(self) -> Array:
         """Rounding error of a stick radius that follows from a load [length]."""
-        if self.control == "stick_radius" or self.normal.profile.has_no_partial_slip:
+        if self.control == "stick_radius":
             return 0 * self.stick_radius
         error = self.stick_radius * (EDGE_ERROR + self._limit_rounding)
         return error + self.slip_width * self._width_rounding
@@ -269,8 +247,6 @@ class TangentialContact(validity.ContactResults):
         near = self.full_slip & (limit > 0) & (left > 0) & (self.excess <= self.limit_error * limit)
         if not some(near):
             return full(0.0, self.width)
-        if normal.profile.has_no_partial_slip:
-            return where(near, 1.0, 0.0)
         left = where(near, left, 0.5)
         of_force = self.control == "tangential_force"
         ends = self._coordinate, 1 - left, left
@@ -295,15 +271,16 @@ class TangentialContact(validity.ContactResults):
         size = np.abs(self.tangential_force if force_prescribed else self.tangential_displacement)
         limit = self.limiting_force if force_prescribed else self._full_slip_displacement
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
-        if profile.has_no_partial_slip:
-            return (
-                1.0 if force_prescribed else conditioning.of_excess_displacement(size, self.excess)
-            )
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self.stick_coordinate
-        return conditioning.near_full_slip(
+        condition = conditioning.near_full_slip(
             profile, ends, ratio, partial, force_prescribed=force_prescribed
         )
+        if force_prescribed or not some(self.excess > 0):
+            return condition
+        # The dissipated energy by the displacement beyond full slip.
+        energy = where(self.excess > 0, self.dissipated_energy, 1.0)
+        return condition + where(self.excess > 0, self.limiting_force * size / energy, 0.0)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

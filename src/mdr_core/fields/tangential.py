@@ -284,7 +284,7 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         ends, radii, widths, slopes = [first, top], [flat, a], [top - first], [0.0]
         if profile.has_no_partial_slip:
             # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
-            widths = [top if slides else width * top]
+            widths = [top if slides else width]
             slopes = [sign if widths[0] > 0 else 0.0]
         elif slides:
             slopes = [sign]

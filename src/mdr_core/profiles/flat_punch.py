@@ -9,12 +9,16 @@ from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
+from mdr_core.profiles.power_functions import StickRatios, linear_stick
 from mdr_core.typing import Array, Parameter
 
 
 @dataclass(frozen=True)
 class FlatPunch(Profile):
-    """Flat punch with a vertical edge. The contact coordinate is the depth.
+    """Flat punch with a vertical edge.
+
+    The contact coordinate is the depth, at which springs under the edge would come into contact:
+    under a tangential load the part of it up to c sticks, at one radius with the rest.
 
     Source: mdr-5, Eqs. (5.31), (5.33); notes, §2.
 
@@ -28,6 +32,8 @@ class FlatPunch(Profile):
     kind: ClassVar[str] = "flat_punch"
     formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
+    # Source: mdr-5, Eqs. (5.31), (5.33).
+    stick_ratios: ClassVar[StickRatios] = (linear_stick, linear_stick)
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -61,6 +67,12 @@ class FlatPunch(Profile):
             "prescribe indentation_depth or normal_force",
         )
 
+    def radius_slope(self, coordinate: Array) -> Array:
+        return full(0.0, coordinate)
+
+    def radius_width(self, s_a: Array, width: Array) -> Array:
+        return 0 * width
+
     def depth(self, coordinate: Array) -> Array:
         return coordinate + 0 * self.radius
 
@@ -78,6 +90,22 @@ class FlatPunch(Profile):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         return self.radius * coordinate * coordinate
+
+    def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Parameters: see `Profile`."""
+        return 2 * self.radius * width
+
+    def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Parameters: see `Profile`."""
+        return self.depth(width)
+
+    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
+        """Zero: nothing slips before all springs do. Parameters: see `Profile`."""
+        return 0 * width
+
+    def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
+        """Zero: the contact radius is constant. Parameters: see `Profile`."""
+        return np.zeros((3, span.size))
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """d/(pi sqrt(a^2 - r^2)); no slip annulus exists.
