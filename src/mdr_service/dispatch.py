@@ -40,6 +40,7 @@ def is_short(query: Query, requests: int) -> bool:
         isinstance(query, SubsurfaceQuery | EvolutionQuery)
         or query.profile.kind == "tabulated"
         or query.material.has("yield_strength")
+        or query.material.has("work_of_adhesion")
         or (query.path and query.path.nonlinear)
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)

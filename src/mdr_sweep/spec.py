@@ -10,18 +10,21 @@ from mdr_service.results import members
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnswer
 from mdr_service.schemas.wear import WearField
 
+PULL_OFF: Final = ("pull_off_force", "pull_off_depth", "retraction")
+"""Quantities of adhesive contacts alone."""
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": members(NormalAnswer, ["maximum_pressure", "data_error"]),
+    "normal": members(NormalAnswer, ["maximum_pressure", "data_error", *PULL_OFF]),
     "tangential": members(TangentialAnswer, ["maximum_pressure", "data_error"]),
     "wear": members(WearAnswer, ["radius", *get_args(WearField)]),
 }
 """Quantities that a sweep computes unless some are named, by query."""
 MAXIMA: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": ("maximum_pressure",),
+    "normal": ("maximum_pressure", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress"),
     "wear": (),
 }
-"""Maxima of fields, which take a search and can be infinite: computed if they are named."""
+"""Quantities that are computed if they are named: maxima of fields, which take a search and can be
+infinite, and those of adhesive contacts, NaN without adhesion."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""

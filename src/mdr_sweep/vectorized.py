@@ -4,6 +4,7 @@ Cases that the call does not solve are solved one by one.
 """
 
 from collections.abc import Iterator, Mapping
+from math import nan
 from typing import Any, Final
 
 import numpy as np
@@ -103,6 +104,8 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
     while rows.size:
         try:
             query: Any = _validated(spec, _request(spec, columns, int(rows[0])))
+            if query.material.has("work_of_adhesion"):
+                break
             arrays = {name: column.values[rows] for name, column in swept.items()}
             with np.errstate(all="ignore"):
                 solved, results = _call(spec, query, arrays, rows.size)
@@ -174,7 +177,7 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
             source = query.solve(request)
             result = query.result(request, source)
             values = {
-                name: result[name][0] if name in result else np.ravel(getattr(source, name))[0]
+                name: result[name][0] if name in result else np.ravel(getattr(source, name, nan))[0]
                 for name in spec.quantities
             }
         codes = dict.fromkeys(warning["code"] for warning in result["warnings"])

@@ -71,6 +71,21 @@ def worn_ball() -> dict[str, list[float]]:
     }
 
 
+def adhesive_ball() -> dict[str, list[float]]:
+    """Johnson, Kendall and Roberts 1971: a³ = (3R/4E*) (F + 3πwR + √(6πwRF + (3πwR)²))."""
+    e_star, radius, w, forces = 2e6 / (1 - 0.5**2), 0.001, 0.05, [-2e-4, 0.0, 1e-4]
+    part = 3 * pi * w * radius
+    apparent = [force + part + sqrt(2 * part * force + part**2) for force in forces]
+    radii = [(3 * radius * force / (4 * e_star)) ** (1 / 3) for force in apparent]
+    return {
+        "contact_radius": radii,
+        "indentation_depth": [a**2 / radius - sqrt(2 * pi * a * w / e_star) for a in radii],
+        "retraction": [sqrt(2 * pi * a * w / e_star) for a in radii],
+        "pull_off_force": [-part / 2] * 3,
+        "pull_off_depth": [-0.75 * ((pi * w / e_star) ** 2 * radius) ** (1 / 3)] * 3,
+    }
+
+
 def table() -> dict[str, list[float]]:
     """Hertz 1882: a cubic spline through points of a parabola is that parabola."""
     e_star, radius = 1e9, 0.01
@@ -381,6 +396,7 @@ TEXTBOOK = {
     "sneddon": sneddon,
     "exact_sphere": exact_sphere,
     "worn_ball": worn_ball,
+    "adhesive_ball": adhesive_ball,
     "table": table,
 }
 TANGENTIAL_TEXTBOOK = {
@@ -420,6 +436,7 @@ WARNINGS = {
     "exact_sphere": {"half_space"},
     "flat_punch": {"plastic"},
     "sneddon": {"half_space", "plastic"},
+    "adhesive_ball": set(),
     "table": {"half_space"},
     "truman": set(),
     "worn_ball": {"half_space", "plastic"},

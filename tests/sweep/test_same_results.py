@@ -46,6 +46,22 @@ def test_warnings_are_per_case_near_full_slip(client: Client) -> None:
     assert 0 < sum(each["warning"] is not None for each in computed) < 10
 
 
+def test_adhesive_rows_equal_the_responses(client: Client) -> None:
+    """Some rows have a work of adhesion, one of them a load below the pull-off."""
+    row: Row = {"profile.kind": "paraboloid", "profile.radius": 1e-3, "material.e_star": 1e6}
+    rows = [
+        row | ({"material.work_of_adhesion": w} if w else {}) | {"load.normal_force": force}
+        for w, force in [(0.05, -1e-4), (None, 1e-4), (0.1, 1e-4), (0.05, -1e-3), (0.2, 0.0)]
+    ]
+    assert swept("normal", rows) == [served(client, "normal", row) for row in rows]
+    spec = Spec("normal", {}, ("pull_off_force",))
+    forces = vectorized.solve(spec, table(rows)).column("pull_off_force").to_pylist()
+    expected = [-1.5 * math.pi * w * 1e-3 for w in (0.05, 0.1, 0.2)]
+    assert [forces[0], forces[2], forces[4]] == pytest.approx(expected, rel=1e-12)
+    assert math.isnan(forces[1])
+    assert forces[3] is None
+
+
 STEEL = {
     "material.bodies.0.youngs_modulus": 210e9,
     "material.bodies.0.poissons_ratio": 0.3,

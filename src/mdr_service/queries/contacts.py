@@ -5,33 +5,39 @@ from typing import Any, Final
 
 import numpy as np
 
+from mdr_core import adhesion, profiles
 from mdr_core import normal as normal_contact
-from mdr_core import profiles
 from mdr_core import tangential as tangential_contact
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service.results import Result, by_load, checked, members, notices, response_metadata
-from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer
+from mdr_service.schemas.answers import TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.wear import WearQuery
 
 Arguments = dict[str, Any]
+ADHESION: Final = {"work_of_adhesion", "range_of_adhesion"}
+"""Members of the material that make a contact adhesive."""
 
-_NORMAL: Final = members(NormalAnswer, ["data_error"])
+_NORMAL: Final = NormalContact.quantities
 _PARTIAL_SLIP: Final = members(TangentialAnswer, [*_NORMAL, "data_error"])
 
 
 def solve_normal(query: NormalQuery | LoadedQuery | WearQuery) -> NormalContact:
-    """Return the normal contact of a query."""
-    return normal_contact.solve(**body(query), **control(query.load), rtol=query.rtol)
+    """Return the normal contact of a query, which is adhesive with a work of adhesion."""
+    arguments = body(query) | control(query.load)
+    given = query.material.model_dump(include=ADHESION, exclude_unset=True)
+    solve: Any = adhesion.solve if given else normal_contact.solve
+    contact: NormalContact = solve(**arguments, **given, rtol=query.rtol)
+    return contact
 
 
 def normal_result(query: NormalQuery, contact: NormalContact) -> Result:
     """Return the quantities of a frictionless normal contact."""
-    return _result(query, contact, by_load(contact, _NORMAL, query.loads))
+    return _result(query, contact, by_load(contact, contact.quantities, query.loads))
 
 
 def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
@@ -65,7 +71,18 @@ def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
 
 
 def body(query: Query) -> Arguments:
-    """Return profile and effective modulus, as arguments of the core."""
+    """Return profile and effective modulus, as arguments of the core.
+
+    Raises InputError where adhesion meets friction or yield, or has a range and no work.
+    """
+    material = query.material
+    if material.has("work_of_adhesion"):
+        if query.has("friction_coefficient"):
+            raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
+        if material.has("yield_strength"):
+            raise InputError(("material", "yield_strength"), adhesion.AdhesiveContact.unusable)
+    elif material.has("range_of_adhesion"):
+        raise InputError(("material", "work_of_adhesion"), "is needed with range_of_adhesion")
     return {"profile": profile(query.profile), "e_star": query.material.effective.e_star}
 
 
@@ -96,6 +113,7 @@ def _result(
     if source.normal.data_error is not None:
         values |= by_load(source.normal, ["data_error"], query.loads)
     singular = any(notice.code == "singular" for notice in warnings)
-    infinite = dict.fromkeys(("mean_pressure", "maximum_pressure"), singular)
+    names = ("mean_pressure", "maximum_pressure", "normal_stiffness")
+    infinite = dict.fromkeys(names, singular)
     found = checked(query, values, infinite)
     return found | response_metadata(source.method, source.error_estimate, warnings)

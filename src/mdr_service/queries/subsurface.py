@@ -5,6 +5,7 @@ from typing import Any, Final
 import numpy as np
 
 from mdr_core import subsurface
+from mdr_core.adhesion import AdhesiveContact
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.normal import not_reached
@@ -31,6 +32,8 @@ def solve_subsurface(query: SubsurfaceQuery) -> Contact:
             raise InputError((name,), "give either x and z, or points, not both")
     require_few_numbers(query, "x")
     body_of(query)
+    if query.largest and query.material.has("work_of_adhesion"):
+        raise InputError(("largest",), AdhesiveContact.unusable)
     return solve_loaded(query)
 
 

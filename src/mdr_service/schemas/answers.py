@@ -52,7 +52,7 @@ class SolvedAnswer(Answer):
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 
-class NormalAnswer(SolvedAnswer):
+class ContactAnswer(SolvedAnswer):
     """One entry per load in every list."""
 
     indentation_depth: list[float] = _length("Indentation depth d")
@@ -60,11 +60,24 @@ class NormalAnswer(SolvedAnswer):
     contact_radius: list[float] = _length("Contact radius a")
     mean_pressure: list[float | None] = _pressure(f"Mean pressure F_N/(π a²); {_NULL}")
     maximum_pressure: list[float | None] = _pressure(f"Largest pressure p(r); {_NULL}")
-    normal_stiffness: list[float] = _stiffness("Normal stiffness dF_N/dd = 2 E* a")
+    normal_stiffness: list[float | None] = _stiffness(
+        "Normal stiffness dF_N/dd = 2 E* a; of an adhesive contact at constant w, null at pull-off "
+        "under a prescribed depth, where it is infinite"
+    )
     elastic_energy: list[float] = _energy("Elastic energy of the contact")
     data_error: list[float] = _number(
         "Estimate of the relative error of depth and force that the points of a table leave open",
         default=None,
+    )
+
+
+class NormalAnswer(ContactAnswer):
+    """One entry per load in every list; pull-off and retraction only with `work_of_adhesion`."""
+
+    pull_off_force: list[float] = _force("Lowest normal force of a contact", default=None)
+    pull_off_depth: list[float] = _length("Lowest depth of a contact", default=None)
+    retraction: list[float] = _length(
+        "Retraction Δℓ from the contact without adhesion of the same radius", default=None
     )
 
 
@@ -94,7 +107,7 @@ class HistoryAnswer(SolvedAnswer):
     )
 
 
-class TangentialAnswer(NormalAnswer):
+class TangentialAnswer(ContactAnswer):
     """One entry per pair of normal and tangential load in every list."""
 
     tangential_force: list[float] = _force("Tangential force F_x")

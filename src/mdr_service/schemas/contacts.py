@@ -77,8 +77,12 @@ class Load(Choice):
     """Normal load: exactly one control, a number or a list."""
 
     # An absent control is None; a given one is never null.
-    indentation_depth: ScalarOrArray = quantity("length", "Indentation depth d", default=None)
-    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+    indentation_depth: SignedScalarOrArray = quantity(
+        "length", "Indentation depth d, with adhesion down to the pull-off", default=None
+    )
+    normal_force: SignedScalarOrArray = quantity(
+        "force", "Normal force F_N, with adhesion down to the pull-off", default=None
+    )
     contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
 
 
@@ -123,6 +127,17 @@ class Elastic(Strict):
         "pressure",
         "Yield strength Y of the softer body, in uniaxial tension; the response carries the "
         "warning `yield` where Tresca's criterion is met",
+        default=None,
+    )
+    work_of_adhesion: float = positive(
+        "force/length",
+        "Work of adhesion w, an energy per area: the contact is adhesive (JKR), without friction",
+        default=None,
+    )
+    range_of_adhesion: float = positive(
+        "length",
+        "Distance over which the surfaces attract, for the warning `jkr_range`; with "
+        "`work_of_adhesion`",
         default=None,
     )
 

@@ -1,0 +1,145 @@
+"""Adhesive contacts by HTTP: the numbers of the core, and rejections that say where and why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlencode
+
+import numpy as np
+import pytest
+
+if TYPE_CHECKING:
+    from tests.conftest import Client
+
+R, E_STAR, W = 2e-6, 1e6, 0.05
+PULL_OFF = -1.5 * np.pi * W * R
+BALL = {
+    "profile": {"kind": "paraboloid", "radius": R},
+    "material": {"e_star": E_STAR, "g_star": E_STAR, "work_of_adhesion": W},
+}
+FRICTION = {"friction_coefficient": 0.3}
+LOADED = {"load": {"normal_force": 0.0}}
+
+
+def answer(client: Client, path: str, query: dict[str, Any]) -> dict[str, Any]:
+    response = client.post(f"/v1/{path}", BALL | query)
+    assert response.status_code == 200, response.text
+    body: dict[str, Any] = response.json()
+    return body
+
+
+def problems(client: Client, path: str, query: dict[str, Any]) -> dict[str, str]:
+    response = client.post(f"/v1/{path}", BALL | query)
+    assert response.status_code == 422
+    return {each["pointer"]: each["detail"] for each in response.json()["errors"]}
+
+
+def test_negative_loads_reach_the_pull_off(client: Client) -> None:
+    found = answer(client, "normal", {"load": {"normal_force": [PULL_OFF, 0.0, 1e-6]}})
+    assert found["pull_off_force"] == pytest.approx([PULL_OFF] * 3, rel=1e-12)
+    size = np.cbrt(9 * np.pi * W * R**2 / (8 * E_STAR))
+    assert found["contact_radius"][:2] == pytest.approx([size, np.cbrt(4) * size], rel=1e-6)
+    assert found["retraction"] == pytest.approx(
+        np.sqrt(2 * np.pi * np.array(found["contact_radius"]) * W / E_STAR), rel=1e-12
+    )
+
+
+def test_pull_off_depth_has_an_infinite_stiffness(client: Client) -> None:
+    depth = answer(client, "normal", LOADED)["pull_off_depth"][0]
+    found = answer(client, "normal", {"load": {"indentation_depth": depth}})
+    assert found["normal_stiffness"] == [None]
+    assert "singular" in [warning["code"] for warning in found["warnings"]]
+
+
+@pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
+def test_loads_below_the_pull_off_are_rejected_with_it(client: Client, control: str) -> None:
+    least = answer(client, "normal", LOADED)[f"pull_off_{control.partition('_')[2]}"][0]
+    found = problems(client, "normal", {"load": {control: [0.0, 1.01 * least]}})
+    assert f"{least:.9g}" in found[f"/load/{control}/1"]
+    plain = BALL["material"] | {"work_of_adhesion": 1e-50}
+    found = problems(client, "normal", {"load": {control: -1e-6}, "material": plain})
+    assert list(found) == [f"/load/{control}"]
+
+
+def test_negative_loads_without_adhesion_are_rejected(client: Client) -> None:
+    found = problems(
+        client, "normal", {"load": {"normal_force": -1.0}, "material": {"e_star": 1.0}}
+    )
+    assert found == {"/load/normal_force": "must not be negative: compression is positive"}
+
+
+@pytest.mark.parametrize(
+    ("path", "query"),
+    [
+        ("tangential", LOADED | FRICTION | {"tangential": {"tangential_force": 0.0}}),
+        ("stress", LOADED | FRICTION | {"tangential": {"tangential_force": 0.0}, "points": 20}),
+        (
+            "tangential/history",
+            FRICTION
+            | {
+                "history": {
+                    "normal": {"normal_force": 1e-6},
+                    "tangential": {"tangential_force": [0]},
+                }
+            },
+        ),
+        ("wear", LOADED | FRICTION | {"oscillation": {"tangential_force": 0.0}}),
+        (
+            "wear/evolution",
+            LOADED
+            | FRICTION
+            | {
+                "oscillation": {"tangential_force": 1.0},
+                "wear_coefficient": 1.0,
+                "cycles": [1],
+                "points": 9,
+            },
+        ),
+    ],
+)
+def test_friction_and_wear_are_rejected(client: Client, path: str, query: dict[str, Any]) -> None:
+    if path == "stress":
+        query = query | {"quantities": ["pressure"]}
+    found = problems(client, path, query)
+    assert "is not exact: the tension at the edge" in found["/material/work_of_adhesion"]
+
+
+def test_yield_and_peaks_are_rejected(client: Client) -> None:
+    material = BALL["material"] | {"yield_strength": 1e6, "poissons_ratio": 0.5}
+    found = problems(client, "normal", LOADED | {"material": material})
+    assert "is not exact" in found["/material/yield_strength"]
+    del material["yield_strength"]
+    query = LOADED | {"material": material, "points": 4, "largest": True}
+    assert "is not exact" in problems(client, "subsurface", query)["/largest"]
+
+
+def test_range_needs_a_work_and_warns(client: Client) -> None:
+    alone = {"e_star": E_STAR, "range_of_adhesion": 1e-9}
+    assert "/material/work_of_adhesion" in problems(client, "normal", LOADED | {"material": alone})
+    material = BALL["material"] | {"range_of_adhesion": 1e-6}
+    found = answer(client, "normal", LOADED | {"material": material})
+    assert "jkr_range" in [warning["code"] for warning in found["warnings"]]
+
+
+def test_fields_carry_the_step_of_the_edge(client: Client) -> None:
+    a = 1.2e-6
+    radii = {"radius": [0.0, a / 2, a], "quantities": ["pressure", "foundation_load"]}
+    found = answer(client, "stress", {"load": {"contact_radius": a}} | radii)
+    step = np.sqrt(2 * np.pi * a * W / E_STAR)
+    inner, half, edge = found["pressure"][0]
+    assert edge is None
+    assert inner == pytest.approx(E_STAR * (2 * a / R - step / a) / np.pi, rel=1e-11)
+    root = a * np.sqrt(0.75)
+    assert half == pytest.approx(E_STAR * (2 * root / R - step / root) / np.pi, rel=1e-11)
+    assert found["foundation_load"][0][2] == pytest.approx(-E_STAR * step, rel=1e-11)
+    material = BALL["material"] | {"poissons_ratio": 0.3}
+    query = {"load": {"contact_radius": a}, "material": material, "quantities": ["stress_zz"]}
+    beneath = answer(client, "subsurface", query | {"x": [0.0, a / 2], "z": [0.0]})
+    assert beneath["stress_zz"][0][0] == pytest.approx([-inner, -half], rel=1e-9)
+
+
+def test_get_takes_the_work_of_adhesion(client: Client) -> None:
+    given = {"kind": "paraboloid", "radius": R, "e_star": E_STAR, "work_of_adhesion": W}
+    response = client.get(f"/v1/normal?{urlencode(given)}&normal_force=-1e-7")
+    assert response.status_code == 200, response.text
+    assert response.json()["pull_off_force"] == pytest.approx([PULL_OFF], rel=1e-12)
