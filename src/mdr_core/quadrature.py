@@ -16,7 +16,8 @@ from scipy.special import roots_legendre
 
 from mdr_core.typing import Array, Chosen, Indices
 
-# h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals.
+# h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals. The
+# values have the shape (..., nodes, m).
 Integrand = Callable[[Array, Chosen], Array]
 
 # Nodes of pieces of half length 1 in a strip of pi/2, by the smallest tolerance that they reach.
@@ -88,12 +89,15 @@ def integrate(
         nodes, weights = rule_of_powers(growth, reach_of_power(1.0, rtol), longest, points)
         return _apply(h, (1 - nodes, weights), lower, length, slice(0, length.size))
     counts = np.maximum(np.ceil(length / PIECE), 1).astype(int)
-    result = np.empty_like(length)
+    result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = _chosen((counts == count).nonzero()[0])
         start = None if lower is None else lower[index]
-        result[index] = _apply(h, composite_rule(points, count), start, length[index], index)
-    return result
+        part = _apply(h, composite_rule(points, count), start, length[index], index)
+        if result is None:
+            result = np.empty((*part.shape[:-1], length.size))
+        result[..., index] = part
+    return np.empty_like(length) if result is None else result
 
 
 def _chosen(index: Indices) -> Chosen:
@@ -109,12 +113,12 @@ def _apply(
     nodes, weights = rule
     step = max(_BLOCK // nodes.size, 1)
     if length.size > step:
-        result = np.empty_like(length)
+        results = []
         for start in range(0, length.size, step):
             part = slice(start, start + step)
             low = None if lower is None else lower[part]
-            result[part] = _apply(h, rule, low, length[part], _part_of(index, part))
-        return result
+            results.append(_apply(h, rule, low, length[part], _part_of(index, part)))
+        return np.concatenate(results, axis=-1)
     y = nodes[:, None] * length
     if lower is not None:
         y += lower

@@ -10,28 +10,17 @@ Source: notes, §7.
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, inf, pi, sqrt
+from math import asinh, inf, pi, sqrt
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.abel.two_root import Weight
-from mdr_core.quadrature import (
-    PIECE,
-    STEEP,
-    composite_rule,
-    nodes_of_pieces,
-    reach_of_power,
-    rule_of_powers,
-)
-from mdr_core.typing import Array, Indices
+from mdr_core.quadrature import integrate, reach_of_power
+from mdr_core.typing import Array, Chosen, Indices
 
 # Part of s(r) above which an angle removes the root at r, and below which log(s) resolves g'.
 _UPPER: Final = 0.5
-# Pieces of one e-fold of the radius, relative to those of the whole upper part.
-_SPARE: Final = 1.5
-# Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
-_BLOCK: Final = 12_288
 
 
 @dataclass(frozen=True)
@@ -210,64 +199,34 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
     # The roots distinguish the ends of an interval that is too narrow for s to resolve.
     upper = (split < s_high) | (split <= s_low)
     span = np.where(upper, root_split / (split + s_r) - top, 0.0)
-    pieces = 1
-    if branch.steepness > STEEP:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            stretch = float(np.max(np.where(upper, np.log(s_high / split), 0.0)))
-        pieces = max(ceil(branch.steepness * min(1.0, _SPARE * stretch) / STEEP), 1)
-    nodes, weights = composite_rule(nodes_of_pieces(rtol), pieces)
+    growth = branch.steepness + 1
 
-    def values(part: slice) -> Array:
-        half = top[part] + nodes[:, None] * span[part]
-        run = 2 / (1 + half * half)
-        s, root = s_r[part] * (run - 1), s_r[part] * (half * run)
+    def above(y: Array, index: Chosen) -> Array:
+        # -y = tan(alpha/2), so that the powers rise with y.
+        run = 2 / (1 + y * y)
+        s, root = s_r[index] * (run - 1), s_r[index] * (-y * run)
         x = np.sqrt(base * base + s * s)
         slope = branch.weight(x, s) * root * run
-        return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
+        return np.array([slope * kernel(x, root) for kernel in kernels])
 
-    total = span * integrals_in_blocks(values, weights.size, s_r.size)
+    total = integrate(above, span, rtol, -top - span, growth=growth)
     index = np.flatnonzero(split > s_low)
-    if index.size:
-        lower = _lower(branch, s_low[index], split[index], s_r[index], kernels, rtol)
-        total[:, index] += lower
-    return np.asarray(total)
+    if not index.size:
+        return total
+    with np.errstate(divide="ignore"):
+        change = np.log if base == 0 else np.arcsinh
+        scale = base or 1.0
+        upper, lower = (change(end[index] / scale) for end in (split, s_low))
+    if base == 0:
+        lower = np.maximum(lower, upper - reach_of_power(branch.tip, rtol))
+    far = s_r[index]
 
-
-def _lower(
-    branch: Branch, low: Array, high: Array, s_r: Array, kernels: Sequence[Kernel], rtol: float
-) -> Array:
-    """Parts of a branch up to s = high <= s_r/2, in y = arcsinh(s/base), or log(s) if base = 0."""
-    base, points = branch.base, nodes_of_pieces(rtol)
-    if base > 0:
-        upper = np.arcsinh(high / base)
-        length = upper - np.arcsinh(low / base)
-    else:
-        upper = np.log(high)
-        with np.errstate(divide="ignore"):
-            length = np.minimum(upper - np.log(low), reach_of_power(branch.tip, rtol))
-    longest = float(length.max())
-    if not longest > 0:
-        # Two neighbouring doubles may have the same logarithm.
-        return np.zeros((len(kernels), s_r.size))
-    if branch.steepness > STEEP:
-        reach = reach_of_power(1.0, rtol)
-        nodes, weights = rule_of_powers(branch.steepness, reach, longest, points)
-    else:
-        nodes, weights = composite_rule(points, ceil(longest / PIECE))
-
-    def values(part: slice) -> Array:
-        y = upper[part] - nodes[:, None] * length[part]
+    def below(y: Array, index: Chosen) -> Array:
         s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
         x = np.sqrt(base * base + s * s)
-        root = np.sqrt((s_r[part] - s) * (s_r[part] + s))
+        root = np.sqrt((far[index] - s) * (far[index] + s))
         slope = branch.weight(x, s) * run
-        return np.array([weights @ (slope * kernel(x, root)) for kernel in kernels])
+        return np.array([slope * kernel(x, root) for kernel in kernels])
 
-    return length * integrals_in_blocks(values, weights.size, s_r.size)
-
-
-def integrals_in_blocks(values: Callable[[slice], Array], nodes: int, count: int) -> Array:
-    """Return the values of `count` integrals with `nodes` nodes each, in blocks."""
-    step = max(_BLOCK // nodes, 1)
-    parts = [values(slice(start, start + step)) for start in range(0, max(count, 1), step)]
-    return np.concatenate(parts, axis=-1)
+    total[:, index] += integrate(below, upper - lower, rtol, lower, growth=growth)
+    return total

@@ -9,12 +9,13 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.displacement import integrals_in_blocks
-from mdr_core.quadrature import PIECE, composite_rule, nodes_of_pieces, piecewise_rule
-from mdr_core.typing import Array, Parameter
+from mdr_core.quadrature import PIECE, integrate, nodes_of_pieces, piecewise_rule
+from mdr_core.typing import Array, Chosen, Parameter
 
 # Closer to the edge a root lies on it.
 _EPS: Final = float(np.finfo(float).eps)
+# Nodes times radii evaluated at once.
+_BLOCK: Final = 12_288
 
 
 def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: float) -> Array:
@@ -40,11 +41,12 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
     places, weights = piecewise_rule(nodes_of_pieces(rtol), ends / count)
     x, short, density = _stepped(big_radius, np.asarray(v), v * places)
 
-    def values(part: slice) -> Array:
+    result, step = np.empty_like(r), max(_BLOCK // weights.size, 1)
+    for start in range(0, r.size, step):
+        part = slice(start, start + step)
         root = np.sqrt(np.add.outer(short, beyond[part]) * np.add.outer(x, r[part]))
-        return (weights * density) @ np.arctan2(x[:, None], root)
-
-    return v * integrals_in_blocks(values, weights.size, r.size)
+        result[part] = v * ((weights * density) @ np.arctan2(x[:, None], root))
+    return result
 
 
 def slope_integral_inside(
@@ -63,13 +65,14 @@ def slope_integral_inside(
     r : radii [length], shape (m,).
     rtol : relative tolerance.
     """
-    u, weights = composite_rule(nodes_of_pieces(rtol), ceil(float(width.max(initial=1.0))))
+    length = PIECE * np.maximum(width, np.finfo(float).tiny)
 
-    def values(part: slice) -> Array:
-        x, short, density = _stepped(big_radius, v[part], np.multiply.outer(u * u, width[part]))
-        return (2 * u * weights) @ (density * np.arctan2(np.sqrt(short * (x + r[part])), x))
+    def h(y: Array, index: Chosen) -> Array:
+        u = y / length[index]
+        x, short, density = _stepped(big_radius, v[index], u * u * width[index])
+        return np.asarray(2 * u * density * np.arctan2(np.sqrt(short * (x + r[index])), x))
 
-    return width * integrals_in_blocks(values, weights.size, r.size)
+    return integrate(h, length, rtol) / PIECE
 
 
 def _stepped(big_radius: Parameter, v: Array, down: Array) -> tuple[Array, Array, Array]:
