@@ -52,8 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
         timeout_keep_alive=75,
         server_header=False,
         access_log=False,
-        # No response and no log line depends on the client's address.
-        proxy_headers=False,
         lifespan="on",
         ws="none",
     )

@@ -80,7 +80,8 @@ class ServiceMiddleware:
             return
         given = header(scope, b"x-request-id")
         name = given if _ID.fullmatch(given) else os.urandom(8).hex()
-        record = RequestRecord(name, scope["method"])
+        client, _ = scope.get("client") or ("", 0)
+        record = RequestRecord(name, scope["method"], client)
         observability.CURRENT.set(record)
         sender = _Sender(self.transfers, record, receive, send)
         if scope["method"] == "HEAD":

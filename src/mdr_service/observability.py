@@ -79,6 +79,8 @@ class RequestRecord:
 
     id: str
     method: str
+    client: str = ""
+    """Address of the client."""
     start: float = field(default_factory=perf_counter)
     status: int = 0
     queued: float = 0.0
@@ -89,6 +91,12 @@ class RequestRecord:
 
 CURRENT: Final[ContextVar[RequestRecord | None]] = ContextVar("request", default=None)
 """Record of the current request."""
+
+
+def client() -> str:
+    """Return the address of the client of the current request."""
+    record = CURRENT.get()
+    return record.client if record else ""
 
 
 def end(record: RequestRecord, route: str | None) -> None:

@@ -3,18 +3,17 @@
 Computations that are longer than a round trip run in a process of their own: a thread would hold
 the global interpreter lock (GIL), and could not be terminated. They wait in the order of arrival
 for up to `queue_seconds`, then run for up to `budget_seconds`; a single limit would terminate
-computations half-way that had mainly waited. While others wait, one that takes far longer than
-usual is terminated, so that a few expensive queries cannot starve the rest.
+computations half-way that had mainly waited. Of those that wait, the client that computes least is
+next, and one that computes in several processes gives back the last while another waits.
 """
 
 import logging
 from asyncio import CancelledError, Event, Future, create_task, wait
-from collections import deque
+from collections import Counter
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from math import ceil
-from statistics import median
 from time import monotonic
 from typing import Any, Final, TypeVar, cast
 
@@ -40,10 +39,6 @@ _FAIR_INTERVAL: Final = 0.25
 # Part of `queue_seconds` for which a computation waits before it may displace another, and runs
 # before it may be displaced.
 _FAIR_SHARE: Final = 0.25
-# Ratio to the usual time of a computation from which one may be displaced.
-_FAIR_RATIO: Final = 3.0
-# Number of completed computations whose median is the usual time: a few outliers do not matter.
-_FAIR_COUNT: Final = 16
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -52,8 +47,8 @@ _logger: Final = logging.getLogger(__name__)
 class _Job:
     """A computation that waits or runs."""
 
-    is_query: bool = True
-    """True for a query, False for a self-test."""
+    client: str = field(default_factory=observability.client)
+    """Address of the client."""
     turn: Future[ComputeProcess] = field(default_factory=Future)
     """The process in which it runs, once its turn has come."""
     since: float = field(default_factory=monotonic)
@@ -76,7 +71,6 @@ class WorkerPool:
         self._idle: list[ComputeProcess] = []
         self._waiting: list[_Job] = []
         self._running: list[_Job] = []
-        self._times: deque[float] = deque(maxlen=_FAIR_COUNT)
         self._supervised = False
         # Set once every process has started, or one has failed to.
         self._settled = Event()
@@ -146,12 +140,16 @@ class WorkerPool:
                 _logger.warning("compute process ended with status %d: %s", status, process.end)
 
     def _offer(self, process: ComputeProcess) -> None:
-        """Give an idle process to the computation that has waited longest, if one waits."""
-        turn = next((job.turn for job in self._waiting if not job.turn.done()), None)
-        if turn:
-            turn.set_result(process)
+        """Give an idle process to the client that computes least, of its first computation."""
+        if queue := self._queue():
+            running = Counter(job.client for job in self._running)
+            min(queue, key=lambda job: running[job.client]).turn.set_result(process)
         else:
             self._idle.append(process)
+
+    def _queue(self) -> list[_Job]:
+        """Return the computations whose turn has not come, in the order of arrival."""
+        return [job for job in self._waiting if not job.turn.done()]
 
     async def run_in_process(self, function: Callable[..., _Result], *arguments: Any) -> _Result:
         """Return the result of a function of a module, computed in a process.
@@ -159,13 +157,14 @@ class WorkerPool:
         Raises ServiceError if the queue is full, the wait or the computation takes too long, or
         the process is lost; besides all that the function raises.
         """
-        return cast("_Result", await self._run(_Job(), function, *arguments))
+        return cast("_Result", await self._run(function, *arguments))
 
     async def check(self) -> None:
         """Run the self-test in a process; raise ServiceError if it fails or does not run soon."""
-        await self._run(_Job(is_query=False), self._self_test)
+        await self._run(self._self_test)
 
-    async def _run(self, job: _Job, function: Callable[..., object], *arguments: Any) -> Any:
+    async def _run(self, function: Callable[..., object], *arguments: Any) -> Any:
+        job = _Job()
         process = await self._take_process(job)
         job.since = monotonic()
         self._running.append(job)
@@ -187,9 +186,7 @@ class WorkerPool:
                 self._offer(process)
         if job.scope.cancelled_caught:
             process.end = "displaced"
-            raise self._busy("terminated: it took far longer than usual while others waited")
-        if job.is_query:
-            self._times.append(job.age)
+            raise self._busy("terminated: another client waited, and this one computed more")
         return _raised(outcome)
 
     async def _take_process(self, job: _Job) -> ComputeProcess:
@@ -198,13 +195,16 @@ class WorkerPool:
         if self._idle:
             # The process used last has kept its tables.
             return self._idle.pop()
-        if len(self._waiting) >= self._settings.queue_length:
-            raise self._busy("the queue is full")
         self._waiting.append(job)
+        if len(queue := self._queue()) > self._settings.queue_length:
+            # The client with the most computations in the queue gives up its last.
+            counts = Counter(each.client for each in queue)
+            last = max(queue, key=lambda each: (counts[each.client], each.since))
+            last.turn.set_exception(self._busy("the queue is full"))
         try:
             await wait([job.turn], timeout=self._settings.queue_seconds)
         except CancelledError:
-            if job.turn.done():
+            if job.turn.done() and not job.turn.exception():
                 self._offer(job.turn.result())
             raise
         finally:
@@ -223,14 +223,15 @@ class WorkerPool:
         return ServiceError(problems.BUSY, f"{reason}; try again in {after} s", retry_after=after)
 
     async def _keep_fair(self) -> None:
-        """Terminate the youngest computation if all take far longer than usual and others wait."""
+        """Terminate the last computation of a client with several, if another has long waited."""
         share = _FAIR_SHARE * self._settings.queue_seconds
         await sleep(_FAIR_INTERVAL)
-        waiting = any(job.is_query and job.age > share for job in self._waiting)
-        if waiting and len(self._running) == self._settings.compute_processes > 1:
-            youngest = min(self._running, key=lambda job: job.age)
-            if youngest.age > max(share, _FAIR_RATIO * median(self._times or [share])):
-                youngest.scope.cancel()
+        running = Counter(job.client for job in self._running)
+        least = min((running[job.client] for job in self._waiting if job.age > share), default=None)
+        if least is not None and len(self._running) == self._settings.compute_processes:
+            last = max(self._running, key=lambda job: (running[job.client], job.since))
+            if running[last.client] > least + 1 and last.age > share:
+                last.scope.cancel()
 
 
 def _raised(outcome: object) -> object:

@@ -17,6 +17,8 @@ from mdr_service.workers import AT_ONCE_BYTES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
 MEGABYTE = 2**20
+# Other than that of the clients beside the attack.
+ADDRESS = "127.0.0.2"
 MATERIAL = {"e_star": 1.0, "g_star": 0.8}
 CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": MATERIAL}
 SMALL = post("/v1/normal", CONE | {"load": {"normal_force": 1.0}})
@@ -131,7 +133,7 @@ def requesting(text: bytes | tuple[bytes, ...], clients: int) -> Attack:
         result: Counter[int] = Counter()
 
         async def keep_sending(index: int) -> None:
-            client = Client(port)
+            client = Client(port, ADDRESS)
             while time.monotonic() < end:
                 result.update(await once(client, index))
                 index += 1

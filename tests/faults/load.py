@@ -39,13 +39,16 @@ def post(path: str, query: Any) -> bytes:
 class Client:
     """A persistent connection, reopened after a response that closes it."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, address: str = HOST) -> None:
         self._port = port
+        self._address = address
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
     async def ask(self, text: bytes) -> Response:
         if self._streams is None:
-            self._streams = await asyncio.open_connection(HOST, self._port, limit=2**26)
+            self._streams = await asyncio.open_connection(
+                HOST, self._port, limit=2**26, local_addr=(self._address, 0)
+            )
         reader, writer = self._streams
         start = time.perf_counter()
         try:

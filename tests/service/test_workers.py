@@ -39,9 +39,9 @@ Test = Callable[[WorkerPool], Awaitable[None]]
 Shared = Callable[[Test], None]
 
 
-def start_record() -> observability.RequestRecord:
+def start_record(client: str = "") -> observability.RequestRecord:
     """Start the record of a request."""
-    record = observability.RequestRecord("id", "GET")
+    record = observability.RequestRecord("id", "GET", client)
     observability.CURRENT.set(record)
     return record
 
@@ -387,13 +387,12 @@ def test_queue_is_served_in_order_and_waiting_does_not_count_as_computing(tmp_pa
 TWO = ONE.model_copy(update={"compute_processes": 2, "queue_length": 9, "queue_seconds": 2.0})
 
 
-def test_expensive_queries_make_room_for_a_shorter_one() -> None:
+def test_client_with_several_processes_makes_room_for_another() -> None:
     async def test(pool: WorkerPool) -> None:
         displaced: list[ServiceError] = []
-        # Defines the usual time of a computation.
-        await pool.run_in_process(own_process)
 
         async def keep_busy() -> None:
+            start_record("greedy")
             try:
                 await pool.run_in_process(sleep_for, 60.0)
             except ServiceError as error:
@@ -401,17 +400,43 @@ def test_expensive_queries_make_room_for_a_shorter_one() -> None:
 
         with anyio.CancelScope() as scope:
             async with anyio.create_task_group() as tasks:
-                tasks.start_soon(keep_busy)
-                tasks.start_soon(keep_busy)
+                for _ in range(4):
+                    tasks.start_soon(keep_busy)
                 await anyio.sleep(0.1)
+                start_record("modest")
+                # Before the two that came first.
+                await pool.run_in_process(own_process)
                 await pool.run_in_process(own_process)
                 scope.cancel()
-        assert [error.type for error in displaced] == [problems.BUSY]
+        assert [error.type for error in displaced[:1]] == [problems.BUSY]
 
     run(test, TWO.model_copy(update={"queue_seconds": 12.0}))
 
 
-def test_queries_of_equal_cost_do_not_displace_each_other() -> None:
+def test_client_with_the_longest_queue_gives_up_its_last(tmp_path: Path) -> None:
+    async def test(pool: WorkerPool) -> None:
+        results: list[object] = []
+
+        async def ask(client: str) -> None:
+            start_record(client)
+            try:
+                await pool.run_in_process(own_process)
+                results.append(client)
+            except ServiceError as error:
+                results.append(error.type)
+
+        async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
+            for client in ("greedy", "greedy", "greedy", "modest"):
+                tasks.start_soon(ask, client)
+                await anyio.sleep(0.05)
+            assert results == [problems.BUSY]
+            release(tmp_path / "go")
+        assert sorted(results[1:], key=str) == ["greedy", "greedy", "modest"]
+
+    run(test, ONE.model_copy(update={"queue_length": 3}))
+
+
+def test_queries_of_one_client_do_not_displace_each_other() -> None:
     async def test(pool: WorkerPool) -> None:
         async with anyio.create_task_group() as tasks:
             for _ in range(3):
