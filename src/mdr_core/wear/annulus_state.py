@@ -94,11 +94,6 @@ class AnnulusState:
         return np.sqrt(self.stick**2 + self.end**2 * self.initial.maps.squares)
 
     @cached_property
-    def points(self) -> Array:
-        """Radii of Gauss's points between the nodes."""
-        return np.sqrt(self.stick**2 + self.end**2 * self.initial.maps.points)
-
-    @cached_property
     def offset(self) -> Array:
         """x - c."""
         return np.asarray(self.end**2 * self.initial.maps.squares / (self.x + self.stick))
@@ -178,7 +173,7 @@ class AnnulusState:
         return float(self.end**2 * (self.initial.maps.mean @ self.worn_omega))
 
     def spring_wear(self, x: Array) -> Array:
-        """Return gamma - gamma_0 at radii x of the annulus."""
+        """Return gamma - gamma_0 at radii x, clipped to those of the annulus."""
         squares = (x - self.stick) * (x + self.stick) / self.end**2
         return x * self.initial.maps.at(self.worn_omega, np.clip(squares, 0.0, 1.0))
 

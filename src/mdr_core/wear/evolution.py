@@ -14,7 +14,7 @@ from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.materials import Material, shear_modulus
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array, Flags, Indices
+from mdr_core.typing import Array
 from mdr_core.validation import (
     first_index,
     require_not_negative,
@@ -22,11 +22,10 @@ from mdr_core.validation import (
     require_tolerance,
     require_type,
 )
-from mdr_core.wear import limit
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.integrator import integrate
-from mdr_core.wear.worn_surface import WornSurface, absolute_difference
+from mdr_core.wear.worn_surface import WornSurface
 
 # Default of `resolution`, ...
 DEFAULT_RESOLUTION: Final = 24
@@ -48,25 +47,19 @@ SCALARS: Final = (
 
 # Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
 _MIN_NODES: Final = 16
-# The second run of the error estimates: fewer nodes and a looser integrator. The errors fall at
-# least like 1/resolution^2, next to the contact's edge, so that those of the first run are at most
-# 0.8 times the difference; elsewhere they are far smaller.
+# The second run of the error estimates: nodes and tolerance as parts of those of the first.
 _COARSER: Final = 2 / 3
-# Factor of its tolerance.
 _LOOSER: Final = 4.0
-# Factor of the difference in an estimate.
+# Factors of the difference in an estimate, of scalars and fields. The error of a scalar is at most
+# 0.8 times the difference where it falls like 1/resolution^2; the thin peak of the pressure next to
+# a moving stick edge falls more slowly, and beside a break both runs may err alike.
 _SAFETY: Final = 2.0
-# Next to a shrinking stick edge the peak of the pressure is thinner than the nodes' spacing: its
-# error, up to 3 times the difference, falls only slowly with the resolution.
-_SAFETY_OF_PEAK: Final = 4.0
+_OF_FIELDS: Final = 4.0
+_AT_BREAKS: Final = 10.0
 # Beyond such an estimate neither of the two runs is near the truth.
 _UNRESOLVED: Final = 0.25
-# Radii at which the two runs are compared besides the given ones, as parts of the worn annulus at
-# up to so many numbers of cycles.
-_CYCLES: Final = 8
-_SAMPLES: Final = np.linspace(0.02, 0.98, 33)
-# They are as near to the given radii as this part of the worn annulus.
-_NEAR: Final = 0.05
+# Radii at which the two runs are compared besides the given ones, as parts of the worn annulus.
+_SAMPLES: Final = np.linspace(0.0, 1.0, 66)[1:-1]
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,62 +72,47 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @cached_property
     def error_estimate(self) -> float:
-        """Bound on the relative error of every scalar [1].
+        """Estimate of the relative error of every scalar [1].
 
-        Twice the difference to a run on two thirds of the nodes with a looser integrator, or that
-        to the limiting state once wear has stopped, and the rounding error of the contact before
-        wear. With a break of the profile in the worn annulus, twice an integral of the absolute
-        differences of the two runs.
+        Twice the difference from a run on two thirds of the nodes with a looser integrator,
+        and the rounding error of the contact before wear. With a break of the profile in the worn
+        annulus both runs may err alike: there their absolute difference counts.
         """
-        worst = self._difference_at_breaks
+        worst = self._absolute_difference if self._has_break else 0.0
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
-        numerical = max(_SAFETY * worst, self._distance_from_limit)
-        return numerical + self.tangential_contact.error_estimate
+        return _SAFETY * worst + self.tangential_contact.error_estimate
 
-    @cached_property
-    def _has_break(self) -> Flags:
-        """True while a break of the profile is in the worn annulus, (cycles,)."""
+    @property
+    def _absolute_difference(self) -> float:
+        """Largest absolute difference of the two runs, relative to force or depth, and volume [1].
+
+        Integrals over the annulus of the differences of the springs' wear and of the worn depth.
+        """
+        r, runs = self._samples, (self, self.coarse)
+        springs = np.abs(np.subtract(*(run.spring_wear(r) for run in runs)))
+        depths = np.abs(np.subtract(*(run.worn_depth(r) for run in runs)))
+        whole = self.normal_force / (2 * self.normal.e_star)
+        if self.initial.constant_force:
+            whole = self.contact_radius * self.indentation_depth
+        volume = np.where(self.worn_volume > 0, self.worn_volume, 1.0)
+        parts = np.trapezoid(springs, r) / whole, 2 * np.pi * np.trapezoid(depths * r, r) / volume
+        return float(np.max(parts))
+
+    @property
+    def _samples(self) -> Array:
+        """Radii in the worn annulus after the last of the cycles [length]."""
+        c, a = self.stick_radius[-1], self.contact_radius[-1]
+        return np.asarray(c + (a - c) * _SAMPLES)
+
+    @property
+    def _has_break(self) -> bool:
+        """True if a break of the profile lies in a worn annulus."""
         profile = self.normal.profile
         breaks = np.array([*profile.breaks, *profile.infinite_pressure_radii])
         c, a = self.stick_radius[:, None], self.contact_radius[:, None]
-        return ((breaks > c) & (breaks < a)).any(axis=1) & (self.worn_volume > 0)
-
-    @property
-    def _difference_at_breaks(self) -> float:
-        """Relative difference of the two runs while a break is in the worn annulus [1].
-
-        There the error of a scalar depends on the place of the break between two nodes, so that
-        both runs may err alike. Their wear differs nevertheless: the absolute difference counts.
-        """
-        indices = _some(np.flatnonzero(self._has_break))
-        pairs = [(self.at(index), self.coarse.at(index)) for index in indices]
-        return max((absolute_difference(run, other) for run, other in pairs), default=0.0)
-
-    @cached_property
-    def _limit(self) -> limit.LimitingWear | None:
-        """Limiting state once wear has stopped, unless it depends on the load path."""
-        if self.initial.stick_grows or self.cycles[-1] < self.settled_at:
-            return None
-        start = self.tangential_contact
-        return limit.solve(
-            self.normal,
-            start.g_star,
-            start.friction_coefficient,
-            **{start.control: getattr(start, start.control)},
-        )
-
-    @property
-    def _distance_from_limit(self) -> float:
-        """Largest relative difference from the limiting state, 0 before wear stops [1]."""
-        end = self._limit
-        if end is None:
-            return 0.0
-        names = ("worn_volume", "normal_force", "indentation_depth", "stick_radius")
-        pairs = [(getattr(self, name), getattr(end, name)) for name in names]
-        pairs.append((self.contact_radius, end.wear_radius))
-        return max(abs(float(value[-1] / exact) - 1) for value, exact in pairs)
+        return bool(((breaks > c) & (breaks < a)).any())
 
     def field_error_estimate(self, radius: ArrayLike, names: Sequence[str] = FIELDS) -> float:
         """Return a bound on the error of the fields at some radii [1].
@@ -152,29 +130,23 @@ class WearEvolution(validity.ContactResults, WornSurface):
         InputError : as for `worn_depth`.
         """
         r = self._radii(radius)
+        worst = max((self._difference(name, r) for name in names), default=0.0)
+        safety = _AT_BREAKS if self._has_break else _OF_FIELDS
+        return safety * worst + self.tangential_contact.error_estimate
+
+    def _difference(self, name: str, radius: Array) -> float:
+        """Return the largest difference of a field between the two runs, see above."""
         c, a = self.stick_radius, self.contact_radius
         annulus = np.pi * (a - c) * (a + c)
         least = {
             "pressure": self.normal_force / (np.pi * a**2),
             "worn_depth": self.worn_volume / np.where(annulus > 0, annulus, 1.0),
         }
-        worst = 0.0
-        for name in names:
-            values, others = (getattr(run, name)(r) for run in (self, self.coarse))
-            difference = max(self._difference_near(name, r), _largest(values, others))
-            if name == "pressure" and self.initial.stick_moves:
-                # The pressure is singular at an edge whose position is inexact.
-                shifted = np.minimum(r * (1 + self.error_estimate), self.normal.profile.domain)
-                difference = max(difference, _largest(values, self.pressure(shifted)))
-            if self._limit:
-                end = getattr(self._limit, "limiting_profile" if name == "profile" else name)(r)
-                difference = max(difference, _largest(values[-1], end))
-            largest = max(_largest(values), float(np.max(least.get(name, 0.0))))
-            if largest > 0:
-                worst = max(worst, difference / largest)
-        peak = self.initial.stick_shrinks or self._has_break.any()
-        safety = _SAFETY_OF_PEAK if peak else _SAFETY
-        return safety * worst + self.tangential_contact.error_estimate
+        # At single radii the difference may vanish.
+        at = np.append(radius, self._samples)
+        values, others = (getattr(run, name)(at) for run in (self, self.coarse))
+        largest = max(_largest(values[:, : radius.size]), float(np.max(least.get(name, 0.0))))
+        return _largest(values, others) / (largest or 1.0)
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
@@ -186,28 +158,6 @@ class WearEvolution(validity.ContactResults, WornSurface):
         if not self.initial.stick_moves:
             edges = np.append(edges, self.stick_radius[0])
         return grid(self.initial.normal.profile, edges, points)
-
-    def _difference_near(self, name: str, radius: Array) -> float:
-        """Return the largest difference of a field between the two runs near some radii.
-
-        At single radii the difference may vanish.
-        """
-        worst = 0.0
-        for index in _some(np.arange(self.cycles.size)):
-            c, a = self.stick_radius[index], self.contact_radius[index]
-            at, growth = c + (a - c) * _SAMPLES, 1.0
-            if self._has_break[index]:
-                at = self.initial.length_unit * self.states[index].points
-                # The pressure at a break is infinite before wear, and then falls like ln(1/cycles):
-                # the nodes resolve little of it.
-                growth += float(np.log1p(self.initial.cycle_unit / self.cycles[index]))
-            margin = _NEAR * (a - c)
-            at = at[(at > radius.min() - margin) & (at < radius.max() + margin)]
-            if at.size:
-                runs = (run.at(int(index)) for run in (self, self.coarse))
-                values, others = (getattr(run, name)(at) for run in runs)
-                worst = max(worst, growth * _largest(values, others))
-        return worst
 
     @property
     def method(self) -> str:
@@ -331,12 +281,6 @@ def solve(
         detail = "the worn annulus is not resolved: more nodes may resolve it"
         raise AccuracyError(detail, ("resolution",))
     return found
-
-
-def _some(indices: Indices) -> Indices:
-    """Return at most `_CYCLES` of the indices, the first and the last among them."""
-    count = min(indices.size, _CYCLES)
-    return indices[np.linspace(0, indices.size - 1, count).astype(int)]
 
 
 def _largest(values: Array, others: Array | float = 0.0) -> float:

@@ -34,11 +34,6 @@ class WornSurface:
     settled_at: float = inf
     """Number of cycles after which wear has stopped."""
 
-    def at(self, index: int) -> "WornSurface":
-        """Return the surface at one of the numbers of cycles."""
-        which = slice(index, index + 1)
-        return WornSurface(self.initial, self.cycles[which], self.states[which], self.settled_at)
-
     @cached_property
     def indentation_depth(self) -> Array:
         """d [length]: it grows where the normal force is constant."""
@@ -89,6 +84,11 @@ class WornSurface:
         initial = self.initial
         unit = 2 * initial.depth_unit * initial.length_unit**2 / initial.wear_coefficient
         return self._each(lambda state: unit * state.work, 0.0)
+
+    def spring_wear(self, radius: Array) -> Array:
+        """Return the wear g - g_0 of the springs at radii of the annulus [length], (cycles, m)."""
+        unit, x = self.initial.depth_unit, radius / self.initial.length_unit
+        return unit * np.array([state.spring_wear(x) for state in self.states])
 
     def worn_depth(self, radius: ArrayLike) -> Array:
         """Return h(r) = f - f_0 [length], (cycles, m), which is never negative and never falls.
@@ -152,25 +152,6 @@ class WornSurface:
         if not self.states:
             return np.full(self.cycles.shape, float(otherwise))
         return np.array([value(state) for state in self.states])
-
-
-def absolute_difference(run: WornSurface, other: WornSurface) -> float:
-    """Return the relative difference of two runs at one number of cycles [1].
-
-    The larger of those of force (or depth) and worn volume, as integrals of the absolute
-    differences of the springs' wear g - g_0 and of the worn depth.
-    """
-    initial, state = run.initial, run.states[0]
-    x = state.points
-    springs = np.abs(state.spring_wear(x) - other.states[0].spring_wear(x))
-    integral = initial.depth_unit * initial.length_unit * np.trapezoid(springs, x)
-    whole = run.normal_force / (2 * initial.normal.e_star)
-    if initial.constant_force:
-        whole = run.contact_radius * run.indentation_depth
-    r = initial.length_unit * x
-    depth = np.abs(run.worn_depth(r) - other.worn_depth(r))[0]
-    volume = 2 * np.pi * np.trapezoid(depth * r, r)
-    return max(float(integral / whole[0]), float(volume / run.worn_volume[0]))
 
 
 def _field_in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
