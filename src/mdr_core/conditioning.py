@@ -14,7 +14,7 @@ from mdr_core.elementwise import full, some, where
 from mdr_core.equivalent_1d import EARLY, load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Flags
 
 _EPS: Final = float(np.finfo(float).eps)
 # Relative distance over which the slope of a wide annulus is averaged next to a break.
@@ -22,8 +22,6 @@ _STEP: Final = 4e-11
 # Relative rounding error of a load, and of a contact coordinate.
 _LOAD, _COORDINATE = 8 * _EPS, 2 * _EPS
 _TINY: Final = float(np.finfo(float).tiny)
-# Factor that splits a double into halves.
-_SPLIT: Final = 2.0**27 + 1
 # Exponent of the width of a narrow annulus in the dissipated energy.
 _CUBE: Final = 3.0
 # Part of full slip up to which all condition numbers are small.
@@ -163,9 +161,3 @@ def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> 
         rise = (load(beyond) - below) / where(wide, step, 1.0)
         error = np.maximum(error, where(wide, rise, 0.0))
     return error
-
-
-def product_remainder(x: Parameter, y: Parameter) -> Parameter:
-    """Return x y less its rounded value, exactly, by Dekker's product."""
-    (a, b), (c, d) = ((high := _SPLIT * z - (_SPLIT * z - z), z - high) for z in (x, y))
-    return ((a * c - x * y) + a * d + b * c) + b * d

@@ -19,7 +19,7 @@ from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
 from mdr_core.profiles.power_functions import raised
 from mdr_core.quadrature import gauss_legendre, in_order
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array
 from mdr_core.validation import require_inside
 
 # Width of an annulus, relative to a, up to which a step is an integral: for a wider one the
@@ -29,8 +29,6 @@ _NARROW: Final = 0.05
 _NODES: Final = 16
 # Fraction of the load at full slip up to which the width, not the stick edge, is the unknown.
 EARLY: Final = 0.05
-# Distance from a break, as a part of it, beyond which Newton's method converges as elsewhere.
-_NEAR_BREAK: Final = 0.01
 
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
@@ -188,16 +186,7 @@ def _root(profile: Profile, target: Array, start: Array | None = None, *, of_for
         return value, s * slope / value
 
     start = where(high < start, high, start)
-    return invert(sloped, target, start, low, high, profile.kind, smooth=_smooth(profile))
-
-
-def _smooth(profile: Profile) -> bool | Callable[[Array], Flags]:
-    """Return True, or a test of it, if depth and force are smooth near a contact coordinate."""
-    breaks = profile.coordinate_breaks
-    if has_many_breaks(profile) or not breaks.size:
-        return not breaks.size
-    own = breaks if profile.swept else breaks[0]
-    return lambda s: abs(s - own) > _NEAR_BREAK * own
+    return invert(sloped, target, start, low, high, profile.kind)
 
 
 def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:

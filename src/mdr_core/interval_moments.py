@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.breaks import break_below, divided_breaks, has_many_breaks
+from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import every, indices, some, where
 from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
 from mdr_core.inversion import Function
@@ -170,8 +170,8 @@ class IntervalMoments:
 
     @cached_property
     def _breaks(self) -> tuple[Array, Array]:
-        """Coordinates of the profile's breaks, long gaps divided, and their normal coordinates."""
-        breaks = divided_breaks(self.profile)
+        """Coordinates of the profile's breaks and their normal coordinates."""
+        breaks = self.profile.coordinate_breaks
         breaks = breaks[breaks > self.profile.first_coordinate]
         # A break that no load reaches may have no normal coordinate in doubles.
         with np.errstate(over="ignore", invalid="ignore"):

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdr_core.elementwise import every, some, where
 from mdr_core.errors import DefectError
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
 # A function and the derivative of its logarithm by that of its argument.
@@ -16,9 +16,8 @@ Sloped = Callable[[Array], tuple[Array, Array]]
 
 # Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
 _MAX_STEPS: Final = 200
-# Newton's step at which the next error is rounding error, because convergence is quadratic.
-_LAST_STEP: Final = 1e-8
-# Limit where the slope may be that of the other side of a discontinuity: one more step follows.
+# Newton's step after which one more follows: the slope may be that of the other side of a
+# discontinuity, at which convergence is not quadratic.
 _LAST_BUT_ONE: Final = 1e-10
 # Step that is rounding error itself, as it has to be where no slope is known: residual steps
 # converge linearly.
@@ -43,8 +42,6 @@ def invert(
     low: Array,
     high: Array,
     name: str,
-    *,
-    smooth: bool | Callable[[Array], Flags] = False,
 ) -> Array:
     """Return s with function(s) = target for an increasing function.
 
@@ -59,8 +56,6 @@ def invert(
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
     name : name of the function, for the error message.
-    smooth : True where the function has no slope discontinuity nearby, so that a short step is the
-        last one; a function of the place if it has slope discontinuities elsewhere.
 
     Returns
     -------
@@ -79,17 +74,17 @@ def invert(
     with np.errstate(all="ignore"):
         for _ in range(_MAX_STEPS):
             value, slope = function(s)
-            regular = smooth(s) if callable(smooth) else smooth
             residual = np.log(goal / value)
             known = (slope > 0) & (slope < inf)
-            step, longest = residual / slope, where(regular, _LAST_STEP, _LAST_BUT_ONE)
+            step, longest = residual / slope, _LAST_BUT_ONE
             if not every(known):
                 # Where the slope is not finite, the residual gives the direction alone.
-                step, longest = where(known, step, residual), where(known, longest, _SMALLEST_STEP)
+                step = where(known, step, residual)
+                longest = where(known, _LAST_BUT_ONE, _SMALLEST_STEP)
             size = abs(step)
             # A short step alone may only mean that the function is steep here.
             short = (abs(residual) <= _CLOSE) & (size <= longest)
-            converged = short & known & (regular | (size <= _SMALLEST_STEP))
+            converged = short & known & (size <= _SMALLEST_STEP)
             if not every(size < _MAX_LOG_STEP):
                 step = where(size < _MAX_LOG_STEP, step, np.sign(step) * _MAX_LOG_STEP)
             proposed = s * np.exp(step)

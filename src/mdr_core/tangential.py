@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
-from mdr_core.elementwise import broadcast, common_shape, full, is_number, some, where
+from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.materials import Material, shear_modulus
@@ -204,12 +204,11 @@ class TangentialContact(validity.ContactResults):
     def _limit_rounding(self) -> Parameter:
         """Relative error of results by the rounding of the load at full slip [1].
 
-        In full slip that of the stick radius, relative to the contact radius.
+        A load that is that of full slip in double precision is in full slip.
         """
         if self.control == "stick_radius":
             return 0.0
-        error = self.limit_error * self._load_condition
-        return error + self._concealed if some(self.full_slip) else error
+        return self.limit_error * self._load_condition
 
     @property
     def step_error(self) -> Array:
@@ -229,30 +228,6 @@ class TangentialContact(validity.ContactResults):
         """Relative error of the load at full slip, and of the distance from it over that load."""
         normal = self.normal
         return _LIMIT_ERROR if normal.control == CONTROLS[self.control] else normal.error_estimates
-
-    @property
-    def _concealed(self) -> Array:
-        """Stick radius over a in full slip, if the load at full slip exceeds its rounded value.
-
-        A force of this rounded value counts as full slip, as it would be without rounding.
-        """
-        normal, left = self.normal, full(0.0, self.width) + self.limit_error
-        limit = self._full_slip_displacement
-        if self.control == "tangential_force":
-            limit = self.limiting_force
-            if normal.control == "normal_force":
-                left = conditioning.product_remainder(
-                    self.friction_coefficient, normal.normal_force
-                ) / where(limit > 0, limit, 1.0)
-        near = self.full_slip & (limit > 0) & (left > 0) & (self.excess <= self.limit_error * limit)
-        if not some(near):
-            return full(0.0, self.width)
-        left = where(near, left, 0.5)
-        of_force = self.control == "tangential_force"
-        ends = self._coordinate, 1 - left, left
-        edge, _ = equivalent_1d.stick_edge(normal.profile, *ends, of_force=of_force)
-        c, a = normal.profile.contact_radius(edge), normal.contact_radius
-        return where(near, c / where(near, a, 1.0), 0.0)
 
     @cached_property
     def error_estimates(self) -> Array:

@@ -132,19 +132,19 @@ def test_contact_radius_where_the_slope_of_g_vanishes(part: float, control: str)
 
 
 @pytest.mark.parametrize("exponent", [2.0, 10.0, 100.0])
-def test_full_slip_by_the_rounding_of_the_limit(exponent: float) -> None:
-    """A force that is mu F_N in double precision counts as full slip, and exact c is small."""
+def test_stick_radius_one_rounding_before_full_slip(exponent: float) -> None:
+    """A force that is mu F_N in double precision is full slip; the next lower one is not."""
     friction, force = 0.4563097552438412, 7.493860291067043
     contact = normal.solve(Power(0.1, exponent), 1.0, normal_force=force)
-    for push in (friction * force, nextafter(friction * force, 0.0)):
-        with mp.workdps(40):
-            left = 1 - mpf(push) / (mpf(friction) * mpf(force))
-            exact = left ** (1 / mpf(exponent + 1))
-        result = tangential.solve(contact, 0.9, friction, tangential_force=push)
-        c = float(result.stick_radius / contact.contact_radius)
-        error = abs(c - exact) / (exact if c else 1)
-        assert left > 0
-        assert error <= result.error_estimate <= 2
+    full = tangential.solve(contact, 0.9, friction, tangential_force=friction * force)
+    assert str(full.regime) == "full_slip"
+    push = nextafter(friction * force, 0.0)
+    with mp.workdps(40):
+        left = 1 - mpf(push) / (mpf(friction) * mpf(force))
+        exact = left ** (1 / mpf(exponent + 1))
+    result = tangential.solve(contact, 0.9, friction, tangential_force=push)
+    error = abs(float(result.stick_radius / contact.contact_radius) / exact - 1)
+    assert error <= result.error_estimate <= 2
 
 
 def test_full_slip_without_rounding_is_exact() -> None:

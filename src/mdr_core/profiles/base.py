@@ -441,8 +441,11 @@ class Profile(ABC):
 
     def axis_stress(self, coordinate: Array) -> Array:
         """Stress integral at the axis of each contact, (1/pi) int_0^a g'(x)/x dx [1]."""
-        a = self.contact_radius(coordinate)
-        return power_law_integral(lambda x: self.dg(x) / x, a, self.scale) / np.pi
+
+        def density(s: Array) -> Array:
+            return self.depth_slope(s) / self.contact_radius(s)
+
+        return power_law_integral(density, coordinate, self.scale) / np.pi
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Stress integral (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1].

@@ -183,21 +183,8 @@ class Series(Profile):
         """Each term of g [length], and its exponent."""
         return ((power(c, x, n), n) for c, n in self._powers_of_g)
 
-    def depth_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
-        """From the same powers: x g'(x) is the sum of n d, where d are the terms of g."""
-        terms = list(self._depths(coordinate))
-        scaled = self._total(n * depth for depth, n in terms)
-        return self._total(depth for depth, _ in terms), scaled / coordinate
-
     def reduced_force(self, coordinate: Array) -> Array:
-        return self._force(self._depths(coordinate), coordinate)
-
-    def force_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
-        """From the same powers; see `depth_and_slope`."""
-        terms = list(self._depths(coordinate))
-        return self._force(terms, coordinate), 2 * self._total(n * depth for depth, n in terms)
-
-    def _force(self, terms: Iterable[tuple[Array, float]], coordinate: Array) -> Array:
+        terms = self._depths(coordinate)
         return self._total((2 * n / (n + 1) * depth for depth, n in terms), coordinate)
 
     def reduced_energy(self, coordinate: Array) -> Array:

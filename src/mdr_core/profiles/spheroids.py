@@ -5,11 +5,10 @@ from math import log, pi
 from typing import ClassVar, Final
 
 import numpy as np
-from scipy.special import spence
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch
-from mdr_core.elementwise import piecewise, some, where
+from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
@@ -23,9 +22,6 @@ _EQUATOR: Final = -log(2 * float(np.finfo(float).eps)) / 2
 # a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
 # (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
 _SHALLOW: Final = 0.64
-# v up to which the series of chi_2 is summed: its first term left out is 1e-18 of the sum there,
-# and beyond it the rounding of 1 - z leaves 2e-15.
-_SMALL: Final = 0.05
 
 
 class Spheroid(Profile):
@@ -125,32 +121,9 @@ class Spheroid(Profile):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return np.tanh(coordinate) <= _SHALLOW
 
-    def axis_stress(self, coordinate: Array) -> Array:
-        """(h/(pi R)) [v + chi_2(tanh v)]. Source: notes, §2."""
-        total = coordinate + _legendre_chi(coordinate)
-        return self.height / (pi * self.radius) * total
-
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """h/R times that of the sphere. Parameters: see `Profile`."""
         return self.height / self.radius * sphere_kernel(self.radius, annulus, radius, rtol)
-
-
-def _legendre_chi(v: Array) -> Array:
-    """Return chi_2(z) = int_0^z artanh(t)/t dt at z = tanh(v) [1].
-
-    It is sum z^(2k + 1)/(2k + 1)^2, and [Li_2(z) - Li_2(-z)]/2 with the dilogarithm of SciPy, which
-    takes 1 - z and 1 + z.
-    """
-
-    def small(v: Array) -> Array:
-        z = np.tanh(v)
-        u = z * z
-        return z * (1 + u * (1 / 9 + u * (1 / 25 + u * (1 / 49 + u * (1 / 81 + u / 121)))))
-
-    def large(v: Array) -> Array:
-        return (spence(2 / (np.exp(2 * v) + 1)) - spence(1 + np.tanh(v))) / 2
-
-    return piecewise(v, _SMALL, small, large)
 
 
 def artanh_ratio(x: Array, equator: Parameter) -> Array:

@@ -279,7 +279,7 @@ class Tabulated(Profile):
             start = high * (goal / top) ** (top / (high * slope))
         inside = (start > low) & (start < high)
         start = np.where(inside, start, (low + high) / 2)
-        found = invert(sloped, goal, start, low * 0.0, high, self.kind, smooth=not self._flanks)
+        found = invert(sloped, goal, start, low * 0.0, high, self.kind)
         return found.reshape(np.shape(target))[()]
 
     # Fields.

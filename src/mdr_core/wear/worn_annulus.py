@@ -137,7 +137,6 @@ class WornAnnulus:
             np.zeros_like(step),
             self.largest_width,
             f"{self.profile.kind}'s worn annulus",
-            smooth=len(self.profile.branches) == 1,
         )
 
     def _integrals(self, width: Array, *kernels: Kernel) -> Array:
