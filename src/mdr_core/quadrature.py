@@ -14,11 +14,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
-from mdr_core.typing import Array, Chosen, Indices
+from mdr_core.typing import Array, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals. The
 # values have the shape (..., nodes, m).
-Integrand = Callable[[Array, Chosen], Array]
+Integrand = Callable[[Array, Indices], Array]
 
 # Nodes of pieces of half length 1 in a strip of pi/2, by the smallest tolerance that they reach.
 _NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
@@ -87,11 +87,11 @@ def integrate(
     points, longest = nodes_of_pieces(rtol), float(length.max(initial=0.0))
     if growth > STEEP and longest > 0:
         nodes, weights = rule_of_powers(growth, reach_of_power(1.0, rtol), longest, points)
-        return _apply(h, (1 - nodes, weights), lower, length, slice(0, length.size))
+        return _apply(h, (1 - nodes, weights), lower, length, np.arange(length.size))
     counts = np.maximum(np.ceil(length / PIECE), 1).astype(int)
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
-        index = _chosen((counts == count).nonzero()[0])
+        index = (counts == count).nonzero()[0]
         start = None if lower is None else lower[index]
         part = _apply(h, composite_rule(points, count), start, length[index], index)
         if result is None:
@@ -100,14 +100,8 @@ def integrate(
     return np.empty_like(length) if result is None else result
 
 
-def _chosen(index: Indices) -> Chosen:
-    """Ascending indices, as a slice if they are contiguous, as those of sorted radii are."""
-    first, last = int(index[0]), int(index[-1])
-    return slice(first, last + 1) if last - first + 1 == index.size else index
-
-
 def _apply(
-    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Chosen
+    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Indices
 ) -> Array:
     """Rule on [0, 1] applied to [lower, lower + length], in blocks that stay in the cache."""
     nodes, weights = rule
@@ -117,18 +111,12 @@ def _apply(
         for start in range(0, length.size, step):
             part = slice(start, start + step)
             low = None if lower is None else lower[part]
-            results.append(_apply(h, rule, low, length[part], _part_of(index, part)))
+            results.append(_apply(h, rule, low, length[part], index[part]))
         return np.concatenate(results, axis=-1)
     y = nodes[:, None] * length
     if lower is not None:
         y += lower
     return np.asarray(weights @ h(y, index) * length)
-
-
-def _part_of(index: Chosen, part: slice) -> Chosen:
-    if isinstance(index, slice):
-        return slice(index.start + part.start, min(index.start + part.stop, index.stop))
-    return index[part]
 
 
 @lru_cache(maxsize=256)

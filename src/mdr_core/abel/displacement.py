@@ -17,7 +17,7 @@ import numpy as np
 
 from mdr_core.abel.two_root import Weight
 from mdr_core.quadrature import integrate, reach_of_power
-from mdr_core.typing import Array, Chosen, Indices
+from mdr_core.typing import Array, Indices
 
 # Part of s(r) above which an angle removes the root at r, and below which log(s) resolves g'.
 _UPPER: Final = 0.5
@@ -201,7 +201,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
     span = np.where(upper, root_split / (split + s_r) - top, 0.0)
     growth = branch.steepness + 1
 
-    def above(y: Array, index: Chosen) -> Array:
+    def above(y: Array, index: Indices) -> Array:
         # -y = tan(alpha/2), so that the powers rise with y.
         run = 2 / (1 + y * y)
         s, root = s_r[index] * (run - 1), s_r[index] * (-y * run)
@@ -221,7 +221,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         lower = np.maximum(lower, upper - reach_of_power(branch.tip, rtol))
     far = s_r[index]
 
-    def below(y: Array, index: Chosen) -> Array:
+    def below(y: Array, index: Indices) -> Array:
         s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
         x = np.sqrt(base * base + s * s)
         root = np.sqrt((far[index] - s) * (far[index] + s))

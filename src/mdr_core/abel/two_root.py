@@ -18,7 +18,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
 from mdr_core.elementwise import indices, some, where
 from mdr_core.quadrature import DEFAULT_GROWTH, integrate
-from mdr_core.typing import Array, Chosen
+from mdr_core.typing import Array, Indices
 
 # weight(x, s) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b.
 Weight = Callable[[Array, Array], Array]
@@ -109,7 +109,7 @@ def two_root_integral(
     length = np.arcsinh(covered2 / np.maximum(roots, _TINY))
     start = None if inner is None else np.arcsinh(np.minimum(root, lower) / epsilon)
 
-    def h(y: Array, index: Chosen) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.
         s = np.sinh(y, out=y)
         s *= epsilon[index]

@@ -13,11 +13,6 @@ from scipy.special import beta
 from mdr_core.elementwise import where
 from mdr_core.typing import Array, Parameter
 
-# Exponent up to which powers of lengths from 1e-50 to 1e50 are representable.
-_DIRECT: Final = 4.0
-# Inverse of 2^-20, at which exponents are split: with up to 9 bits of octaves, both products fit in
-# 53 bits.
-_COARSE: Final = 2.0**20
 # Exponents for which NumPy calls another function if a single exponent is given.
 _EXACT: Final = {2.0: np.square, 0.5: np.sqrt, -1.0: np.reciprocal}
 
@@ -42,40 +37,12 @@ def raised(base: Parameter, exponent: Parameter) -> Array:
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """Return C r^n; overflow is up to the caller, whose sum of terms takes one `np.errstate`."""
-    factor, scale = _scaled(coefficient, exponent)
-    return factor * raised(r * scale, exponent)
+    return coefficient * raised(r, exponent)
 
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
     """Return C n r^(n-1), infinite at r = 0 for n < 1; overflow as for `power`."""
-    factor, scale = _scaled(coefficient, exponent)
-    return (factor * scale * exponent) * raised(r * scale, exponent - 1)
-
-
-def _scaled(coefficient: Parameter, exponent: Parameter) -> tuple[Parameter, Parameter]:
-    """Factor and scale of C r^n = factor (scale r)^n, where r^n alone might not be representable.
-
-    The scale is the power of two next to |C|^(1/n), so that it adds no rounding error.
-    """
-    if isinstance(exponent, float):
-        if exponent <= _DIRECT:
-            return coefficient, 1.0
-        if isinstance(coefficient, float):
-            return _by_octaves_of_one(coefficient, exponent)
-    return _by_octaves(coefficient, exponent)
-
-
-def _by_octaves(coefficient: Parameter, n: Parameter) -> tuple[Parameter, Parameter]:
-    """Factor and scale; the scale is 1 for exponents n up to `_DIRECT`."""
-    octaves = where(n > _DIRECT, np.rint(np.log2(np.abs(coefficient)) / n), 0.0)
-    # Both products are exact, where octaves x n would be rounded.
-    coarse = np.rint(n * _COARSE) / _COARSE
-    factor = coefficient * np.exp2(-octaves * coarse) * np.exp2(-octaves * (n - coarse))
-    return factor, np.exp2(octaves)
-
-
-# Every function of a power takes it again.
-_by_octaves_of_one: Final = lru_cache(maxsize=256)(_by_octaves)
+    return coefficient * exponent * raised(r, exponent - 1)
 
 
 def power_root(value: Array, coefficient: Parameter, exponent: Parameter) -> Array:

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.quadrature import PIECE, integrate, nodes_of_pieces, piecewise_rule
-from mdr_core.typing import Array, Chosen, Parameter
+from mdr_core.typing import Array, Indices, Parameter
 
 # Closer to the edge a root lies on it.
 _EPS: Final = float(np.finfo(float).eps)
@@ -67,7 +67,7 @@ def slope_integral_inside(
     """
     length = PIECE * np.maximum(width, np.finfo(float).tiny)
 
-    def h(y: Array, index: Chosen) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         u = y / length[index]
         x, short, density = _stepped(big_radius, v[index], u * u * width[index])
         return np.asarray(2 * u * density * np.arctan2(np.sqrt(short * (x + r[index])), x))

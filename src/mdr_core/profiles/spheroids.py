@@ -14,7 +14,7 @@ from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroid_displacement import slope_integral_inside, slope_integral_outside
 from mdr_core.quadrature import integrate
-from mdr_core.typing import Array, Chosen, Flags, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import first_index
 
 # artanh(1 - 4 eps): closer to the equator R - a is dominated by rounding error.
@@ -185,7 +185,7 @@ def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -
     tilt2 = r * r / square
     stretch = equator / np.sqrt(square)
 
-    def h(y: Array, index: Chosen) -> Array:
+    def h(y: Array, index: Indices) -> Array:
         # arcsinh(z)/q for q = z sqrt(1 + z^2), with one root and a logarithm.
         z2 = np.sinh(y, out=y)
         z2 *= stretch[index]
