@@ -32,6 +32,7 @@ COMMANDS: Final = {
         f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",
     ),
     "history": Command("solve a load history", "mdr history request.json -o history.json"),
+    "impact": Command("solve oblique impacts", "mdr impact request.json --format csv"),
     "stress": Command(
         "compute stresses and displacements over the radius",
         f"mdr stress {_STEEL} --normal-force 10 --quantities pressure --points 50 --format csv",

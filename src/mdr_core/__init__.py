@@ -2,7 +2,7 @@
 
 Pass a profile and a material to `normal.solve`, and the contact that it returns to
 `tangential.solve`, `fields`, `subsurface` or `wear`. `history` follows load paths and steps through
-time. Use one consistent system of units.
+time, `impact` returns the rebound. Use one consistent system of units.
 
 >>> import mdr_core as mdr
 >>> steel = mdr.Body(youngs_modulus=210e9, poissons_ratio=0.3)
@@ -14,7 +14,17 @@ time. Use one consistent system of units.
 
 from typing import Final
 
-from mdr_core import adhesion, fields, history, normal, subsurface, tangential, validity, wear
+from mdr_core import (
+    adhesion,
+    fields,
+    history,
+    impact,
+    normal,
+    subsurface,
+    tangential,
+    validity,
+    wear,
+)
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
@@ -73,6 +83,7 @@ __all__ = [
     "fields",
     "from_bodies",
     "history",
+    "impact",
     "normal",
     "read_table",
     "subsurface",

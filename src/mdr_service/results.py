@@ -10,6 +10,7 @@ from mdr_core import subsurface, validity
 from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
+from mdr_core.impact import Impact
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
@@ -82,7 +83,7 @@ def response_metadata(method: str, error_estimate: float, warnings: Iterable[Not
     return {"method": method, "error_estimate": error_estimate, "warnings": listed}
 
 
-def notices(query: Query, source: Contact | Wear) -> list[Notice]:
+def notices(query: Query, source: Contact | Impact | Wear) -> list[Notice]:
     """Return the warnings about a contact, its material and, if requested, yield."""
     contact = source.tangential_contact if isinstance(source, Wear) else source
     found = [*validity.notices(findings(query, contact)), *source.warnings_without_bodies]
@@ -92,13 +93,14 @@ def notices(query: Query, source: Contact | Wear) -> list[Notice]:
     return [notice for notice in found if notice.code != "singular"]
 
 
-def findings(query: Query, contact: Contact) -> list[validity.Finding]:
+def findings(query: Query, contact: Contact | Impact) -> list[validity.Finding]:
     """Return the findings on validity for the bodies of a query."""
     material = query.material.effective
     found = validity.findings(contact, material)
     if query.material.has("yield_strength"):
         ratios = material.poissons_ratios
-        found.append(subsurface.yield_finding(contact, ratios, query.material.yield_strength))
+        pressed = contact.normal if isinstance(contact, Impact) else contact
+        found.append(subsurface.yield_finding(pressed, ratios, query.material.yield_strength))
     return found
 
 

@@ -18,6 +18,7 @@ QUERIES = {
     "normal": ("normal", EXAMPLES["normal"]),
     "tangential": ("tangential", EXAMPLES["tangential"]),
     "history": ("tangential/history", EXAMPLES["history"]),
+    "impact": ("tangential/impact", EXAMPLES["impact"]),
     "stress": ("stress", EXAMPLES["stress"]),
     "subsurface": ("subsurface", EXAMPLES["subsurface"]),
     "wear": ("wear", EXAMPLES["wear"]),

@@ -13,6 +13,7 @@ from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -91,6 +92,25 @@ async def history(query: Annotated[HistoryQuery, _examples("history")], send: Se
     `cycles`.
     """
     return await send("history", query)
+
+
+@router.post(
+    "/v1/tangential/impact",
+    operation_id="impact",
+    tags=["contact"],
+    summary="Oblique impact: rebound, duration and loss of energy by friction",
+    response_model=answers.ImpactAnswer,
+    responses=RESULT,
+)
+async def impact(query: Annotated[ImpactQuery, _examples("impact")], send: Send) -> Response:
+    """Compute the rebound of bodies that hit each other with normal and tangential velocities.
+
+    The normal motion is elastic, and the tangential force follows from the slip memory of the
+    whole contact. Masses are those of the contact point: m and 2/7 m for a solid sphere. Every
+    list of the response has one entry per impact. `error_estimate` is an estimate, relative to the
+    velocity and the energy before the impact.
+    """
+    return await send("impact", query)
 
 
 @router.post(

@@ -13,6 +13,7 @@ from mdr_service.queries.contacts import (
     tangential_result,
 )
 from mdr_service.queries.fields import solve_stress, stress_result
+from mdr_service.queries.impacts import impact_result, solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
 from mdr_service.queries.wear import evolution_result, solve_evolution, solve_wear, wear_result
@@ -30,6 +31,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
     "normal": QueryType(solve_normal, normal_result),
     "tangential": QueryType(solve_tangential, tangential_result),
     "history": QueryType(solve_history, history_result),
+    "impact": QueryType(solve_impact, impact_result),
     "stress": QueryType(solve_stress, stress_result),
     "subsurface": QueryType(solve_subsurface, subsurface_result),
     "wear": QueryType(solve_wear, wear_result),

@@ -13,6 +13,7 @@ _force = partial(quantity, "force")
 _pressure = partial(quantity, "pressure")
 _stiffness = partial(quantity, "force/length")
 _energy = partial(quantity, "force*length")
+_velocity = partial(quantity, "length/time")
 _volume = partial(quantity, "length^3")
 
 _Field = list[list[float | None]]
@@ -104,6 +105,30 @@ class HistoryAnswer(SolvedAnswer):
     )
     secant_stiffness: list[float] = _stiffness(
         "Range of F_x over the range of u_x in each cycle, at its turning points", default=None
+    )
+
+
+class ImpactAnswer(SolvedAnswer):
+    """One entry per impact in every list."""
+
+    normal_velocity: list[float] = _velocity("Velocity of approach")
+    tangential_velocity: list[float] = _velocity("Tangential velocity before the impact")
+    normal_rebound_velocity: list[float] = _velocity(
+        "Velocity of separation; the motion is elastic"
+    )
+    tangential_rebound_velocity: list[float] = _velocity(
+        "Tangential velocity of the contact point after the impact"
+    )
+    duration: list[float] = quantity("time", "Time of contact")
+    maximum_indentation_depth: list[float] = _length("Largest indentation depth")
+    maximum_normal_force: list[float] = _force("Largest normal force")
+    tangential_impulse: list[float] = quantity(
+        "force*time", "∫ F_x dt, the loss of tangential momentum"
+    )
+    dissipated_energy: list[float] = _energy("Energy dissipated by friction")
+    regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
+        description="`full_slip` if the contact slides throughout, `stick` without tangential "
+        "velocity, else `partial_slip`."
     )
 
 

@@ -15,11 +15,11 @@ from mdr_service.settings import SETTINGS
 class BatchItem(Strict):
     """Query of a batch."""
 
-    ask: Literal["normal", "tangential", "history", "stress", "subsurface", "wear", "evolution"] = (
-        Field(
-            description="Name of the query; `history` is that of `/v1/tangential/history`, "
-            "`evolution` that of `/v1/wear/evolution`."
-        )
+    ask: Literal[
+        "normal", "tangential", "history", "impact", "stress", "subsurface", "wear", "evolution"
+    ] = Field(
+        description="Name of the query, as its path ends: `history` and `impact` belong to "
+        "`/v1/tangential`, `evolution` to `/v1/wear`."
     )
     request: dict[str, Any] = Field(
         description="Request of the query, as for its own endpoint: `NormalQuery` for `normal`, "

@@ -27,6 +27,11 @@ _DIMENSIONS: Final = {
 _OVER_LOADS: Final = (
     ("cycles", ("worn_volume", "contact_radius"), None),
     ("stick_radius", ("worn_volume", "wear_radius"), None),
+    (
+        "tangential_velocity",
+        ("tangential_rebound_velocity", "dissipated_energy"),
+        "normal_velocity",
+    ),
     ("tangential_displacement", ("tangential_force",), "normal_force"),
     ("indentation_depth", ("normal_force",), None),
 )

@@ -1,0 +1,96 @@
+"""Impacts over HTTP would differ from the core, or errors point elsewhere."""
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import impact
+from mdr_core.profiles import Paraboloid
+from mdr_service.schemas.answers import ImpactAnswer
+from mdr_service.schemas.examples import EXAMPLES
+from tests.conftest import Client
+
+PATH = "/v1/tangential/impact"
+MOTION: dict[str, Any] = {
+    "normal_mass": 2.0,
+    "tangential_mass": 0.5,
+    "normal_velocity": [0.3, 0.4],
+    "tangential_velocity": [0.1, -0.9],
+}
+
+
+def query(**changed: Any) -> dict[str, Any]:
+    return {
+        "profile": {"kind": "paraboloid", "radius": 50.0},
+        "material": {"e_star": 100.0, "g_star": 80.0},
+        "friction_coefficient": 0.2,
+        **MOTION,
+        **changed,
+    }
+
+
+def test_response_equals_the_core(client: Client) -> None:
+    document = client.post(PATH, query()).json()
+    ImpactAnswer.model_validate(document)
+    hit = impact.solve(Paraboloid(50.0), 100.0, 80.0, 0.2, **MOTION)
+    for name in hit.quantities:
+        assert document[name] == getattr(hit, name).tolist(), name
+    assert document["error_estimate"] == hit.error_estimate
+    assert document["warnings"] == []
+
+
+def test_accuracy_that_is_missed_is_a_warning(client: Client) -> None:
+    document = client.post(PATH, query(rtol=1e-13)).json()
+    assert [warning["code"] for warning in document["warnings"]] == ["accuracy"]
+
+
+def test_one_velocity_serves_all(client: Client) -> None:
+    one = client.post(PATH, query(normal_velocity=0.3)).json()
+    assert one["normal_velocity"] == [0.3, 0.3]
+    both = client.post(PATH, query(normal_velocity=[0.3, 0.3])).json()
+    assert one == both
+
+
+def test_sliding_example_has_its_closed_form(client: Client) -> None:
+    # w - 2 mu m v/m_t.
+    document = client.post(PATH, EXAMPLES["impact"]["cylinder"]["value"]).json()
+    assert document["tangential_rebound_velocity"] == pytest.approx([2 - 2 * 0.1 * 1.0])
+    assert document["regime"] == ["full_slip"]
+
+
+def test_table_and_picture(client: Client) -> None:
+    table = client.post(f"{PATH}?format=csv", query()).text
+    rows = list(csv.DictReader(io.StringIO(table)))
+    document = client.post(PATH, query()).json()
+    for name in ("tangential_rebound_velocity", "duration"):
+        assert [float(row[name]) for row in rows] == document[name]
+    many = query(normal_velocity=0.3, tangential_velocity=np.linspace(0, 1, 9).tolist())
+    assert "tangential rebound velocity" in client.post(f"{PATH}?format=svg", many).text
+
+
+@pytest.mark.parametrize(
+    ("changed", "pointer", "words"),
+    [
+        ({"normal_velocity": [0.3, 0.0]}, "/normal_velocity/1", "positive"),
+        ({"normal_velocity": [0.3, 0.4, 0.5]}, "/tangential_velocity", "give one, or as many"),
+        ({"normal_mass": -1.0}, "/normal_mass", "must be positive"),
+        ({"tangential_mass": 1e-6}, "/tangential_mass", "oscillates"),
+        ({"material": {"e_star": 1.0}}, "/material/g_star", "needed"),
+        (
+            {"profile": {"kind": "sphere", "radius": 0.01}},
+            "/normal_velocity/0",
+            "reduce the velocity",
+        ),
+    ],
+)
+def test_errors_point_at_the_input(
+    client: Client, changed: dict[str, Any], pointer: str, words: str
+) -> None:
+    response = client.post(PATH, query(**changed))
+    assert response.status_code == 422
+    (error,) = response.json()["errors"]
+    assert error["pointer"] == pointer
+    assert words in error["detail"]
