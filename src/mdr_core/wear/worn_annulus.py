@@ -8,7 +8,7 @@ Source: notes, §9.
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -80,7 +80,7 @@ class WornAnnulus:
 
         Source: mdr-5, Eq. (5.41).
         """
-        return 2 / np.pi * self._rise(width)
+        return 2 / np.pi * self._integrals(width, arccosine)[0]
 
     def mean_rise(self, width: Array) -> Array:
         """Return the mean of g(r cos(t)) - g(c) over 0 < t < arccos(c/r), r = c + w [length].
@@ -88,11 +88,7 @@ class WornAnnulus:
         At the outer edge, where the worn depth vanishes, it equals d - g(c), Eq. (5.88). It grows
         with the width wherever g does. Source: notes, §9.
         """
-        return self._rise(width) / self.angle(width)
-
-    def _rise(self, width: Array) -> Array:
-        closed = self.profile.slip_integral(self.stick, self._root(width))
-        return self._integrals(width, arccosine)[0] if closed is None else closed
+        return self._integrals(width, arccosine)[0] / self.angle(width)
 
     def _root(self, width: Array) -> Array:
         """Return sqrt(r^2 - c^2) [length]."""
@@ -116,18 +112,11 @@ class WornAnnulus:
 
         Source: mdr-5, Eq. (5.88), for any profile.
         """
-        # Of a power where the slip integral is closed.
-        profile: Any = self.profile
 
         def sloped(width: Array) -> tuple[Array, Array]:
             root, c, r = self._root(width), self.stick, self.stick + width
+            total, growth = self._integrals(width, arccosine, _rate)
             angle = np.arctan2(root, c)
-            total = profile.slip_integral(c, root)
-            if total is None:
-                total, growth = self._integrals(width, arccosine, _rate)
-            else:
-                # By Euler's theorem: under a power the integral is homogeneous in c and r.
-                growth = (profile.exponent * total + c * profile.dg(c) * angle) / r
             return total / angle, width * (growth / total - c / (r * root) / angle)
 
         return invert(
