@@ -254,7 +254,7 @@ class TangentialContact(validity.ContactResults):
         if force_prescribed or not some(self.excess > 0):
             return condition
         # The dissipated energy by the displacement beyond full slip.
-        energy = where(self.excess > 0, self.dissipated_energy, 1.0)
+        energy = where(self.dissipated_energy > 0, self.dissipated_energy, 1.0)
         return condition + where(self.excess > 0, self.limiting_force * size / energy, 0.0)
 
     @property
