@@ -17,7 +17,6 @@ from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import every, full, is_number, number, some, where
 from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
-from mdr_core.profiles.power_functions import raised
 from mdr_core.quadrature import gauss_legendre, in_order
 from mdr_core.typing import Array
 from mdr_core.validation import require_inside
@@ -140,13 +139,7 @@ def stick_edge(
         if not every(early):
             goal = where(early, 0.0, rest * total)
             inverse = _closed_inverse(profile, goal, of_force=of_force)
-            if inverse is not None:
-                late = inverse
-            else:
-                # From the power that rises as the load does at the edge.
-                start = coordinate * raised(rest, total / (coordinate * first))
-                start = where(start > 0, start, coordinate)
-                late = _root(profile, goal, start, of_force=of_force)
+            late = _root(profile, goal, of_force=of_force) if inverse is None else inverse
         if not some(early):
             return late, coordinate - late
         target = where(early, ratio * total, 0.0)
@@ -173,10 +166,9 @@ def stick_edge(
     return where(early, coordinate - width, late), where(early, width, coordinate - late)
 
 
-def _root(profile: Profile, target: Array, start: Array | None = None, *, of_force: bool) -> Array:
-    """Contact coordinate of a load within the domain, from a first approximation."""
-    if start is None:
-        start = _start(profile, target, of_force=of_force)
+def _root(profile: Profile, target: Array, *, of_force: bool) -> Array:
+    """Contact coordinate of a load within the domain."""
+    start = _start(profile, target, of_force=of_force)
     function = load_and_slope(profile, of_force=of_force)
     end = profile.last_coordinate
     low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
@@ -212,12 +204,10 @@ def _step(
     narrow = width <= limit
     if every(narrow):
         return _narrow_step(slope, high, width, below)
-    if not some(narrow):
-        return function(high) - function(where(low < 0, 0.0, low))
-    if profile.swept:
+    if not some(narrow) or profile.swept:
         # The functions use the parameters of all cases, so that no case can be left out.
         wide = function(high) - function(where(low < 0, 0.0, low))
-        part = _narrow_step(slope, high, where(narrow, width, 0.0), below)
+        part = _narrow_step(slope, high, where(narrow, width, 0.0), below) if some(narrow) else wide
         return where(narrow, part, wide)
     result = np.zeros(narrow.shape)
     result[~narrow] = function(high[~narrow]) - function(np.maximum(low[~narrow], 0.0))

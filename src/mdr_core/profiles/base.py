@@ -377,16 +377,6 @@ class Profile(ABC):
         """
         return annulus_integrals(self.branches, low, width, below, kernels, rtol)
 
-    def slip_integral(self, c: Array, root: Array) -> Array | None:
-        """Integral int_c^r g'(x) arccos(x/r) dx where it is closed, else None [length].
-
-        Parameters
-        ----------
-        c : stick radii [length], shape (m,).
-        root : sqrt(r^2 - c^2) of the radii r [length], as accurate as r - c, shape (m,).
-        """
-        return None
-
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """Slip S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
 
@@ -397,9 +387,6 @@ class Profile(ABC):
         c, r : stick radii and radii, 0 <= c <= r [length], shape (m,).
         rtol : relative tolerance.
         """
-        closed = self.slip_integral(c, np.sqrt((r - c) * (r + c)))
-        if closed is not None:
-            return 2 / np.pi * closed
         # Next to the axis arccos(x/r) = pi/2 - x/r, of which the integrals are closed.
         near = np.maximum(c, np.cbrt(rtol) * r)
         value = slope_integral(self.branches, near, r, r, arccosine, rtol)

@@ -105,13 +105,13 @@ class Cone(Profile):
         factor = span / (stiffness * b * b * b * 6) / (1 + c) ** 3
         return factor * np.array([3 / c + 1, np.full_like(c, 4.0), 1 + 3 * c])
 
-    def slip_integral(self, c: Array, root: Array) -> Array:
-        """(pi t/2) [s - c arccos(c/r)], s = sqrt(r^2 - c^2).
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """t [s - c arccos(c/r)], s = sqrt(r^2 - c^2).
 
         Source: notes, §4. Parameters: see `Profile`.
         """
-        gap = np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), root)
-        return (pi / 2) * self.slope * gap
+        root = np.sqrt((r - c) * (r + c))
+        return self.slope * np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), root)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))].
@@ -213,13 +213,14 @@ class Paraboloid(Profile):
         parts = 5 / c + 6 + 3 * c + squares, 3 + 9 * c + 3 * squares, upper
         return factor * np.array(parts)
 
-    def slip_integral(self, c: Array, root: Array) -> Array:
-        """(1/(2R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
+    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
 
         Source: mdr-5, Eq. (5.45). Parameters: see `Profile`.
         """
+        root = np.sqrt((r - c) * (r + c))
         gap = atan_gap(root, np.where(c > 0, c, 1.0))
-        return (c * gap + root * root * np.arctan2(root, c)) / (2 * self.radius)
+        return (c * gap + root * root * np.arctan2(root, c)) / (pi * self.radius)
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).
