@@ -287,17 +287,23 @@ class AdhesiveContact(NormalContact):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found = {
-            "singular": "normal_stiffness is infinite at pull-off under a prescribed depth",
-            "jkr_range": f"Tabor's number is {self.tabor_number:.2g}: below {_JKR:g} the range of "
-            "adhesion changes the pull-off; use boundary elements with a law of its tractions",
-            "several_states": f"{self.states} stable states exist under one load: the result is "
-            "the one with the largest contact, which unloading reaches",
-        }
-        holds = some(self._excess("indentation_depth") == 0), self.tabor_number < _JKR
-        flags = zip(found.items(), (*holds, self.states > 1), strict=True)
-        own = (Notice(*each) for each, flag in flags if flag)
-        return (*super().warnings_without_bodies, *own)
+        stiff = "normal_stiffness is infinite at pull-off under a prescribed depth"
+        short = (
+            f"Tabor's number is {self.tabor_number:.2g}: below {_JKR:g} the range of adhesion "
+            "changes the pull-off; use boundary elements with a law of its tractions"
+        )
+        several = (
+            f"{self.states} stable states exist under one load: the result is the one with the "
+            "largest contact, which unloading reaches"
+        )
+        size = self.tabor_number, _JKR
+        own = (
+            (some(self._excess("indentation_depth") == 0), Notice("singular", stiff)),
+            (self.tabor_number < _JKR, Notice("jkr_range", short, *size, "boundary_elements")),
+            (self.states > 1, Notice("several_states", several, self.states, 1.0)),
+        )
+        found = (notice for holds, notice in own if holds)
+        return (*super().warnings_without_bodies, *found)
 
     def superposed(self, field: Callable[[NormalContact], Any]) -> Array:
         """Return a field of the reference, by load, less that of the retracted flat punch."""

@@ -1,7 +1,19 @@
 """Exceptions, grouped by the action required of the caller."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
+
+Remedy = Literal[
+    "smaller_load",
+    "rounded_tip",
+    "longer_table",
+    "adhesion",
+    "boundary_elements",
+    "finite_elements",
+    "elastic_plastic",
+    "wear_evolution",
+]
+"""What a warning names in place of the contact as it is."""
 
 
 class MDRError(Exception):
@@ -50,3 +62,9 @@ class Notice:
 
     code: str
     message: str
+    value: float | None = None
+    """Size of the finding, the largest of all cases; None where it has none."""
+    limit: float | None = None
+    """Limit that the value exceeds."""
+    instead: Remedy | None = None
+    """Remedy; None where there is none."""

@@ -107,7 +107,7 @@ class Impact(validity.ContactResults):
         found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.rtol:
             text = f"rtol = {self.rtol:.1e} was not reached in this motion; see error_estimate"
-            found.append(Notice("accuracy", text))
+            found.append(Notice("accuracy", text, self.error_estimate, self.rtol))
         return tuple(found)
 
 

@@ -189,14 +189,14 @@ class NormalContact(validity.ContactResults):
             radii = validity.listed_infinite_radii(self)
             found.append(Notice("singular", f"maximum_pressure is infinite, at radius {radii}"))
         if self.error_estimate > self.rtol:
-            found.append(not_reached(self.rtol))
+            found.append(not_reached(self.rtol, self.error_estimate))
         return tuple(found)
 
 
-def not_reached(rtol: float) -> Notice:
+def not_reached(rtol: float, error: float) -> Notice:
     """Return the warning that double precision does not reach a relative accuracy."""
     message = f"rtol = {rtol:.1e} is below what double precision reaches here: see error_estimate"
-    return Notice("accuracy", message)
+    return Notice("accuracy", message, error, rtol)
 
 
 def solve(

@@ -12,7 +12,7 @@ class Results:
     """Object whose results are attributes; `quantities` lists their names."""
 
     quantities: ClassVar[tuple[str, ...]] = ()
-    about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", "warnings")
+    about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", "model_error", "warnings")
 
     def values(self) -> dict[str, Any]:
         """Return the quantities by name."""
@@ -23,10 +23,11 @@ class Results:
 
         Returns
         -------
-        Quantities as arrays over the loads, or as single numbers for a single load; `method`,
-        `error_estimate`, and `warnings` as a list of dictionaries with `code` and `message`.
+        Quantities and `model_error` as arrays over the loads, or as single numbers for a single
+        load; `method`, `error_estimate`, and `warnings` as a list of dictionaries with the members
+        of `Notice`.
         """
-        values = self.values() | {name: getattr(self, name) for name in self.about}
+        values = self.values() | {name: _plain(getattr(self, name)) for name in self.about}
         if "warnings" in values:
             values["warnings"] = [vars(notice) for notice in values["warnings"]]
         return values

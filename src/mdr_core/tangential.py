@@ -262,7 +262,7 @@ class TangentialContact(validity.ContactResults):
         """Warnings that do not depend on the bodies."""
         found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
         if self.error_estimate > self.normal.rtol:
-            found.append(not_reached(self.normal.rtol))
+            found.append(not_reached(self.normal.rtol, self.error_estimate))
         return tuple(found)
 
 

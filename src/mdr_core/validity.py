@@ -13,7 +13,7 @@ from typing import Final, NamedTuple, Protocol
 import numpy as np
 
 from mdr_core.elementwise import every, full, number, some, where
-from mdr_core.errors import Notice
+from mdr_core.errors import Notice, Remedy
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.results import Results
@@ -56,6 +56,10 @@ class Finding(NamedTuple):
     code: str
     where: Flags
     message: Callable[[], str]
+    value: Parameter | None = None
+    """Size in each case; see `Notice`."""
+    limit: float | None = None
+    instead: Remedy | None = None
 
 
 class LoadedContact(Protocol):
@@ -102,10 +106,40 @@ class ContactResults(Results):
         found = findings(self.solved, self.solved.normal.material)
         return (*notices(found), *self.warnings_without_bodies)
 
+    @property
+    def model_error(self: SolvedContact) -> Array:
+        """Estimated relative error of the model in each case [1]; see `validity.model_error`."""
+        return model_error(self.solved, self.solved.normal.material)
+
 
 def notices(findings: Iterable[Finding]) -> list[Notice]:
     """Return a warning for each finding that holds in some case."""
-    return [Notice(code, message()) for code, where, message in findings if some(where)]
+    return [
+        Notice(code, message(), None if value is None else extremes(value)[1], limit, instead)
+        for code, where, message, value, limit, instead in findings
+        if some(where)
+    ]
+
+
+def model_error(contact: SolvedContact, material: Material | None) -> Array:
+    """Return the estimated relative error of depth, force and displacements by the model [1].
+
+    An estimate, not a bound, of each load: of the half-space (`half_space`), and with friction of
+    the neglected coupling and of the transverse slip. A flat punch that sticks to a half-space has
+    artanh(beta)/beta - 1, about beta^2/3, more force; slip across the load, of the relative size
+    nu/(4 - 2 nu), acts to second order. Local stresses may differ by beta.
+
+    Source: hay; spence; notes, §8.
+
+    Parameters: see `findings`.
+    """
+    radial, slope, wall = _half_space(contact.normal, material)
+    error = slope * (radial + slope) + wall
+    if contact.g_star is not None:
+        beta = 0.0 if material is None else material.dundurs_beta or 0.0
+        ratio = max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
+        error = error + beta**2 / 3 + (ratio / (4 - 2 * ratio)) ** 2
+    return error
 
 
 def findings(contact: SolvedContact, material: Material | None) -> list[Finding]:
@@ -137,7 +171,8 @@ def table_end(contact: LoadedContact) -> Finding:
             "extend the table beyond the contact edge"
         )
 
-    return Finding("table_end", near, message)
+    part = a / contact.profile.domain
+    return Finding("table_end", near, message, part, _NEAR_END, "longer_table")
 
 
 def smoothed(contact: LoadedContact) -> Finding:
@@ -156,7 +191,7 @@ def smoothed(contact: LoadedContact) -> Finding:
             f"{100 * extremes(part)[1]:.2g} % of the depth: see data_error"
         )
 
-    return Finding("smoothed", part > _DEVIATION, message)
+    return Finding("smoothed", part > _DEVIATION, message, part, _DEVIATION)
 
 
 def of_normal_contact(
@@ -173,15 +208,13 @@ def of_normal_contact(
 
     Source: hay; notes, §8.
     """
-    beta = None if material is None else material.dundurs_beta
-    radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
-    slope = _edge_slope(contact)
-    wall = _wall_error(contact, None if material is None else material.profile_share)
+    radial, slope, wall = _half_space(contact, material)
     error = slope * (radial + slope) + wall
+    is_known = material is not None and material.dundurs_beta is not None
 
     def size() -> str:
         steepest, total = extremes(slope)[1], extremes(error)[1]
-        assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if beta is None else ""
+        assumed = "" if is_known else f" (Poisson's ratio {ASSUMED_RATIO} assumed)"
         parts = {
             f"from the neglected radial displacement{assumed}": radial * steepest,
             f"from the slope {steepest:.2g} at the contact edge": steepest * steepest,
@@ -209,8 +242,20 @@ def of_normal_contact(
             "a real material yields there under any load; round the tip or edge"
         )
 
-    steep = Finding("half_space", error > _HALF_SPACE_ERROR, size)
-    return [steep, Finding("plastic", _infinite(contact, yields), places)]
+    exceeds = error > _HALF_SPACE_ERROR
+    steep = Finding("half_space", exceeds, size, error, 0.01, "finite_elements")
+    infinite = _infinite(contact, yields)
+    return [steep, Finding("plastic", infinite, places, instead="rounded_tip")]
+
+
+def _half_space(
+    contact: LoadedContact, material: Material | None
+) -> tuple[float, Array, Parameter]:
+    """Radial error over the slope, slope at the edge, and error by the side wall of a punch."""
+    beta = None if material is None else material.dundurs_beta
+    radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
+    wall = _wall_error(contact, None if material is None else material.profile_share)
+    return radial, _edge_slope(contact), wall
 
 
 def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:
@@ -230,7 +275,10 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
             "tangential contact are coupled, which the model neglects, by a relative error of this "
             "order"
         )
-        return Finding("elastic_similarity", coupled, lambda: message)
+        size = abs(beta), _SIMILARITY
+        return Finding(
+            "elastic_similarity", coupled, lambda: message, *size, instead="boundary_elements"
+        )
 
     def unphysical() -> str:
         return (
@@ -239,7 +287,9 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
             "negative; correct the moduli, or give the bodies"
         )
 
-    return Finding("impossible_moduli", impossible, unphysical)
+    value = float(np.extract(impossible, ratio)[:1].sum())
+    limit = round(_MODULI[value > 1], 6)
+    return Finding("impossible_moduli", impossible, unphysical, value, limit)
 
 
 def _always(_radius: Parameter) -> bool:

@@ -18,6 +18,7 @@ from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.schemas.answers import SolvedAnswer
 from mdr_service.schemas.contacts import NormalQuery, Query
+from mdr_service.schemas.load_paths import HistoryQuery
 
 Result = dict[str, Any]
 """The members of a JSON response in their order, with arrays for long lists."""
@@ -77,10 +78,24 @@ def _finite(values: list[Any] | Array) -> bool:
     return values.dtype.kind != "f" or every(np.isfinite(values))
 
 
-def response_metadata(method: str, error_estimate: float, warnings: Iterable[Notice]) -> Result:
-    """Return the method, the error estimate and the warnings of a response."""
+def response_metadata(
+    query: Query,
+    source: Contact | Wear | Impact,
+    method: str,
+    error: float,
+    warnings: Iterable[Notice],
+) -> Result:
+    """Return the method, the error estimates and the warnings of a response."""
+    contact = source.tangential_contact if isinstance(source, Wear) else source
+    model_error = np.ravel(validity.model_error(contact, query.material.effective))
+    count = query.loads
+    if isinstance(source, LoadHistory):
+        # Fields are those of the last sample.
+        samples = isinstance(query, HistoryQuery)
+        model_error, count = (model_error, len(source.step)) if samples else (model_error[-1:], 1)
+    known = {"model_error": np.ascontiguousarray(np.broadcast_to(model_error, (count,)))}
     listed = [vars(notice) for notice in warnings]
-    return {"method": method, "error_estimate": error_estimate, "warnings": listed}
+    return {"method": method, "error_estimate": error} | known | {"warnings": listed}
 
 
 def notices(query: Query, source: Contact | Impact | Wear) -> list[Notice]:

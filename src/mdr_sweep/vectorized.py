@@ -143,7 +143,11 @@ def _call(
     # Overflow, and the infinite mean pressure of a sharp tip without a load, are solved one by one.
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
-        values = getattr(source if hasattr(type(source), name) else contact, name)
+        if name == "model_error":
+            # That of a contact alone does not know the bodies.
+            values = validity.model_error(source, query.material.effective)
+        else:
+            values = getattr(source if hasattr(type(source), name) else contact, name)
         results[name] = np.broadcast_to(values, (size,))
         if name not in TEXTS:
             is_maximum = name in MAXIMA[spec.query]
@@ -156,7 +160,7 @@ def _warnings(
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the order of the service."""
     contact = source.normal
-    flags: dict[str, Any] = {code: where for code, where, _ in findings(query, source)}
+    flags: dict[str, Any] = {each.code: each.where for each in findings(query, source)}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags["table_end"] = validity.table_end(contact).where
     flags["singular"] = validity.infinite_pressure(contact)

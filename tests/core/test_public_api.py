@@ -138,7 +138,12 @@ def test_material_stands_for_its_moduli() -> None:
         lambda _e, g: mdr.wear.evolution.solve(CONTACT, g, 0.3, **wear),
     ):
         by_material, by_numbers = solve(PAIR, PAIR), solve(PAIR.e_star, PAIR.g_star)
-        assert repr(by_material) == repr(by_numbers)
+        # The estimate of the model's error depends on the bodies.
+        found, expected = (
+            [line for line in repr(each).splitlines() if "model_error" not in line]
+            for each in (by_material, by_numbers)
+        )
+        assert found == expected
 
 
 def test_warnings_are_those_of_the_given_bodies() -> None:

@@ -118,6 +118,60 @@ def test_half_space_error() -> None:
     assert radial * 0.1 == pytest.approx(0.018, rel=0.02, abs=0)
 
 
+def within_a_factor_of_three(estimate: Any, error: float) -> bool:
+    return bool(error / 3 <= estimate <= 3 * error)
+
+
+@pytest.mark.parametrize("slope", [0.03, 0.1, 0.2, 0.3, 0.36])
+@pytest.mark.parametrize("nu", [0.0, 0.2, 0.3])
+def test_model_error_of_a_rigid_cone_is_that_of_hay(slope: float, nu: float) -> None:
+    """Hay, Bolshakov and Pharr (1999), by their analysis and finite elements."""
+    k = (1 - 2 * nu) / (4 * (1 - nu))
+    ratio = np.pi * (np.pi / 4 + 0.15483073 * k * slope) / (np.pi / 2 - 0.83119312 * k * slope) ** 2
+    pair = from_bodies([RIGID, Body(1.0, nu)])
+    contact = normal.solve(Cone(slope), pair, normal_force=[0.0, 1e-6, 1.0])
+    assert within_a_factor_of_three(contact.model_error[1], ratio - 1)
+    assert contact.model_error[0] == 0
+    assert contact.model_error[1] == contact.model_error[2]
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.2, 0.3, 0.4])
+def test_model_error_of_coupling_is_that_of_a_bonded_punch(nu: float) -> None:
+    """Spence (1968): F rises by (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) where nothing slips."""
+    pair = from_bodies([RIGID, Body(1.0, nu)])
+    punch = normal.solve(FlatPunch(1.0), pair, normal_force=1.0)
+    stuck = tangential.solve(punch, pair.g_star, 1e3, tangential_force=0.0)
+    error = (1 - nu) * np.log(3 - 4 * nu) / (1 - 2 * nu) - 1
+    across = (nu / (4 - 2 * nu)) ** 2
+    assert punch.model_error == 0
+    assert within_a_factor_of_three(validity.model_error(stuck, pair) - across, error)
+
+
+def test_model_error_of_transverse_slip() -> None:
+    """Full solutions of partial slip differ by 0.1 to 0.8 per cent at nu = 0.3, by none at 0."""
+    for nu, low, high in ((0.3, 0.001, 0.008), (0.0, 0.0, 1e-10)):
+        pair = bodies(nu, nu)
+        ball = normal.solve(Paraboloid(1.0), pair, contact_radius=1e-6)
+        partial = tangential.solve(ball, pair.g_star, 0.3, tangential_force=0.0)
+        assert low <= validity.model_error(partial, pair) <= high
+
+
+def test_warnings_name_their_size_limit_and_remedy() -> None:
+    contact = normal.solve(Cone(0.2), 1.0, normal_force=[0.0, 1.0])
+    found = {notice.code: notice for notice in contact.warnings}
+    steep = found["half_space"]
+    assert steep.value == contact.model_error.max()
+    assert (steep.limit, steep.instead) == (0.01, "finite_elements")
+    assert (found["plastic"].value, found["plastic"].instead) == (None, "rounded_tip")
+    strange = sticking(normal.solve(Paraboloid(1.0), 2.0, contact_radius=1e-3), 1.0)
+    notice = {each.code: each for each in strange.warnings}["impossible_moduli"]
+    assert (notice.value, notice.limit) == (2.0, 1.5)
+    r = np.linspace(0, 1, 11)
+    near = normal.solve(Tabulated(r, r * r / 2e3), 1.0, contact_radius=0.99)
+    end = {each.code: each for each in near.warnings}["table_end"]
+    assert (end.value, end.limit, end.instead) == (0.99, 0.95, "longer_table")
+
+
 @pytest.mark.parametrize(
     ("material", "slope"),
     [

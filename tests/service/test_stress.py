@@ -54,7 +54,7 @@ def test_response_equals_the_core(client: Client, kind: str) -> None:
 @pytest.mark.parametrize("name", OF_NORMAL)
 def test_only_requested_quantities_are_returned(client: Client, name: str) -> None:
     response = client.post("/v1/stress", query("sphere", 1e5, quantities=[name])).json()
-    assert list(response) == ["radius", name, "method", "error_estimate", "warnings"]
+    assert list(response) == ["radius", name, "method", "error_estimate", "model_error", "warnings"]
     assert len(response[name]) == 1
 
 

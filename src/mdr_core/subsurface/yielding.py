@@ -175,7 +175,7 @@ def yield_finding(
         assumed = "" if poissons_ratios else f" for an assumed Poisson's ratio of {ASSUMED_RATIO}"
         return f"the stresses meet Tresca's criterion under a normal force of {least:.4g}{assumed}"
 
-    return Finding("yield", where, message)
+    return Finding("yield", where, message, instead="elastic_plastic")
 
 
 def _columns(contact: _Loaded | LoadHistory) -> tuple[Array, tuple[int, ...]]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
 from mdr_core.elementwise import broadcast, some, where
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import InputError, Notice, Remedy
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.stick_zone import CONTROLS
@@ -52,6 +52,9 @@ _WARNINGS: Final = {
     "endless_wear": "the whole contact slips under the constant force, and wear is unbounded: "
     "depth, wear radius and worn volume are infinite",
 }
+_INSTEAD: Final[dict[str, Remedy]] = dict.fromkeys(
+    ("path_dependent", "endless_wear"), "wear_evolution"
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -303,7 +306,11 @@ class LimitingWear(validity.ContactResults):
             "contact_lost": self.stick_zone.separated,
             "endless_wear": self.stick_zone.unbounded,
         }
-        own = [Notice(code, _WARNINGS[code]) for code, flags in where.items() if some(flags)]
+        own = [
+            Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code))
+            for code, flags in where.items()
+            if some(flags)
+        ]
         return (*self.tangential_contact.warnings_without_bodies, *own)
 
 

@@ -116,4 +116,4 @@ def _result(
     names = ("mean_pressure", "maximum_pressure", "normal_stiffness")
     infinite = dict.fromkeys(names, singular)
     found = checked(query, values, infinite)
-    return found | response_metadata(source.method, source.error_estimate, warnings)
+    return found | response_metadata(query, source, source.method, source.error_estimate, warnings)

@@ -22,4 +22,5 @@ def solve_impact(query: ImpactQuery) -> Impact:
 def impact_result(query: ImpactQuery, source: Impact) -> Result:
     """Return velocities, durations and energies of impacts."""
     values = checked(query, by_load(source, _QUANTITIES, query.loads))
-    return values | response_metadata(source.method, source.error_estimate, notices(query, source))
+    about = source.method, source.error_estimate, notices(query, source)
+    return values | response_metadata(query, source, *about)

@@ -59,7 +59,7 @@ def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
     names = (*_HISTORY, *_CYCLES) if isinstance(history, LoadCycles) else _HISTORY
     values = {name: np.asarray(getattr(history, name)) for name in names}
     return checked(query, values) | response_metadata(
-        history.method, history.error_estimate, notices(query, history)
+        query, history, history.method, history.error_estimate, notices(query, history)
     )
 
 

@@ -57,7 +57,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = notices(query, source)
     if error > max(query.rtol, source.error_estimate):
-        warnings.append(not_reached(query.rtol))
+        warnings.append(not_reached(query.rtol, error))
     searched: Result = {}
     if query.largest:
         peaks = {name: subsurface.largest(loaded, name, **body) for name in subsurface.MEASURES}
@@ -78,7 +78,12 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         message = "stresses are infinite on the surface, where the pressure is"
         warnings.append(Notice("singular", message))
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
-    return {"x": x, "z": z} | values | searched | response_metadata(method, error, warnings)
+    return (
+        {"x": x, "z": z}
+        | values
+        | searched
+        | response_metadata(query, source, method, error, warnings)
+    )
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:

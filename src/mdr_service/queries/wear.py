@@ -101,12 +101,14 @@ def _result(
         if isinstance(worn, LimitingWear):
             error += worn.field_error_estimate(radius, query.quantities)
             if worn.error_estimate <= query.rtol < error:
-                warnings.append(normal_contact.not_reached(query.rtol))
+                warnings.append(normal_contact.not_reached(query.rtol, error))
         values |= {"radius": radius} | surface
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
         infinite[name] = flags | infinite.get(name, False)
-    return checked(query, values, infinite) | response_metadata(worn.method, error, warnings)
+    return checked(query, values, infinite) | response_metadata(
+        query, worn, worn.method, error, warnings
+    )
 
 
 def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:

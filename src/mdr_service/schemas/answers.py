@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from mdr_core.errors import Remedy
 from mdr_service.schemas.quantities import left_out, quantity
 
 _number = partial(quantity, "1")
@@ -37,6 +38,9 @@ class AnswerWarning(Answer):
 
     code: str = Field(description="Stable name of the warning.")
     message: str = Field(description="Explanation in this case.")
+    value: float | None = Field(description="Size of the finding, null where it has none.")
+    limit: float | None = Field(description="Limit that the value exceeds, null where it has none.")
+    instead: Remedy | None = Field(description="Remedy, null where there is none.")
 
 
 class SolvedAnswer(Answer):
@@ -49,6 +53,10 @@ class SolvedAnswer(Answer):
     error_estimate: float = _number(
         "Bound on the numerical error: of scalars relative to their values, of fields, histories "
         "and stresses to the largest value; for wear over the cycles an estimate"
+    )
+    model_error: list[float] = _number(
+        "Estimate, no bound, of the relative error of depth, force and displacements by the model: "
+        "half-space, coupling and transverse slip; one entry per load or sample"
     )
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 

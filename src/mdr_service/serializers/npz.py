@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Iterator, Mapping, Sequence
+from math import nan
 from typing import Any, Final
 
 import numpy as np
@@ -13,8 +14,8 @@ MEDIA_TYPE: Final = "application/x-npz"
 def write(result: Mapping[str, Any]) -> bytes:
     """Return the archive of a result; equal results give identical bytes.
 
-    Infinities stay infinite, strings are arrays of text, and the warnings an array with the fields
-    `code` and `message`. The archive opens with ``allow_pickle=False``.
+    Infinities stay infinite, strings are arrays of text, and the warnings an array with their
+    members as fields, NaN or empty text for null. The archive opens with ``allow_pickle=False``.
     """
     archive = io.BytesIO()
     arrays = {
@@ -34,10 +35,15 @@ def _flat(result: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
             yield prefix + name, value
 
 
-def _warnings(warnings: Sequence[Mapping[str, str]]) -> NDArray[Any]:
+def _warnings(warnings: Sequence[Mapping[str, Any]]) -> NDArray[Any]:
     # At least one character wide: not every reader accepts text of width 0.
-    widths = {
-        name: max((len(each[name]) for each in warnings), default=1) for name in ("code", "message")
-    }
-    pairs = [tuple(each[name] for name in widths) for each in warnings]
-    return np.array(pairs, dtype=[(name, f"U{width}") for name, width in widths.items()])
+    types = {
+        name: "U" + str(max([1, *(len(each[name] or "") for each in warnings)]))
+        for name in ("code", "message", "instead")
+    } | {"value": "f8", "limit": "f8"}
+    empty = {"instead": "", "value": nan, "limit": nan}
+    rows = [
+        tuple(empty[name] if each[name] is None else each[name] for name in types)
+        for each in warnings
+    ]
+    return np.array(rows, dtype=list(types.items()))
