@@ -9,7 +9,7 @@ divided by mu E*/G*. Source: notes, §11.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -25,44 +25,37 @@ _DERIVATIVE: Final = np.pad(chebyshev.chebder(np.eye(TILT_TERMS)), ((0, 1), (0, 
 
 @dataclass(frozen=True)
 class AnnulusState:
-    """The worn annulus at one number of cycles, from the vector of the integrator.
-
-    The vector holds (sigma - S_0)/s at all nodes but the last, S_0 being sigma of the unworn
-    shape; b, c - c_0, d - d_0, the work so far; and, where the stick zone grows, the tilt
-    C(r) = -(2/pi) int arccos(c/r) dw_c of the surface outside as a Chebyshev series in 1/r, from
-    a_0 to the largest contact radius.
-    """
+    """The worn annulus at one number of cycles."""
 
     initial: InitialState
-    vector: Array
+    inner_worn: Array
+    """(sigma - S_0)/s at all nodes but the last, S_0 being sigma of the unworn shape."""
+    end: float
+    """b = sqrt(a^2 - c^2)."""
+    stick_shift: float
+    """c - c_0, without the rounding error of c in a narrow annulus."""
+    depth_increase: float
+    """d - d_0."""
+    work: float
+    """Integral of the power over the cycles."""
+    tilt_terms: Array
+    """Where the stick zone grows, the tilt C(r) = -(2/pi) int arccos(c/r) dw_c of the surface
+    outside as a Chebyshev series in 1/r, from a_0 to the largest contact radius; else empty."""
     trail: Array | None = None
     """Radii c that a growing stick zone has passed, and the wear w_c that the springs keep there;
     the last of them is the stick edge. Shape (2, k)."""
 
-    @property
-    def end(self) -> float:
-        """b = sqrt(a^2 - c^2)."""
-        return float(self.vector[self.initial.first_edge])
-
-    @property
-    def stick_shift(self) -> float:
-        """c - c_0, without the rounding error of c in a narrow annulus."""
-        return float(self.vector[self.initial.first_edge + 1])
+    @classmethod
+    def of(cls, initial: InitialState, vector: Array) -> Self:
+        """Return the state of a vector of the integrator: the numbers above, one after another."""
+        inner, edges, tilt_terms = np.split(vector, initial.parts)
+        end, stick_shift, depth_increase, work = edges.tolist()
+        return cls(initial, inner, end, stick_shift, depth_increase, work, tilt_terms)
 
     @property
     def stick(self) -> float:
         """c."""
         return self.initial.stick + self.stick_shift
-
-    @property
-    def depth_increase(self) -> float:
-        """d - d_0."""
-        return float(self.vector[self.initial.first_edge + 2])
-
-    @property
-    def work(self) -> float:
-        """Integral of the power over the cycles."""
-        return float(self.vector[self.initial.first_edge + 3])
 
     @property
     def passed(self) -> tuple[Array, Array]:
@@ -113,8 +106,7 @@ class AnnulusState:
         """C at the contact's edge, and its slope."""
         if not self.initial.stick_grows:
             return 0.0, 0.0
-        series = self.vector[self.initial.first_edge + 4 :]
-        value, slope = (terms @ series for terms in self.tilt_basis)
+        value, slope = (terms @ self.tilt_terms for terms in self.tilt_basis)
         return float(value), float(slope)
 
     @cached_property
@@ -140,7 +132,7 @@ class AnnulusState:
     @cached_property
     def worn(self) -> Array:
         """(sigma - S_0)/s: while the stick edge rests, the worn depth divided by s."""
-        return np.append(self.vector[: self.initial.first_edge], self.tilt[0] / self.end)
+        return np.append(self.inner_worn, self.tilt[0] / self.end)
 
     @cached_property
     def worn_omega(self) -> Array:

@@ -134,15 +134,16 @@ class InitialState:
         return annulus_maps(self.nodes * 3 // 2 if self.stick_shrinks else self.nodes)
 
     @cached_property
-    def first_edge(self) -> int:
-        """Index of b in the vector of `AnnulusState`."""
-        return self.maps.squares.size - 1
+    def parts(self) -> list[int]:
+        """Ends of two parts of a vector: wear at the inner nodes; b, c, d and the work."""
+        inner = self.maps.squares.size - 1
+        return [inner, inner + 4]
 
     @property
     def vector(self) -> Array:
-        """Vector before the first cycle."""
+        """Vector of `AnnulusState` before the first cycle."""
         tilt = np.zeros(TILT_TERMS if self.stick_grows else 0)
-        return np.concatenate([np.zeros(self.first_edge), (1.0, 0.0, 0.0, 0.0), tilt])
+        return np.concatenate([np.zeros(self.parts[0]), (1.0, 0.0, 0.0, 0.0), tilt])
 
     @cached_property
     def _singular(self) -> Array:

@@ -48,7 +48,7 @@ def integrate(
     unit, scaled = initial.cycle_unit, cycles / initial.cycle_unit
     start, last = initial.vector, float(scaled[-1])
     if last == 0:
-        return (AnnulusState(initial, start),) * cycles.size, inf
+        return (AnnulusState.of(initial, start),) * cycles.size, inf
     if initial.growth_to_end <= 0:
         # An event is a change of sign, which comes too late here.
         _require_all_cycles(initial, cycles, 0.0, inf)
@@ -81,15 +81,15 @@ def integrate(
         )
     if run.status < 0 or not np.isfinite(run.y).all():
         resolved = np.isfinite(run.y).all(axis=0)
-        raise _unresolved(AnnulusState(initial, run.y[:, resolved][:, -1]), run.t[resolved][-1])
+        raise _unresolved(AnnulusState.of(initial, run.y[:, resolved][:, -1]), run.t[resolved][-1])
     ends = (float(times[0]) * unit if times.size else inf for times in run.t_events or ())
     profile_end_at, settled_at, full_slip_at = ends
     _require_all_cycles(initial, cycles, profile_end_at, full_slip_at)
     between: Any = run.sol
     numbers = np.minimum(scaled, run.t[-1])
-    states = [AnnulusState(initial, between(n) if n > 0 else start) for n in numbers]
+    states = [AnnulusState.of(initial, between(n) if n > 0 else start) for n in numbers]
     if initial.stick_grows:
-        passed = _trail([AnnulusState(initial, vector) for vector in run.y.T])
+        passed = _trail([AnnulusState.of(initial, vector) for vector in run.y.T])
         states = [
             replace(state, trail=np.append(passed[:, run.t < n], _trail([state]), axis=1))
             for state, n in zip(states, numbers, strict=True)
@@ -142,12 +142,11 @@ def _require_all_cycles(
 
 def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
-    edge, start = initial.first_edge, AnnulusState(initial, initial.vector)
+    start = AnnulusState.of(initial, initial.vector)
+    slip = np.maximum(start.slip[:-1], _MIN_SLIP)
     # In a narrow annulus all but b and the work change by a part b_0/a_0 only.
-    scale = np.full(start.vector.size, 1 / (initial.stick + initial.width))
-    scale[:edge] = np.maximum(start.slip[:-1], _MIN_SLIP)
-    scale[[edge, edge + 3]] = 1.0
-    return scale
+    part = 1 / (initial.stick + initial.width)
+    return np.concatenate([slip, (1.0, part, part, 1.0), np.full(start.tilt_terms.shape, part)])
 
 
 def _events(initial: InitialState, rtol: float) -> list[Any]:
@@ -157,7 +156,7 @@ def _events(initial: InitialState, rtol: float) -> list[Any]:
 
     def event(function: Callable[[AnnulusState], float]) -> Any:
         def value(_time: float, vector: Array) -> float:
-            return function(AnnulusState(initial, vector))
+            return function(AnnulusState.of(initial, vector))
 
         value.terminal = True  # type: ignore[attr-defined]  # read by `solve_ivp`
         return value

@@ -1,7 +1,14 @@
 """Rates of change of the worn annulus with the number of cycles, and their Jacobian matrix.
 
-The contact's edge, the stick edge and the depth follow from the quantities that are constant. In
-the units of `mdr_core.wear.initial_state`. Source: notes, §11.
+All rates are linear in those of the edges, b' = db/dN, c' and d': each is a row of four columns,
+times (1, b', c', d'). The edges follow from what holds at all times:
+
+    gamma(a) = D,
+    int_0^a (d - g) dx is constant under a constant normal force,
+    c D + int_c^a (D - gamma) dx is constant where the stick zone shrinks,
+    gamma(c) = 0 where it grows over worn material.
+
+In the units of `mdr_core.wear.initial_state`. Source: notes, §11.
 """
 
 from functools import cached_property
@@ -14,6 +21,8 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 
+# Columns of a rate: by wear alone, and per unit of the rates of b, c and d.
+_WEAR, _END, _STICK, _DEPTH = range(4)
 # Step of a difference quotient, about the root of the rounding error.
 _STEP: Final = 1e-7
 # Rate at which the integrator's error of gamma(a) - D decays: fast beside the wear, whose unit is
@@ -23,7 +32,7 @@ _RETURN: Final = 10.0
 
 def rates(initial: InitialState, vector: Array) -> Array:
     """Return the derivative of the vector with respect to the scaled number of cycles."""
-    return _MovingAnnulus(initial, vector).rates
+    return _MovingAnnulus.of(initial, vector).rates
 
 
 def jacobian(initial: InitialState, vector: Array) -> Array:
@@ -32,30 +41,29 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
     By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
     rates is neglected.
     """
-    state = _MovingAnnulus(initial, vector)
-    n, maps = initial.first_edge, initial.maps
+    state, maps = _MovingAnnulus.of(initial, vector), initial.maps
+    inner, tilted = initial.parts
     in_worn, in_edges = state.gradients()
     in_omega = state.end**2 * maps.mean * (state.reduced_amplitude - 2 * state.gamma)
-    gradient = np.concatenate([in_worn[:-1], in_edges, (in_omega @ maps.from_slip)[None]])
+    in_power = in_omega @ maps.from_slip
+    gradient = np.concatenate([in_worn[:-1], in_edges[_END:], in_power[None]])
     found = np.zeros((vector.size, vector.size))
     if initial.stick_grows:
-        passing = in_edges[2] - state.stick_slope * in_edges[1]
+        passing = in_edges[_DEPTH] - state.stick_slope * in_edges[_STICK]
         gradient = np.concatenate([gradient, np.multiply.outer(state.tilt_rates, passing)])
-        found[:, n + 4 :] = np.multiply.outer(gradient[:, -1], state.tilt_basis[0] / state.end)
-    found[:, :n] = gradient[:, :-1]
-    for edge in state.unknown:
-        step = _STEP * (state.offset[-1] if edge == 1 else 1.0)
+        # The wear at the last node is the tilt there.
+        found[:, tilted:] = np.multiply.outer(gradient[:, -1], state.tilt_basis[0] / state.end)
+    found[:, :inner] = gradient[:, :-1]
+    for edge in state.moving:
+        step, at = _STEP * (state.offset[-1] if edge == _STICK else 1.0), inner + edge - _END
         moved = vector.copy()
-        moved[n + edge] += step
-        found[:, n + edge] = (rates(initial, moved) - state.rates) / step
+        moved[at] += step
+        found[:, at] = (rates(initial, moved) - state.rates) / step
     return found
 
 
 class _MovingAnnulus(AnnulusState):
-    """Rates of the edges from the constant quantities; all others are linear in them.
-
-    Columns: by wear alone, and per unit of the rates of b, c and d.
-    """
+    """Annulus with the rates of its edges, from the quantities that are constant."""
 
     @cached_property
     def stick_slope(self) -> float:
@@ -106,90 +114,113 @@ class _MovingAnnulus(AnnulusState):
         """Rates of `worn` at nodes that move with the edges, (n, 4)."""
         b = self.end
         columns = np.zeros((self.x.size, 4))
-        columns[:, 0] = self.pressure * self.slip
-        columns[:, 1] = self.inward[0] / b
+        columns[:, _WEAR] = self.pressure * self.slip
+        columns[:, _END] = self.inward[0] / b
         if self.initial.stick_moves:
-            columns[:, 2] = self.past_stick[0]
+            columns[:, _STICK] = self.past_stick[0]
         if self.initial.stick_grows:
             # The growth of w_c lowers all slip outside.
             zeta = b * np.sqrt(self.initial.maps.squares)
             lever = 2 / np.pi * np.arctan2(zeta, self.stick) / zeta
-            columns[:, 2] += lever * self.stick_slope
-            columns[:, 3] = -lever
+            columns[:, _STICK] += lever * self.stick_slope
+            columns[:, _DEPTH] = -lever
+            # The wear at the last node is the tilt there.
             value, slope = self.tilt
-            columns[-1, 1] = (slope * self.motion[0, -1] - value / b) / b
-            columns[-1, 2] = slope * self.motion[1, -1] / b + lever[-1] * self.stick_slope
+            columns[-1, _END] = (slope * self.motion[0, -1] - value / b) / b
+            columns[-1, _STICK] = slope * self.motion[1, -1] / b + lever[-1] * self.stick_slope
         return columns
 
+    @property
+    def moving(self) -> list[int]:
+        """Columns of the edges that move."""
+        moves = (True, self.initial.stick_moves, self.initial.constant_force)
+        return [column for column, edge in enumerate(moves, _END) if edge]
+
     @cached_property
-    def edges(self) -> Array:
-        """Rates of b, c and d."""
-        found = np.zeros(3)
-        found[self.unknown] = self._solve(self.rows[:, 0])
+    def velocity(self) -> Array:
+        """1 and the rates of b, c and d."""
+        found = np.array([1.0, 0.0, 0.0, 0.0])
+        found[self.moving] = self._solve(self.conditions[:, _WEAR])
         return found
 
     @cached_property
     def rates(self) -> Array:
         """Rates of the whole vector."""
-        worn = self.worn_rates @ np.append(1.0, self.edges)
-        found = [worn[:-1], self.edges, np.array([self.power])]
-        if self.initial.stick_grows:
-            found.append(self.tilt_rates * (self.edges[2] - self.stick_slope * self.edges[1]))
-        return np.concatenate(found)
-
-    @property
-    def unknown(self) -> list[int]:
-        """Indices of the edges that move, of b, c and d."""
-        return [0] + [1] * self.initial.stick_moves + [2] * self.initial.constant_force
+        worn = self.worn_rates @ self.velocity
+        passing = self.velocity[_DEPTH] - self.stick_slope * self.velocity[_STICK]
+        tilt = self.tilt_rates * passing if self.initial.stick_grows else self.tilt_terms
+        return np.concatenate([worn[:-1], self.velocity[_END:], [self.power], tilt])
 
     def _solve(self, right: Array) -> Array:
-        square = self.rows[:, 1:][:, self.unknown]
+        """Rates of the moving edges at which the conditions stay met, by their other terms."""
         try:
-            return np.asarray(-np.linalg.solve(square, right))
+            return np.asarray(-np.linalg.solve(self.conditions[:, self.moving], right))
         except np.linalg.LinAlgError:
             # Where the surface at the edge is flat the edge may move at any rate.
             raise AccuracyError("the wear over the cycles was not resolved at its edges") from None
 
     @cached_property
-    def rows(self) -> Array:
-        """Rates that are zero: of gamma(a) - D, of the constant force, of gamma(c).
-
-        One row for each unknown edge, (k, 4).
-        """
-        initial, maps = self.initial, self.initial.maps
-        a, b, c = self.x[-1], self.end, self.stick
-        # Rates of (gamma - gamma_0)/x at the moving nodes, and of omega at the edge.
-        worn = maps.from_slip @ self.worn_rates
-        omega = worn[-1].copy()
-        slope = float(initial.slope(self.x[-1:])[0])
-        omega[1:3] += (slope - self.unworn[-1]) / a * self.motion[:, -1]
-        omega[2] -= self.stick_slope / a
-        # Rates of D and of d - D, the depth g(c) of the stick edge.
-        grows = initial.constant_force and not initial.constant_displacement
-        amplitude_rate = np.array([0.0, 0.0, 0.0, float(grows)])
-        stick_depth_rate = np.array([0.0, 0.0, 0.0, float(initial.stick_grows)])
-        if initial.stick_shrinks:
-            amplitude_rate[2], stick_depth_rate[2] = -self.stick_slope, self.stick_slope
-        edge = np.array([0.0, *self.motion[:, -1], 0.0])
-        rows = [a * omega + edge * self.omega[-1] - amplitude_rate]
-        rows[0][0] += _RETURN * (self.gamma[-1] - self.reduced_amplitude)
-        if initial.constant_force or initial.stick_shrinks:
-            # Rate of int_c^a (gamma - D) dx, with gamma(a) = D. The integral of gamma_0 changes at
-            # its ends only: by values at nodes it would jump where one passes a break of the slope.
-            integral_rate = b * b * (maps.mean @ worn) - edge * a * self.worn_omega[-1]
-            integral_rate[1] += 2 * self.worn_integral / b
-            integral_rate[2] -= (a - c) * self.stick_slope
-            integral_rate += (a - c) * stick_depth_rate
-            total = np.array([0, 0, 0, a]) if initial.constant_force else c * amplitude_rate
-            rows.append(total - integral_rate)
-        if initial.stick_grows:
+    def conditions(self) -> Array:
+        """Rates that are zero, one row for each edge that moves, (k, 4)."""
+        rows = [self._outer_edge]
+        if self.initial.constant_force or self.initial.stick_shrinks:
+            rows.append(self._carried_force)
+        if self.initial.stick_grows:
             rows.append(np.array([0.0, 0.0, self.gamma[0] / self.offset[0], -1.0]))
         return np.array(rows)
 
+    @cached_property
+    def _omega_rates(self) -> Array:
+        """Rates of (gamma - gamma_0)/x at the moving nodes, (n, 4)."""
+        return np.asarray(self.initial.maps.from_slip @ self.worn_rates)
+
+    @property
+    def _radius_rate(self) -> Array:
+        """Rate of the contact radius."""
+        return np.array([0.0, *self.motion[:, -1], 0.0])
+
+    @property
+    def _amplitude_rate(self) -> Array:
+        """Rate of D."""
+        initial = self.initial
+        grows = initial.constant_force and not initial.constant_displacement
+        falls = self.stick_slope if initial.stick_shrinks else 0.0
+        return np.array([0.0, 0.0, -falls, float(grows)])
+
+    @property
+    def _outer_edge(self) -> Array:
+        """Rate of gamma(a) - D, with the return of its error."""
+        omega, a = self._omega_rates[-1].copy(), self.x[-1]
+        slope = float(self.initial.slope(self.x[-1:])[0])
+        omega[_END:_DEPTH] += (slope - self.unworn[-1]) / a * self.motion[:, -1]
+        omega[_STICK] -= self.stick_slope / a
+        row = a * omega + self._radius_rate * self.omega[-1] - self._amplitude_rate
+        row[_WEAR] += _RETURN * (self.gamma[-1] - self.reduced_amplitude)
+        return row
+
+    @property
+    def _carried_force(self) -> Array:
+        """Rate of the integral of the loads, normal or, where the stick zone shrinks, tangential.
+
+        The integral of gamma_0 changes at its ends only: by values at nodes it would jump where one
+        passes a break of the slope.
+        """
+        initial, a, b, c = self.initial, self.x[-1], self.end, self.stick
+        # Rate of int_c^a (gamma - D) dx, with gamma(a) = D.
+        rate = b * b * (initial.maps.mean @ self._omega_rates)
+        rate -= self._radius_rate * a * self.worn_omega[-1]
+        rate[_END] += 2 * self.worn_integral / b
+        rate[_STICK] -= (a - c) * self.stick_slope
+        # d - D is the depth g(c) of the stick edge.
+        rate[_DEPTH] += (a - c) * float(initial.stick_grows)
+        rate[_STICK] += (a - c) * (self.stick_slope if initial.stick_shrinks else 0.0)
+        whole = np.array([0.0, 0.0, 0.0, a])
+        return (whole if initial.constant_force else c * self._amplitude_rate) - rate
+
     def gradients(self) -> tuple[Array, Array]:
-        """Return the gradients by `worn`, of its rates (n, n) and of the edges' rates (3, n)."""
+        """Return the gradients by `worn`, of its rates (n, n) and of the velocity (4, n)."""
         initial, maps = self.initial, self.initial.maps
-        b, (end, stick, _) = self.end, self.edges
+        b, (_, end, stick, _) = self.end, self.velocity
         stress = maps.to_pressure @ (self.x[:, None] * maps.from_slip) / b
         direct = self.slip[:, None] * stress + end / b * self.inward[1]
         direct += np.diag(self.pressure)
@@ -203,6 +234,6 @@ class _MovingAnnulus(AnnulusState):
             rows.append(-b * b * (mean @ direct) - 2 * b * end * mean)
         if initial.stick_grows:
             rows.append(stick * self.x[0] / self.offset[0] * maps.from_slip[0])
-        edges = np.zeros((3, self.x.size))
-        edges[self.unknown] = self._solve(np.array(rows))
-        return direct + self.worn_rates[:, 1:] @ edges, edges
+        edges = np.zeros((4, self.x.size))
+        edges[self.moving] = self._solve(np.array(rows))
+        return direct + self.worn_rates @ edges, edges
