@@ -235,6 +235,16 @@ def test_peak_across_the_load_after_a_load_history() -> None:
     assert float(peak.y) == pytest.approx(state.slip_fronts[1], rel=1e-6, abs=0)
 
 
+def test_cusp_at_the_edge_of_a_sliding_contact() -> None:
+    """The spline through the grid has its peak beside the edge, where the stress is lower."""
+    contact = normal.solve(RoundedPunch(0.3484, 1.0), 1.0, contact_radius=0.6809)
+    case = tangential.solve(contact, 1.0, 0.4337, stick_radius=0.0)
+    at_edge = stress(case, 0.6809, 0.0, 0.0, poissons_ratio=0.2156).maximum_shear
+    peak = largest(case, "maximum_shear", poissons_ratio=0.2156)
+    assert float(peak.value) >= float(at_edge) * (1 - 1e-9)
+    assert float(peak.x) == pytest.approx(0.6809, rel=1e-6, abs=0)
+
+
 @pytest.mark.parametrize("profile", [Power(0.4, 1.5), RoundedPunch(0.05, 2.0)])
 def test_onset_is_that_of_any_load_in_its_ratio(profile: Profile) -> None:
     radii = np.array([0.06, 0.1, 0.3])
