@@ -88,7 +88,8 @@ def integrate(
     if growth > STEEP and longest > 0:
         nodes, weights = rule_of_powers(growth, reach_of_power(1.0, rtol), longest, points)
         return _apply(h, (1 - nodes, weights), lower, length, np.arange(length.size))
-    counts = np.maximum(np.ceil(length / PIECE), 1).astype(int)
+    # A length that is not finite gives an integral that is not, in one piece.
+    counts = np.maximum(np.ceil(np.where(np.isfinite(length), length, 0.0) / PIECE), 1).astype(int)
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = (counts == count).nonzero()[0]
