@@ -57,12 +57,12 @@ TARGETS = {
 # Upper bounds of the processor time of a query without HTTP, over that of reading and writing its
 # text by the standard library.
 IN_PROCESS = {
-    "stress": (2, 5, 20, 80),
-    "tangential": (17, 50, 10, 100),
-    "normal": (12, 32, 5, 100),
-    "wear": (65, 165, 20, 100),
-    "tangential/history": (25, 115, 25, 100),
-    "cycle": (40, 145, 20, 100),
+    "stress": (2, 7, 20, 80),
+    "tangential": (17, 65, 10, 100),
+    "normal": (12, 40, 5, 100),
+    "wear": (65, 210, 20, 100),
+    "tangential/history": (25, 130, 25, 100),
+    "cycle": (40, 155, 20, 100),
 }
 # Calls of each query in process, of which the fastest counts.
 CALLS = 4

@@ -110,10 +110,11 @@ class Tipped(Profile):
         return where(coordinate <= b, self._tip.dg(np.minimum(coordinate, b)), flank)
 
     def reduced_force(self, coordinate: Array) -> Array:
+        tip = self._tip
         return piecewise(
             coordinate,
             self.tangent_radius,
-            self._tip.force_within,
+            lambda x: tip.reduced_force(tip.coordinate_from_radius(x)),
             lambda x: self._flank_force(*self._outer(x)),
         )
 
