@@ -27,6 +27,7 @@ COMMANDS: Final = {
         "solve a frictionless normal contact",
         f"mdr normal {_STEEL} --normal-force 10",
     ),
+    "fit": Command("fit modulus and contact point to a curve", "mdr fit request.json"),
     "tangential": Command(
         "solve a contact with friction",
         f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",

@@ -17,6 +17,7 @@ from typing import Final
 from mdr_core import (
     adhesion,
     fields,
+    fit,
     history,
     impact,
     normal,
@@ -81,6 +82,7 @@ __all__ = [
     "__version__",
     "adhesion",
     "fields",
+    "fit",
     "from_bodies",
     "history",
     "impact",

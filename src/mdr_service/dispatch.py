@@ -17,6 +17,7 @@ from mdr_service.queries import QUERIES
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
+from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -38,7 +39,7 @@ def is_short(query: Query, requests: int) -> bool:
     The limit of time of a compute process bounds any other query.
     """
     is_slow = (
-        isinstance(query, SubsurfaceQuery | EvolutionQuery | ImpactQuery)
+        isinstance(query, SubsurfaceQuery | EvolutionQuery | ImpactQuery | FitQuery)
         or query.profile.kind == "tabulated"
         or query.material.has("yield_strength")
         or query.material.has("work_of_adhesion")

@@ -16,6 +16,7 @@ from tests.conftest import Client, running_client
 
 QUERIES = {
     "normal": ("normal", EXAMPLES["normal"]),
+    "fit": ("normal/fit", EXAMPLES["fit"]),
     "tangential": ("tangential", EXAMPLES["tangential"]),
     "history": ("tangential/history", EXAMPLES["history"]),
     "impact": ("tangential/impact", EXAMPLES["impact"]),

@@ -13,6 +13,7 @@ from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.queries import SCHEMAS
@@ -48,6 +49,24 @@ async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send)
     used, `error_estimate` is an upper bound on the relative error of every number.
     """
     return await send("normal", query)
+
+
+@router.post(
+    "/v1/normal/fit",
+    operation_id="fit",
+    tags=["contact"],
+    summary="Modulus, contact point and force offset from a measured curve of force over depth",
+    response_model=answers.FitAnswer,
+    responses=RESULT,
+)
+async def fit(query: Annotated[FitQuery, _examples("fit")], send: Send) -> Response:
+    """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
+
+    The standard errors hold for independent errors of the forces of equal size. A warning `misfit`
+    tells that the residuals are not such noise: then the shape or the model is wrong.
+    `error_estimate` is the numerical error of the parameters.
+    """
+    return await send("fit", query)
 
 
 @router.post(

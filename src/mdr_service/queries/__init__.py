@@ -13,6 +13,7 @@ from mdr_service.queries.contacts import (
     tangential_result,
 )
 from mdr_service.queries.fields import solve_stress, stress_result
+from mdr_service.queries.fits import fit_result, solve_fit
 from mdr_service.queries.impacts import impact_result, solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
@@ -31,6 +32,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
     "normal": QueryType(solve_normal, normal_result),
     "tangential": QueryType(solve_tangential, tangential_result),
     "history": QueryType(solve_history, history_result),
+    "fit": QueryType(solve_fit, fit_result),
     "impact": QueryType(solve_impact, impact_result),
     "stress": QueryType(solve_stress, stress_result),
     "subsurface": QueryType(solve_subsurface, subsurface_result),

@@ -90,6 +90,27 @@ class NormalAnswer(ContactAnswer):
     )
 
 
+class FitAnswer(SolvedAnswer):
+    """Parameters in lists of one entry, and the curve."""
+
+    fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
+    e_star: list[float] = _pressure("Effective modulus E*")
+    contact_point: list[float] = _length("Depth of first contact, in the depths of the curve")
+    force_offset: list[float] = _force("Force without contact")
+    standard_errors: list[float] = quantity(
+        "as the parameter", "Standard deviations of the fitted parameters"
+    )
+    correlation: list[list[float]] = _number("Correlation of the fitted parameters")
+    noise: list[float] = _force("Standard deviation of the forces")
+    misfit: list[float] = _number(
+        "Probability that residuals of the right shape are as far from noise; below 0.01 with the "
+        "warning `misfit`"
+    )
+    indentation_depth: list[float] = _length("Measured depths")
+    normal_force: list[float] = _force("Fitted forces")
+    residual: list[float] = _force("Measured less fitted forces")
+
+
 class HistoryAnswer(SolvedAnswer):
     """One entry per sample in every list, but for `slip_fronts` and the lists over the cycles."""
 

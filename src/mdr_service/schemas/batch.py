@@ -16,10 +16,18 @@ class BatchItem(Strict):
     """Query of a batch."""
 
     ask: Literal[
-        "normal", "tangential", "history", "impact", "stress", "subsurface", "wear", "evolution"
+        "normal",
+        "fit",
+        "tangential",
+        "history",
+        "impact",
+        "stress",
+        "subsurface",
+        "wear",
+        "evolution",
     ] = Field(
-        description="Name of the query, as its path ends: `history` and `impact` belong to "
-        "`/v1/tangential`, `evolution` to `/v1/wear`."
+        description="Name of the query, as its path ends: `fit` belongs to `/v1/normal`, `history` "
+        "and `impact` to `/v1/tangential`, `evolution` to `/v1/wear`."
     )
     request: dict[str, Any] = Field(
         description="Request of the query, as for its own endpoint: `NormalQuery` for `normal`, "

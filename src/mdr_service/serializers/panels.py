@@ -33,6 +33,7 @@ _OVER_LOADS: Final = (
         "normal_velocity",
     ),
     ("tangential_displacement", ("tangential_force",), "normal_force"),
+    ("indentation_depth", ("normal_force", "residual"), None),
     ("indentation_depth", ("normal_force",), None),
 )
 

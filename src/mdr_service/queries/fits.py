@@ -1,0 +1,40 @@
+"""Queries about measured curves."""
+
+import numpy as np
+
+from mdr_core import fit
+from mdr_core.errors import InputError
+from mdr_core.fit import Fit
+from mdr_service.queries.contacts import profile
+from mdr_service.results import Result, checked
+from mdr_service.schemas.fits import FitQuery
+
+
+def solve_fit(query: FitQuery) -> Fit:
+    """Return the fit to the curve of a query."""
+    if ("e_star" in query.fit) == query.has("material"):
+        reason = "e_star is fitted: leave it out" if query.has("material") else "is needed"
+        raise InputError(("material",), f"{reason}, or change `fit`")
+    return fit.solve(
+        profile(query.profile),
+        indentation_depth=query.indentation_depth,
+        normal_force=query.normal_force,
+        fit=query.fit,
+        e_star=query.material.effective.e_star if query.has("material") else None,
+        noise=query.noise,
+        rtol=query.rtol,
+    )
+
+
+def fit_result(query: FitQuery, source: Fit) -> Result:
+    """Return the parameters, their standard errors, and the residuals of a curve."""
+    names = source.quantities[1:]
+    values = {name: np.atleast_1d(getattr(source, name)) for name in names}
+    return {
+        "fit": query.fit,
+        **checked(query, values),
+        "method": source.method,
+        "error_estimate": source.error_estimate,
+        "model_error": np.atleast_1d(source.model_error),
+        "warnings": [vars(notice) for notice in source.warnings if notice.code != "singular"],
+    }

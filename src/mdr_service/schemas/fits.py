@@ -1,0 +1,33 @@
+"""Requests about measured curves of force over depth."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from mdr_service.schemas.contacts import Material, Query
+from mdr_service.schemas.fields import OnceEach
+from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
+from mdr_service.settings import SETTINGS
+
+Fitted = Literal["e_star", "contact_point", "force_offset"]
+_CURVE = {"min_length": 3, "max_length": SETTINGS.max_loads, "fail_fast": True}
+
+
+class FitQuery(Query):
+    """Measured curve, and what it shall tell about a contact of a known profile."""
+
+    material: Material = left_out("Elastic constants, if `e_star` is not fitted.")
+    indentation_depth: list[Signed] = quantity(
+        "length", "Measured depths, from any origin and in any order", **_CURVE
+    )
+    normal_force: list[Signed] = quantity(
+        "force", "Measured forces, with or without those before contact", **_CURVE
+    )
+    fit: Annotated[list[Fitted], OnceEach] = Field(
+        default=["e_star", "contact_point"],
+        description="Parameters to fit; contact point and offset are otherwise 0.",
+        min_length=1,
+    )
+    noise: float = positive(
+        "force", "Standard deviation of the forces, by default that of the residuals", default=None
+    )

@@ -1,0 +1,205 @@
+"""Moduli and contact points from measured curves, or their intervals, would be wrong."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mdr_core as mdr
+from mdr_core import fit
+from mdr_core.profiles import Profile
+
+Array = np.ndarray
+#: The unit of length is a typical radius of curvature. Depths reach 0.01.
+SHAPES: dict[str, Profile] = {
+    "paraboloid": mdr.Paraboloid(1.0),
+    "sphere": mdr.Sphere(0.5),
+    "cone": mdr.Cone(0.3),
+    "power": mdr.Power(2.0, 3.0),
+    "hyperboloid": mdr.Hyperboloid(0.4, 0.02),
+    "rounded cone": mdr.RoundedCone(0.3, 0.02),
+    "rounded punch": mdr.RoundedPunch(0.05, 1.0),
+    "flat punch": mdr.FlatPunch(0.1),
+}
+ALL = ("e_star", "contact_point", "force_offset")
+E_STAR, D_0, F_0 = 3.0, 2.3e-3, 1e-5
+DEPTH = np.linspace(-5e-3, 1e-2, 200)
+
+
+def forces(profile: Profile, depth: Array = DEPTH) -> Array:
+    pressed = np.maximum(depth - D_0, 0.0)
+    return np.asarray(mdr.normal.solve(profile, E_STAR, indentation_depth=pressed).normal_force)
+
+
+def fitted(profile: Profile, force: Array, **given: Any) -> fit.Fit:
+    return fit.solve(profile, indentation_depth=DEPTH, normal_force=force, **given)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_exact_curve_returns_its_parameters(shape: str) -> None:
+    force = forces(SHAPES[shape])
+    offset = 0.1 * force.max()
+    found = fitted(SHAPES[shape], force + offset, fit=ALL)
+    assert found.e_star == pytest.approx(E_STAR, rel=1e-9)
+    assert found.contact_point == pytest.approx(D_0, rel=1e-9)
+    assert found.force_offset == pytest.approx(offset, rel=1e-9)
+    assert found.residual == pytest.approx(0, abs=1e-11 * force.max())
+    assert [notice.code for notice in found.warnings if notice.code == "misfit"] == []
+
+
+@pytest.mark.parametrize("order", ["descending", "shuffled", "no approach"])
+def test_order_and_approach_change_nothing(order: str) -> None:
+    profile, index = SHAPES["hyperboloid"], np.arange(DEPTH.size)
+    index = {
+        "descending": index[::-1],
+        "shuffled": np.random.default_rng(0).permutation(index),
+        "no approach": index[DEPTH > D_0 + 1e-3],
+    }[order]
+    found = fit.solve(
+        profile, indentation_depth=DEPTH[index], normal_force=forces(profile)[index], fit=ALL
+    )
+    assert found.e_star == pytest.approx(E_STAR, rel=1e-8)
+    assert found.contact_point == pytest.approx(D_0, rel=1e-8)
+
+
+def test_standard_errors_of_the_modulus_alone() -> None:
+    # A regression through the origin: sigma/sqrt(sum of squares).
+    profile = SHAPES["cone"]
+    force = forces(profile, DEPTH + D_0)
+    random = np.random.default_rng(3)
+    noisy = force + 0.01 * force.max() * random.standard_normal(force.size)
+    reduced = force / E_STAR
+    found = fitted(profile, noisy, fit=["e_star"])
+    expected = reduced @ noisy / (reduced @ reduced)
+    assert found.e_star == pytest.approx(expected, rel=1e-12)
+    sigma = np.sqrt(np.sum((noisy - expected * reduced) ** 2) / (force.size - 1))
+    assert found.noise == pytest.approx(sigma, rel=1e-9)
+    error = sigma / np.sqrt(reduced @ reduced)
+    assert found.standard_errors.tolist() == pytest.approx([error], rel=1e-9)
+    assert found.contact_point == found.force_offset == 0.0
+
+
+def test_known_modulus_leaves_the_contact_point() -> None:
+    profile = SHAPES["sphere"]
+    found = fitted(profile, forces(profile), fit=["contact_point"], e_star=E_STAR)
+    assert found.contact_point == pytest.approx(D_0, rel=1e-9)
+    assert found.correlation.tolist() == [[pytest.approx(1.0)]]
+
+
+def test_correlation_of_modulus_and_contact_point() -> None:
+    # About 0.91 for a sphere, 0.96 for a cone: a guessed contact point misleads.
+    random = np.random.default_rng(1)
+    for shape, low, high in (("paraboloid", 0.88, 0.95), ("cone", 0.94, 0.98)):
+        force = forces(SHAPES[shape])
+        noisy = force + 0.01 * force.max() * random.standard_normal(force.size)
+        found = fitted(SHAPES[shape], noisy)
+        assert low < found.correlation[0, 1] < high
+
+
+def study(shape: Profile, fitted_shape: Profile, noise: float, curves: int) -> Array:
+    """Errors over their standard deviations, and whether each misfit is reported."""
+    force, rows = forces(shape), []
+    random = np.random.default_rng(int(1e4 * noise))
+    for _ in range(curves):
+        noisy = force + noise * force.max() * random.standard_normal(force.size)
+        found = fitted(fitted_shape, noisy + F_0, fit=ALL)
+        values = np.array([found.e_star, found.contact_point, found.force_offset])
+        off = (values - [E_STAR, D_0, F_0]) / found.standard_errors
+        rows.append([*off, found.misfit < 0.01])
+    return np.array(rows)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("noise", [0.003, 0.03])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_intervals_cover_the_parameters(shape: str, noise: float) -> None:
+    rows = study(SHAPES[shape], SHAPES[shape], noise, 200)
+    covered = np.mean(np.abs(rows[:, :3]) < 1.972, axis=0)
+    # 0.95 with a standard deviation of 0.015.
+    assert covered.min() >= 0.90, covered
+    assert covered.max() <= 0.995, covered
+    assert rows[:, 3].mean() <= 0.035
+
+
+# What was measured, and what is fitted to it.
+WRONG = {
+    "cone as paraboloid": ("cone", "paraboloid"),
+    "paraboloid as cone": ("paraboloid", "cone"),
+    "rounded cone as paraboloid": ("rounded cone", "paraboloid"),
+    "rounded punch as cone": ("rounded punch", "cone"),
+    "power as paraboloid": ("power", "paraboloid"),
+    "flat punch as paraboloid": ("flat punch", "paraboloid"),
+}
+
+
+@pytest.mark.parametrize("pair", WRONG)
+def test_wrong_shape_is_a_misfit(pair: str) -> None:
+    shape, guessed = (SHAPES[each] for each in WRONG[pair])
+    rows = study(shape, guessed, 0.003, 20)
+    assert rows[:, 3].mean() >= 0.95
+
+
+def test_noise_that_is_known_is_compared() -> None:
+    profile = SHAPES["sphere"]
+    force = forces(profile)
+    random = np.random.default_rng(5)
+    noisy = force + 0.01 * force.max() * random.standard_normal(force.size)
+    for factor, wrong in ((1.0, False), (0.5, True), (2.0, True)):
+        found = fitted(profile, noisy, noise=0.01 * factor * force.max())
+        assert (found.misfit < 0.01) == (wrong and factor < 1), factor
+        assert found.noise == 0.01 * factor * force.max()
+
+
+@pytest.mark.parametrize("unit", [1e-30, 1e-9, 1e20])
+def test_change_of_units(unit: float) -> None:
+    profile, large = mdr.RoundedPunch(0.05, 1.0), mdr.RoundedPunch(0.05 * unit, unit)
+    force = forces(profile)
+    force = force + 0.01 * force.max() * np.random.default_rng(2).standard_normal(force.size)
+    found = fitted(profile, force, fit=ALL)
+    other = fit.solve(large, indentation_depth=unit * DEPTH, normal_force=unit**2 * force, fit=ALL)
+    assert other.e_star == pytest.approx(found.e_star, rel=1e-7)
+    assert other.contact_point == pytest.approx(unit * found.contact_point, rel=1e-7, abs=0)
+    scale = [1.0, unit, unit**2]
+    assert other.standard_errors == pytest.approx(found.standard_errors * scale, rel=1e-6, abs=0)
+
+
+GOOD: dict[str, Any] = {"indentation_depth": [0.0, 1e-3, 2e-3, 4e-3, 6e-3, 8e-3],
+                        "normal_force": [0.0, 1e-4, 2e-4, 5e-4, 8e-4, 1e-3]}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changed", "path", "words"),
+    [
+        ({"normal_force": [1.0]}, ("normal_force",), "1 values for 6 depths"),
+        ({"indentation_depth": [1e-3] * 6}, ("indentation_depth",), "different depths"),
+        ({"indentation_depth": [0, 1, 2, np.nan, 3, 4]}, ("indentation_depth", 3), "finite"),
+        ({"fit": []}, ("fit",), "must hold some of"),
+        ({"fit": ["modulus"]}, ("fit",), "must hold some of"),
+        ({"fit": ["contact_point"]}, ("e_star",), "needed"),
+        ({"e_star": 1.0}, ("e_star",), "leave it out"),
+        ({"noise": 0.0}, ("noise",), "positive"),
+        ({"normal_force": [0.0, -1, -2, -5, -8, -10]}, ("normal_force",), "reverse its sign"),
+    ],
+)
+def test_errors_name_the_input(
+    changed: dict[str, Any], path: tuple[str | int, ...], words: str
+) -> None:
+    with pytest.raises(mdr.InputError, match=words) as error:
+        fit.solve(mdr.Paraboloid(1.0), **(GOOD | changed))
+    assert error.value.path == path
+
+
+def test_too_few_points_in_contact_are_refused() -> None:
+    depth = np.linspace(-1.0, 0.0, 20)
+    force = np.zeros(20)
+    force[-2:] = 0.5, 1.0
+    with pytest.raises(mdr.InputError, match="in contact"):
+        fit.solve(mdr.Paraboloid(1.0), indentation_depth=depth, normal_force=force, fit=ALL)
+
+
+def test_curve_that_is_deeper_than_the_profile_is_refused() -> None:
+    table = mdr.Tabulated(np.linspace(0, 0.05, 20), np.linspace(0, 0.05, 20) ** 2)
+    with pytest.raises(mdr.InputError, match="beyond the end"):
+        fit.solve(
+            table, indentation_depth=[0, 0.1, 0.2, 0.3], normal_force=[0, 1, 2, 3.0], fit=["e_star"]
+        )

@@ -1,0 +1,77 @@
+"""Fits over HTTP would differ from the core, or errors point elsewhere."""
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import fit
+from mdr_core.profiles import Paraboloid
+from mdr_service.schemas.answers import FitAnswer
+from mdr_service.schemas.examples import EXAMPLES
+from tests.conftest import Client
+
+PATH = "/v1/normal/fit"
+EXAMPLE = EXAMPLES["fit"]["hydrogel"]["value"]
+
+
+def query(**changed: Any) -> dict[str, Any]:
+    return EXAMPLE | changed
+
+
+def test_response_equals_the_core(client: Client) -> None:
+    document = client.post(PATH, query()).json()
+    FitAnswer.model_validate(document)
+    curve = {name: EXAMPLE[name] for name in ("indentation_depth", "normal_force", "fit")}
+    found = fit.solve(Paraboloid(5000.0), **curve)
+    for name in found.quantities[1:]:
+        assert document[name] == np.atleast_1d(getattr(found, name)).tolist(), name
+    assert document["fit"] == EXAMPLE["fit"]
+    # The curve is that of 20 kPa, with contact at 37 nm and an offset of 0.3 nN.
+    off = np.array([document[name][0] for name in EXAMPLE["fit"]]) - [2e-5, 37.0, 0.3]
+    assert np.abs(off / document["standard_errors"]).max() < 2.5
+    assert [warning["code"] for warning in document["warnings"]] == ["half_space"]
+
+
+def test_wrong_shape_is_a_warning(client: Client) -> None:
+    punch = {"kind": "flat_punch", "radius": 300.0}
+    document = client.post(PATH, query(profile=punch)).json()
+    assert "misfit" in [warning["code"] for warning in document["warnings"]]
+
+
+def test_known_material(client: Client) -> None:
+    asked = query(fit=["contact_point", "force_offset"], material={"e_star": 2e-5})
+    document = client.post(PATH, asked).json()
+    assert document["e_star"] == [2e-5]
+    assert document["contact_point"][0] == pytest.approx(37.0, abs=1.5)
+
+
+def test_table_and_picture(client: Client) -> None:
+    rows = list(csv.DictReader(io.StringIO(client.post(f"{PATH}?format=csv", query()).text)))
+    assert [float(row["indentation_depth"]) for row in rows] == EXAMPLE["indentation_depth"]
+    sums = [float(row["normal_force"]) + float(row["residual"]) for row in rows]
+    assert sums == pytest.approx(EXAMPLE["normal_force"], abs=1e-12)
+    assert "residual" in client.post(f"{PATH}?format=svg", query()).text
+
+
+@pytest.mark.parametrize(
+    ("changed", "pointer", "words"),
+    [
+        ({"normal_force": [1.0, 2.0, 3.0]}, "/normal_force", "3 values for 51 depths"),
+        ({"fit": ["contact_point"]}, "/material", "is needed"),
+        ({"material": {"e_star": 1.0}}, "/material", "leave it out"),
+        ({"fit": ["radius"]}, "/fit/0", "e_star"),
+        ({"fit": []}, "/fit", "at least one"),
+        ({"noise": -1.0}, "/noise", "positive"),
+    ],
+)
+def test_errors_point_at_the_input(
+    client: Client, changed: dict[str, Any], pointer: str, words: str
+) -> None:
+    response = client.post(PATH, query(**changed))
+    assert response.status_code == 422
+    (error,) = response.json()["errors"]
+    assert error["pointer"] == pointer
+    assert words in error["detail"]
