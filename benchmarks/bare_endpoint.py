@@ -66,7 +66,7 @@ if __name__ == "__main__":
         host="127.0.0.1",
         port=int(sys.argv[1]),
         loop="asyncio",
-        http="httptools",
+        http="h11",
         log_level="warning",
         server_header=False,
         access_log=False,

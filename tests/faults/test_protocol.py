@@ -15,7 +15,7 @@ from itertools import pairwise
 import pytest
 import uvicorn
 from fastapi import FastAPI
-from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from mdr_service import observability, protocol
 from mdr_service.app import create_app
@@ -143,9 +143,9 @@ def short_timeouts(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_overridden_method_exists_in_uvicorn() -> None:
     own = {name for name, each in vars(BoundedProtocol).items() if callable(each)}
     overriding = {name for name in own if not name.startswith("_")}
-    assert overriding >= {"data_received", "on_headers_complete", "on_body", "resume_writing"}
+    assert overriding >= {"data_received", "handle_events", "send_400_response", "resume_writing"}
     for name in overriding:
-        assert callable(getattr(HttpToolsProtocol, name)), name
+        assert callable(getattr(H11Protocol, name)), name
 
 
 @pytest.mark.parametrize(
@@ -214,12 +214,11 @@ def test_long_url_is_rejected(served: Served) -> None:
 
 @pytest.mark.parametrize(
     "head",
-    [b"GET / HTTP/1.1\r\nX: ", b"GET /", b"GET / HTTP/1.1\r\nX", b"\r\n", chunked()[:-2] + b"X: "],
-    ids=["value", "URL", "name", "empty lines", "trailer"],
+    [b"GET / HTTP/1.1\r\nX: ", b"GET /", b"GET / HTTP/1.1\r\nX", chunked()[:-2] + b"X: "],
+    ids=["value", "URL", "name", "trailer"],
 )
 def test_unterminated_header_is_rejected_once_it_is_too_long(served: Served, head: bytes) -> None:
-    endless = b"\r\n" if head == b"\r\n" else b"a"
-    result = served.responses(head, *[endless * 2**19] * 100, number=2)
+    result = served.responses(head, *[b"a" * 2**19] * 100, number=2)
     assert [status for status, _ in result] == [431]
 
 
@@ -238,14 +237,13 @@ def test_trailers_within_the_limits_are_ignored(served: Served) -> None:
         b"NONSENSE\r\n\r\n",
         b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-        b"CONNECT example.org:443 HTTP/1.1\r\nHost: example.org\r\n\r\n",
+        b"\r\n",
         b"GET /\xff HTTP/1.1\r\nHost: x\r\n\r\n",
         b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n",
         b"POST /v1/normal HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nno length\r\n",
         b"GET /health HTTP/1.1\r\n\r\n",
         b"GET /health HTTP/1.1\r\nHost: x\r\nHost: x\r\n\r\n",
         b"GET /health HTTP/1.0\r\nHost: x\r\nHost: y\r\n\r\n",
-        b"GET /health HTTP/1.1\r\nHost: x/y@z\r\n\r\n",
         b"GET /health\r\n\r\n",
         b"GET /health HTTP/2.0\r\nHost: x\r\n\r\n",
         chunked().replace(b": chunked", b": gzip, chunked"),
@@ -254,13 +252,12 @@ def test_trailers_within_the_limits_are_ignored(served: Served) -> None:
         chunked(headers=b"Content-Length: 3\r\n"),
         chunked().replace(b"HTTP/1.1", b"HTTP/1.0"),
         b"GET /" + b"\xff" * 20_000 + b" HTTP/1.1\r\nHost: x\r\n\r\n",
-        b"GET http://[" + b"x" * 20_000 + b" HTTP/1.1\r\nHost: x\r\n\r\n",
     ],
     ids=[
-        *("words", "TLS", "HTTP/2", "CONNECT", "not ASCII", "two lengths", "chunk", "no host"),
-        *("two hosts", "two hosts of 1.0", "not a host", "HTTP/0.9", "HTTP/2.0", "gzip"),
+        *("words", "TLS", "HTTP/2", "empty line", "not ASCII", "two lengths", "chunk", "no host"),
+        *("two hosts", "two hosts of 1.0", "HTTP/0.9", "HTTP/2.0", "gzip"),
         *("unknown coding", "two codings", "coding and length", "chunks of 1.0"),
-        *("long and not ASCII", "long and not a URL"),
+        "long and not ASCII",
     ],
 )
 def test_malformed_request_is_rejected_with_a_problem(served: Served, text: bytes) -> None:
@@ -287,13 +284,14 @@ def test_pipelined_requests_are_answered_in_order(served: Served) -> None:
     assert [status for status, _ in result[1::2]] == [200] * 8
 
 
-def test_flood_of_pipelined_requests_is_disconnected(served: Served) -> None:
-    assert len(served.responses(GET * 10_000, number=10_000)) < 10_000
+def test_flood_of_pipelined_requests_is_answered_one_by_one(served: Served) -> None:
+    """The next is read when the response to the one before is written."""
+    assert [status for status, _ in served.responses(GET * 3_000, number=3_000)] == [200] * 3_000
 
 
 def test_malformed_request_after_another_gets_its_own_response(served: Served) -> None:
     result = served.responses(GET + b"NONSENSE\r\n\r\n", number=2)
-    assert [status for status, _ in result] in ([], [200])
+    assert [status for status, _ in result] == [200, 400]
 
 
 @pytest.mark.parametrize("offer", [UPGRADE, b"Connection: upgrade\r\nUpgrade: websocket\r\n"])
@@ -356,10 +354,9 @@ def test_100_continue_is_sent(served: Served) -> None:
         ([b"G", b"E", b"T", b" ", b"/"], "headers-too-slow"),
         ([post()[:-1]], "body-too-slow"),
         ([post()[:-2], b"}"], "body-too-slow"),
-        ([b"\r\n"] * 5, "headers-too-slow"),
         ([post(), post()[:40]], "headers-too-slow"),
     ],
-    ids=["nothing", "a byte at a time", "no end of body", "dribbled body", "empty lines", "second"],
+    ids=["nothing", "a byte at a time", "no end of body", "dribbled body", "second"],
 )
 def test_slow_request_is_rejected(served: Served, pieces: list[bytes], name: str) -> None:
     with served.connect() as client:
