@@ -33,6 +33,7 @@ class Case:
     bound : largest deviation, relative to `scale`.
     uncertainty : that of the reference itself, relative to `scale`; 0 for an exact closed form.
     scale : magnitude to which deviations refer; that of the reference value unless given.
+    as_ratio : True if the deviation is the larger of both values over the smaller one, less one.
     """
 
     source: str
@@ -45,12 +46,15 @@ class Case:
     bound: float = ROUNDING
     uncertainty: float = 0.0
     scale: Any = None
+    as_ratio: bool = False
 
     def deviation(self, response: Json) -> float:
         """Return the deviation of the response from the reference, relative to `scale`."""
         found: Any = response
         for index in self.place:
             found = found[index]
+        if self.as_ratio:
+            return float(max(found / self.expected, self.expected / found) - 1)
         scale = self.expected if self.scale is None else self.scale
         return float(abs((found - self.expected) / scale))
 

@@ -9,7 +9,15 @@ from typing import Any, Final
 
 from tests.conftest import Client
 
-from verification import abel_pairs, frictional_contacts, normal_contacts, ring_elements, stresses
+from verification import (
+    abel_pairs,
+    adhesion,
+    frictional_contacts,
+    model_errors,
+    normal_contacts,
+    ring_elements,
+    stresses,
+)
 from verification.case import Case
 from verification.sources import SOURCES
 
@@ -21,6 +29,10 @@ _NOTES: Final = (
         "reference are relative to the reference value, of stresses to the peak pressure. "
         "Deviations are rounded up to one digit; below 1e-11 they are rounding error, which varies "
         "with the processor."
+    ),
+    (
+        "`model_error` is an estimate: its deviation is the factor between it and the error to the "
+        "fuller model of the source, less one."
     ),
     (
         "The tables of Buie's pair no. 1 converge slowly, with the root of the spacing: the "
@@ -53,7 +65,8 @@ class Row:
 
 def cases() -> Iterator[Case]:
     """Yield every case."""
-    for module in (normal_contacts, frictional_contacts, stresses, abel_pairs, ring_elements):
+    own = (normal_contacts, adhesion, frictional_contacts, stresses, abel_pairs, model_errors)
+    for module in (*own, ring_elements):
         yield from module.cases()
 
 

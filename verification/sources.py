@@ -31,5 +31,14 @@ SOURCES: Final = {
         "Friction, Springer 2015, chapter 5"
     ),
     "contactmechanics": "L. Pastewka et al., ContactMechanics, test_reference_solutions.py",
+    "jkr": "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301-313",
+    "kendall": "K. Kendall, J. Phys. D 4 (1971) 1186-1195",
+    "maugis": "D. Maugis, Langmuir 11 (1995) 679-682",
+    "popov-adhesion": (
+        "V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and "
+        "Friction, Springer 2015, chapter 4"
+    ),
+    "hay": "J. C. Hay, A. Bolshakov, G. M. Pharr, J. Mater. Res. 14 (1999) 2296-2305",
+    "spence": "D. A. Spence, Proc. R. Soc. Lond. A 305 (1968) 55-80",
     "ring-elements": "Independent numerical solution, with bounds: verification/ring_elements.py",
 }

@@ -1,0 +1,64 @@
+"""Estimates of the model's own error against fuller models, within a factor of three."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from mpmath import log, mpf, pi
+
+from verification.case import Case, at
+
+# An estimate is right within a factor of three.
+_FACTOR = 2.0
+
+
+def _material(nu: float) -> dict[str, Any]:
+    return {"bodies": ["rigid", {"youngs_modulus": 1.0, "poissons_ratio": nu}]}
+
+
+def steep_cones() -> Iterator[Case]:
+    """Force over Sneddon's, by the radial displacement that the half-space model neglects."""
+    for nu, slope in ((0.0, 0.1), (0.0, 0.3), (0.2, 0.2), (0.3, 0.1), (0.3, 0.36)):
+        k = (1 - 2 * mpf(nu)) / (4 * (1 - mpf(nu)))
+        rise = pi / 4 + mpf("0.15483073") * k * slope
+        fall = pi / 2 - mpf("0.83119312") * k * slope
+        request = {
+            "profile": {"kind": "cone", "slope": slope},
+            "material": _material(nu),
+            "load": {"indentation_depth": 1.0},
+        }
+        yield Case(
+            *(
+                "hay",
+                "force ratio",
+                f"rigid cone of slope {slope}, ν = {nu}: model_error",
+                "/v1/normal",
+            ),
+            *(request, at("model_error"), pi * rise / fall**2 - 1),
+            bound=_FACTOR,
+            as_ratio=True,
+        )
+
+
+def stuck_punches() -> Iterator[Case]:
+    """Force of a bonded punch over Boussinesq's, by the coupling of normal and shear stress."""
+    for nu in (0.0, 0.2, 0.3):
+        request = {
+            "profile": {"kind": "flat_punch", "radius": 1.0},
+            "material": _material(nu),
+            "load": {"normal_force": 1.0},
+            "friction_coefficient": 1e3,
+            "tangential": {"tangential_force": 0.0},
+        }
+        value = (1 - mpf(nu)) * log(3 - 4 * mpf(nu)) / (1 - 2 * mpf(nu)) - 1
+        yield Case(
+            *("spence", "bonded punch", f"stuck punch, ν = {nu}: model_error", "/v1/tangential"),
+            *(request, at("model_error"), value),
+            bound=_FACTOR,
+            as_ratio=True,
+        )
+
+
+def cases() -> Iterator[Case]:
+    """Yield all cases of this module."""
+    yield from steep_cones()
+    yield from stuck_punches()
