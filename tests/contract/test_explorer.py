@@ -15,7 +15,7 @@ from tests.contract.conftest import Visit, needs_chromium
 from tests.contract.forged_addresses import forged
 
 pytestmark = [pytest.mark.long, needs_chromium]
-TABS = ["press", "push", "cycle", "stress", "wear"]
+TABS = ["press", "push", "cycle", "impact", "stress", "wear"]
 SCENES = 60
 ADDRESSES = 2_000
 

@@ -1,8 +1,8 @@
-// The five analyses and the fields that they add to the form.
+// The analyses and the fields that they add to the form.
 
 import { controls, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
-import { solveCycle, solvePress, solvePush, solveStress, solveWear } from "./results.js";
+import { solveCycle, solveImpact, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
 const SHARE = ["Share of µF_N", "1"];
 
@@ -22,7 +22,7 @@ export function bodyFields(inputs, i) {
 
 /** Return the fields of the load of the inputs. */
 export function loadFields(inputs) {
-  if (inputs.tab === "cycle") return [];
+  if (["cycle", "impact"].includes(inputs.tab)) return [];
   const choices = choicesOf(controls(inputs.tab));
   const [label, dimension] = QUANTITIES[inputs.control];
   return [
@@ -63,6 +63,18 @@ export const ANALYSES = {
       { key: "tangential", label: "Tangential control", choices: choicesOf(TANGENTIAL) },
     ],
     solve: solveCycle,
+  },
+  impact: {
+    title: "Impact",
+    lead: "The body hits the other one obliquely: how does it rebound, and how much energy does friction take?",
+    fields: () => [
+      FRICTION,
+      { key: "mass", label: "Mass m of the moving body", dimension: "kg" },
+      { key: "share", label: "Tangential mass over m (sphere 2/7)", dimension: "1", range: [0.1, 1] },
+      { key: "approach", label: "Normal velocity", dimension: "m/s" },
+      { key: "along", label: "Tangential velocity", dimension: "m/s" },
+    ],
+    solve: solveImpact,
   },
   stress: {
     title: "Stress",

@@ -4,7 +4,7 @@ import { KINDS, measuredBall, wireProfile } from "./shapes.js";
 import { LENGTHS } from "./table_reader.js";
 import { BASE_UNITS, numberOf } from "./units.js";
 
-export const TABS = ["press", "push", "cycle", "stress", "wear"];
+export const TABS = ["press", "push", "cycle", "impact", "stress", "wear"];
 export const NORMAL = ["normal_force", "indentation_depth"];
 export const TANGENTIAL = ["tangential_force", "tangential_displacement"];
 export const RIGID = "rigid";
@@ -17,6 +17,7 @@ const DEFAULTS = {
   mu: 0.3, push: "ratio", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
+  mass: 0.033, share: 0.286, approach: 0.1, along: 0.05,
   body: 1, yield: 1.5e9,
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",

@@ -195,7 +195,8 @@ function showAccuracy(responses, notes) {
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
-  "/history": "path", "/profile/r/": "table", "/profile/f/": "table",
+  "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
+  "/tangential_velocity": "along", "/profile/r/": "table", "/profile/f/": "table",
   "/material/bodies/0/youngs_modulus": "e1", "/material/bodies/0/poissons_ratio": "nu1",
   "/material/bodies/1/youngs_modulus": "e2", "/material/bodies/1/poissons_ratio": "nu2",
   "/material/bodies": "material-2",

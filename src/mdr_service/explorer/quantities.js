@@ -24,5 +24,10 @@ export const QUANTITIES = {
   worn_volume: ["Worn volume", "volume"],
   cycles: ["Cycles", "1"],
   friction_coefficient: ["Friction coefficient µ", "1"],
+  tangential_velocity: ["Tangential velocity before", "m/s"],
+  tangential_rebound_velocity: ["Tangential velocity after", "m/s"],
+  duration: ["Duration", "s"],
+  maximum_indentation_depth: ["Largest depth d", "displacement"],
+  maximum_normal_force: ["Largest normal force", "force"],
   stress_xx: ["Stress σ_xx", "pressure"],
 };

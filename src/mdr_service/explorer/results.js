@@ -198,6 +198,48 @@ export async function solveCycle(inputs, query) {
   };
 }
 
+export async function solveImpact(inputs, query) {
+  const body = {
+    ...basics(inputs), friction_coefficient: inputs.mu,
+    normal_mass: inputs.mass, tangential_mass: inputs.share * inputs.mass, normal_velocity: inputs.approach,
+  };
+  // Beyond some twice this velocity every body slides throughout.
+  const sliding = (2 * inputs.mu * inputs.approach) / inputs.share;
+  const most = Math.max(2 * sliding, 1.2 * Math.abs(inputs.along));
+  const before = Array.from({ length: 41 }, (_, i) => (most * i) / 40);
+  const [hit, curve] = await Promise.all([
+    query("Impact", "v1/tangential/impact", { ...body, tangential_velocity: inputs.along }),
+    query("Curve", "v1/tangential/impact", { ...body, tangential_velocity: before }),
+  ]);
+  const now = single(hit);
+  const sign = Math.sign(inputs.along) || 1;
+  const size = {
+    ...now, tangential_velocity: Math.abs(inputs.along),
+    tangential_rebound_velocity: sign * now.tangential_rebound_velocity,
+  };
+  const energy = (body.tangential_mass * inputs.along ** 2) / 2;
+  return {
+    responses: [hit, curve],
+    known: {},
+    numbers: [
+      ...numbersOf(now, ["tangential_rebound_velocity", "maximum_normal_force"]),
+      ["Regime", now.regime === "full_slip" ? "slides throughout" : now.regime.replace("_", " ")],
+      ...numbersOf(now, ["duration", "maximum_indentation_depth", "dissipated_energy"]),
+      ["Dissipated share of the tangential energy", energy && now.dissipated_energy / energy, "1"],
+    ],
+    charts: [
+      relationChart(
+        "Curve", "Rebound against incidence", curve,
+        ["tangential_velocity", "tangential_rebound_velocity"], size, { mark: "this impact" },
+      ),
+      relationChart(
+        "Curve", "Dissipated energy against incidence", curve,
+        ["tangential_velocity", "dissipated_energy"], size, { mark: "this impact" },
+      ),
+    ],
+  };
+}
+
 export async function solveStress(inputs, query) {
   const force = await normalForce(inputs, query);
   const base = pushed(inputs, force);
