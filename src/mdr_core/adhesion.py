@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
+from mdr_core import validation
 from mdr_core.breaks import has_many_breaks
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
@@ -34,17 +35,6 @@ from mdr_core.normal import CONTROLS, NormalContact
 from mdr_core.profiles import FlatPunch, Profile
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.typing import Array
-from mdr_core.validation import (
-    FINITE,
-    extremes,
-    first_index,
-    only_one,
-    require_inside,
-    require_positive,
-    require_single_profile,
-    require_tolerance,
-    require_type,
-)
 
 # Parts of c at which a state loses its stability.
 _SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
@@ -132,7 +122,9 @@ class _Curve:
         nodes = np.union1d(nodes, np.linspace(nodes[at - 1], nodes[at + 1], _FINE))
         values = height(nodes)
         stable = values > 0
-        end = self.profile.last_coordinate is not None and extremes(self.profile.domain)[1]
+        end = (
+            self.profile.last_coordinate is not None and validation.extremes(self.profile.domain)[1]
+        )
         if not stable[-1] or (stable[0] and values[0] < values[1]):
             reason = (
                 f"to radius {end:.6g}, where the profile ends: extend it, or reduce the work"
@@ -358,19 +350,21 @@ def solve(
     >>> round(float(contact.pull_off_force) / (np.pi * 0.05 * 2e-6), 12)
     -1.5
     """
-    require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    require_tolerance(rtol)
-    require_single_profile(profile.swept)
+    validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
+    validation.require_tolerance(rtol)
+    validation.require_single_profile(profile.swept)
     material = e_star if isinstance(e_star, Material) else None
     modulus: Any = normal_modulus(e_star)
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
-        require_positive(("material", field), value)
+        validation.require_positive(("material", field), value)
         if np.ndim(value):
             raise InputError(("material", field), "must be a single number with adhesion")
     loads = (indentation_depth, normal_force, contact_radius)
-    name, load = only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
+    name, load = validation.only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
     if not (np.size(load) and np.isfinite(load).all()):
-        raise InputError(("load", name), FINITE if np.size(load) else "at least one load is needed")
+        raise InputError(
+            ("load", name), validation.FINITE if np.size(load) else "at least one load is needed"
+        )
     curve = _Curve(profile, sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus))
     coordinate, retraction, states = _state(curve, name, load, modulus)
     at_pull_off = float(curve.retraction(curve.at_pull_off))
@@ -390,15 +384,14 @@ def _state(curve: _Curve, name: str, load: Array, e_star: float) -> tuple[Array,
     """Coordinate and retraction under each load, and the most states under one of them."""
     profile, states = curve.profile, 1
     if name == "contact_radius":
-        require_positive(("load", name), load)
+        validation.require_positive(("load", name), load)
         at = coordinate_from_radius(profile, load)
-        low, high = curve.stable["indentation_depth"]
-        near = np.multiply.outer(at, [1 + sqrt(_ROUNDING), 1 - sqrt(_ROUNDING)])
-        bad = ~((near[..., :1] >= low) & (near[..., 1:] <= high)).any(axis=-1)
+        bad = np.asarray(~(curve.excess(_SHARES["indentation_depth"], at) >= -sqrt(_ROUNDING)))
         if some(bad):
+            low, _ = curve.stable["indentation_depth"]
             radius = profile.contact_radius(low[np.argmin(curve.load("indentation_depth", low))])
             detail = f"is not stable: at pull-off under a prescribed depth it is {radius:.9g}"
-            raise InputError(("load", name, *first_index(np.asarray(bad))), detail)
+            raise InputError(("load", name, *validation.first_index(bad)), detail)
         return at, curve.retraction(at), states
     of_force = name == "normal_force"
     unit = e_star if of_force else 1.0
@@ -406,10 +399,12 @@ def _state(curve: _Curve, name: str, load: Array, e_star: float) -> tuple[Array,
     below = np.asarray(amount < least * (1 + _LOAD))
     if some(below):
         detail = f"is below the pull-off, {least * unit:.9g}: there is no contact"
-        raise InputError(("load", name, *first_index(below)), detail, below)
+        raise InputError(("load", name, *validation.first_index(below)), detail, below)
     if profile.has_no_partial_slip:
         depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount
         return np.maximum(depth, 0.0), np.maximum(-depth, 0.0), states
-    require_inside(name, amount > curve.load(name, curve.stable[name][1][-1]), profile.domain)
+    validation.require_inside(
+        name, amount > curve.load(name, curve.stable[name][1][-1]), profile.domain
+    )
     at, states = curve.outermost(name, np.ravel(amount))
     return (at := at.reshape(np.shape(load))[()]), curve.retraction(at), states

@@ -306,11 +306,8 @@ class LimitingWear(validity.ContactResults):
             "contact_lost": self.stick_zone.separated,
             "endless_wear": self.stick_zone.unbounded,
         }
-        own = [
-            Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code))
-            for code, flags in where.items()
-            if some(flags)
-        ]
+        raised = [code for code, flags in where.items() if some(flags)]
+        own = [Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code)) for code in raised]
         return (*self.tangential_contact.warnings_without_bodies, *own)
 
 

@@ -78,12 +78,8 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         message = "stresses are infinite on the surface, where the pressure is"
         warnings.append(Notice("singular", message))
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
-    return (
-        {"x": x, "z": z}
-        | values
-        | searched
-        | response_metadata(query, source, method, error, warnings)
-    )
+    about = response_metadata(query, source, method, error, warnings)
+    return {"x": x, "z": z} | values | searched | about
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:
