@@ -23,7 +23,7 @@ from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
-from mdr_core.typing import Array, Flags, Indices
+from mdr_core.typing import Array, Flags, Indices, Parameter
 
 # Intervals evaluated at once, so that their nodes stay in the processor's cache.
 _BLOCK: Final = 1024
@@ -282,7 +282,7 @@ class IntervalMoments:
                 estimate = span / slope
             width = np.where(thin & (estimate > 0), np.minimum(estimate, stop), width)
         share, weights, cumulative = cumulative_rule(_POINTS)
-        place, moved = _in_logarithm(stop, width, share)
+        place, moved = _in_logarithm(stop, width, share, 1 / profile.pole)
         if some(beyond):
             root, climb = _in_root(stop - base, start - base, width, share)
             place = np.where(beyond, np.minimum(base + root * root, stop), place)
@@ -320,11 +320,17 @@ def _from_below(function: Function, breaks: Array) -> Array:
     return np.asarray(2 * near - far)
 
 
-def _in_logarithm(stop: Array, width: Array, share: Array) -> tuple[Array, Array]:
-    """Return the places at parts `share` of intervals in the logarithm, and their derivatives."""
-    stretch = -np.log1p(-np.minimum(width / stop, 1 - _EPS))
-    place = stop * np.exp(-stretch * (1 - share))
-    return place, place * stretch
+def _in_logarithm(
+    stop: Array, width: Array, share: Array, per_pole: Parameter
+) -> tuple[Array, Array]:
+    """Return the places at parts `share` of intervals in log(s/(R - s)), and their derivatives.
+
+    1/R = `per_pole`, zero for the logarithm of s.
+    """
+    ahead = 1 - stop * per_pole
+    stretch = -np.log1p(-np.minimum(width / stop, 1 - _EPS)) + np.log1p(width * per_pole / ahead)
+    place = stop / (ahead * np.exp(stretch * (1 - share)) + stop * per_pole)
+    return place, place * (1 - place * per_pole) * stretch
 
 
 def _in_root(top: Array, bottom: Array, width: Array, share: Array) -> tuple[Array, Array]:

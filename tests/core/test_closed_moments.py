@@ -4,8 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from mdr_core.interval_moments import IntervalMoments
-from mdr_core.profiles import Cone, Paraboloid
+from mdr_core.interval_moments import IntervalMoments, interval_moments
+from mdr_core.profiles import Cone, Paraboloid, SphericalTipCone
 
 SLOPE, RADIUS = 0.3, 1.7
 BERNSTEIN = (lambda t: (1 - t) ** 2, lambda t: 2 * t * (1 - t), lambda t: t * t)
@@ -55,3 +55,23 @@ def test_moments_over_an_interval(profile, over_forces, normal, ends):
         given = np.array([float(normal(low))]), np.array([float(span)]), np.array(ends)[:, None]
     found = IntervalMoments(profile, over_forces=over_forces).over(*given)
     assert found.weights[:, 0] == pytest.approx(np.array(expected), rel=2e-15, abs=0)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.5, 0.999), (0.9, 0.95)])
+def test_moments_next_to_the_equator_of_a_tip(low, high):
+    """int B_k(t) 2 dx, t from 0 to 1 with g = x artanh x, up to 0.999 of the tangent radius."""
+    profile = SphericalTipCone(10.0, 1.0)
+    ends = np.array([[low], [high]]) * float(profile.tangent_radius)
+    moments = interval_moments(profile, over_forces=False)
+    depth = profile.depth(ends)
+    found = moments.over(depth[0], depth[1] - depth[0], ends).weights[:, 0]
+    with mpmath.workdps(20):
+        start, stop = (mpmath.mpf(float(end)) for end in ends[:, 0])
+        bottom, top = (x * mpmath.atanh(x) for x in (start, stop))
+        for k, value in enumerate(found.tolist()):
+
+            def density(x, k=k):
+                t = (x * mpmath.atanh(x) - bottom) / (top - bottom)
+                return 2 * mpmath.binomial(2, k) * t**k * (1 - t) ** (2 - k)
+
+            assert abs(value / mpmath.quad(density, mpmath.linspace(start, stop, 5)) - 1) < 1e-12

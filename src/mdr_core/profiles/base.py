@@ -159,6 +159,11 @@ class Profile(ABC):
         return ()
 
     @property
+    def pole(self) -> Parameter:
+        """Contact coordinate beyond a break at which g' below it would be infinite."""
+        return inf
+
+    @property
     def tip_pressure(self) -> Parameter:
         """Limit of mean pressure / E* as the load vanishes [1]: zero for smooth and blunt tips."""
         return 0.0

@@ -54,8 +54,8 @@ class SphericalTipCone(TippedCone):
         return Sphere(self.tip_radius)
 
     @property
-    def _pole(self) -> float:
-        return float(np.asarray(self.tip_radius))
+    def pole(self) -> Parameter:
+        return self.tip_radius
 
     @cached_property
     def _opposite_singularity(self) -> Parameter:

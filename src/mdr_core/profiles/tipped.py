@@ -49,11 +49,6 @@ class Tipped(Profile):
         """F_N(x)/E* beyond b [length^2]."""
 
     @property
-    def _pole(self) -> float:
-        """Radius beyond b at which g' of the tip is infinite [length]."""
-        return inf
-
-    @property
     def _opposite_singularity(self) -> Parameter:
         """Distance of the flank's singularity at s = -`_opposite_singularity` [length]."""
         return inf
@@ -79,7 +74,7 @@ class Tipped(Profile):
         b = float(np.asarray(self.tangent_radius))
         singularity = float(np.asarray(self._opposite_singularity))
         return (
-            Branch(0.0, lambda x, _: self._tip.dg(x), b, pole=self._pole),
+            Branch(0.0, lambda x, _: self._tip.dg(x), b, pole=float(np.asarray(self.pole))),
             Branch(b, self._flank_weight, opposite_singularity=singularity),
         )
 
