@@ -164,14 +164,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def slip_fronts(self) -> Array:
         """Radii of the slip fronts at the end of the history, ascending [length]."""
-        profile, steps = self.path.start.profile, self.results
-        if profile.has_no_partial_slip:
-            return np.zeros(0)
-        if isinstance(steps, ExtrapolatedResults):
-            return self.state.slip_fronts
-        # The state would be built for them alone.
-        part, at = steps.last_vertices
-        return profile.contact_radius(part.coordinate[at[1:-1]])
+        return self.state.slip_fronts
 
     @property
     def method(self) -> str:

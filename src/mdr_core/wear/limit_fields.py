@@ -32,10 +32,7 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
         # S(0; r) is the profile itself.
         lag = np.where(profile.has_no_partial_slip, 0.0, profile.f(at))
         some = np.flatnonzero(annuli.stick > 0)
-        if some.size and "slip" in profile.closed_forms:
-            lag[some] = profile.slip_kernel(annuli.stick[some], at[some], RTOL)
-        elif some.size:
-            lag[some] = annuli.chosen(some).slip_kernel(width[some])
+        lag[some] = annuli.chosen(some).slip_kernel(width[some])
         share = np.where(at > 0, 2 / np.pi * annuli.angle(width), 1.0)
         # At the outer edge of the annulus the terms cancel but for rounding error.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
