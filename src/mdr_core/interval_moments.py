@@ -282,7 +282,7 @@ class IntervalMoments:
                 estimate = span / slope
             width = np.where(thin & (estimate > 0), np.minimum(estimate, stop), width)
         share, weights, cumulative = cumulative_rule(_POINTS)
-        place, moved = _in_logarithm(stop, width, share, 1 / profile.pole)
+        place, moved = _in_logarithm(stop, width, share, np.where(beyond, 0.0, 1 / profile.pole))
         if some(beyond):
             root, climb = _in_root(stop - base, start - base, width, share)
             place = np.where(beyond, np.minimum(base + root * root, stop), place)
