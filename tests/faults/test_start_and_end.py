@@ -77,8 +77,7 @@ def test_sighup_is_ignored_under_nohup() -> None:
 
 def test_second_interrupt_completes_the_request_in_flight_at_once() -> None:
     port = free_port()
-    with running(service(port), port, **FEW) as process:
-        client = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
+    with running(service(port), port, **FEW) as process, connected(port) as client:
         # A few seconds of computation.
         ball = EXAMPLES["evolution"]["shakedown"]["value"]
         query = ball | {"resolution": 96, "cycles": [10.0 * n for n in range(2000)]}
