@@ -79,6 +79,17 @@ def test_results_are_those_of_hertz(visit: Visit) -> None:
     )
 
 
+@pytest.mark.parametrize("load", ["-2e-4", "0", "1e-3"])
+def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
+    visit.open(f"?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&w=0.05&load={load}&uf=mN")
+    assert visit.page.locator("#problem").is_hidden()
+    # -(3/2) π w R.
+    force = float(visit.number("Pull-off force").split()[0].replace("−", "-"))
+    assert force == pytest.approx(-1.5 * math.pi * 0.05, rel=1e-4, abs=0)
+    assert "The model of half-spaces itself errs by about 0." in visit.page.inner_text("#accuracy")
+    assert not visit.errors
+
+
 def test_latest_slider_position_is_drawn(visit: Visit) -> None:
     visit.open("?tab=push&kind=rounded_punch")
     visit.page.evaluate(

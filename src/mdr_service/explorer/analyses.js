@@ -45,7 +45,7 @@ export const ANALYSES = {
   press: {
     title: "Press",
     lead: "Two bodies are pressed together: how large is the contact, and how high is the pressure?",
-    fields: () => [],
+    fields: () => [{ key: "w", label: "Work of adhesion (0: none)", dimension: "N/m", range: [0, 1] }],
     solve: solvePress,
   },
   push: {

@@ -13,7 +13,7 @@ const DEFAULTS = {
   tab: "press",
   kind: "paraboloid",
   e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3,
-  control: "normal_force", load: 100,
+  control: "normal_force", load: 100, w: 0,
   mu: 0.3, push: "ratio", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",

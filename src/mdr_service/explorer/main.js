@@ -14,7 +14,7 @@ import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
 import { connectTable, showTable } from "./table_field.js";
-import { BASE_UNITS, quantity } from "./units.js";
+import { BASE_UNITS, format, quantity } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs;
@@ -183,8 +183,10 @@ function showAccuracy(responses, notes) {
   const methods = [...new Set(responses.map((response) => response.method.replace("_", " ")))];
   const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
   const ofFields = fields ? `, of fields ${quantity(fields, "1", inputs, 2)} of their largest value` : "";
+  const model = 100 * Math.max(...responses.flatMap((response) => response.model_error));
   $("#accuracy").textContent =
-    `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}.`;
+    `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
+    `The model of half-spaces itself errs by about ${format(model, 2)} %.`;
   const warnings = [...notes, ...responses.flatMap((response) => response.warnings)];
   const messages = new Map(warnings.map(({ code, message }) => [code, message]));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>
@@ -195,6 +197,7 @@ function showAccuracy(responses, notes) {
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
+  "/material/work_of_adhesion": "w",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
   "/tangential_velocity": "along", "/profile/r/": "table", "/profile/f/": "table",
   "/material/bodies/0/youngs_modulus": "e1", "/material/bodies/0/poissons_ratio": "nu1",

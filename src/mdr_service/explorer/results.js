@@ -88,7 +88,40 @@ function shearStressChart(request, field, mu, edges) {
   ]);
 }
 
+/** Return an adhesive contact, with its force against depth from the pull-off on. */
+async function solveAdhesive(inputs, query) {
+  const { profile, material } = basics(inputs);
+  const body = { profile, material: { ...material, work_of_adhesion: inputs.w } };
+  const now = single(await query("Contact", "v1/normal", { ...body, load: { [inputs.control]: inputs.load } }));
+  const { pull_off_depth: least, pull_off_force: weakest } = now;
+  const span = Math.max(now.indentation_depth, -least) * 1.2 - least;
+  const depths = Array.from({ length: 61 }, (_, i) => least + span * (i / 60) ** 2);
+  // A force has another state than a depth below the pull-off under force.
+  const same = inputs.kind === "flat_punch" ? "normal_force" : "contact_radius";
+  const [curve, field] = await Promise.all([
+    query("Curve", "v1/normal", { ...body, load: { indentation_depth: depths } }),
+    fieldsOf(query, "Pressure", { ...body, load: { [same]: now[same] } }, ["pressure"]),
+  ]);
+  const relation = relationChart("Curve", "Force against depth", curve, ["indentation_depth", "normal_force"], now);
+  const at = curve.normal_force.indexOf(Math.min(...curve.normal_force));
+  relation.traces.push(marker("pull-off", curve.indentation_depth[at], weakest));
+  return {
+    responses: [curve, field],
+    known: now,
+    numbers: numbersOf(now, [
+      "contact_radius", "pull_off_force", "pull_off_depth", "indentation_depth", "normal_force", "maximum_pressure",
+      "normal_stiffness", "elastic_energy", "retraction",
+    ]),
+    charts: [
+      pressureChart("Pressure", field, [["a", now.contact_radius]], { size: "wide" }),
+      relation,
+      relationChart("Curve", "Contact radius against force", curve, ["normal_force", "contact_radius"], now),
+    ],
+  };
+}
+
 export async function solvePress(inputs, query) {
+  if (inputs.w > 0) return solveAdhesive(inputs, query);
   const force = await normalForce(inputs, query);
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
   const [curve, field] = await Promise.all([
