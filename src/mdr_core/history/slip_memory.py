@@ -6,9 +6,14 @@ form a polyline from the axis to the load point. Friction limits its slope to +-
 
     forward = n + anchor,    backward = n - anchor
 
-increase along the polyline and never exceed their values at the load point. A load step removes
-the vertices that exceed the new load point and appends a corner and the load point:
-`slip_kernel.PolylineStack`.
+increase along the polyline and never exceed their values at the load point. From the vertices
+V_0 ... V_m a straight load step to P leaves
+
+    V_0 ... V_m, P       if no vertex exceeds P in either sum: all springs stick,
+    V_0 ... V_k, C, P    otherwise; V_k is the last vertex that does not, and the corner C the place
+                         above it where the polyline exceeds P.
+
+`slip_kernel.PolylineStack` is this recurrence.
 
 Coordinates are unevaluated sums (high, low) of two doubles. Load points and most corners are
 therefore exact copies of the input, and differences stay accurate at small amplitudes. Normal
