@@ -174,8 +174,7 @@ class TangentialContact(validity.ContactResults):
         notes, §6.
         """
         profile, e_star = self.normal.profile, self.normal.e_star
-        energy = self.normal.elastic_energy / e_star
-        moment = slip_moment(profile, self._coordinate, *self._slipping, energy)
+        moment = slip_moment(profile, self._coordinate, *self._slipping)
         slipping = 2 * self.friction_coefficient * self.displacement_ratio * e_star * moment
         return slipping + self.limiting_force * self.excess
 

@@ -4,7 +4,6 @@ Source: notes, §4.
 """
 
 from collections.abc import Callable
-from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -63,16 +62,8 @@ def kappa(exponent: Parameter) -> Array:
 
     Source: mdr-5, Eq. (5.25), as pi/B((n + 1)/2, 1/2).
     """
-    return _kappa_of_one(exponent) if isinstance(exponent, float) else _kappa(exponent)
-
-
-def _kappa(exponent: Parameter) -> Array:
     inverse: Any = beta((exponent + 1) / 2, 0.5)
     return np.pi / inverse
-
-
-# Every function of a power takes it again.
-_kappa_of_one = lru_cache(maxsize=256)(_kappa)
 
 
 # c/a and 1 - c/a from the load over that of full slip, and from 1 less that, all accurate [1].
