@@ -1,6 +1,6 @@
 """A compute process: its handle in the server, and the loop that it runs.
 
-Calls and outcomes are preceded by their length, and pickled unless they are bytes.
+Calls and outcomes are pickled, and preceded by their length.
 """
 
 import os
@@ -19,8 +19,8 @@ from typing import Any, Final, Self, cast
 from mdr_core.errors import DefectError
 from mdr_service import observability, problems
 
-# Before each message: whether it is bytes rather than a pickle, and its length.
-_HEAD: Final = struct.Struct("?Q")
+# Before each message: its length.
+_HEAD: Final = struct.Struct("Q")
 # A beat takes 75 microseconds; a process that gets no core for this time is unusable as well.
 _BEAT_SECONDS: Final = 2.0
 # Interval at which a process checks that its parent exists.
@@ -59,12 +59,11 @@ class ComputeProcess:
         message = pickle.dumps((function, arguments))
         try:
             async with timeout(seconds):
-                self._calls.writelines((_HEAD.pack(0, len(message)), message))
+                self._calls.writelines((_HEAD.pack(len(message)), message))
                 await self._calls.drain()
-                is_bytes, length = _HEAD.unpack(await self._outcomes.readexactly(_HEAD.size))
-                outcome = await self._outcomes.readexactly(length)
+                (length,) = _HEAD.unpack(await self._outcomes.readexactly(_HEAD.size))
                 # The pipe's other end is the server's own code.
-                return outcome if is_bytes else pickle.loads(outcome)  # noqa: S301
+                return pickle.loads(await self._outcomes.readexactly(length))  # noqa: S301
         except BaseException:
             self.kill()
             raise
@@ -99,10 +98,8 @@ def serve() -> None:
     os.dup2(2, 1)
     observability.configure_logging()
     while head := calls.read(_HEAD.size):
-        outcome = _attempt(calls.read(_HEAD.unpack(head)[1]))
-        is_bytes = isinstance(outcome, bytes)
-        content = outcome if is_bytes else pickle.dumps(outcome)
-        outcomes.writelines((_HEAD.pack(is_bytes, len(content)), content))
+        content = pickle.dumps(_attempt(calls.read(*_HEAD.unpack(head))))
+        outcomes.writelines((_HEAD.pack(len(content)), content))
         outcomes.flush()
 
 

@@ -5,10 +5,11 @@ import os
 import re
 from asyncio import CancelledError
 from collections.abc import Mapping
+from math import inf
 from typing import Any, Final
 
 import orjson
-from anyio import move_on_after
+from anyio import CancelScope, current_time
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
@@ -31,11 +32,8 @@ from mdr_service.transfers import LONG, Transfers
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
 # Status in the log for a client that disconnected before the response, as in nginx.
 _CLIENT_CLOSED_REQUEST: Final = 499
-# Status sent before the body was read to its end.
-_UNREAD: Final = problems.BODY_TOO_LARGE.status
-# Time for a client on the same continent to read a response.
+# Time for a rejected client to finish sending.
 _LINGER_SECONDS: Final = 1.0
-_CLOSE: Final = ((b"connection", b"close"),)
 _ALWAYS: Final = (
     (b"x-content-type-options", b"nosniff"),
     (b"mdr-version", __version__.encode("ascii")),
@@ -83,7 +81,7 @@ class ServiceMiddleware:
         client, _ = scope.get("client") or ("", 0)
         record = RequestRecord(name, scope["method"], client)
         observability.CURRENT.set(record)
-        sender = _Sender(self.transfers, record, receive, send)
+        sender = _Sender(self.transfers, record, send)
         if scope["method"] == "HEAD":
             # The server leaves out the body.
             scope = {**scope, "method": "GET"}
@@ -116,12 +114,9 @@ class _Sender:
     written, and the end of a long response until all of it is.
     """
 
-    def __init__(
-        self, transfers: Transfers, record: RequestRecord, receive: Receive, send: Send
-    ) -> None:
+    def __init__(self, transfers: Transfers, record: RequestRecord, send: Send) -> None:
         self.transfers = transfers
         self.record = record
-        self.receive = receive
         self.send = send
         self.start: Message = {}
 
@@ -138,12 +133,7 @@ class _Sender:
                 self.start.update(status=response.status_code, headers=response.raw_headers)
                 message, size = {"type": message["type"], "body": response.body}, 0
         if size > LONG:
-            with self.transfers.sending() as scope:
-                await self._send_in_pieces(message, size)
-            if scope.cancelled_caught:
-                raise ClientDisconnect
-        elif self.start.get("status") == _UNREAD:
-            await self._linger(message)
+            await self._send_in_pieces(message, size)
         else:
             await self._send(message)
 
@@ -152,8 +142,7 @@ class _Sender:
         if not self.record.status:
             self.record.status = self.start["status"]
             marks = (b"x-request-id", self.record.id.encode("ascii"))
-            closing = _CLOSE if self.record.status == _UNREAD else ()
-            headers = [*self.start["headers"], marks, *_ALWAYS, *closing]
+            headers = [*self.start["headers"], marks, *_ALWAYS]
             await self.send({**self.start, "headers": headers})
         await self.send(message)
 
@@ -163,17 +152,6 @@ class _Sender:
             piece = body[begin : begin + LONG]
             await self._send({"type": message["type"], "body": piece, "more_body": True})
         await self._send({**message, "body": b""})
-
-    async def _linger(self, message: Message) -> None:
-        """Send the whole response, then discard the request body for a while.
-
-        A connection closed with unread data is reset, and the client may lose the response.
-        """
-        await self._send({**message, "more_body": True})
-        with move_on_after(_LINGER_SECONDS):
-            while (await self.receive()).get("more_body"):
-                pass
-        await self._send({"type": "http.response.body"})
 
 
 def problem_response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:
@@ -210,23 +188,25 @@ async def read_body(request: Request) -> bytes:
         detail = f"the Content-Type must be {json.MEDIA_TYPE}"
         raise ServiceError(problems.UNSUPPORTED_MEDIA_TYPE, detail)
     announced = header(request.scope, b"content-length")
-    if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:
-        raise _too_large()
+    is_too_large = announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes
     chunks: list[bytes] = []
     size = 0
-    async for chunk in request.stream():
-        size += len(chunk)
-        if size > SETTINGS.max_body_bytes:
-            raise _too_large()
-        if size > LONG:
-            request.app.state.transfers.add(observability.CURRENT.get(), len(chunk))
-        chunks.append(chunk)
+    # A connection closed with unread data is reset, and its response may be lost: the rest is read.
+    with CancelScope(deadline=current_time() + _LINGER_SECONDS if is_too_large else inf) as scope:
+        async for chunk in request.stream():
+            size += len(chunk)
+            if is_too_large or size > SETTINGS.max_body_bytes:
+                scope.deadline = min(scope.deadline, current_time() + _LINGER_SECONDS)
+                is_too_large = True
+                chunks.clear()
+                continue
+            if size > LONG:
+                request.app.state.transfers.add(observability.CURRENT.get(), len(chunk))
+            chunks.append(chunk)
+    if is_too_large:
+        detail = f"the limit is {SETTINGS.max_body_bytes} bytes"
+        raise ServiceError(problems.BODY_TOO_LARGE, detail)
     return b"".join(chunks)
-
-
-def _too_large() -> ServiceError:
-    detail = f"the limit is {SETTINGS.max_body_bytes} bytes"
-    return ServiceError(problems.BODY_TOO_LARGE, detail)
 
 
 # Coroutines: the framework runs plain functions in a thread, which takes five times as long as the

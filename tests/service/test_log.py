@@ -35,7 +35,7 @@ def test_warning_in_a_compute_process_is_a_line_of_json() -> None:
     call = pickle.dumps((warnings.warn, ("a picture is too small",)))
     process = subprocess.run(
         [sys.executable, "-c", "from mdr_service.compute_process import serve; serve()"],
-        input=_HEAD.pack(0, len(call)) + call,
+        input=_HEAD.pack(len(call)) + call,
         capture_output=True,
         check=True,
         timeout=PATIENCE,

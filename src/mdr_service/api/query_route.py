@@ -17,11 +17,9 @@ from mdr_service.middleware import header, read_body
 from mdr_service.problems import ServiceError
 from mdr_service.schemas import contacts
 from mdr_service.schemas.batch import BatchQuery
-from mdr_service.serializers import FORMATS, PICTURES, json
-from mdr_service.serializers.picture import AS_USUAL
+from mdr_service.serializers import FORMATS, PICTURES
 from mdr_service.workers import AT_ONCE_BYTES
 
-_ANY: Final = "*/*"
 # Bound; the longest query has about forty.
 _MAX_PARAMETERS: Final = 100
 # A list of errors on the event loop takes 0.1 ms up to this number.
@@ -42,15 +40,8 @@ class Responder:
         size: Annotated[str | None, Query(description=SIZE)] = None,
         units: Annotated[str | None, Query(description=UNITS)] = None,
     ) -> None:
-        accept = header(request.scope, b"accept", _ANY)
-        # Most clients accept anything.
-        if format_ is None and accept == _ANY:
-            self.media_type = json.MEDIA_TYPE
-        else:
-            self.media_type = media_type(format_, accept, self.formats)
-        self.appearance = AS_USUAL
-        if size is not None or units is not None:
-            self.appearance = appearance(self.media_type, size, units)
+        self.media_type = media_type(format_, header(request.scope, b"accept"), self.formats)
+        self.appearance = appearance(self.media_type, size, units)
         self.workers = request.app.state.workers
         self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 

@@ -1,6 +1,6 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
@@ -100,10 +100,6 @@ class Tangential(Choice):
     )
 
 
-# Young's modulus and Poisson's ratio of a body, None for a rigid one.
-_Constants = tuple[float, float] | None
-
-
 class BodyMaterial(Strict):
     """Elastic body."""
 
@@ -152,19 +148,14 @@ class Bodies(Elastic):
     @cached_property
     def effective(self) -> materials.Material:
         """Effective moduli."""
-        first, second = (
-            (each.youngs_modulus, each.poissons_ratio) if isinstance(each, BodyMaterial) else None
-            for each in self.bodies
+        return materials.from_bodies(
+            [
+                materials.RIGID
+                if isinstance(each, str)
+                else materials.Body(each.youngs_modulus, each.poissons_ratio)
+                for each in self.bodies
+            ]
         )
-        return _of_bodies(first, second)
-
-
-# A client often sends many queries about the same bodies.
-@lru_cache(maxsize=256)
-def _of_bodies(*constants: _Constants) -> materials.Material:
-    return materials.from_bodies(
-        [materials.Body(*each) if each else materials.RIGID for each in constants]
-    )
 
 
 class Moduli(Elastic):
@@ -245,11 +236,6 @@ class NormalQuery(Query):
 
     load: Load = Field(description="Exactly one control: depth, force or contact radius.")
 
-    @property
-    def loads(self) -> int:
-        # The search among the fields would make the smallest requests 3 % slower.
-        return self.load.count
-
 
 def friction(**field: Any) -> Any:
     """Return the field of a coefficient of friction."""
@@ -263,10 +249,6 @@ class TangentialQuery(NormalQuery):
     tangential: Tangential = Field(
         description="Exactly one control: force, displacement or stick radius."
     )
-
-    @property
-    def loads(self) -> int:
-        return max(self.load.count, self.tangential.count)
 
 
 # Pydantic inserts the branch of a union after these fields, or after the index of their items,

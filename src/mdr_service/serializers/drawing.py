@@ -107,7 +107,7 @@ def _draw_curves(axes: _Axes, panel: Panel) -> None:
         if finite.any():
             places |= set(x[~finite].tolist())
             heights = np.abs(y[finite])
-            if not finite.all() and y.size >= LINE:
+            if not finite.all() and y.size >= LINE and heights.any():
                 even = np.interp(np.linspace(x[0], x[-1], y.size), x[finite], heights)
                 heights = _HEADROOM * np.quantile(even[even > 0], [0.9])
             bound = max(bound, *heights)
@@ -138,6 +138,4 @@ def _draw_map(axes: _Axes, panel: Map) -> Any:
     axes.set_ylim(panel.at_z[-1], panel.at_z[0])
     if _FLAT < np.ptp(panel.at_z) / (np.ptp(panel.at_x) or 1.0) < 1 / _FLAT:
         axes.set_aspect("equal")
-    if panel.peak:
-        axes.plot(*panel.peak, "kx", label="largest")
     return colors

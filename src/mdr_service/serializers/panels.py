@@ -39,8 +39,6 @@ _OVER_LOADS: Final = (
 
 # Quantities that share a panel.
 _SHARED: Final = {"initial_profile": "profile", "limiting_profile": "profile"}
-# Accuracy of the place of the largest stress, as a share of the contact radius.
-_ACCURACY: Final = 1e-3
 
 
 class Units(NamedTuple):
@@ -69,13 +67,12 @@ class Panel(NamedTuple):
 
 
 class Map(NamedTuple):
-    """Values [z][x] of a stress, and place (x, z) of the largest of the body."""
+    """Values [z][x] of a stress."""
 
     name: str
     at_x: Array
     at_z: Array
     values: Array
-    peak: tuple[float, float] | None
     x: str = "x"
     y: str = "z"
 
@@ -99,10 +96,7 @@ def panels_of(
     x, z, maps = np.argsort(result["x"]), np.argsort(result["z"]), list[Panel | Map]()
     for name, field in result.items():
         if np.ndim(field) == 3:
-            peak = result.get("largest", {}).get(name)
-            in_plane = peak and abs(peak["y"][0] - query.y) < _ACCURACY * np.ptp(result["x"])
-            place = (peak["x"][0], peak["z"][0]) if in_plane else None
-            maps.append(Map(name, result["x"][x], result["z"][z], field[0][np.ix_(z, x)], place))
+            maps.append(Map(name, result["x"][x], result["z"][z], field[0][np.ix_(z, x)]))
     title = f"{_name(control, loads[0], units)} (1 of {len(loads)} loads)" if control else ""
     return title, maps
 
