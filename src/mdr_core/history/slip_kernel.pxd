@@ -22,9 +22,7 @@ cdef class PolylineStack:
     cpdef void move(self, double x, double y, bint continues, double load_step) noexcept
     cdef void _aim(self, double x, double y) noexcept
     @cython.locals(below=Py_ssize_t)
-    cdef void _stick(
-        self, double deeper, double further, double rise, double fall, double load_step
-    ) noexcept
+    cdef void _stick(self, double further, double load_step) noexcept
     @cython.locals(
         lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
         full=bint, oblique=bint
@@ -37,14 +35,13 @@ cdef class PolylineStack:
     @cython.locals(first=bint)
     cdef Py_ssize_t _last_reached(self, Py_ssize_t lower, Py_ssize_t upper) noexcept
     @cython.locals(at=Py_ssize_t)
-    cdef void _extend(
-        self, Py_ssize_t below, double forward_step, double backward_step, double further,
-        double load_step
-    ) noexcept
-    cdef void _lay(self, Py_ssize_t at, double further) noexcept
+    cdef void _extend(self, Py_ssize_t below, double further, double load_step) noexcept
     cdef Py_ssize_t _constant(self, Py_ssize_t at) noexcept
     cdef void _put(
         self, Py_ssize_t at, Py_ssize_t own, double high, double low, double growth
+    ) noexcept
+    cdef void _copy(
+        self, Py_ssize_t at, Py_ssize_t source, Py_ssize_t own, double growth
     ) noexcept
     cdef double _excess(self, Py_ssize_t upper, Py_ssize_t lower, Py_ssize_t own) noexcept
     cdef double _normal(self, Py_ssize_t at) noexcept

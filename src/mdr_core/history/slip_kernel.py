@@ -124,7 +124,7 @@ class PolylineStack:
         else:
             self.straight = self.straight and continues
             if rise < 0 or fall < 0:
-                self._stick(x - x0, y - y0, rise, fall, load_step)
+                self._stick(y - y0, load_step)
                 self.straight = True
 
     def _aim(self, x: float, y: float) -> None:
@@ -138,23 +138,13 @@ class PolylineStack:
         self._put(MIRROR, FORWARD, -backward, -backward_low, 0.0)
         self._put(MIRROR, BACKWARD, -forward, -forward_low, 0.0)
 
-    def _stick(
-        self, deeper: float, further: float, rise: float, fall: float, load_step: int
-    ) -> None:
-        """Extend the polyline straight to the load point.
-
-        Where one sum is constant both coordinates move by the same amount.
-        """
+    def _stick(self, further: float, load_step: float) -> None:
+        """Extend the polyline straight to the load point; one segment for one straight line."""
         below = self.top
-        forward_step = max(deeper + further, 0.0) if rise < 0 else 0.0
-        backward_step = max(deeper - further, 0.0) if fall < 0 else 0.0
         if self.straight and below > AXIS:
-            # One segment for one straight line.
             further += self.rows[below, ANCHOR]
-            forward_step += self.rows[below, GROWTH + FORWARD]
-            backward_step += self.rows[below, GROWTH + BACKWARD]
             below -= 1
-        self._extend(below, forward_step, backward_step, further, load_step)
+        self._extend(below, further, load_step)
 
     def _slip(self) -> None:
         """Cut the polyline where it exceeds the load point, and extend it to there."""
@@ -174,10 +164,7 @@ class PolylineStack:
         own = 1 - other
         keep = self._excess(POINT, lower, own)
         if keep <= 0:
-            # One of the two is zero.
-            forward_step = self._excess(POINT, lower, FORWARD)
-            backward_step = self._excess(POINT, lower, BACKWARD)
-            self._extend(lower, forward_step, backward_step, 0.0, self.rows[upper, STEP])
+            self._extend(lower, 0.0, self.rows[upper, STEP])
             return
         # In full slip the corner is that of the mirror image, and both sums grow from the axis.
         source = upper - full
@@ -189,29 +176,22 @@ class PolylineStack:
             rest = self.rows[CORNER, GROWTH + other]
             span = self.rows[upper, GROWTH + FORWARD] + self.rows[upper, GROWTH + BACKWARD]
             further = self.rows[upper, ANCHOR] * ((keep + rest) / span)
-        high = self.rows[source, other]
-        low = self.rows[source, LOW + other]
-        own_high = self.rows[POINT, own]
-        own_low = self.rows[POINT, LOW + own]
-        self._put(upper, own, own_high, own_low, keep)
-        self._put(upper, other, high, low, rest)
+        self._copy(upper, POINT, own, keep)
+        self._copy(upper, source, other, rest)
         self.rows[upper, ANCHOR] = further if rest > 0 else keep * (0.5 - own)
         self.rows[upper, NORMAL] = self._normal(upper)
         self.top = self.changed = upper
-        point_high = self.rows[POINT, other]
-        point_low = self.rows[POINT, LOW + other]
-        reach = (point_high - high) + (point_low - low)
+        reach = self._excess(POINT, upper, other)
         if reach <= 0:
             # The corner is the load point.
-            self._put(upper, other, point_high, point_low, rest)
-            self.rows[upper, NORMAL] = self.x
-            return
-        self.top = upper + 1
-        self._put(self.top, own, own_high, own_low, 0.0)
-        self._put(self.top, other, point_high, point_low, reach)
+            self._copy(upper, POINT, other, rest)
+        else:
+            self.top = upper + 1
+            self._copy(self.top, POINT, own, 0.0)
+            self._copy(self.top, POINT, other, reach)
+            self.rows[self.top, ANCHOR] = reach * (0.5 - other)
+            self.rows[self.top, STEP] = self.rows[upper, STEP]
         self.rows[self.top, NORMAL] = self.x
-        self.rows[self.top, STEP] = self.rows[upper, STEP]
-        self.rows[self.top, ANCHOR] = reach * (0.5 - other)
 
     def _cut(self, lower: int, upper: int, own: int, other: int, keep: float) -> None:
         """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
@@ -251,47 +231,34 @@ class PolylineStack:
         first = (over_forward > 0) & ((over_backward <= 0) | (forward <= backward))
         return BACKWARD if first else FORWARD
 
-    def _extend(
-        self,
-        below: int,
-        forward_step: float,
-        backward_step: float,
-        further: float,
-        load_step: float,
-    ) -> None:
-        """Push the load point; two segments on the same face become one.
+    def _extend(self, below: int, further: float, load_step: float) -> None:
+        """Push the load point onto a vertex; two segments on the same face become one.
 
-        `further` is the growth of the anchor if both sums grow.
+        `further` is the growth of the anchor if both sums grow; if one does, it is half of that.
         """
+        forward = self._excess(POINT, below, FORWARD)
+        backward = self._excess(POINT, below, BACKWARD)
         if below > AXIS and (
-            (backward_step <= 0 and self.rows[below, GROWTH + BACKWARD] == 0)
-            or (forward_step <= 0 and self.rows[below, GROWTH + FORWARD] == 0)
+            (backward <= 0 and self.rows[below, GROWTH + BACKWARD] == 0)
+            or (forward <= 0 and self.rows[below, GROWTH + FORWARD] == 0)
         ):
             below -= 1
-            forward_step = self._excess(POINT, below, FORWARD)
-            backward_step = self._excess(POINT, below, BACKWARD)
+            forward = self._excess(POINT, below, FORWARD)
+            backward = self._excess(POINT, below, BACKWARD)
         at = below
-        if forward_step > 0 or backward_step > 0:
+        if forward > 0 or backward > 0:
             at = below + 1
-            self.rows[at, GROWTH + FORWARD] = max(forward_step, 0.0)
-            self.rows[at, GROWTH + BACKWARD] = max(backward_step, 0.0)
             self.rows[at, STEP] = load_step
-            self._lay(at, further)
+            self.rows[at, ANCHOR] = further
+            if forward <= 0 or backward <= 0:
+                self.rows[at, ANCHOR] = (max(forward, 0.0) - max(backward, 0.0)) / 2
+            self.rows[at, GROWTH + FORWARD] = max(forward, 0.0)
+            self.rows[at, GROWTH + BACKWARD] = max(backward, 0.0)
             self.changed = min(self.changed, at)
         self.top = at
         self.rows[at, NORMAL] = self.x
-        self.rows[at, FORWARD] = self.rows[POINT, FORWARD]
-        self.rows[at, BACKWARD] = self.rows[POINT, BACKWARD]
-        self.rows[at, LOW + FORWARD] = self.rows[POINT, LOW + FORWARD]
-        self.rows[at, LOW + BACKWARD] = self.rows[POINT, LOW + BACKWARD]
-
-    def _lay(self, at: int, further: float) -> None:
-        """Set the growth of the anchor; if one sum alone grows, it is half of that growth."""
-        if self.rows[at, GROWTH + BACKWARD] == 0:
-            further = self.rows[at, GROWTH + FORWARD] / 2
-        elif self.rows[at, GROWTH + FORWARD] == 0:
-            further = -self.rows[at, GROWTH + BACKWARD] / 2
-        self.rows[at, ANCHOR] = further
+        self._copy(at, POINT, FORWARD, self.rows[at, GROWTH + FORWARD])
+        self._copy(at, POINT, BACKWARD, self.rows[at, GROWTH + BACKWARD])
 
     def _constant(self, at: int) -> int:
         """Sum that is constant on the segment below a vertex."""
@@ -303,6 +270,10 @@ class PolylineStack:
         self.rows[at, own] = high
         self.rows[at, LOW + own] = low
         self.rows[at, GROWTH + own] = growth
+
+    def _copy(self, at: int, source: int, own: int, growth: float) -> None:
+        """Give a vertex a sum of another one."""
+        self._put(at, own, self.rows[source, own], self.rows[source, LOW + own], growth)
 
     def _excess(self, upper: int, lower: int, own: int) -> float:
         """Difference of a sum between two vertices."""
