@@ -19,9 +19,6 @@ def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array)
 
     Source: notes, §6. Parameters: see `depth_step`.
     """
-    closed = profile.slip_moment(coordinate, width, stick)
-    if closed is not None:
-        return closed
     shape = np.broadcast_shapes(coordinate.shape, width.shape, stick.shape)
     high, width, low = (np.broadcast_to(end, shape).ravel() for end in (coordinate, width, stick))
     swept = {name: np.broadcast_to(profile.parameters[name], shape) for name in profile.swept}

@@ -334,13 +334,6 @@ class Profile(ABC):
         """
         return None
 
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
-        """Integral int_c^a (g(a) - g)(g - g(c)) dx where it is closed, else None [length^3].
-
-        Parameters: see `force_step`.
-        """
-        return None
-
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array | None:
         """Moments of `IntervalMoments` where they are closed for every interval, else None.
 

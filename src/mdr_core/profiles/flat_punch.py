@@ -99,10 +99,6 @@ class FlatPunch(Profile):
         """Parameters: see `Profile`."""
         return self.depth(width)
 
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """Zero: nothing slips before all springs do. Parameters: see `Profile`."""
-        return 0 * width
-
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
         """Zero: the contact radius is constant. Parameters: see `Profile`."""
         return np.zeros((3, span.size))

@@ -85,11 +85,6 @@ class Cone(Profile):
         """Source: mdr-5, Eq. (5.47). Parameters: see `Profile`."""
         return self.g(width + 0 * coordinate)
 
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """(pi^2 t^2/24) (a - c)^3. Source: notes, §6. Parameters: see `Profile`."""
-        rise = np.square((pi / 2) * self.slope) + 0 * coordinate
-        return rise * np.square(width) * width / 6
-
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
         """Moments from a to b, with h = b - a and c = a/b.
 
@@ -181,15 +176,6 @@ class Paraboloid(Profile):
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.12). Parameters: see `Profile`."""
         return width * (2 * coordinate - width) / self.radius
-
-    def slip_moment(self, coordinate: Array, width: Array, stick: Array) -> Array:
-        """(2/(15 R^2)) (a - c)^3 (a^2 + 3 a c + c^2).
-
-        Source: mdr-5, section 5.2; notes, §6. Parameters: see `Profile`.
-        """
-        a, c = coordinate, coordinate - width
-        squares = (a * a + 3 * a * c + c * c) / np.square(self.radius)
-        return 2 / 15 * np.square(width) * width * squares
 
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
         """Moments from a to b, with h = b - a and c = a/b.
