@@ -26,13 +26,7 @@ def per_step(moments: IntervalMoments, tree: VertexTree) -> Array:
 def _work(moments: IntervalMoments, intervals: Array) -> Array:
     """Return G* D/(mu E*)^2 of each interval, given by its seven numbers."""
     (low, length), coefficients, full = intervals[:2], intervals[2:5], intervals[5]
-    ends = np.empty((low.size, 2))
-    ends[:, 0], ends[:, 1] = low, low + length
-    # Equal ends once, since an inversion takes longer than all else.
-    distinct = np.ones(ends.size, dtype=bool)
-    np.not_equal(ends.ravel()[1:], ends.ravel()[:-1], out=distinct[1:])
-    found = moments.contact_coordinate(ends.ravel()[distinct])[np.cumsum(distinct) - 1]
-    edges = found.reshape(ends.shape).T
+    edges = moments.contact_coordinate(np.append(low, low + length)).reshape(2, -1)
     weights = moments.over(low, length, edges).weights
     # Over forces the measure is infinite on the axis, where M is zero.
     some = coefficients > 0
