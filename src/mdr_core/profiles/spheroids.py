@@ -22,6 +22,7 @@ _EQUATOR: Final = -log(2 * float(np.finfo(float).eps)) / 2
 # a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
 # (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
 _SHALLOW: Final = 0.64
+_TINY: Final = float(np.finfo(float).tiny)
 
 
 class Spheroid(Profile):
@@ -88,7 +89,9 @@ class Spheroid(Profile):
 
     def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
         """Parameters: see `Profile`."""
-        return artanh_ratio_difference(a - c, a, c, self.radius, s_a - s_c)
+        big, gap = self.radius, self.radius - a
+        narrow = big * (a - c) / (big * gap + a * (self.radius - c))
+        return where(narrow < 0.5, np.arctanh(np.minimum(narrow, 0.5)), s_a - s_c)
 
     def radius_width(self, s_a: Array, width: Array) -> Array:
         cosh = np.cosh(s_a) * np.cosh(s_a - width)
@@ -122,97 +125,50 @@ class Spheroid(Profile):
         return np.tanh(coordinate) <= _SHALLOW
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """h/R times that of the sphere. Parameters: see `Profile`."""
-        return self.height / self.radius * sphere_kernel(self.radius, annulus, radius, rtol)
+        """(h/(pi R)) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
+
+        With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the
+        pole at R vanish, and the pole's part is elementary.
+
+        Source: notes, §2. Parameters: see `Profile`.
+        """
+        (v, inner, edge), r, big = annulus, radius, self.radius
+        square = (big - r) * (big + r)
+        tilt2 = r * r / square
+        stretch = big / np.sqrt(square)
+
+        def h(y: Array, index: Indices) -> Array:
+            # arcsinh(z)/q for q = z sqrt(1 + z^2), with one root and a logarithm.
+            z2 = np.sinh(y, out=y)
+            z2 *= stretch[index]
+            z2 *= z2
+            z2 += tilt2[index]
+            q = np.sqrt(z2 * (1 + z2))
+            return np.log1p(2 * (z2 + q)) / (2 * q)
+
+        def root(v: Array, edge: Array | None) -> Array:
+            """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
+            a = big * np.tanh(v) if edge is None else edge
+            return inverse_hypot(a, r) * (np.cosh(v) / big)
+
+        top = root(v, edge)
+        if inner is None:
+            start, length = None, np.arcsinh(top)
+        else:
+            inmost = v - inner.width
+            bottom = root(inmost, inner.radius)
+            cosh_bottom = np.maximum(np.cosh(inmost) / stretch, 1.0)
+            gap2 = np.sinh(inner.width) * np.sinh(2 * v - inner.width) / (stretch * stretch)
+            # arcsinh(top) - arcsinh(bottom), free of cancellation; both ends vanish only together.
+            sum_ = np.maximum(top * cosh_bottom + bottom * np.cosh(v) / stretch, _TINY)
+            start, length = np.arcsinh(bottom), np.arcsinh(np.minimum(gap2, top * top) / sum_)
+        smooth = integrate(h, length, rtol, start)
+        return self.height / (pi * self.radius) * stretch * (length + smooth)
 
 
 def artanh_ratio(x: Array, equator: Parameter) -> Array:
     """Return artanh(x/R) [1], as accurate as R - x."""
     return 0.5 * np.log1p(2 * x / (equator - x))
-
-
-def artanh_ratio_difference(
-    width: Array, a: Array, c: Array, equator: Parameter, wide: Array
-) -> Array:
-    """Return artanh(a/R) - artanh(c/R) [1], as accurate as the width of a narrow annulus.
-
-    Parameters
-    ----------
-    width, a, c : a - c and the radii themselves, a >= c [length].
-    equator : R [length].
-    wide : the plain difference, for a wide annulus [1].
-    """
-    difference = equator * width / (equator * (equator - a) + a * (equator - c))
-    narrow = np.arctanh(np.minimum(difference, 0.5))
-    return where(difference < 0.5, narrow, wide)
-
-
-def _arcsinh_difference(
-    top: Array, cosh_top: Array, bottom: Array, cosh_bottom: Array, square_difference: Array
-) -> Array:
-    """Return arcsinh(top) - arcsinh(bottom), free of cancellation.
-
-    Parameters
-    ----------
-    top, bottom : top >= bottom >= 0 [1].
-    cosh_top, cosh_bottom : sqrt(1 + top^2) and sqrt(1 + bottom^2) [1].
-    square_difference : top^2 - bottom^2, or a larger number if bottom = 0 [1].
-    """
-    gap2 = np.minimum(square_difference, top * top)
-    # Both ends vanish only together.
-    denominator = np.maximum(top * cosh_bottom + bottom * cosh_top, np.finfo(float).tiny)
-    return np.arcsinh(np.divide(gap2, denominator, out=denominator))
-
-
-def sphere_kernel(equator: Parameter, annulus: Annulus, r: Array, rtol: float) -> Array:
-    """Return the stress integral of a sphere [1].
-
-    With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the pole
-    at R vanish, and the pole's part is elementary:
-    P = (1/pi) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
-
-    Source: notes, §2.
-
-    Parameters
-    ----------
-    equator : R [length].
-    annulus : a and c in v = artanh(x/R).
-    r : radii 0 <= r < a [length], shape (m,).
-    rtol : relative tolerance.
-    """
-    v, inner, edge = annulus
-    square = (equator - r) * (equator + r)
-    tilt2 = r * r / square
-    stretch = equator / np.sqrt(square)
-
-    def h(y: Array, index: Indices) -> Array:
-        # arcsinh(z)/q for q = z sqrt(1 + z^2), with one root and a logarithm.
-        z2 = np.sinh(y, out=y)
-        z2 *= stretch[index]
-        z2 *= z2
-        z2 += tilt2[index]
-        q = np.sqrt(z2 * (1 + z2))
-        return np.log1p(2 * (z2 + q)) / (2 * q)
-
-    top = _sphere_root(equator, v, r, edge)
-    if inner is None:
-        length = np.arcsinh(top)
-        smooth = integrate(h, length, rtol)
-    else:
-        width, inmost = inner.width, v - inner.width
-        bottom = _sphere_root(equator, inmost, r, inner.radius)
-        cosh_top = np.cosh(v) / stretch
-        cosh_bottom = np.maximum(np.cosh(inmost) / stretch, 1.0)
-        gap2 = np.sinh(width) * np.sinh(2 * v - width) / (stretch * stretch)
-        length = _arcsinh_difference(top, cosh_top, bottom, cosh_bottom, gap2)
-        smooth = integrate(h, length, rtol, np.arcsinh(bottom))
-    return stretch * (length + smooth) / pi
-
-
-def _sphere_root(equator: Parameter, v: Array, r: Array, edge: Array | None) -> Array:
-    """sqrt((a^2 - r^2)/(R^2 - a^2)) with a = R tanh(v), zero for a < r."""
-    a = equator * np.tanh(v) if edge is None else edge
-    return inverse_hypot(a, r) * (np.cosh(v) / equator)
 
 
 @dataclass(frozen=True)
