@@ -73,8 +73,6 @@ class ContactState(Results):
     """Polyline before the step of `advance` that led here; None for other states."""
     known_edges: list[Edge] = field(init=False, default_factory=list)
     """Edges of the first vertices: those of a step are known to the next one."""
-    known_variances: list[float] = field(init=False, default_factory=list)
-    """Variances of the anchors below the first vertices, in the same way."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -145,17 +143,11 @@ class ContactState(Results):
     @property
     def _variance(self) -> float:
         """Variance of the anchors, int (anchor - mean)^2 dx over 0 < x < a [length^3]."""
-        known = self.known_variances
-        if not known:
-            known.append(0.0)
-        edges = self._edges[len(known) - 1 :]
-        if len(edges) > 1:
-            coordinate, _, shear = np.array(edges).T
-            depth, rise, fall, anchor = self.polyline.vertices[-len(edges) :, NORMAL:STEP].T
-            span, ends = (rise + fall)[1:] / 2, np.array([coordinate[:-1], coordinate[1:]])
-            grown = variance_growth(self._moments, depth[:-1], span, anchor[1:], ends, shear[:-1])
-            known.extend((known[-1] + np.cumsum(grown)).tolist())
-        return known[-1]
+        coordinate, _, shear = np.array(self._edges).T
+        depth, rise, fall, anchor = self.polyline.vertices[:, NORMAL:STEP].T
+        span, ends = (rise + fall)[1:] / 2, np.array([coordinate[:-1], coordinate[1:]])
+        grown = variance_growth(self._moments, depth[:-1], span, anchor[1:], ends, shear[:-1])
+        return float(grown.sum())
 
     @property
     def depth(self) -> Array:
@@ -325,5 +317,4 @@ def advance(
     moduli = state.e_star, state.g_star, state.friction_coefficient
     following = ContactState(profile, *moduli, line, before=state.polyline)
     following.known_edges.extend(state.known_edges[:kept])
-    following.known_variances.extend(state.known_variances[:kept])
     return following
