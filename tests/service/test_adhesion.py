@@ -104,6 +104,15 @@ def test_friction_and_wear_are_rejected(client: Client, path: str, query: dict[s
     assert "is not exact: the tension at the edge" in found["/material/work_of_adhesion"]
 
 
+def test_fits_reject_adhesion(client: Client) -> None:
+    curve = {
+        "indentation_depth": [1e-7, 2e-7, 3e-7, 4e-7],
+        "normal_force": [1e-8, 3e-8, 6e-8, 9e-8],
+    }
+    found = problems(client, "normal/fit", curve | {"fit": ["contact_point"]})
+    assert "without adhesion" in found["/material/work_of_adhesion"]
+
+
 def test_yield_and_peaks_are_rejected(client: Client) -> None:
     material = BALL["material"] | {"yield_strength": 1e6, "poissons_ratio": 0.5}
     found = problems(client, "normal", LOADED | {"material": material})

@@ -5,7 +5,7 @@ import numpy as np
 from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
-from mdr_service.queries.contacts import profile
+from mdr_service.queries.contacts import ADHESION, profile
 from mdr_service.results import Result, checked
 from mdr_service.schemas.fits import FitQuery
 
@@ -15,6 +15,9 @@ def solve_fit(query: FitQuery) -> Fit:
     if ("e_star" in query.fit) == query.has("material"):
         reason = "e_star is fitted: leave it out" if query.has("material") else "is needed"
         raise InputError(("material",), f"{reason}, or change `fit`")
+    if query.has("material") and query.material.model_fields_set & ADHESION:
+        detail = "is no part of a fit, whose curve is that of a contact without adhesion"
+        raise InputError(("material", "work_of_adhesion"), detail)
     return fit.solve(
         profile(query.profile),
         indentation_depth=query.indentation_depth,
