@@ -18,7 +18,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.breaks import break_below, has_many_breaks
-from mdr_core.elementwise import every, indices, some, where
+from mdr_core.elementwise import every, some, where
 from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
@@ -114,7 +114,7 @@ class IntervalMoments:
         breaks, normal_at_breaks = self._breaks
         first = np.searchsorted(normal_at_breaks, low, side="right")
         last = np.searchsorted(normal_at_breaks, low + span, side="left")
-        base, crossed = np.append(0.0, breaks)[first], indices(last > first)
+        base, crossed = np.append(0.0, breaks)[first], np.flatnonzero(last > first)
         start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
         low_break, high_break = first[crossed], last[crossed] - 1
         bottom, top = normal_at_breaks[[low_break, high_break]]
@@ -140,7 +140,7 @@ class IntervalMoments:
         if not some(crossed):
             return self.over_smooth(low, span, ends, base)
         # The parts below a break are further cases.
-        below = indices(crossed)
+        below = np.flatnonzero(crossed)
         inside = np.maximum(_from_below(self.normal, base) - low, 0.0)
         part = np.where(crossed, np.minimum(inside, span), 0.0)
         found = self._part(np.append(np.arange(span.size), below)).over_smooth(
@@ -201,7 +201,7 @@ class IntervalMoments:
             return lower
         span, weights = lower.span.copy(), lower.weights.copy()
         for k, chain in enumerate(self._chains):
-            index = indices(count >> k & 1)
+            index = np.flatnonzero(count >> k & 1)
             if index.size:
                 part = Moments(span[index], weights[:, index]).joined(chain.at(at[index]))
                 span[index], weights[:, index] = part

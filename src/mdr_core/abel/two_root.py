@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
-from mdr_core.elementwise import indices, some, where
+from mdr_core.abel.annulus import Annulus, inverse_hypot
+from mdr_core.elementwise import some, where
 from mdr_core.quadrature import DEFAULT_GROWTH, integrate
 from mdr_core.typing import Array, Indices
 
@@ -27,8 +27,6 @@ _TINY: Final = float(np.finfo(float).tiny)
 # Root of |r^2 - b^2| of a radius on the break, over b and the least s of the annulus: its square is
 # rounding error.
 _NEXT_TO_BREAK: Final = 1e-8
-# Rounding error of a difference of contact coordinates.
-_ROUNDING: Final = 4 * float(np.finfo(float).eps)
 
 
 def two_root_integral(
@@ -78,7 +76,8 @@ def two_root_integral(
     lower, begin, gap2 = 0.0 * upper, np.full(1, b), upper * upper
     if inner is not None:
         begin, lower = np.maximum(inner.radius, b), upper - inner.width
-        lower = where(inner.width > upper / 2, _wide_end(b, upper, lower, inner), lower)
+        wide = inverse_hypot(begin, b) if inner.coordinate is None else inner.coordinate
+        lower = where(inner.width > upper / 2, wide, lower)
         gap2 = inner.width * (upper + lower)
     # sqrt(c^2 - r^2), zero for r >= c.
     root = inverse_hypot(begin, r)
@@ -92,7 +91,7 @@ def two_root_integral(
     infinite = None
     if some(on_break):
         # Infinite where F ~ 1/s and the annulus begins at the break.
-        index = indices(on_break & (lower <= 0))
+        index = np.flatnonzero(on_break & (lower <= 0))
         pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)))[0] != 0
         infinite = index[pole]
         # Other points on the break take the rule of one just above it.
@@ -122,12 +121,3 @@ def two_root_integral(
     if infinite is not None:
         result[infinite] = np.inf
     return result
-
-
-def _wide_end(b: float, upper: Array, lower: Array, inner: InnerEnd) -> Array:
-    """Lower end of a wide annulus, at which a given radius is as accurate as it is far from b."""
-    if inner.coordinate is not None:
-        return inner.coordinate
-    # That of a radius from a load is at least as accurate as `upper`.
-    error = _ROUNDING * upper
-    return np.clip(inverse_hypot(inner.radius, b), lower - error, lower + error)

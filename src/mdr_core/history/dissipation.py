@@ -8,7 +8,6 @@ measure |d(1/2x)| in place of 2 dx. Source: notes, §10.
 
 import numpy as np
 
-from mdr_core.elementwise import indices
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array
@@ -31,7 +30,7 @@ def _work(moments: IntervalMoments, intervals: Array) -> Array:
     # Over forces the measure is infinite on the axis, where M is zero.
     some = coefficients > 0
     work = np.multiply(coefficients, weights, where=some, out=np.zeros(weights.shape)).sum(axis=0)
-    slides = indices(full > 0)
+    slides = np.flatnonzero(full > 0)
     if slides.size:
         # Prescribed forces do not exceed friction: full slip is rounding error there.
         at = edges[0, slides]

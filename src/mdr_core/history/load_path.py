@@ -11,7 +11,6 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import indices
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
@@ -112,7 +111,7 @@ class SampledPath:
         apart -= normal
         near = np.zeros(0, dtype=np.intp)
         if apart.max() >= -2 * _ROUNDING * normal.max():
-            near = indices(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
+            near = np.flatnonzero(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
         given = near[(near + 1) % self.per_step == 0]
         n, at_limit, prescribed = normal[given], tangential[given], np.abs(self.tangential[given])
         limit = scale * n
@@ -140,7 +139,7 @@ class SampledPath:
         InputError : a tangential force above mu F_N, by the index of its load step.
         """
         limit = np.maximum(normal, 0.0)
-        beyond = indices(np.abs(tangential) > limit * (1 + _ROUNDING))
+        beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + _ROUNDING))
         if beyond.size:
             raise InputError(
                 ("history", "tangential", self.tangential_name, int(step[beyond[0]])),
@@ -208,7 +207,7 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     forces = name == "normal_force"
     if not ((least >= 0 if forces else least > -inf) and most < inf):
         bad = ~np.isfinite(points) | ((points < 0) & forces)
-        first = int(indices(bad)[0])
+        first = int(np.flatnonzero(bad)[0])
         detail = not_negative(name) if forces and points[first] < 0 else FINITE
         raise InputError(("history", axis, name, first), detail)
     return points

@@ -15,7 +15,6 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import indices
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
@@ -51,7 +50,7 @@ class TractionVertices:
             # Depth and force are proportional.
             return np.asarray(conjugate / np.where(tree.normal > 0, tree.normal, 1.0) * tree.span)
         step = conjugate - conjugate[tree.parent]
-        short = indices(tree.span < SHORT * tree.normal)
+        short = np.flatnonzero(tree.span < SHORT * tree.normal)
         if short.size:
             ends = self.coordinate[tree.parent[short]], self.coordinate[short]
             step[short] = tree.span[short] * self.moments.mean_slope(*ends)
@@ -83,7 +82,7 @@ class TractionVertices:
         if moments.over_forces:
             depth, step = self.conjugate, np.maximum(self.conjugate_step, 0.0)
             growth = tree.slope * step
-        upper = indices(tree.parent >= 0)
+        upper = np.flatnonzero(tree.parent >= 0)
         lower, grown = tree.parent[upper], np.zeros(tree.parent.shape)
         ends = np.array([coordinate[lower], coordinate[upper]])
         over_depths = interval_moments(moments.profile, over_forces=False)
@@ -130,7 +129,7 @@ def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Arr
     `coordinate` has the contact coordinates of its vertices, shape (n,).
     """
     width = coordinate[1:] - coordinate[:-1]
-    short = indices(tree.span[1:] < SHORT * tree.normal[1:])
+    short = np.flatnonzero(tree.span[1:] < SHORT * tree.normal[1:])
     if short.size:
         upper, span = tree.normal[1:][short], tree.span[1:][short]
         edges = coordinate[1:][short], span / upper, tree.normal[short] / upper

@@ -80,17 +80,21 @@ class Truncated(Profile):
         total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
         return width * (2 * s_a - width) / where(total > 0, total, 1.0)
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
-        """In the contact coordinate. Source: notes, §5. Parameters: see `Profile`."""
+    def pressure_kernel(
+        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
+    ) -> Array:
+        """In the contact coordinate, of the radii as well if it is given as `beyond`.
+
+        Source: notes, §5. Parameters: see `Profile`.
+        """
         b = float(self.flat_radius)
-        return two_root_integral(self.weight, b, radius, annulus, rtol=rtol) / pi
+        return two_root_integral(self.weight, b, radius, annulus, rtol=rtol, beyond=beyond) / pi
 
     def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
         """Parameters: see `Profile`."""
         inside, values = coordinate < annulus.outer, np.zeros(coordinate.shape)
-        s, b = coordinate[inside], float(self.flat_radius)
-        at = self.contact_radius(s), annulus.at(inside)
-        values[inside] = two_root_integral(self.weight, b, *at, rtol=rtol, beyond=s) / pi
+        s = coordinate[inside]
+        values[inside] = self.pressure_kernel(annulus.at(inside), self.contact_radius(s), rtol, s)
         return values
 
 
