@@ -48,9 +48,10 @@ class AnnulusState:
     @classmethod
     def of(cls, initial: InitialState, vector: Array) -> Self:
         """Return the state of a vector of the integrator: the numbers above, one after another."""
-        inner, edges, tilt_terms = np.split(vector, initial.parts)
-        end, stick_shift, depth_increase, work = edges.tolist()
-        return cls(initial, inner, end, stick_shift, depth_increase, work, tilt_terms)
+        inner, tilted = initial.parts
+        end, stick_shift, depth_increase, work = vector[inner:tilted].tolist()
+        worn, tilt = vector[:inner], vector[tilted:]
+        return cls(initial, worn, end, stick_shift, depth_increase, work, tilt)
 
     @property
     def stick(self) -> float:
