@@ -87,15 +87,15 @@ def response_metadata(
 ) -> Result:
     """Return the method, the error estimates and the warnings of a response."""
     contact = source.tangential_contact if isinstance(source, Wear) else source
-    model_error = np.ravel(validity.model_error(contact, query.material.effective))
-    count = query.loads
-    if isinstance(source, LoadHistory):
-        # Fields are those of the last sample.
-        samples = isinstance(query, HistoryQuery)
-        model_error, count = (model_error, len(source.step)) if samples else (model_error[-1:], 1)
-    known = {"model_error": np.ascontiguousarray(np.broadcast_to(model_error, (count,)))}
+    own = np.ravel(validity.model_error(contact, query.material.effective))
+    count = query.path.samples if isinstance(query, HistoryQuery) else query.loads
+    # Fields at the end of a history are those of its last sample.
+    known = (
+        own[-1:].tolist() if count == 1 else np.ascontiguousarray(np.broadcast_to(own, (count,)))
+    )
     listed = [vars(notice) for notice in warnings]
-    return {"method": method, "error_estimate": error} | known | {"warnings": listed}
+    about = {"method": method, "error_estimate": error, "model_error": known}
+    return about | {"warnings": listed}
 
 
 def notices(query: Query, source: Contact | Impact | Wear) -> list[Notice]:
