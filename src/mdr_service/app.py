@@ -14,7 +14,6 @@ from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, queries
 from mdr_service.settings import SETTINGS
-from mdr_service.transfers import Transfers
 from mdr_service.workers import WorkerPool
 
 
@@ -61,7 +60,7 @@ def create_app() -> FastAPI:
         telemetry={"tracing": False, "metrics": False, "logs": False},
         lifespan=_lifespan,
     )
-    app.state.transfers = Transfers(SETTINGS.max_transfer_bytes)
+    app.state.transfers = middleware.Transfers(SETTINGS.max_transfer_bytes)
     app.state.workers = WorkerPool(SETTINGS)
     middleware.install(app)
     openapi.extend(app)

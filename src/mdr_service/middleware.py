@@ -26,8 +26,9 @@ from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.serializers import json
 from mdr_service.settings import SETTINGS
-from mdr_service.transfers import LONG, Transfers
 
+LONG: Final = 65_536
+"""Length above which a body counts; the server buffers as much of every connection [bytes]."""
 # Ids that a client can give to its requests.
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
 # Status in the log for a client that disconnected before the response, as in nginx.
@@ -58,6 +59,26 @@ def install(app: FastAPI) -> None:
             allow_headers=("Content-Type", "X-Request-Id"),
             expose_headers=("MDR-Version", "Retry-After", "X-Request-Id"),
         )
+
+
+class Transfers:
+    """Total length of long bodies, at most `limit` bytes unless a single request has them."""
+
+    def __init__(self, limit: int) -> None:
+        self._limit = limit
+        self._total = 0
+
+    def add(self, record: RequestRecord, size: int) -> None:
+        """Add a body, or a part of one, of a request; raise ServiceError beyond the limit."""
+        if self._total > record.held and self._total + size > self._limit:
+            detail = "other long bodies are being transferred; try again in 1 s"
+            raise ServiceError(problems.BUSY, detail, retry_after=1)
+        self._total += size
+        record.held += size
+
+    def remove(self, record: RequestRecord) -> None:
+        """Remove the bodies of a request."""
+        self._total -= record.held
 
 
 class ServiceMiddleware:
@@ -110,8 +131,8 @@ class ServiceMiddleware:
 class _Sender:
     """Sends one response: adds the common headers, and sends a long body in pieces.
 
-    The server buffers what the client does not read. A piece waits until the one before it is
-    written, and the end of a long response until all of it is.
+    The server buffers what the client does not read: a piece waits until the one before it is
+    written.
     """
 
     def __init__(self, transfers: Transfers, record: RequestRecord, send: Send) -> None:
@@ -124,34 +145,22 @@ class _Sender:
         if message["type"] == "http.response.start":
             self.start = message
             return
-        size = len(message.get("body", b""))
-        if size > LONG and not self.record.status:
-            try:
-                self.transfers.add(self.record, size)
-            except ServiceError as error:
-                response = problem_response(error)
-                self.start.update(status=response.status_code, headers=response.raw_headers)
-                message, size = {"type": message["type"], "body": response.body}, 0
-        if size > LONG:
-            await self._send_in_pieces(message, size)
-        else:
-            await self._send(message)
-
-    async def _send(self, message: Message) -> None:
-        """Send a message, the first one after the start of the response."""
+        body = memoryview(message.get("body", b""))
         if not self.record.status:
+            if len(body) > LONG:
+                try:
+                    self.transfers.add(self.record, len(body))
+                except ServiceError as error:
+                    response = problem_response(error)
+                    self.start.update(status=response.status_code, headers=response.raw_headers)
+                    body = memoryview(response.body)
             self.record.status = self.start["status"]
             marks = (b"x-request-id", self.record.id.encode("ascii"))
-            headers = [*self.start["headers"], marks, *_ALWAYS]
-            await self.send({**self.start, "headers": headers})
-        await self.send(message)
-
-    async def _send_in_pieces(self, message: Message, size: int) -> None:
-        body = memoryview(message["body"])
-        for begin in range(0, size, LONG):
-            piece = body[begin : begin + LONG]
-            await self._send({"type": message["type"], "body": piece, "more_body": True})
-        await self._send({**message, "body": b""})
+            await self.send({**self.start, "headers": [*self.start["headers"], marks, *_ALWAYS]})
+        while len(body) > LONG:
+            await self.send({"type": message["type"], "body": body[:LONG], "more_body": True})
+            body = body[LONG:]
+        await self.send({**message, "body": body})
 
 
 def problem_response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:

@@ -1,7 +1,6 @@
 """Plain results of queries: members of a response, checked for overflow, with their warnings."""
 
 from collections.abc import Iterable, Mapping
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -41,9 +40,6 @@ def members(model: type[SolvedAnswer], without: Iterable[str] = ()) -> tuple[str
 
 def by_load(source: object, names: Iterable[str], loads: int) -> Result:
     """Return attributes of `source` by name, broadcast to one entry per load."""
-    if loads == 1:
-        # The JSON writer takes a list of one number faster than an array.
-        return {name: [getattr(source, name).item()] for name in names}
     return {
         name: np.ascontiguousarray(np.broadcast_to(getattr(source, name), (loads,)))
         for name in names
@@ -71,10 +67,7 @@ def checked(
     return values
 
 
-def _finite(values: list[Any] | Array) -> bool:
-    # A single number is by far the most frequent case, and an array function takes longer.
-    if isinstance(values, list):
-        return isinstance(values[0], str) or isfinite(values[0])
+def _finite(values: Array) -> bool:
     return values.dtype.kind != "f" or every(np.isfinite(values))
 
 

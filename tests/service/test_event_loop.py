@@ -4,8 +4,7 @@ import json
 
 import pytest
 
-from mdr_service import observability, problems
-from mdr_service.api import operations
+from mdr_service import problems
 from mdr_service.query_parameters import Parameters
 from tests.conftest import Client
 
@@ -73,13 +72,3 @@ def test_documents_are_written_once(client: Client, monkeypatch: pytest.MonkeyPa
     assert client.get("/openapi.json").content == first.content
     assert json.loads(first.content)["openapi"].startswith("3.1")
     assert client.get("/readme").text.startswith("# MDR")
-
-
-def test_metrics_are_written_once_a_second(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    seconds = iter([1000.1, 1000.9, 1001.0])
-    monkeypatch.setattr(operations, "monotonic", lambda: next(seconds))
-    texts = []
-    for _ in range(3):
-        texts.append(client.get("/metrics").text)
-        observability.LOST_LINES.inc()
-    assert texts[0] == texts[1] != texts[2]

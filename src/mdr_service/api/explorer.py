@@ -24,8 +24,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
 from mdr_service.api.documentation import PAGE_HEADERS
-from mdr_service.middleware import header
-from mdr_service.transfers import LONG
+from mdr_service.middleware import LONG, header
 
 router = APIRouter(include_in_schema=False)
 

@@ -1,8 +1,6 @@
 """Operation of the service, its documentation and the catalogue of profiles."""
 
-from functools import lru_cache
 from importlib.resources import files
-from time import monotonic
 from typing import Final
 
 from fastapi import APIRouter, Request
@@ -87,17 +85,8 @@ async def ready(request: Request) -> Health:
     response_class=PlainTextResponse,
 )
 async def metrics() -> Response:
-    """Return requests and latencies by route, problems by type, and the state of the queue.
-
-    They are at most a second old.
-    """
-    return Response(_metrics(int(monotonic())), media_type=_METRICS)
-
-
-# They take up to 7 ms of the event loop.
-@lru_cache(maxsize=1)
-def _metrics(_second: int) -> bytes:
-    return generate_latest(observability.REGISTRY)
+    """Return requests and latencies by route, problems by type, and the state of the queue."""
+    return Response(generate_latest(observability.REGISTRY), media_type=_METRICS)
 
 
 @router.get("/docs", include_in_schema=False)
