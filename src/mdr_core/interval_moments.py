@@ -55,7 +55,7 @@ class Moments(NamedTuple):
     def joined(self, upper: "Moments") -> "Moments":
         """Return the moments over each interval and its upper neighbour together."""
         span = self.span + upper.span
-        low, high = self.span / span, upper.span / span
+        low, high = (part / np.where(span > 0, span, 1.0) for part in (self.span, upper.span))
         a, b = self.weights, upper.weights
         middle = a[2] + b[0]
         left, right = a[1] + high * middle, low * middle + b[1]
@@ -127,7 +127,8 @@ class IntervalMoments:
         cases = np.append(low, top), np.append(length, rest), np.hstack([[start, stop], above])
         found = self.over_smooth(*cases, np.append(base, edge))
         lower, upper = found.at(slice(span.size)), found.at(slice(span.size, None))
-        between = self._chained(lower.at(crossed), low_break, high_break)
+        between = Moments(top - bottom, self._between[:, low_break, high_break])
+        between = lower.at(crossed).joined(between)
         lower.weights[:, crossed] = between.joined(upper).weights
         return Moments(span, lower.weights)
 
@@ -183,30 +184,16 @@ class IntervalMoments:
         return (self.profile.force_slope if self.over_forces else self.profile.depth_slope)(s)
 
     @cached_property
-    def _chains(self) -> list[Moments]:
-        """Moments from each break to the 2^k-th next, for k = 0, 1, ..."""
+    def _between(self) -> Array:
+        """Moments from each break to each later one, shape (3, k, k)."""
         breaks, normal = self._breaks
-        ends = np.array([breaks[:-1], breaks[1:]])
-        chains, size = [self.over_smooth(normal[:-1], np.diff(normal), ends, ends[0])], 1
-        while chains[-1].span.size > size:
-            last = chains[-1]
-            chains.append(last.at(slice(None, -size)).joined(last.at(slice(size, None))))
-            size *= 2
-        return chains
-
-    def _chained(self, lower: Moments, first: Indices, last: Indices) -> Moments:
-        """Return the moments of intervals that end at the break `first`, extended to `last`."""
-        count, at = last - first, first.copy()
-        if not count.any():
-            return lower
-        span, weights = lower.span.copy(), lower.weights.copy()
-        for k, chain in enumerate(self._chains):
-            index = np.flatnonzero(count >> k & 1)
-            if index.size:
-                part = Moments(span[index], weights[:, index]).joined(chain.at(at[index]))
-                span[index], weights[:, index] = part
-                at[index] += 1 << k
-        return Moments(span, weights)
+        ends, first = np.array([breaks[:-1], breaks[1:]]), np.arange(breaks.size)
+        panels = self.over_smooth(normal[:-1], np.diff(normal), ends, ends[0])
+        table, found = np.zeros((3, breaks.size, breaks.size)), panels
+        for step in range(1, breaks.size):
+            table[:, first[:-step], first[step:]] = found.weights
+            found = found.at(slice(None, -1)).joined(panels.at(slice(step, None)))
+        return table
 
     def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
         """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
