@@ -96,8 +96,7 @@ def test_stresses_next_to_a_flat(*, force: float, part: float, tabulated: bool) 
     contact = solve(body, 1.0, normal_force=force)
     partial = tangential.solve(contact, 1.0, 1.0, tangential_force=part * force)
     found = fields.pressure(contact, radii), fields.shear_stress(partial, radii)
-    # Contact and stick radii hardly resolve their distances from the flat, 1e-10 and 1e-15 under the
-    # smaller force.
+    # Contact and stick radii hardly resolve their distances from the flat, 1e-10 and 1e-15.
     least = 1e-9 if force < 1e-4 else 1e-11
     bound = max(least, 10 * contact.error_estimate, 10 * partial.error_estimate)
     assert bound <= (1e-2 if force < 1e-4 else 1e-9)
