@@ -27,8 +27,7 @@ from mdr_core.typing import Array, Flags, Indices, Parameter
 
 # Intervals evaluated at once, so that their nodes stay in the processor's cache.
 _BLOCK: Final = 1024
-# Gauss nodes on an interval without a break. Beyond a break the remainder is of the order of
-# 2.4^-32 of the interval's moments, see notes, §10.
+# Gauss nodes on an interval without a break, see notes, §10.
 _POINTS: Final = 16
 # An interval before the first break is wide if the normal coordinate grows by more than this factor
 # on it. Differences of closed forms over a wide interval do not suffer cancellation.
