@@ -202,6 +202,8 @@ def _columns(
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise _refuse(first, detail)
     names, units = [""] * count, list[str | None]([None] * count)
+    # Units of columns that are not read do not matter.
+    unknown = list[InputError | None]([None] * count)
     for number, text in heading:
         common = re.search(r"(?i)\bunits?\b\W*(\S+?)\W*$", text)
         if common and (unit := _unit(common[1])):
@@ -211,7 +213,9 @@ def _columns(
         titles = _cells(joined, separator)
         for i, title in enumerate(titles if len(titles) == count else ()):
             names[i] += f" {title}"
-            units[i] = units[i] or _unit_of(title, number, of_area=_is_area(names[i]))
+            unit, problem = _unit_of(title, number, of_area=_is_area(names[i]))
+            units[i] = units[i] or unit
+            unknown[i] = unknown[i] or problem
     places = [
         next((i for p in patterns for i in range(count) if re.search(p, names[i])), None)
         for patterns in _COLUMN_NAMES
@@ -224,7 +228,11 @@ def _columns(
             detail = f"{count} columns; name the radius r and the height f in a line above"
             raise _refuse(first, detail)
         places = [0, 1]
-    return [(place, units[place]) for place in places if place is not None], of_areas
+    found = [place for place in places if place is not None]
+    for place in found:
+        if not units[place] and (problem := unknown[place]):
+            raise problem
+    return [(place, units[place]) for place in found], of_areas
 
 
 def _is_area(name: str) -> bool:
@@ -232,16 +240,16 @@ def _is_area(name: str) -> bool:
     return bool(re.search(_AREA, name)) and not any(re.search(p, name) for p in radius)
 
 
-def _unit_of(title: str, line: int, *, of_area: bool) -> str | None:
+def _unit_of(title: str, line: int, *, of_area: bool) -> tuple[str | None, InputError | None]:
     """Return the unit that a title names: `mm`, `r [mm]`, `r (mm)`, `r, mm`, `r_mm` or `A [mm²]`.
 
-    The unit of an area is that of the length.
+    The unit of an area is that of the length. A unit in brackets that is unknown is an error.
     """
     found = re.search(r"([\[(]?)\s*([^\[(/_,\s\])]*)\s*[\])]?$", title)
     bracket, word = found.groups() if found else ("", "")
     length = re.sub(_SQUARE, "", word)
     unit = _unit(length) if (length != word) == of_area else None
-    if not unit and bracket == "[":
-        known = ", ".join(f"{each}²" if of_area else each for each in UNITS)
-        raise _refuse(line, f"the unit {word} is none of {known}")
-    return unit
+    if unit or bracket != "[":
+        return unit, None
+    known = ", ".join(f"{each}²" if of_area else each for each in UNITS)
+    return None, _refuse(line, f"the unit {word} is none of {known}")

@@ -40,5 +40,7 @@ def forged(count: int, seed: int) -> Iterator[str]:
             ),
         ]
         source.shuffle(members)
-        table = source.choice(["", f"#r={column()}&f={column()}", f"#{text()}", "#r=0,1&f=0"])
+        names = source.choice([("r", "f", "ur"), ("d", "F", "uF")])
+        columns = "&".join(f"{name}={column()}" for name in names)
+        table = source.choice(["", f"#{columns}", f"#{text()}", "#r=0,1&f=0"])
         yield f"?{'&'.join(members)}{table}"

@@ -15,7 +15,7 @@ from tests.contract.conftest import Visit, needs_chromium
 from tests.contract.forged_addresses import forged
 
 pytestmark = [pytest.mark.long, needs_chromium]
-TABS = ["press", "push", "cycle", "impact", "stress", "wear"]
+TABS = ["press", "push", "cycle", "impact", "stress", "wear", "fit"]
 SCENES = 60
 ADDRESSES = 2_000
 
@@ -137,15 +137,41 @@ def test_area_function_fills_the_table(visit: Visit) -> None:
     visit.page.select_option("#unit-f", "nm")
     visit.page.get_by_text("From a tip’s area function").click()
     visit.page.fill("#coefficients", f"{math.pi} x")
-    visit.page.click("#use-area")
+    visit.page.click(".use-area")
     visit.page.get_by_text("the coefficients are numbers with blanks").wait_for()
     visit.page.fill("#coefficients", str(math.pi))
     visit.page.fill("#largest-height", "300")
     with visit.changing():
-        visit.page.click("#use-area")
+        visit.page.click(".use-area")
     assert note.inner_text() == "200 points; r = √(A/π) from the areas; units from the heading."
     assert visit.page.input_value("#unit-r") == "nm"
     assert visit.number("Contact radius a").startswith("6.366")
+
+
+def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> None:
+    visit.open("?tab=fit")
+    assert visit.number("Effective modulus E*").startswith("0.0107")
+    # 2 MPa under a ball of 10 mm, with contact at 3 µm, in nm and mN.
+    depths = [250 * i for i in range(80)]
+    forces = [4 / 3 * 2e6 * 0.1 * max(1e-9 * d - 3e-6, 0.0) ** 1.5 * 1e3 for d in depths]
+    rows = (f"{i};{d};{f:.9f}" for i, (d, f) in enumerate(zip(depths, forces, strict=True)))
+    file = tmp_path / "curve.csv"
+    heading = "Time [s];Displacement [nm];Load [mN]\n"
+    file.write_text(heading + "\n".join(rows).replace(".", ","), "utf-8")
+    with visit.changing():
+        visit.page.set_input_files("#curve-file", file)
+    note = visit.page.locator("#curve-note").inner_text()
+    assert note == "80 points; units from the heading."
+    assert visit.number("Effective modulus E*").startswith("0.002 GPa ±")
+    assert visit.number("Contact point").startswith("3 µm ±")
+    visit.page.fill("#curve", "d [nm], F [mm]\n0, 0\n1, 2\n2, 3")
+    problem = visit.page.locator("#problem-curve")
+    problem.get_by_text("F in mm: its units are N, mN, µN, nN").wait_for()
+    assert visit.state() == "unreadable"
+    # The curve belongs to this tab alone.
+    with visit.changing():
+        visit.page.click("#tab-press")
+    assert visit.page.locator("#measured").is_hidden()
 
 
 def test_line_of_a_table_that_cannot_be_used_is_named(visit: Visit) -> None:
@@ -174,7 +200,7 @@ def test_file_with_too_many_points_is_thinned(visit: Visit, tmp_path: Path) -> N
     problem = visit.page.locator("#problem-table")
     problem.get_by_text("4500 points, of which the service takes 2000").wait_for()
     with visit.changing():
-        visit.page.click("#thin")
+        visit.page.click("#table-fields .thin")
     assert visit.page.locator("#table-note").inner_text() == "1500 points."
     assert visit.page.input_value("#unit-r") == "µm"
     assert visit.number("Contact radius a").startswith("0.186")

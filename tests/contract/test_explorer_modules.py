@@ -25,13 +25,16 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
     path = re.compile(rf"{number},{number}(;{number},{number})*")
     for address, result in zip(addresses, results, strict=True):
         assert "error" not in result, address
-        table = result["inputs"].pop("table")
+        table, curve = (result["inputs"].pop(name) for name in ("table", "curve"))
         assert path.fullmatch(result["inputs"].pop("path")), address
         assert numbers.fullmatch(result["inputs"].pop("breaks", "")), address
         uncertainty = result["inputs"].pop("uncertainty", "")
         assert uncertainty == "" or math.isfinite(uncertainty), address
-        assert len(table["r"]) == len(table["f"])
-        for value in [*table["r"], *table["f"], *table["units"], *result["inputs"].values()]:
+        held = [*result["inputs"].values()]
+        for columns in (table, curve):
+            assert len(columns["r"]) == len(columns["f"])
+            held += [*columns["r"], *columns["f"], *columns["units"]]
+        for value in held:
             known = value in OFFERED if isinstance(value, str) else math.isfinite(value)
             assert known, (address, value)
     assert any(result["unread"] for result in results)

@@ -2,7 +2,7 @@
 
 import { controls, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
-import { solveCycle, solveImpact, solvePress, solvePush, solveStress, solveWear } from "./results.js";
+import { solveCycle, solveFit, solveImpact, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
 const SHARE = ["Share of µF_N", "1"];
 
@@ -22,7 +22,7 @@ export function bodyFields(inputs, i) {
 
 /** Return the fields of the load of the inputs. */
 export function loadFields(inputs) {
-  if (["cycle", "impact"].includes(inputs.tab)) return [];
+  if (["cycle", "impact", "fit"].includes(inputs.tab)) return [];
   const choices = choicesOf(controls(inputs.tab));
   const [label, dimension] = QUANTITIES[inputs.control];
   return [
@@ -97,5 +97,17 @@ export const ANALYSES = {
       { key: "cycles", label: "Cycles", dimension: "1", range: [1, 1e8], logarithmic: true },
     ],
     solve: solveWear,
+  },
+  fit: {
+    title: "Fit",
+    lead: "A curve of force over depth was measured: which modulus has the contact, and where does it begin?",
+    fields: () => [{
+      key: "fitted", label: "Fitted beside E*",
+      choices: [
+        ["none", "nothing"], ["contact_point", "contact point"],
+        ["contact_point,force_offset", "contact point, force offset"],
+      ],
+    }],
+    solve: solveFit,
   },
 };

@@ -95,8 +95,3 @@ export function optionalRow(field, inputs, { change, fail }) {
   });
   return element;
 }
-
-/** Return a table as the text of its field. */
-export function tableText({ r, f, units }) {
-  return [`r [${units[0]}], f [${units[1]}]`, ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
-}

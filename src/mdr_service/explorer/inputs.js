@@ -1,10 +1,10 @@
 // The inputs: one flat object of numbers and words in SI units, and its form in the address.
 
-import { KINDS, measuredBall, wireProfile } from "./shapes.js";
-import { LENGTHS } from "./table_reader.js";
+import { KINDS, measuredBall, measuredCurve, wireProfile } from "./shapes.js";
+import { CURVE, PROFILE } from "./table_reader.js";
 import { BASE_UNITS, numberOf } from "./units.js";
 
-export const TABS = ["press", "push", "cycle", "impact", "stress", "wear"];
+export const TABS = ["press", "push", "cycle", "impact", "stress", "wear", "fit"];
 export const NORMAL = ["normal_force", "indentation_depth"];
 export const TANGENTIAL = ["tangential_force", "tangential_displacement"];
 export const RIGID = "rigid";
@@ -17,7 +17,7 @@ const DEFAULTS = {
   mu: 0.3, push: "ratio", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
-  mass: 0.033, share: 0.286, approach: 0.1, along: 0.05,
+  fitted: "contact_point", mass: 0.033, share: 0.286, approach: 0.1, along: 0.05,
   body: 1, yield: 1.5e9,
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
@@ -25,7 +25,7 @@ const DEFAULTS = {
 
 // Input that is chosen -> its choices.
 const CHOICES = {
-  tab: TABS, kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
+  tab: TABS, fitted: ["none", "contact_point", "contact_point,force_offset"], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };
@@ -49,7 +49,7 @@ export function controls(tab) {
 
 /** Return the inputs of a first visit. */
 export function defaultInputs() {
-  return { ...DEFAULTS, ...KINDS[DEFAULTS.kind].fields, table: measuredBall() };
+  return { ...DEFAULTS, ...KINDS[DEFAULTS.kind].fields, table: measuredBall(), curve: measuredCurve() };
 }
 
 /** Return the value of an input that a text holds, or undefined if it is none that the page offers. */
@@ -59,11 +59,14 @@ function valueOf(key, text, tab) {
   return (OTHERS[key] ?? number)(text);
 }
 
-function tableOf(fragment) {
-  const [r, f] = ["r", "f"].map((name) => fragment.get(name)?.split(",").map(numberOf) ?? []);
-  const units = ["ur", "uf"].map((name) => fragment.get(name) ?? "m");
+/** Members of the fragment that hold the columns of a table and their units. */
+const COLUMNS = { table: ["r", "f", "ur", "uf"], curve: ["d", "F", "ud", "uF"] };
+
+function tableOf(fragment, [first, second, ...unitNames], kind) {
+  const [r, f] = [first, second].map((name) => fragment.get(name)?.split(",").map(numberOf) ?? []);
+  const units = unitNames.map((name, i) => fragment.get(name) ?? Object.keys(kind.units[i])[0]);
   const whole = r.length === f.length && ![...r, ...f].some(Number.isNaN);
-  return whole && units.every((name) => Object.hasOwn(LENGTHS, name)) ? { r, f, units } : undefined;
+  return whole && units.every((name, i) => Object.hasOwn(kind.units[i], name)) ? { r, f, units } : undefined;
 }
 
 /**
@@ -80,8 +83,10 @@ export function fromAddress(search, hash) {
   take("tab");
   take("kind");
   Object.assign(inputs, KINDS[inputs.kind].fields);
-  Object.keys(inputs).filter((key) => !["tab", "kind", "table"].includes(key)).forEach(take);
-  if (fragment.has("r") || fragment.has("f")) set("table", tableOf(fragment));
+  Object.keys(inputs).filter((key) => !["tab", "kind", "table", "curve"].includes(key)).forEach(take);
+  for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
+    if (COLUMNS[key].some((name) => fragment.has(name))) set(key, tableOf(fragment, COLUMNS[key], kind));
+  }
   return { inputs, unread };
 }
 
@@ -91,9 +96,12 @@ export function toAddress(inputs) {
     `${key}=${encodeURIComponent(value).replace(/%2C/g, ",").replace(/%3B/g, ";")}`;
   const keys = new Set([...Object.keys(DEFAULTS), ...Object.keys(KINDS[inputs.kind].fields)]);
   const query = [...keys].map((key) => member([key, inputs[key]])).join("&");
-  if (inputs.kind !== "tabulated") return `?${query}`;
-  const { r, f, units: [ur, uf] } = inputs.table;
-  return `?${query}#${Object.entries({ r, f, ur, uf }).map(member).join("&")}`;
+  const held = [["table", inputs.kind === "tabulated"], ["curve", inputs.tab === "fit"]].filter(([, shown]) => shown);
+  const columns = held.flatMap(([key]) => {
+    const { r, f, units } = inputs[key];
+    return [r, f, ...units].map((value, i) => member([COLUMNS[key][i], value]));
+  });
+  return columns.length ? `?${query}#${columns.join("&")}` : `?${query}`;
 }
 
 /** Return the inputs with another profile kind; values that differ from their defaults are kept. */

@@ -13,7 +13,8 @@ import { QUANTITIES } from "./quantities.js";
 import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { showSketch } from "./sketch.js";
-import { connectTable, showTable } from "./table_field.js";
+import { tableField } from "./table_field.js";
+import { CURVE, PROFILE } from "./table_reader.js";
 import { BASE_UNITS, format, quantity } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
@@ -21,6 +22,8 @@ let inputs;
 let catalogue = {};
 let requests = [];
 let last = null;
+// Fields for tables, by the key of their input.
+const tables = {};
 // Keys of the fields that hold no value that can be read.
 const unreadable = new Set();
 
@@ -47,15 +50,20 @@ function showAddress() {
 /** Show other inputs in the whole page. */
 function show(next) {
   inputs = next;
-  // Fields are built again from the inputs; the text of the table stays.
-  const table = inputs.kind === "tabulated" && unreadable.has("table");
+  // Fields are built again from the inputs; the text of a table stays.
+  const kept = Object.keys(tables).filter((key) => unreadable.has(key) && isUsed(key));
   unreadable.clear();
-  if (table) unreadable.add("table");
+  kept.forEach((key) => unreadable.add(key));
   const focused = document.activeElement?.id;
   showForm();
   showPath();
   if (focused) document.getElementById(focused)?.focus();
   refresh();
+}
+
+/** Return whether the case of the inputs depends on a table. */
+function isUsed(key) {
+  return key === "table" ? inputs.kind === "tabulated" : inputs.tab === "fit";
 }
 
 function change(key, value) {
@@ -146,9 +154,13 @@ function showForm() {
   const analysis = ANALYSES[inputs.tab];
   $("#kind").value = inputs.kind;
   $("#formula").textContent = `f(r) = ${OWN_FORMULAS[inputs.kind] ?? catalogue[inputs.kind]?.formula ?? "…"}`;
-  showTable(inputs, unreadable.has("table"));
+  for (const [key, field] of Object.entries(tables)) field.show(inputs[key], unreadable.has(key));
+  $("#table-fields").hidden = !isUsed("table");
+  $("#measured").hidden = !isUsed("curve");
   fill($("#profile-fields"), rows(profileFields(), KINDS[inputs.kind].fields));
-  fill($("#bodies"), [1, 2].flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]));
+  // A fit tells the modulus.
+  const bodies = inputs.tab === "fit" ? [] : [1, 2];
+  fill($("#bodies"), bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]));
   fill($("#loading"), rows(loadFields(inputs)));
   fill($("#analysis"), rows(analysis.fields(inputs)));
   fill($("#units"), rows(Object.values(BASE_UNITS).map(({ key, label, factors }) => ({
@@ -199,7 +211,8 @@ const SOURCES = {
   "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
   "/material/work_of_adhesion": "w",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
-  "/tangential_velocity": "along", "/profile/r/": "table", "/profile/f/": "table",
+  "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
+  "/profile/r/": "table", "/profile/f/": "table",
   "/material/bodies/0/youngs_modulus": "e1", "/material/bodies/0/poissons_ratio": "nu1",
   "/material/bodies/1/youngs_modulus": "e2", "/material/bodies/1/poissons_ratio": "nu2",
   "/material/bodies": "material-2",
@@ -368,7 +381,9 @@ function makeTabs() {
 function connect() {
   for (const [kind, { label }] of Object.entries(KINDS)) $("#kind").add(new Option(label, kind));
   $("#kind").addEventListener("change", () => show(withKind(inputs, $("#kind").value)));
-  connectTable({ change: (table) => change("table", table), fail: () => fail("table") });
+  for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
+    tables[key] = tableField($(`#${key}-fields`), kind, { change: (table) => change(key, table), fail: () => fail(key) });
+  }
   $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
   $("#request").addEventListener("change", showSource);
   $("#language").addEventListener("change", showSource);

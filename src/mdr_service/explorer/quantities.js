@@ -32,5 +32,8 @@ export const QUANTITIES = {
   duration: ["Duration", "s"],
   maximum_indentation_depth: ["Largest depth d", "displacement"],
   maximum_normal_force: ["Largest normal force", "force"],
+  e_star: ["Effective modulus E*", "modulus"],
+  contact_point: ["Contact point", "displacement"],
+  force_offset: ["Force offset", "force"],
   stress_xx: ["Stress σ_xx", "pressure"],
 };

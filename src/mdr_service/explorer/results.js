@@ -2,7 +2,7 @@
 
 import { basics, pathPoints } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
-import { inMetres } from "./shapes.js";
+import { inMetres, inSI } from "./shapes.js";
 import { quantity } from "./units.js";
 
 const POINTS = 400;
@@ -371,6 +371,47 @@ export async function solveWear(inputs, query) {
         "Evolution", "Worn volume against cycles", course, ["cycles", "worn_volume"], now,
         { mark: "these cycles", logarithmic: true },
       ),
+    ],
+  };
+}
+
+export async function solveFit(inputs, query) {
+  const { depths, forces } = inSI(inputs.curve);
+  const fit = ["e_star", ...(inputs.fitted === "none" ? [] : inputs.fitted.split(","))];
+  const found = await query("Fit", "v1/normal/fit", {
+    profile: basics(inputs).profile, indentation_depth: depths, normal_force: forces, fit,
+  });
+  const values = fit.map((name, i) => {
+    const [label, dimension] = QUANTITIES[name];
+    const [value, error] = [found[name][0], found.standard_errors[i]];
+    return [label, `${quantity(value, dimension, inputs)} ± ${quantity(error, dimension, inputs, 2)}`];
+  });
+  const order = depths.map((_, i) => i).sort((i, j) => depths[i] - depths[j]);
+  const sorted = (column) => order.map((i) => column[i]);
+  const x = sorted(depths);
+  const [xAxis, yAxis] = [QUANTITIES.indentation_depth, QUANTITIES.normal_force];
+  const correlation = found.correlation[0][1];
+  return {
+    responses: [found],
+    known: {},
+    numbers: [
+      ...values,
+      ...(correlation === undefined ? [] : [["Correlation of E* and contact point", correlation, "1"]]),
+      ["Scatter of the forces", found.noise[0], "force"],
+      ["Residuals like noise, probability", found.misfit[0], "1"],
+    ],
+    charts: [
+      {
+        request: "Fit", title: "Force against depth", size: "wide", x: xAxis, y: yAxis,
+        traces: [
+          { name: "measured", x, y: sorted(forces), mode: "markers", role: "second" },
+          { name: "fit", x, y: sorted(found.normal_force) },
+        ],
+      },
+      {
+        request: "Fit", title: "Residual against depth", x: xAxis, y: ["Measured less fitted force", "force"],
+        traces: [{ name: "residual", x, y: sorted(found.residual), mode: "markers" }],
+      },
     ],
   };
 }

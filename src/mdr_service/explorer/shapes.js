@@ -1,7 +1,7 @@
 // Label, default values and shape f(r) of each profile kind, for the form and the sketch.
 // The descriptions of the fields come from GET v1/profiles.
 
-import { LENGTHS } from "./table_reader.js";
+import { FORCES, LENGTHS } from "./table_reader.js";
 import { times } from "./units.js";
 
 const kind = (label, fields, f) => ({ label, fields, f });
@@ -77,6 +77,19 @@ export const OWN_FORMULAS = {
 export function measuredBall() {
   const r = Array.from({ length: 41 }, (_, i) => i / 100);
   return { r, f: r.map((x) => Number((50 * x * x).toFixed(2))), units: ["mm", "µm"] };
+}
+
+/** Return a curve of a glass ball of radius 10 mm on rubber, in µm and mN, with its approach. */
+export function measuredCurve() {
+  const r = Array.from({ length: 61 }, (_, i) => i - 20);
+  // 10.7 MPa, contact at 4.2 µm, and errors of some 4 mN.
+  const f = r.map((d, i) => Number((1e3 * (4 / 3) * 10.7e6 * 0.1 * Math.max((d - 4.2) * 1e-6, 0) ** 1.5 + 4 * Math.sin(12.9 * i * i)).toFixed(1)));
+  return { r, f, units: ["µm", "mN"] };
+}
+
+/** Return the columns of a curve in metres and newtons. */
+export function inSI({ r, f, units: [depth, force] }) {
+  return { depths: r.map((x) => times(x, LENGTHS[depth])), forces: f.map((x) => times(x, FORCES[force])) };
 }
 
 /** Return the radii and heights of a table in metres. */

@@ -1,24 +1,13 @@
-// The field for the table of a measured profile: its text, its units, and files.
+// The field for the two columns of a profile or a curve: its text, its units, and files.
 
-import { mark, tableText } from "./form.js";
+import { mark } from "./form.js";
+import { decoded, readTable } from "./table_reader.js";
 import { numberOf } from "./units.js";
-import { decoded, LENGTHS, readTable } from "./table_reader.js";
 
-const $ = (selector) => document.querySelector(selector);
 // The most points that the service takes by default.
 const MOST = 2000;
 // Points of a tip from the coefficients of its area function.
 const POINTS_OF_AREA = 200;
-// The table whose text the field holds.
-let shown = null;
-
-const selected = () => [$("#unit-r").value, $("#unit-f").value];
-
-function describe({ r, named, ofAreas }) {
-  const units = named?.every(Boolean) ? "; units from the heading" : "; the heading names no units: choose them above";
-  const areas = ofAreas ? "; r = √(A/π) from the areas" : "";
-  $("#table-note").textContent = `${r.length} points${areas}${named ? units : ""}.`;
-}
 
 /** Return the table of A(h) = C0 h² + C1 h + C2 √h + … up to the height `most`, as text. */
 function areaText(coefficients, most, unit) {
@@ -27,39 +16,47 @@ function areaText(coefficients, most, unit) {
   return [`h [${unit}], A [${unit}²]`, ...heights.map((h) => `${h}, ${area(h)}`)].join("\n");
 }
 
-/** Show the table of the inputs, unless the field holds it or a text that cannot be read. */
-export function showTable({ kind, table }, unreadable) {
-  $("#table-fields").hidden = kind !== "tabulated";
-  if (unreadable || table === shown) return;
-  shown = table;
-  $("#table").value = tableText(table);
-  ["#unit-r", "#unit-f"].forEach((select, i) => ($(select).value = table.units[i]));
-  describe(table);
-}
+/**
+ * Return the field in an element for tables of a kind (`PROFILE`, `CURVE`), with `show(table,
+ * unreadable)`. `change(table)` is called with a table that is read, else `fail()`.
+ */
+export function tableField(root, kind, { change, fail }) {
+  const part = (selector) => root.querySelector(selector);
+  const text = part("textarea");
+  const selects = [...root.querySelectorAll("select")];
+  // The table whose text the field holds.
+  let shown = null;
 
-/** Connect the field: `change(table)` is called with a table that is read, else `fail()`. */
-export function connectTable({ change, fail }) {
+  const textOf = ({ r, f, units }) =>
+    [kind.heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
+
+  const describe = ({ r, named, ofAreas }) => {
+    const units = named?.every(Boolean) ? "; units from the heading" : "; the heading names no units: choose them above";
+    const areas = ofAreas ? "; r = √(A/π) from the areas" : "";
+    part(".count").textContent = `${r.length} points${areas}${named ? units : ""}.`;
+  };
+
   const give = (table) => {
     shown = table;
-    mark($("#table-fields"), "");
+    mark(root, "");
     describe(table);
     change(table);
   };
   const rewrite = (table) => {
-    $("#table").value = tableText(table);
+    text.value = textOf(table);
     give({ ...table, named: undefined, lines: undefined });
   };
   const read = () => {
-    $("#thin").hidden = true;
+    part(".thin").hidden = true;
     try {
-      const { units: named, ...table } = readTable($("#table").value);
-      const units = selected().map((unit, i) => named[i] ?? unit);
-      ["#unit-r", "#unit-f"].forEach((select, i) => ($(select).value = units[i]));
+      const { units: named, ...table } = readTable(text.value, kind);
+      const units = selects.map(({ value }, i) => named[i] ?? value);
+      selects.forEach((select, i) => (select.value = units[i]));
       offerThinning({ ...table, units });
       give({ ...table, units, named });
     } catch (error) {
-      mark($("#table-fields"), error.message);
-      $("#table-note").textContent = "";
+      mark(root, error.message);
+      part(".count").textContent = "";
       fail();
     }
   };
@@ -68,37 +65,47 @@ export function connectTable({ change, fail }) {
     const every = Math.ceil(r.length / MOST);
     if (every < 2) return;
     const thinned = (column) => column.filter((_, i) => i % every === 0);
-    $("#thin").hidden = false;
-    $("#thin").textContent = `Use one point of ${every}`;
-    $("#thin").onclick = () => {
-      $("#thin").hidden = true;
+    part(".thin").hidden = false;
+    part(".thin").textContent = `Use one point of ${every}`;
+    part(".thin").onclick = () => {
+      part(".thin").hidden = true;
       rewrite({ r: thinned(r), f: thinned(f), units });
     };
     throw new Error(`${r.length} points, of which the service takes ${MOST}`);
   };
-  for (const select of ["#unit-r", "#unit-f"]) {
-    for (const name of Object.keys(LENGTHS)) $(select).add(new Option(name));
-    $(select).addEventListener("change", () => {
+  selects.forEach((select, i) => {
+    for (const name of Object.keys(kind.units[i])) select.add(new Option(name));
+    select.addEventListener("change", () => {
       // The heading of the text states the units that are chosen.
-      if ($("#table-fields .problem").textContent === "") rewrite({ ...shown, units: selected() });
+      if (part(".problem").textContent === "") rewrite({ ...shown, units: selects.map(({ value }) => value) });
       else read();
     });
-  }
-  $("#table").addEventListener("input", read);
-  const showArea = () => {
-    const coefficients = $("#coefficients").value.trim().split(/[\s;]+/).map(numberOf);
-    const most = numberOf($("#largest-height").value);
-    const wrong = coefficients.some(Number.isNaN) ? "the coefficients are numbers with blanks between them"
-      : most > 0 ? "" : "the largest height is a positive number";
-    $("#area-problem").textContent = wrong;
-    if (wrong) return;
-    $("#table").value = areaText(coefficients, most, $("#unit-f").value);
-    read();
-  };
-  $("#use-area").addEventListener("click", showArea);
-  $("#file").addEventListener("change", async () => {
-    $("#table").value = decoded(await $("#file").files[0].arrayBuffer());
-    $("#file").value = "";
+  });
+  text.addEventListener("input", read);
+  part("[type=file]").addEventListener("change", async ({ target }) => {
+    text.value = decoded(await target.files[0].arrayBuffer());
+    target.value = "";
     read();
   });
+  part(".use-area")?.addEventListener("click", () => {
+    const coefficients = part("#coefficients").value.trim().split(/[\s;]+/).map(numberOf);
+    const most = numberOf(part("#largest-height").value);
+    const wrong = coefficients.some(Number.isNaN) ? "the coefficients are numbers with blanks between them"
+      : most > 0 ? "" : "the largest height is a positive number";
+    part("#area-problem").textContent = wrong;
+    if (wrong) return;
+    text.value = areaText(coefficients, most, selects[1].value);
+    read();
+  });
+
+  return {
+    /** Show a table, unless the field holds it or a text that cannot be read. */
+    show(table, unreadable) {
+      if (unreadable || table === shown) return;
+      shown = table;
+      text.value = textOf(table);
+      selects.forEach((select, i) => (select.value = table.units[i]));
+      describe(table);
+    },
+  };
 }

@@ -1,20 +1,36 @@
-// Tables of radii and heights as instruments and spreadsheets write them.
+// Tables of radii and heights, and curves of force over depth, as instruments and spreadsheets write
+// them.
 // mdr_core/table_reader.py reads the same files; tests/data/tables holds examples for both.
 
 /** Units of length that a heading may name -> metres. */
 export const LENGTHS = { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
+/** Units of force -> newtons. */
+export const FORCES = { N: 1, mN: 1e-3, "µN": 1e-6, nN: 1e-9 };
 
 const UNIT_NAMES = {
   m: /^(m|met(er|re)s?)$/i,
   mm: /^(mm|millimet(er|re)s?)$/i,
   "µm": /^([uµμ]m|microns?|micromet(er|re)s?)$/i,
   nm: /^(nm|nanomet(er|re)s?)$/i,
+  N: /^(N|newtons?)$/,
+  mN: /^mN$/,
+  "µN": /^[uµμ]N$/,
+  nN: /^nN$/,
 };
-// Names of the radius and of the height, those that leave no doubt first.
-const COLUMN_NAMES = [
-  [/(?<![a-z])(r|radius|radial|rho)(?![a-z])/i, /(?<![a-z])(x|distance|position|lateral)(?![a-z])/i],
-  [/(?<![a-z])(f|z|h|hc|height|depth|profile)(?![a-z])/i, /(?<![a-z])y(?![a-z])/i],
-];
+// The two columns of a table: their names, those that leave no doubt first, and their units.
+const RADIUS = [/(?<![a-z])(r|radius|radial|rho)(?![a-z])/i, /(?<![a-z])(x|distance|position|lateral)(?![a-z])/i];
+const HEIGHT = [/(?<![a-z])(f|z|h|hc|height|depth|profile)(?![a-z])/i, /(?<![a-z])y(?![a-z])/i];
+const DEPTH = [/(?<![a-z])(d|depth|indentation|displacement)(?![a-z])/i, /(?<![a-z])(h|x|z|position|separation)(?![a-z])/i];
+const FORCE = [/(?<![a-z])(f|fn|force|load)(?![a-z])/i, /(?<![a-z])(p|y)(?![a-z])/i];
+export const PROFILE = {
+  heads: ["r", "f"], names: [RADIUS, HEIGHT], units: [LENGTHS, LENGTHS],
+  expected: "a radius and a height", ask: "the radius r and the height f",
+};
+export const CURVE = {
+  heads: ["d", "F"], names: [DEPTH, FORCE], units: [LENGTHS, FORCES],
+  expected: "a depth and a force", ask: "the depth d and the force F",
+};
+
 // Name and unit of the cross-section in a table of a tip's area function.
 const AREA = /(?<![A-Za-z])(A|[Aa]reas?|[Ss]ection)(?![A-Za-z])/;
 const SQUARE = /(²|\^2|\*\*2|(?<=m)2)$/;
@@ -74,22 +90,20 @@ function unitOf(name) {
 }
 
 function isArea({ name }) {
-  return AREA.test(name) && !COLUMN_NAMES[0].some((radius) => radius.test(name));
+  return AREA.test(name) && !RADIUS.some((radius) => radius.test(name));
 }
 
 /**
- * Return the unit that a cell of a heading names: `mm`, `r [mm]`, `r (mm)`, `r, mm`, `r_mm`, or
- * `A [mm²]`, of which it is that of the length.
+ * Return the `unit` that a cell of a heading names: `mm`, `r [mm]`, `r (mm)`, `r, mm`, `r_mm`, or
+ * `A [mm²]`, of which it is that of the length; or that it is `unknown`.
  */
 function unitOfCell(cell, line, ofArea) {
   const [, bracket, word] = cell.match(/([[(]?)\s*([^[(/_,\s\])]*)\s*[\])]?$/);
   const length = word.replace(SQUARE, "");
   const unit = (length !== word) === ofArea ? unitOf(length) : undefined;
-  if (!unit && bracket === "[") {
-    const known = Object.keys(LENGTHS).map((each) => each + (ofArea ? "²" : ""));
-    throw new Error(`Line ${line}: the unit ${word} is none of ${known.join(", ")}`);
-  }
-  return unit;
+  if (unit || bracket !== "[") return { unit };
+  const known = Object.keys(LENGTHS).map((each) => each + (ofArea ? "²" : ""));
+  return { unknown: `Line ${line}: the unit ${word} is none of ${known.join(", ")}` };
 }
 
 /** Return the name and the unit of each column, where the heading gives them. */
@@ -104,21 +118,23 @@ function columnsOf({ heading, separator, rows }) {
     if (cells.length !== columns.length) continue;
     columns.forEach((column, i) => {
       column.name += ` ${cells[i]}`;
-      column.unit ??= unitOfCell(cells[i], number, isArea(column));
+      const { unit, unknown } = unitOfCell(cells[i], number, isArea(column));
+      column.unit ??= unit;
+      column.unknown ??= unknown;
     });
   }
   return columns;
 }
 
-/** Return the indices of the columns of radii, or areas, and heights. */
-function chosen(columns, line) {
+/** Return the indices of the two columns; areas may stand in place of radii. */
+function chosen(columns, line, { names, ask }) {
   const place = (patterns) => patterns.map((p) => columns.findIndex(({ name }) => p.test(name))).find((i) => i >= 0);
-  let [r, f] = COLUMN_NAMES.map(place);
+  let [r, f] = names.map(place);
   const areas = columns.findIndex(isArea);
-  if (r === undefined && areas >= 0) r = areas;
+  if (names[0] === RADIUS && r === undefined && areas >= 0) r = areas;
   if (r !== undefined && f !== undefined && r !== f) return [r, f];
   if (columns.length === 2) return [0, 1];
-  throw new Error(`Line ${line}: ${columns.length} columns; name the radius r and the height f in a line above`);
+  throw new Error(`Line ${line}: ${columns.length} columns; name ${ask} in a line above`);
 }
 
 /**
@@ -126,7 +142,7 @@ function chosen(columns, line) {
  * of both where a heading names them, else undefined, and the number of each `lines`. An error
  * names the line.
  */
-export function readTable(text) {
+export function readTable(text, kind = PROFILE) {
   const lines = linesOf(text);
   const attempts = DIALECTS.map((dialect) => rowsIn(lines, dialect));
   const found = attempts.find(({ rows, wrong }) => rows.length && !wrong);
@@ -134,7 +150,7 @@ export function readTable(text) {
     const furthest = attempts.filter(({ wrong }) => wrong).sort((a, b) => b.rows.length - a.rows.length)[0];
     throw new Error(furthest
       ? `Line ${furthest.wrong}: ${furthest.count} numbers are expected`
-      : "no line holds two numbers, a radius and a height");
+      : `no line holds two numbers, ${kind.expected}`);
   }
   const { rows } = found;
   const width = rows[0].cells.length;
@@ -142,10 +158,17 @@ export function readTable(text) {
     throw new Error(`Line ${rows[0].number}: a comma may separate columns or decimals; separate columns by ; or tabs`);
   }
   const columns = columnsOf(found);
-  const [r, f] = chosen(columns, rows[0].number);
+  const [r, f] = chosen(columns, rows[0].number, kind);
+  [r, f].forEach((at, i) => {
+    const { unit, unknown } = columns[at];
+    if (unknown && !unit) throw new Error(unknown);
+    if (unit && !Object.hasOwn(kind.units[i], unit)) {
+      throw new Error(`${kind.heads[i]} in ${unit}: its units are ${Object.keys(kind.units[i]).join(", ")}`);
+    }
+  });
   const numbers = (i) => rows.map(({ cells }) => Number(cells[i].replace(",", ".").replace(/d/i, "e")));
   let radii = numbers(r);
-  const ofAreas = isArea(columns[r]);
+  const ofAreas = kind === PROFILE && isArea(columns[r]);
   if (ofAreas) {
     const least = radii.indexOf(Math.min(...radii));
     if (radii[least] < 0) throw new Error(`Line ${rows[least].number}: an area is negative`);
