@@ -40,9 +40,9 @@ def test_exact_curve_returns_its_parameters(shape: str) -> None:
     force = forces(SHAPES[shape])
     offset = 0.1 * force.max()
     found = fitted(SHAPES[shape], force + offset, fit=ALL)
-    assert found.e_star == pytest.approx(E_STAR, rel=1e-9)
-    assert found.contact_point == pytest.approx(D_0, rel=1e-9)
-    assert found.force_offset == pytest.approx(offset, rel=1e-9)
+    assert found.e_star == pytest.approx(E_STAR, rel=1e-9, abs=0)
+    assert found.contact_point == pytest.approx(D_0, rel=1e-9, abs=0)
+    assert found.force_offset == pytest.approx(offset, rel=1e-9, abs=0)
     assert found.residual == pytest.approx(0, abs=1e-11 * force.max())
     assert [notice.code for notice in found.warnings if notice.code == "misfit"] == []
 
@@ -58,8 +58,8 @@ def test_order_and_approach_change_nothing(order: str) -> None:
     found = fit.solve(
         profile, indentation_depth=DEPTH[index], normal_force=forces(profile)[index], fit=ALL
     )
-    assert found.e_star == pytest.approx(E_STAR, rel=1e-8)
-    assert found.contact_point == pytest.approx(D_0, rel=1e-8)
+    assert found.e_star == pytest.approx(E_STAR, rel=1e-8, abs=0)
+    assert found.contact_point == pytest.approx(D_0, rel=1e-8, abs=0)
 
 
 def test_standard_errors_of_the_modulus_alone() -> None:
@@ -71,19 +71,19 @@ def test_standard_errors_of_the_modulus_alone() -> None:
     reduced = force / E_STAR
     found = fitted(profile, noisy, fit=["e_star"])
     expected = reduced @ noisy / (reduced @ reduced)
-    assert found.e_star == pytest.approx(expected, rel=1e-12)
+    assert found.e_star == pytest.approx(expected, rel=1e-12, abs=0)
     sigma = np.sqrt(np.sum((noisy - expected * reduced) ** 2) / (force.size - 1))
-    assert found.noise == pytest.approx(sigma, rel=1e-9)
+    assert found.noise == pytest.approx(sigma, rel=1e-9, abs=0)
     error = sigma / np.sqrt(reduced @ reduced)
-    assert found.standard_errors.tolist() == pytest.approx([error], rel=1e-9)
+    assert found.standard_errors.tolist() == pytest.approx([error], rel=1e-9, abs=0)
     assert found.contact_point == found.force_offset == 0.0
 
 
 def test_known_modulus_leaves_the_contact_point() -> None:
     profile = SHAPES["sphere"]
     found = fitted(profile, forces(profile), fit=["contact_point"], e_star=E_STAR)
-    assert found.contact_point == pytest.approx(D_0, rel=1e-9)
-    assert found.correlation.tolist() == [[pytest.approx(1.0)]]
+    assert found.contact_point == pytest.approx(D_0, rel=1e-9, abs=0)
+    assert found.correlation.tolist() == [[pytest.approx(1.0, rel=1e-9, abs=0)]]
 
 
 def test_correlation_of_modulus_and_contact_point() -> None:
@@ -157,7 +157,7 @@ def test_change_of_units(unit: float) -> None:
     force = force + 0.01 * force.max() * np.random.default_rng(2).standard_normal(force.size)
     found = fitted(profile, force, fit=ALL)
     other = fit.solve(large, indentation_depth=unit * DEPTH, normal_force=unit**2 * force, fit=ALL)
-    assert other.e_star == pytest.approx(found.e_star, rel=1e-7)
+    assert other.e_star == pytest.approx(found.e_star, rel=1e-7, abs=0)
     assert other.contact_point == pytest.approx(unit * found.contact_point, rel=1e-7, abs=0)
     scale = [1.0, unit, unit**2]
     assert other.standard_errors == pytest.approx(found.standard_errors * scale, rel=1e-6, abs=0)

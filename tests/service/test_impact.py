@@ -57,7 +57,7 @@ def test_one_velocity_serves_all(client: Client) -> None:
 def test_sliding_example_has_its_closed_form(client: Client) -> None:
     # w - 2 mu m v/m_t.
     document = client.post(PATH, EXAMPLES["impact"]["cylinder"]["value"]).json()
-    assert document["tangential_rebound_velocity"] == pytest.approx([2 - 2 * 0.1 * 1.0])
+    assert document["tangential_rebound_velocity"] == pytest.approx([1.8], rel=1e-12, abs=0)
     assert document["regime"] == ["full_slip"]
 
 

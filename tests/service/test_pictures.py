@@ -105,6 +105,15 @@ def rows(values: Any) -> np.ndarray[Any, Any]:
     return np.array(values, dtype=float)
 
 
+# Abscissa and ordinates of results over the loads.
+DRAWN = {
+    "normal": ("indentation_depth", "normal_force"),
+    "fit": ("indentation_depth", "normal_force", "residual"),
+    "impact": ("tangential_velocity", "tangential_rebound_velocity", "dissipated_energy"),
+    "wear": ("stick_radius", "worn_volume", "wear_radius"),
+}
+
+
 @pytest.mark.parametrize(("name", "query"), CASES.values(), ids=CASES)
 def test_points_are_the_numbers_of_the_response(
     name: str, query: dict[str, Any], monkeypatch: pytest.MonkeyPatch
@@ -137,12 +146,8 @@ def test_points_are_the_numbers_of_the_response(
                 assert np.all((corners[:-1, 0, 1] <= z) & (z <= corners[1:, 0, 1]))
                 expected.append(set())
     else:
-        pairs = [("tangential_displacement", "tangential_force")]
-        if name == "normal":
-            pairs = [("indentation_depth", "normal_force")]
-        elif name == "wear":
-            pairs = [("stick_radius", "worn_volume"), ("stick_radius", "wear_radius")]
-        expected = [set(zip(found[x], found[y], strict=True)) for x, y in pairs]
+        x, *ordinates = DRAWN.get(name, ("tangential_displacement", "tangential_force"))
+        expected = [set(zip(found[x], found[y], strict=True)) for y in ordinates]
     assert len(axes) == len(expected)
     for each, values in zip(axes, expected, strict=True):
         assert points(each) == {point for point in values if None not in point}
