@@ -1,4 +1,4 @@
-"""Surface displacements of a spheroid, integrated over its contact coordinate v = artanh(x/R).
+"""Displacement beside a spheroid, integrated over its contact coordinate v = artanh(x/R).
 
 g' dx = h (v sech^2 v + tanh v) dv has no pole at the equator, and v resolves the distance from it.
 Source: notes, §7.
@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.quadrature import PIECE, integrate, nodes_of_pieces, piecewise_rule
-from mdr_core.typing import Array, Indices, Parameter
+from mdr_core.quadrature import PIECE, nodes_of_pieces, piecewise_rule
+from mdr_core.typing import Array, Parameter
 
 # Closer to the edge a root lies on it.
 _EPS: Final = float(np.finfo(float).eps)
@@ -39,7 +39,11 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
     halvings = max(ceil(-log2(max(_nearest_root(big_radius, edge, beyond) * count / v, _EPS))), 0)
     ends = np.concatenate([[0.0], 0.5 ** np.arange(halvings, 0, -1), np.arange(1, count + 1)])
     places, weights = piecewise_rule(nodes_of_pieces(rtol), ends / count)
-    x, short, density = _stepped(big_radius, np.asarray(v), v * places)
+    down = v * places
+    at = v - down
+    x = big_radius * np.tanh(at)
+    short = big_radius * np.sinh(down) / (np.cosh(v) * np.cosh(at))
+    density = at / np.cosh(at) ** 2 + np.tanh(at)
 
     result, step = np.empty_like(r), max(_BLOCK // weights.size, 1)
     for start in range(0, r.size, step):
@@ -47,40 +51,6 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
         root = np.sqrt(np.add.outer(short, beyond[part]) * np.add.outer(x, r[part]))
         result[part] = v * ((weights * density) @ np.arctan2(x[:, None], root))
     return result
-
-
-def slope_integral_inside(
-    big_radius: Parameter, v: Array, width: Array, r: Array, rtol: float
-) -> Array:
-    """Return (1/h) int_c^r g'(x) arccos(x/r) dx for r = R tanh(v), c = R tanh(v - width) [1].
-
-    The substitution v - `width` u^2 for x removes the root at r.
-
-    Source: mdr-5, Eq. (5.40), by parts.
-
-    Parameters
-    ----------
-    big_radius : R [length].
-    v, width : r, and the distance of c from it, in the contact coordinate [1], shape (m,).
-    r : radii [length], shape (m,).
-    rtol : relative tolerance.
-    """
-    length = PIECE * np.maximum(width, np.finfo(float).tiny)
-
-    def h(y: Array, index: Indices) -> Array:
-        u = y / length[index]
-        x, short, density = _stepped(big_radius, v[index], u * u * width[index])
-        return np.asarray(2 * u * density * np.arctan2(np.sqrt(short * (x + r[index])), x))
-
-    return integrate(h, length, rtol) / PIECE
-
-
-def _stepped(big_radius: Parameter, v: Array, down: Array) -> tuple[Array, Array, Array]:
-    """x at v - down, its distance below R tanh(v), and g' dx/dv / h."""
-    at = v - down
-    x = big_radius * np.tanh(at)
-    short = big_radius * np.sinh(down) / (np.cosh(v) * np.cosh(at))
-    return x, short, at / np.cosh(at) ** 2 + np.tanh(at)
 
 
 def _nearest_root(big_radius: Parameter, edge: float, beyond: Array) -> float:

@@ -12,7 +12,7 @@ from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
-from mdr_core.profiles.spheroid_displacement import slope_integral_inside, slope_integral_outside
+from mdr_core.profiles.spheroid_displacement import slope_integral_outside
 from mdr_core.quadrature import integrate
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import first_index
@@ -108,13 +108,6 @@ class Spheroid(Profile):
         t = np.tanh(coordinate)
         bracket = t * t * t + (1 + t * t) * tanh_gap(coordinate)
         return self.height * self.radius * bracket
-
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
-        """Integrated in v. Parameters: see `Profile`."""
-        v = artanh_ratio(r, self.radius)
-        width = self.coordinate_width(r, c, v, artanh_ratio(c, self.radius))
-        integral = slope_integral_inside(self.radius, v, width, r, rtol)
-        return 2 / pi * self.height * integral
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
         """Integrated in v. Parameters: see `Profile`."""
