@@ -5,11 +5,10 @@ import os
 import re
 from asyncio import CancelledError
 from collections.abc import Mapping
-from math import inf
 from typing import Any, Final
 
 import orjson
-from anyio import CancelScope, current_time
+from anyio import move_on_after
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
@@ -197,25 +196,27 @@ async def read_body(request: Request) -> bytes:
         detail = f"the Content-Type must be {json.MEDIA_TYPE}"
         raise ServiceError(problems.UNSUPPORTED_MEDIA_TYPE, detail)
     announced = header(request.scope, b"content-length")
-    is_too_large = announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes
+    if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:
+        raise await _too_large(request)
     chunks: list[bytes] = []
     size = 0
-    # A connection closed with unread data is reset, and its response may be lost: the rest is read.
-    with CancelScope(deadline=current_time() + _LINGER_SECONDS if is_too_large else inf) as scope:
-        async for chunk in request.stream():
-            size += len(chunk)
-            if is_too_large or size > SETTINGS.max_body_bytes:
-                scope.deadline = min(scope.deadline, current_time() + _LINGER_SECONDS)
-                is_too_large = True
-                chunks.clear()
-                continue
-            if size > LONG:
-                request.app.state.transfers.add(observability.CURRENT.get(), len(chunk))
-            chunks.append(chunk)
-    if is_too_large:
-        detail = f"the limit is {SETTINGS.max_body_bytes} bytes"
-        raise ServiceError(problems.BODY_TOO_LARGE, detail)
+    async for chunk in request.stream():
+        size += len(chunk)
+        if size > SETTINGS.max_body_bytes:
+            raise await _too_large(request)
+        if size > LONG:
+            request.app.state.transfers.add(observability.CURRENT.get(), len(chunk))
+        chunks.append(chunk)
     return b"".join(chunks)
+
+
+async def _too_large(request: Request) -> ServiceError:
+    # A connection closed with unread data is reset, and its response may be lost: read the rest.
+    with move_on_after(_LINGER_SECONDS):
+        while (await request.receive()).get("more_body"):
+            pass
+    detail = f"the limit is {SETTINGS.max_body_bytes} bytes"
+    return ServiceError(problems.BODY_TOO_LARGE, detail)
 
 
 # Coroutines: the framework runs plain functions in a thread, which takes five times as long as the

@@ -17,7 +17,8 @@ from mdr_service.middleware import header, read_body
 from mdr_service.problems import ServiceError
 from mdr_service.schemas import contacts
 from mdr_service.schemas.batch import BatchQuery
-from mdr_service.serializers import FORMATS, PICTURES
+from mdr_service.serializers import FORMATS, PICTURES, json
+from mdr_service.serializers.picture import AS_USUAL
 from mdr_service.workers import AT_ONCE_BYTES
 
 # Bound; the longest query has about forty.
@@ -40,8 +41,12 @@ class Responder:
         size: Annotated[str | None, Query(description=SIZE)] = None,
         units: Annotated[str | None, Query(description=UNITS)] = None,
     ) -> None:
-        self.media_type = media_type(format_, header(request.scope, b"accept"), self.formats)
-        self.appearance = appearance(self.media_type, size, units)
+        accept = header(request.scope, b"accept", "*/*")
+        # Most clients accept anything, and take a picture as it is.
+        is_json = format_ is None and accept == "*/*"
+        self.media_type = json.MEDIA_TYPE if is_json else media_type(format_, accept, self.formats)
+        is_usual = size is None and units is None
+        self.appearance = AS_USUAL if is_usual else appearance(self.media_type, size, units)
         self.workers = request.app.state.workers
         self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 

@@ -1,6 +1,6 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
@@ -148,14 +148,20 @@ class Bodies(Elastic):
     @cached_property
     def effective(self) -> materials.Material:
         """Effective moduli."""
-        return materials.from_bodies(
-            [
-                materials.RIGID
-                if isinstance(each, str)
-                else materials.Body(each.youngs_modulus, each.poissons_ratio)
+        return _of_bodies(
+            *(
+                None if isinstance(each, str) else (each.youngs_modulus, each.poissons_ratio)
                 for each in self.bodies
-            ]
+            )
         )
+
+
+# A client often sends many queries about the same bodies.
+@lru_cache(maxsize=256)
+def _of_bodies(*constants: tuple[float, float] | None) -> materials.Material:
+    return materials.from_bodies(
+        [materials.Body(*each) if each else materials.RIGID for each in constants]
+    )
 
 
 class Moduli(Elastic):
