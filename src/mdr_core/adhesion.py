@@ -11,7 +11,7 @@ depth for phi > c/2. Every crossing of these levels is found, between nodes that
 state under a load is the outermost stable one, which unloading from a large contact reaches, and
 the pull-off is the lowest load of all stable branches.
 
-Source: notes, §15.
+Source: notes, §13.
 """
 
 from collections.abc import Callable
@@ -323,7 +323,7 @@ def solve(
 
     The state is the outermost stable one, in which the contact is after unloading.
 
-    Source: jkr; popov-adhesion; notes, §15.
+    Source: jkr; popov-adhesion; notes, §13.
 
     Parameters
     ----------

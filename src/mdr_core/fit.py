@@ -3,7 +3,7 @@
 Least squares of F = E* F^(d - d_0) + F_0 with the exact slope dF^/dd = 2 a: linear in E* and F_0,
 and searched in d_0, because the sum of squares may have several minima.
 
-Source: notes, §17.
+Source: notes, §15.
 """
 
 from collections.abc import Sequence
@@ -115,7 +115,7 @@ def solve(
 ) -> Fit:
     """Return modulus, contact point and force offset that fit a measured curve best.
 
-    Source: notes, §17.
+    Source: notes, §15.
 
     Parameters
     ----------

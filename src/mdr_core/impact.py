@@ -3,7 +3,7 @@
 The normal motion is a quadrature of the energy. The tangential one follows by iteration over the
 whole impact: forces by the displacements, displacements by the forces, until nothing changes.
 
-Source: notes, §16.
+Source: notes, §14.
 """
 
 from dataclasses import dataclass
@@ -152,7 +152,7 @@ def solve(
     follows from the history of depth and displacement of the contact point: every part of the
     contact sticks until its own limit of friction.
 
-    Source: notes, §16.
+    Source: notes, §14.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ for
 m = dq_x/dq = +-mu k, k the slope of the anchors: the real part belongs to the normal load, the
 imaginary part to the tangential load. The kernels are singular at x^2 = w = (r + i z)^2.
 
-Source: notes, §14.
+Source: notes, §12.
 """
 
 from math import ceil, inf, log2, prod

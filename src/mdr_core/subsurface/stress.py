@@ -1,4 +1,4 @@
-"""Stress tensor of a contact at any points of either body. Source: notes, §14."""
+"""Stress tensor of a contact at any points of either body. Source: notes, §12."""
 
 from math import inf
 from typing import Final, NamedTuple, TypeAlias
@@ -83,7 +83,7 @@ def stress(
 
     The tangential force acts on body 1, the profile's, which passes it on: the traction on body 2
     is tau of `fields.shear_stress`, on body 1 its opposite. As z points into the body, sigma_xz on
-    the surface is the opposite of the traction: -tau in body 2, tau in body 1. Source: notes, §14.
+    the surface is the opposite of the traction: -tau in body 2, tau in body 1. Source: notes, §12.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Largest stress of a contact, the load at which yield begins, and the loads beyond it.
 
-Source: notes, §14; johnson, section 4.2.
+Source: notes, §12; johnson, section 4.2.
 """
 
 from collections.abc import Callable
@@ -66,7 +66,7 @@ def largest(
 ) -> Peak:
     """Return the largest von Mises or shear stress in a body under each load, and its place.
 
-    Its relative accuracy is about 1e-5. Source: notes, §14.
+    Its relative accuracy is about 1e-5. Source: notes, §12.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def yield_onset_force(
 
     Yield begins where the von Mises stress reaches the yield strength, or the largest shear stress
     half of it (Tresca). The force is 0 where the stress is infinite under any load, and inf where
-    no load up to the end of the profile reaches it. Source: johnson, section 4.2; notes, §14.
+    no load up to the end of the profile reaches it. Source: johnson, section 4.2; notes, §12.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def yield_finding(
 
     `yield_strength` is that of the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
     are known. Along a load history the forces of every sample count as applied once; at its end
-    the traction is that of the path. Source: johnson, section 4.2; notes, §14.
+    the traction is that of the path. Source: johnson, section 4.2; notes, §12.
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     profile, (columns, shape) = pressed.profile, _columns(contact)
