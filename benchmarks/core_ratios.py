@@ -3,9 +3,8 @@
 `python core_ratios.py NAME STATE` prints the rows of one measurement as JSON. Each runs in a
 process of its own, because earlier allocations decide whether an array's memory is at hand:
 
-- "fresh pages": large temporaries return to the system on every call and cause page faults at the
-  next, for both sides. The threshold is that of the C library, fixed: else the side that frees the
-  larger arrays raises it for the other.
+- "fresh pages": the C library's defaults. Large temporaries return to the system on every call and
+  cause page faults at the next, for both sides.
 - "kept memory": the environment makes the C library keep freed memory (`KEPT` below).
 """
 
@@ -34,7 +33,6 @@ from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import Paraboloid, RoundedPunch, Tabulated
 
 FRESH, KEPT = "fresh pages", "kept memory"
-_FRESH = {"MALLOC_MMAP_THRESHOLD_": str(1 << 17)}
 _KEEP = {"MALLOC_MMAP_THRESHOLD_": str(1 << 30), "MALLOC_TRIM_THRESHOLD_": str(1 << 30)}
 
 Array = np.ndarray
@@ -304,7 +302,7 @@ MEASUREMENTS = {
 
 def rows() -> list[measure.Row]:
     """All measurements in both allocator states, those of the gate in one."""
-    states, found = {FRESH: _FRESH, KEPT: _KEEP}, []
+    states, found = {FRESH: {}, KEPT: _KEEP}, []
     if measure.GATE:
         del states[FRESH]
     for name in MEASUREMENTS:
