@@ -157,13 +157,6 @@ class WorkerPool:
         Raises ServiceError if the queue is full, the wait or the computation takes too long, or
         the process is lost; besides all that the function raises.
         """
-        return cast("_Result", await self._run(function, *arguments))
-
-    async def check(self) -> None:
-        """Run the self-test in a process; raise ServiceError if it fails or does not run soon."""
-        await self._run(self._self_test)
-
-    async def _run(self, function: Callable[..., object], *arguments: Any) -> Any:
         job = _Job()
         process = await self._take_process(job)
         job.since = monotonic()
@@ -187,7 +180,11 @@ class WorkerPool:
         if job.scope.cancelled_caught:
             process.end = "displaced"
             raise self._busy("terminated: another client waited, and this one computed more")
-        return _raised(outcome)
+        return cast("_Result", _raised(outcome))
+
+    async def check(self) -> None:
+        """Run the self-test in a process; raise ServiceError if it fails or does not run soon."""
+        await self.run_in_process(self._self_test)
 
     async def _take_process(self, job: _Job) -> ComputeProcess:
         if not self._supervised:
