@@ -124,10 +124,11 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
 def model_error(contact: SolvedContact, material: Material | None) -> Array:
     """Return the estimated relative error of depth, force and displacements by the model [1].
 
-    An estimate, not a bound, of each load: of the half-space (`half_space`), and with friction of
-    the neglected coupling and of the transverse slip. A flat punch that sticks to a half-space has
-    artanh(beta)/beta - 1, about beta^2/3, more force; slip across the load, of the relative size
-    nu/(4 - 2 nu), acts to second order. Local stresses may differ by beta.
+    An estimate, not a bound, of each load, where 1 stands for 100 % and more: of the half-space
+    (`half_space`), and with friction of the neglected coupling and of the transverse slip. A flat
+    punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more force; slip
+    across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local stresses may
+    differ by beta.
 
     Source: hay; spence; notes, §8.
 
@@ -139,7 +140,7 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
         ratio = max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
         error = error + beta**2 / 3 + (ratio / (4 - 2 * ratio)) ** 2
-    return error
+    return np.minimum(error, 1.0)
 
 
 def findings(contact: SolvedContact, material: Material | None) -> list[Finding]:

@@ -160,9 +160,10 @@ def fault_of(body: bytes) -> str | None:
         answer = strict_json.loads(body)
     except ValueError:
         return "not JSON"
-    codes = {each["code"] for each in answer["warnings"]}
+    # The members of a warning may be null whatever the results are.
+    codes = {each["code"] for each in answer.pop("warnings")}
     explained = codes & {"singular", "endless_wear"}
-    return "null without a warning" if b"null" in body and not explained else None
+    return "null without a warning" if "null" in json.dumps(answer) and not explained else None
 
 
 async def schema(port: int, _server: psutil.Process) -> list[Row]:

@@ -30,6 +30,8 @@ def slope_integral_outside(big_radius: Parameter, v: float, r: Array, rtol: floa
     r : radii r >= a [length], shape (m,).
     rtol : relative tolerance.
     """
+    if v == 0:
+        return np.zeros_like(r)
     edge = float(2 * big_radius / (np.exp(2 * v) + 1))
     # Next to the equator R - a is accurate, next to the axis a is.
     past = (r - big_radius) + edge if v > 1 else r - big_radius * np.tanh(v)

@@ -56,7 +56,7 @@ class SolvedAnswer(Answer):
     )
     model_error: list[float] = _number(
         "Estimate, no bound, of the relative error of depth, force and displacements by the model: "
-        "half-space, coupling and transverse slip; one entry per load or sample"
+        "half-space, coupling and transverse slip; 1 for 100 % and more; by load or sample"
     )
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
