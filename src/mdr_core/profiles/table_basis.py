@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import BSpline, PPoly
 
 from mdr_core.abel.slope_pieces import heights
-from mdr_core.profiles.table_points import Points
+from mdr_core.profiles.table_points import TablePoints
 from mdr_core.typing import Array, Flags
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
@@ -59,7 +59,7 @@ class TableBasis:
     first spline, which is the slope on the axis.
     """
 
-    def __init__(self, points: Points, knots: Array) -> None:
+    def __init__(self, points: TablePoints, knots: Array) -> None:
         self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 1), _DEGREE)
         self.points, self.knots = points, knots
         self.t = np.concatenate([[0.0] * k, knots, [1.0] * k])

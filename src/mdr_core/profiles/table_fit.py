@@ -20,7 +20,7 @@ from scipy.sparse.linalg import spsolve
 
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
-from mdr_core.profiles.table_points import ROUNDED, Points, cleaned, scatter
+from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, scatter
 from mdr_core.typing import Array
 
 # Diagonal of a triangle, over the largest, that is rounding error.
@@ -93,7 +93,7 @@ def fit_table(
     return found
 
 
-def _knots(points: Points, most: int) -> Array:
+def _knots(points: TablePoints, most: int) -> Array:
     """Return knots at the axis and at points, every n-th one if there are more than `most`."""
     x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
     if x.size > most:
@@ -101,7 +101,7 @@ def _knots(points: Points, most: int) -> Array:
     return x
 
 
-def _interpolated(points: Points) -> TableFit:
+def _interpolated(points: TablePoints) -> TableFit:
     """Return the interpolant of least roughness, or the nearest fit if that is not admissible."""
     basis = TableBasis(points, _knots(points, _KNOTS))
     coefficients = _least_roughness(basis)
@@ -185,7 +185,9 @@ def _triangle(system: Array) -> Array:
     return np.asarray(np.linalg.qr(system, mode="r"))
 
 
-def _measured(points: Points, uncertainty: float | None, *, sharp: bool | None = None) -> TableFit:
+def _measured(
+    points: TablePoints, uncertainty: float | None, *, sharp: bool | None = None
+) -> TableFit:
     """Return the smoothest admissible fit within the uncertainty, or the scatter."""
     basis = TableBasis(points, _knots(points, _KNOTS_OF_MEASURED))
     rough = basis.derivative(min(_ROUGH, basis.degree))
@@ -281,7 +283,7 @@ class _Spectrum:
         return spread if self.sharp else np.vstack([spread, np.zeros(spread.shape[1])])
 
 
-def _has_no_noise(points: Points) -> bool:
+def _has_no_noise(points: TablePoints) -> bool:
     """True if the points deviate from a smooth shape by rounding errors, or less than it does."""
     if points.rounded or scatter(points) < ROUNDED:
         return scatter(points) < ROUNDED

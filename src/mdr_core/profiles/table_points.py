@@ -29,7 +29,7 @@ _LEAST_ERROR: Final = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class TablePoints:
     """Points of a table over its last radius and its height, ascending; equal radii merged."""
 
     x: Array
@@ -45,7 +45,7 @@ class Points:
     """Last radius and height [length]."""
 
 
-def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> Points:
+def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
     """Sort the points and merge those whose radii differ by less than the spacing resolves."""
     end, height = float(r.max()), float(f.max() - f.min())
     x, y = given = r / end, (f - f.min()) / height
@@ -70,10 +70,10 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> Points:
         typical = float(np.median(error))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
-    return Points(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
+    return TablePoints(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
 
 
-def scatter(points: Points) -> float:
+def scatter(points: TablePoints) -> float:
     """Median deviation of the points from the polynomial through their neighbours, over its norm.
 
     Neither smooth shapes nor a few kinks have one; noise and rounding have.
