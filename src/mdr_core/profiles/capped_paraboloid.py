@@ -10,7 +10,7 @@ from mdr_core.elementwise import where
 from mdr_core.errors import InputError
 from mdr_core.profiles.powers import Paraboloid
 from mdr_core.profiles.tipped import Tipped
-from mdr_core.typing import Array, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,10 @@ class CappedParaboloid(Tipped):
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         return (where(self._relative_step > 0, self.cap_radius, np.inf),)
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        """True on the cap, which is a paraboloid. See `Profile`."""
+        return coordinate <= self.tangent_radius
 
     def f(self, radius: Array) -> Array:
         square, b2 = radius * radius, np.square(self.cap_radius)

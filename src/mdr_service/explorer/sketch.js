@@ -2,6 +2,9 @@
 
 import { outline, wireProfile } from "./shapes.js";
 
+// Coordinates that an image of any size can hold.
+const FAR = 1e6;
+
 /** Draw the profile of the inputs on its base if it has one, and the contact if its radius is known. */
 export function showSketch(svg, inputs, contact) {
   const [width, height] = [280, 120];
@@ -17,7 +20,9 @@ export function showSketch(svg, inputs, contact) {
   const touch = Math.min(contact ?? 0, end) * scale[0];
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.replaceChildren();
-  if (!(end > 0) || !(top > 0)) return;
+  // Parameters of no body have no outline.
+  const drawn = points.flatMap(([r, f]) => [r * scale[0], f * scale[1]]);
+  if (!(end > 0) || !(top > 0) || !drawn.every((x) => Math.abs(x) < FAR)) return;
   svg.innerHTML =
     `<rect class="base" x="0" y="${height - 24}" width="${width}" height="24"/>` +
     `<polygon class="body" points="${corner(-1)} ${left.join(" ")} ${right.join(" ")} ${corner(1)}"/>` +
