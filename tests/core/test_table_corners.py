@@ -9,7 +9,7 @@ from mpmath import mp, mpf
 from mdr_core import fields, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import solve
-from mdr_core.profiles import Sphere, Tabulated, TruncatedParaboloid
+from mdr_core.profiles import Sphere, Tabulated, TruncatedCone, TruncatedParaboloid
 
 END, EDGE = 0.6, 0.5
 #: Error of 200 exact points of a sphere.
@@ -132,3 +132,13 @@ def test_break_outside_the_table_is_rejected(place: float) -> None:
     with pytest.raises(InputError, match="between the axis and the last radius") as raised:
         Tabulated(r, r**2, breaks=(1.0, place))
     assert raised.value.path == ("profile", "breaks", 1)
+
+
+def test_rounded_radii_on_a_long_flat_weight_the_heights() -> None:
+    # Most heights are equal, and their errors zero: the slope of a truncated cone remains.
+    r = np.round(np.linspace(0.0, 1.0, 25) ** 2, 5)
+    f = np.maximum(r - 0.5, 0.0)
+    table = Tabulated(r, f, breaks=[0.5])
+    cone = TruncatedCone(0.5, 1.0)
+    forces = [float(solve(each, 1.0, contact_radius=0.8).normal_force) for each in (table, cone)]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-2, abs=0)

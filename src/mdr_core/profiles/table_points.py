@@ -67,7 +67,8 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
     if rounded:
         # An error of the radius is one of the height on a slope.
         error = np.hypot(of_radius * np.gradient(y, x), of_height)
-        typical = float(np.median(error))
+        # On a flat an error of the radius is none of the height.
+        typical = float(np.median(error[error > 0]))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
     return TablePoints(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
