@@ -112,7 +112,8 @@ def _interpolated(points: TablePoints) -> TableFit:
     jumps = coefficients[basis.size - 1 : -2 : 2]
     jumps[np.abs(jumps) < _NEGATIVE * largest] = 0.0
     # Where the slope falls by a step, g' is infinite and negative beyond it.
-    if basis.slopes(coefficients).min() <= 0 or jumps.min(initial=0.0) < 0:
+    falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
+    if falls or basis.slopes(coefficients).min() <= 0:
         return _measured(points, 0.0, sharp=coefficients[-1] > 0)
     # The error of every second point, which is larger than that of all.
     half = np.zeros(points.x.size, dtype=bool)
