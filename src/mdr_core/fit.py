@@ -314,8 +314,8 @@ class _Model:
     def _misfit(self, slopes: Array, residual: Array, noise: float | None) -> float:
         """Probability of residuals like these by chance.
 
-        Polynomials of the depth in contact are fitted beside the parameters: their part in the sum
-        of squares has the F-distribution, or, of known noise, the whole that of chi^2.
+        Polynomials of the order of the depths are fitted beside the parameters: their part in the
+        sum of squares has the F-distribution, or, of known noise, the whole that of chi^2.
         """
         if np.abs(residual).max() <= _ROUNDING * np.abs(self.force).max():
             return 1.0

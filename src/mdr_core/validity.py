@@ -134,8 +134,7 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
 
     Parameters: see `findings`.
     """
-    radial, slope, wall = _half_space(contact.normal, material)
-    error = slope * (radial + slope) + wall
+    *_, error = _half_space(contact.normal, material)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
         ratio = max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
@@ -209,8 +208,7 @@ def of_normal_contact(
 
     Source: hay; notes, §8.
     """
-    radial, slope, wall = _half_space(contact, material)
-    error = slope * (radial + slope) + wall
+    radial, slope, wall, error = _half_space(contact, material)
     is_known = material is not None and material.dundurs_beta is not None
 
     def size() -> str:
@@ -251,12 +249,13 @@ def of_normal_contact(
 
 def _half_space(
     contact: LoadedContact, material: Material | None
-) -> tuple[float, Array, Parameter]:
-    """Radial error over the slope, slope at the edge, and error by the side wall of a punch."""
+) -> tuple[float, Array, Parameter, Array]:
+    """Radial error over the slope, slope at the edge, error by a punch's side wall, and the sum."""
     beta = None if material is None else material.dundurs_beta
     radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
     wall = _wall_error(contact, None if material is None else material.profile_share)
-    return radial, _edge_slope(contact), wall
+    slope = _edge_slope(contact)
+    return radial, slope, wall, slope * (radial + slope) + wall
 
 
 def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:
