@@ -18,7 +18,8 @@ UNITS: Final = (Units(1.0, 1.0), Units(1e3, 1.0), Units(1e6, 1e3))
 
 DIMENSIONS: Final[Mapping[str, tuple[int, int]]] = {
     **dict.fromkeys(("radius", "height", "flat_radius", "rounding_radius"), (1, 0)),
-    **dict.fromkeys(("tip_radius", "cap_radius", "r", "f", "breaks", "x", "y", "z"), (1, 0)),
+    **dict.fromkeys(("tip_radius", "cap_radius", "r", "f", "breaks", "uncertainty"), (1, 0)),
+    **dict.fromkeys(("x", "y", "z"), (1, 0)),
     **dict.fromkeys(("indentation_depth", "contact_radius", "stick_radius"), (1, 0)),
     "tangential_displacement": (1, 0),
     **dict.fromkeys(("normal_force", "tangential_force"), (0, 1)),
