@@ -85,8 +85,6 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(
         tangential_force=0.4 * float(contact.normal_force - within.normal_force),
     )
     assert worn.contact_radius[-1] > 1.003
-    volume = 2e-4 * worn.dissipated_energy
-    assert worn.worn_volume == pytest.approx(volume, rel=2 * worn.error_estimate, abs=0)
 
 
 @pytest.mark.long

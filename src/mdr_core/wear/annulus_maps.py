@@ -56,8 +56,6 @@ class AnnulusMaps:
     """d/dz at the points times the weights of int_0^1 dz, (m, n)."""
     mean: Array
     """Row: (1/2) int_0^1 values dz, (n,)."""
-    product: Array
-    """Bilinear form: (1/2) int_0^1 values others dz, (n, n)."""
     at_stick: Array
     """Row: the value at z = 0, (n,)."""
     volume: Array
@@ -124,7 +122,6 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
         points=points,
         steps=weights[:, None] * slopes,
         mean=over_squares / 2 @ values,
-        product=values.T @ (over_squares[:, None] / 2 * values),
         at_stick=_interpolation(np.zeros(1), nodes)[0][0],
         volume=(over_squares * np.sqrt(points) / 2) @ values,
     )

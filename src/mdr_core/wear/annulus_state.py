@@ -36,8 +36,6 @@ class AnnulusState:
     """c - c_0, without the rounding error of c in a narrow annulus."""
     depth_increase: float
     """d - d_0."""
-    work: float
-    """Integral of the power over the cycles."""
     tilt_terms: Array
     """Where the stick zone grows, the tilt C(r) = -(2/pi) int arccos(c/r) dw_c of the surface
     outside as a Chebyshev series in 1/r, from a_0 to the largest contact radius; else empty."""
@@ -49,9 +47,9 @@ class AnnulusState:
     def of(cls, initial: InitialState, vector: Array) -> Self:
         """Return the state of a vector of the integrator: the numbers above, one after another."""
         inner, tilted = initial.parts
-        end, stick_shift, depth_increase, work = vector[inner:tilted].tolist()
+        end, stick_shift, depth_increase = vector[inner:tilted].tolist()
         worn, tilt = vector[:inner], vector[tilted:]
-        return cls(initial, worn, end, stick_shift, depth_increase, work, tilt)
+        return cls(initial, worn, end, stick_shift, depth_increase, tilt)
 
     @property
     def stick(self) -> float:
@@ -169,10 +167,3 @@ class AnnulusState:
         """Return gamma - gamma_0 at radii x, clipped to those of the annulus."""
         squares = (x - self.stick) * (x + self.stick) / self.end**2
         return x * self.initial.maps.at(self.worn_omega, np.clip(squares, 0.0, 1.0))
-
-    @cached_property
-    def power(self) -> float:
-        """int_c^a (D - gamma) gamma dx, the friction work of a cycle. Source: notes, §6."""
-        maps, omega = self.initial.maps, self.omega
-        weights = self.reduced_amplitude * maps.mean - self.gamma @ maps.product
-        return float(self.end**2 * weights @ omega)

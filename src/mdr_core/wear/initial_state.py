@@ -135,15 +135,15 @@ class InitialState:
 
     @cached_property
     def parts(self) -> list[int]:
-        """Ends of two parts of a vector: wear at the inner nodes; b, c, d and the work."""
+        """Ends of two parts of a vector: wear at the inner nodes; b, c and d."""
         inner = self.maps.squares.size - 1
-        return [inner, inner + 4]
+        return [inner, inner + 3]
 
     @property
     def vector(self) -> Array:
         """Vector of `AnnulusState` before the first cycle."""
         tilt = np.zeros(TILT_TERMS if self.stick_grows else 0)
-        return np.concatenate([np.zeros(self.parts[0]), (1.0, 0.0, 0.0, 0.0), tilt])
+        return np.concatenate([np.zeros(self.parts[0]), (1.0, 0.0, 0.0), tilt])
 
     @cached_property
     def _singular(self) -> Array:

@@ -144,9 +144,9 @@ def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
     start = AnnulusState.of(initial, initial.vector)
     slip = np.maximum(start.slip[:-1], _MIN_SLIP)
-    # In a narrow annulus all but b and the work change by a part b_0/a_0 only.
+    # In a narrow annulus all but b change by a part b_0/a_0 only.
     part = 1 / (initial.stick + initial.width)
-    return np.concatenate([slip, (1.0, part, part, 1.0), np.full(start.tilt_terms.shape, part)])
+    return np.concatenate([slip, (1.0, part, part), np.full(start.tilt_terms.shape, part)])
 
 
 def _events(initial: InitialState, rtol: float) -> list[Any]:

@@ -41,12 +41,10 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
     By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
     rates is neglected.
     """
-    state, maps = _MovingAnnulus.of(initial, vector), initial.maps
+    state = _MovingAnnulus.of(initial, vector)
     inner, tilted = initial.parts
     in_worn, in_edges = state.gradients()
-    in_omega = state.end**2 * maps.mean * (state.reduced_amplitude - 2 * state.gamma)
-    in_power = in_omega @ maps.from_slip
-    gradient = np.concatenate([in_worn[:-1], in_edges[_END:], in_power[None]])
+    gradient = np.concatenate([in_worn[:-1], in_edges[_END:]])
     found = np.zeros((vector.size, vector.size))
     if initial.stick_grows:
         passing = in_edges[_DEPTH] - state.stick_slope * in_edges[_STICK]
@@ -149,7 +147,7 @@ class _MovingAnnulus(AnnulusState):
         worn = self.worn_rates @ self.velocity
         passing = self.velocity[_DEPTH] - self.stick_slope * self.velocity[_STICK]
         tilt = self.tilt_rates * passing if self.initial.stick_grows else self.tilt_terms
-        return np.concatenate([worn[:-1], self.velocity[_END:], [self.power], tilt])
+        return np.concatenate([worn[:-1], self.velocity[_END:], tilt])
 
     def _solve(self, right: Array) -> Array:
         """Rates of the moving edges at which the conditions stay met, by their other terms."""

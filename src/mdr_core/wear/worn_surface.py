@@ -75,15 +75,10 @@ class WornSurface:
         unit = self.initial.depth_unit * self.initial.length_unit**2
         return self._each(lambda state: unit * _worn_volume(state), 0.0)
 
-    @cached_property
+    @property
     def dissipated_energy(self) -> Array:
-        """Friction work of all cycles so far [force length].
-
-        (8 mu^2 E*^2/G*) int_c^a (d - g)(g - g(c)) dx per cycle. Source: notes, §6.
-        """
-        initial = self.initial
-        unit = 2 * initial.depth_unit * initial.length_unit**2 / initial.wear_coefficient
-        return self._each(lambda state: unit * state.work, 0.0)
+        """Friction work V/K of all cycles so far, by the law of wear [force length]."""
+        return self.worn_volume / self.initial.wear_coefficient
 
     def spring_wear(self, radius: Array) -> Array:
         """Return the wear g - g_0 of the springs at radii of the annulus [length], (cycles, m)."""
