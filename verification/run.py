@@ -13,6 +13,7 @@ from verification import (
     abel_pairs,
     adhesion,
     frictional_contacts,
+    layers,
     model_errors,
     normal_contacts,
     ring_elements,
@@ -65,8 +66,8 @@ class Row:
 
 def cases() -> Iterator[Case]:
     """Yield every case."""
-    own = (normal_contacts, adhesion, frictional_contacts, stresses, abel_pairs, model_errors)
-    for module in (*own, ring_elements):
+    own = (normal_contacts, adhesion, frictional_contacts, stresses, abel_pairs)
+    for module in (*own, model_errors, layers, ring_elements):
         yield from module.cases()
 
 

@@ -40,5 +40,10 @@ SOURCES: Final = {
     ),
     "hay": "J. C. Hay, A. Bolshakov, G. M. Pharr, J. Mater. Res. 14 (1999) 2296-2305",
     "spence": "D. A. Spence, Proc. R. Soc. Lond. A 305 (1968) 55-80",
+    "lebedev": (
+        "N. N. Lebedev, Ia. S. Ufliand, J. Appl. Math. Mech. 22 (1958) 442-450, and W. C. Hayes et "
+        "al., J. Biomech. 5 (1972) 541-551; integral equation solved in verification/layers.py"
+    ),
+    "dimitriadis": "E. K. Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810",
     "ring-elements": "Independent numerical solution, with bounds: verification/ring_elements.py",
 }

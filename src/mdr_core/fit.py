@@ -17,6 +17,7 @@ from scipy.special import chdtrc, fdtrc
 
 from mdr_core import normal, validity
 from mdr_core.errors import InputError, Notice
+from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
@@ -111,6 +112,7 @@ def solve(
     fit: Sequence[str] = ("e_star", "contact_point"),
     e_star: float | None = None,
     noise: float | None = None,
+    body_thickness: float | None = None,
     rtol: float = 1e-10,
 ) -> Fit:
     """Return modulus, contact point and force offset that fit a measured curve best.
@@ -126,6 +128,7 @@ def solve(
         the offset are zero if they are not fitted.
     e_star : effective modulus, needed unless it is fitted [pressure].
     noise : standard deviation of the forces, by default that of the residuals [force].
+    body_thickness : see `from_bodies` [length].
     rtol : accuracy required of the contact at the largest depth, 1e-13 to 1e-3.
 
     Returns
@@ -164,7 +167,7 @@ def solve(
     if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
-    return model.result(model.contact_point(), noise, rtol)
+    return model.result(model.contact_point(), noise, body_thickness, rtol)
 
 
 def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
@@ -272,7 +275,9 @@ class _Model:
         slopes = np.column_stack([columns[name] for name in self.fit])
         return _Point(linear, slopes, residual)
 
-    def result(self, d0: float, noise: float | None, rtol: float) -> Fit:
+    def result(
+        self, d0: float, noise: float | None, body_thickness: float | None, rtol: float
+    ) -> Fit:
         """Return the fit at the contact point, or an InputError."""
         parameters, slopes, residual = self.at(d0)
         touching = int(np.sum(self.depth > d0))
@@ -290,7 +295,7 @@ class _Model:
         deviations = np.linalg.norm(inverse, axis=1)
         contact = normal.solve(
             self.profile,
-            parameters["e_star"],
+            Material(parameters["e_star"], body_thickness=body_thickness),
             indentation_depth=max(float(self.depth.max()) - d0, 0.0),
             rtol=rtol,
         )

@@ -42,10 +42,12 @@ class Material:
     """Poisson's ratios of the elastic bodies [1], empty where they are unknown."""
     profile_share: float | None = None
     """Share of the first body, which has the profile, in 1/E* [1]; None where it is unknown."""
+    body_thickness: float | None = None
+    """Thickness of the more compliant body on a rigid base [length]; None for a half-space."""
 
     def __post_init__(self) -> None:
-        for name, value in (("e_star", self.e_star), ("g_star", self.g_star)):
-            if value is not None:
+        for name in ("e_star", "g_star", "body_thickness"):
+            if (value := getattr(self, name)) is not None:
                 require_positive(("material", name), value)
 
 
@@ -81,7 +83,9 @@ def _require_both_bodies(name: str, value: object) -> None:
         raise InputError(("material", name), detail)
 
 
-def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
+def from_bodies(
+    bodies: Sequence[Body | Literal["rigid"]], *, body_thickness: float | None = None
+) -> Material:
     """Return the effective moduli and Dundurs' beta of two bodies in contact.
 
     1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2);
@@ -94,6 +98,8 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     Parameters
     ----------
     bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
+    body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
+        contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
 
     Raises
     ------
@@ -122,7 +128,7 @@ def from_bodies(bodies: Sequence[Body | Literal["rigid"]]) -> Material:
     share = compliances[0] / normal if isinstance(bodies[0], Body) else 0.0
     shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
-    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios, share)
+    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios, share, body_thickness)
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

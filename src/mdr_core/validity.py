@@ -1,7 +1,7 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `smoothed`, `half_space`, `plastic`, `elastic_similarity` and
-`impossible_moduli`; `singular` and `accuracy` come with the results, and `yield` from
+The codes are `table_end`, `smoothed`, `half_space`, `thin_body`, `plastic`, `elastic_similarity`
+and `impossible_moduli`; `singular` and `accuracy` come with the results, and `yield` from
 `mdr_core.subsurface`.
 
 Source: notes, §8.
@@ -32,6 +32,8 @@ _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 # Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
 # length 6 b is L/(pi E b^2).
 _WALL: Final = 3.0
+# Contact radius over the thickness of a body from which it is reported, with room for rounding.
+_THIN: Final = 0.1 * (1 + 1e-9)
 # Part of an error that a warning does not mention.
 _NO_PART: Final = 5e-4
 # Radii that a warning lists, so that it stays one sentence.
@@ -125,19 +127,21 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     """Return the estimated relative error of depth, force and displacements by the model [1].
 
     An estimate, not a bound, of each load, where 1 stands for 100 % and more: of the half-space
-    (`half_space`), and with friction of the neglected coupling and of the transverse slip. A flat
-    punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more force; slip
-    across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local stresses may
-    differ by beta.
+    (`half_space`, `thin_body`), and with friction of the neglected coupling and of the transverse
+    slip. A flat punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more
+    force; slip across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local
+    stresses may differ by beta.
 
     Source: hay; spence; notes, §8.
 
     Parameters: see `findings`.
     """
     *_, error = _half_space(contact.normal, material)
+    if material is not None and material.body_thickness is not None:
+        error = error + _layer(contact.normal, material)[1]
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
-        ratio = max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
+        ratio = _largest_ratio(material)
         error = error + beta**2 / 3 + (ratio / (4 - 2 * ratio)) ** 2
     return np.minimum(error, 1.0)
 
@@ -197,12 +201,13 @@ def smoothed(contact: LoadedContact) -> Finding:
 def of_normal_contact(
     contact: LoadedContact, material: Material | None = None, slips_from: Parameter = np.inf
 ) -> list[Finding]:
-    """Return `half_space` and `plastic`.
+    """Return `half_space`, `thin_body` and `plastic`.
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
     of first order in the slope by the neglected radial displacement, and of second order by the
-    geometry; the side wall of an elastic punch adds to it. `plastic`: the deviatoric stress is
-    infinite somewhere, which no material can bear.
+    geometry; the side wall of an elastic punch adds to it. `thin_body`: the contact radius exceeds
+    a tenth of the thickness. `plastic`: the deviatoric stress is infinite somewhere, which no
+    material can bear.
 
     `slips_from` is the least radius with slip in each case [length].
 
@@ -244,7 +249,43 @@ def of_normal_contact(
     exceeds = error > _HALF_SPACE_ERROR
     steep = Finding("half_space", exceeds, size, error, 0.01, "finite_elements")
     infinite = _infinite(contact, yields)
-    return [steep, Finding("plastic", infinite, places, instead="rounded_tip")]
+    plastic = Finding("plastic", infinite, places, instead="rounded_tip")
+    if material is None or material.body_thickness is None:
+        return [steep, plastic]
+    return [steep, _thin_body(contact, material), plastic]
+
+
+def _thin_body(contact: LoadedContact, material: Material) -> Finding:
+    part, error = _layer(contact, material)
+
+    def message() -> str:
+        largest = extremes(error)[1]
+        size = f"about {_per_cent(largest)}" if largest < 1 else "over 100 %"
+        return (
+            f"the contact radius is {extremes(part)[1]:.3g} of the thickness of the body, which is "
+            f"stiffer than a half-space by {size}; use a smaller load, or finite elements"
+        )
+
+    return Finding("thin_body", part > _THIN, message, part, 0.1, "finite_elements")
+
+
+def _layer(contact: LoadedContact, material: Material) -> tuple[Array, Array]:
+    """a/h of a body of thickness h, bonded to a rigid base, and its relative error by the base [1].
+
+    The base reduces the depth by alpha F_N/(pi E* h), to first order in a/h, with the source's
+    approximation of alpha(nu). The force increases by x + x^2, x = (2/pi) alpha a/h, to the second.
+
+    Source: dimitriadis; notes, §8.
+    """
+    part = contact.contact_radius / (material.body_thickness or np.inf)
+    nu = _largest_ratio(material)
+    x = 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu) * part
+    return part, x + x * x
+
+
+def _largest_ratio(material: Material | None) -> float:
+    """Poisson's ratio, the larger one of two bodies, assumed where they are unknown [1]."""
+    return max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
 
 
 def _half_space(

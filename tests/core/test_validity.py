@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from mdr_core import normal, tangential, validity
+from mdr_core import adhesion, normal, tangential, validity
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
     CappedParaboloid,
@@ -145,6 +145,25 @@ def test_model_error_of_coupling_is_that_of_a_bonded_punch(nu: float) -> None:
     across = (nu / (4 - 2 * nu)) ** 2
     assert punch.model_error == 0
     assert within_a_factor_of_three(validity.model_error(stuck, pair) - across, error)
+
+
+def test_model_error_of_a_layer_on_a_rigid_base() -> None:
+    """Dimitriadis et al. (2002): 1.133 chi + 1.283 chi^2 more force for nu = 1/2, chi = a/h."""
+    a = np.array([0.0, 1e-3, 0.0999, 0.1001, 3.0])
+    gel = from_bodies([RIGID, Body(1e3, 0.5)], body_thickness=1.0)
+    contact = normal.solve(Paraboloid(1e4), gel, contact_radius=a)
+    expected = np.minimum(1.133 * a + 1.283 * a**2, 1.0)
+    assert contact.model_error == pytest.approx(expected, rel=2e-3, abs=1e-7)
+    (thin,) = contact.warnings
+    assert (thin.code, thin.limit, thin.instead) == ("thin_body", 0.1, "finite_elements")
+    assert thin.value == pytest.approx(3.0, rel=1e-14, abs=0)
+    assert "by over 100 %" in thin.message
+    assert warnings_of(contact, gel)["thin_body"].where.tolist() == [False] * 3 + [True] * 2
+    # Of unknown bodies, and with adhesion, under tension too.
+    unknown = Material(1.0, body_thickness=0.1)
+    punch = adhesion.solve(FlatPunch(0.05), unknown, 1e-9, indentation_depth=-1e-9)
+    assert punch.model_error == pytest.approx(0.44 + 0.44**2, rel=0.01, abs=0)
+    assert "thin_body" in {notice.code for notice in punch.warnings}
 
 
 def test_model_error_of_transverse_slip() -> None:

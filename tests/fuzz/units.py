@@ -21,7 +21,7 @@ DIMENSIONS: Final[Mapping[str, tuple[int, int]]] = {
     **dict.fromkeys(("tip_radius", "cap_radius", "r", "f", "breaks", "uncertainty"), (1, 0)),
     **dict.fromkeys(("x", "y", "z"), (1, 0)),
     **dict.fromkeys(("indentation_depth", "contact_radius", "stick_radius"), (1, 0)),
-    "tangential_displacement": (1, 0),
+    **dict.fromkeys(("tangential_displacement", "body_thickness"), (1, 0)),
     **dict.fromkeys(("normal_force", "tangential_force"), (0, 1)),
     **dict.fromkeys(("e_star", "g_star", "youngs_modulus", "yield_strength"), (-2, 1)),
     "wear_coefficient": (2, -1),

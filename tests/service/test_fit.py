@@ -35,6 +35,15 @@ def test_response_equals_the_core(client: Client) -> None:
     assert [warning["code"] for warning in document["warnings"]] == ["half_space"]
 
 
+def test_thickness_of_the_body(client: Client) -> None:
+    body = {"body_thickness": 2000.0}
+    known = {"fit": ["contact_point"], "material": {"e_star": 2e-5} | body}
+    for asked in (body, known):
+        document = client.post(PATH, query(**asked)).json()
+        assert "thin_body" in [warning["code"] for warning in document["warnings"]]
+        assert document["model_error"][0] > 0.1
+
+
 def test_wrong_shape_is_a_warning(client: Client) -> None:
     punch = {"kind": "flat_punch", "radius": 300.0}
     document = client.post(PATH, query(profile=punch)).json()

@@ -116,6 +116,9 @@ RUBBER = {"youngs_modulus": 5e6, "poissons_ratio": 0.4}
         ("tangential", {"e_star": 1e9, "g_star": 1e9}, set()),
         ("tangential", {"e_star": 1e9, "g_star": 1e8}, {"impossible_moduli"}),
         ("normal", {"e_star": 1e9, "yield_strength": 1e4}, {"yield"}),
+        ("normal", {"e_star": 1e9, "body_thickness": 1e-3}, {"thin_body"}),
+        ("tangential", {"bodies": [STEEL, STEEL], "body_thickness": 1e-3}, {"thin_body"}),
+        ("tangential", {"bodies": [STEEL, STEEL], "body_thickness": 1.0}, set()),
     ],
 )
 def test_validity_warnings(client: Client, path: str, material: object, codes: set[str]) -> None:

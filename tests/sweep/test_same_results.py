@@ -66,6 +66,7 @@ STEEL = {
     "material.bodies.0.youngs_modulus": 210e9,
     "material.bodies.0.poissons_ratio": 0.3,
     "material.yield_strength": 3e8,
+    "material.body_thickness": 1e-3,
 }
 BODIES: list[Row] = [
     {"material.bodies.1": "rigid"},

@@ -8,6 +8,10 @@ const SHARE = ["Share of µF_N", "1"];
 
 export const BODIES = { 1: "Body 1 (indenter)", 2: "Body 2 (flat)" };
 
+export const THICKNESS = {
+  key: "thickness", label: "Thickness on a rigid base", dimension: "length", optional: true, placeholder: "half-space",
+};
+
 const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);
 const FRICTION = { key: "mu", label: QUANTITIES.friction_coefficient[0], dimension: "1", range: [0.01, 1] };
 

@@ -12,7 +12,7 @@ export const RIGID = "rigid";
 const DEFAULTS = {
   tab: "press",
   kind: "paraboloid",
-  e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3,
+  e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3, thickness: "",
   control: "normal_force", load: 100, w: 0,
   mu: 0.3, push: "ratio", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
@@ -34,6 +34,7 @@ const OTHERS = {
   path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
   breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   uncertainty: (text) => (text === "" ? text : number(text)),
+  thickness: (text) => (text === "" ? text : number(text)),
   e1: (text) => (text === RIGID ? text : number(text)),
   e2: (text) => (text === RIGID ? text : number(text)),
 };
@@ -122,5 +123,6 @@ export function pathPoints(inputs) {
 export function basics(inputs) {
   const bodies = [1, 2].map((i) =>
     inputs[`e${i}`] === RIGID ? RIGID : { youngs_modulus: inputs[`e${i}`], poissons_ratio: inputs[`nu${i}`] });
-  return { profile: wireProfile(inputs), material: { bodies } };
+  const layer = inputs.thickness === "" ? {} : { body_thickness: inputs.thickness };
+  return { profile: wireProfile(inputs), material: { bodies, ...layer } };
 }

@@ -6,7 +6,7 @@ import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS } from "./materials.js";
 import { inWords } from "./messages.js";
-import { bodyFields, loadFields, ANALYSES, BODIES } from "./analyses.js";
+import { bodyFields, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
 import { copied, download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
 import { defaultInputs, fromAddress, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
@@ -160,7 +160,7 @@ function showForm() {
   fill($("#profile-fields"), rows(profileFields(), KINDS[inputs.kind].fields));
   // A fit tells the modulus.
   const bodies = inputs.tab === "fit" ? [] : [1, 2];
-  fill($("#bodies"), bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]));
+  fill($("#bodies"), [...bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]), ...rows([THICKNESS])]);
   fill($("#loading"), rows(loadFields(inputs)));
   fill($("#analysis"), rows(analysis.fields(inputs)));
   fill($("#units"), rows(Object.values(BASE_UNITS).map(({ key, label, factors }) => ({
@@ -198,7 +198,7 @@ function showAccuracy(responses, notes) {
   const model = 100 * Math.max(...responses.flatMap((response) => response.model_error));
   $("#accuracy").textContent =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
-    `The model of half-spaces itself errs by about ${format(model, 2)} %.`;
+    `The model of half-spaces itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.`;
   const warnings = [...notes, ...responses.flatMap((response) => response.warnings)];
   const messages = new Map(warnings.map(({ code, message }) => [code, message]));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>
@@ -209,7 +209,7 @@ function showAccuracy(responses, notes) {
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
-  "/material/work_of_adhesion": "w",
+  "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness", "/body_thickness": "thickness",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
   "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
   "/profile/r/": "table", "/profile/f/": "table",

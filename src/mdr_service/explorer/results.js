@@ -378,8 +378,9 @@ export async function solveWear(inputs, query) {
 export async function solveFit(inputs, query) {
   const { depths, forces } = inSI(inputs.curve);
   const fit = ["e_star", ...(inputs.fitted === "none" ? [] : inputs.fitted.split(","))];
+  const { profile, material } = basics(inputs);
   const found = await query("Fit", "v1/normal/fit", {
-    profile: basics(inputs).profile, indentation_depth: depths, normal_force: forces, fit,
+    profile, indentation_depth: depths, normal_force: forces, fit, body_thickness: material.body_thickness,
   });
   const values = fit.map((name, i) => {
     const [label, dimension] = QUANTITIES[name];

@@ -18,13 +18,15 @@ def solve_fit(query: FitQuery) -> Fit:
     if query.has("material") and query.material.model_fields_set & ADHESION:
         detail = "is no part of a fit, whose curve is that of a contact without adhesion"
         raise InputError(("material", "work_of_adhesion"), detail)
+    known = query.material if query.has("material") else None
     return fit.solve(
         profile(query.profile),
         indentation_depth=query.indentation_depth,
         normal_force=query.normal_force,
         fit=query.fit,
-        e_star=query.material.effective.e_star if query.has("material") else None,
+        e_star=known.effective.e_star if known else None,
         noise=query.noise,
+        body_thickness=query.body_thickness or (known.body_thickness if known else None),
         rtol=query.rtol,
     )
 

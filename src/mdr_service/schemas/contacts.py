@@ -115,6 +115,16 @@ BodyOrRigid = Annotated[
 ]
 
 
+def thickness() -> Any:
+    """Return the optional field of the thickness of a body."""
+    return positive(
+        "length",
+        "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
+        "warning `thin_body`; the contact remains that of half-spaces",
+        default=None,
+    )
+
+
 class Elastic(Strict):
     """Material of a contact."""
 
@@ -136,6 +146,7 @@ class Elastic(Strict):
         "`work_of_adhesion`",
         default=None,
     )
+    body_thickness: float = thickness()
 
 
 class Bodies(Elastic):
@@ -149,18 +160,22 @@ class Bodies(Elastic):
     def effective(self) -> materials.Material:
         """Effective moduli."""
         return _of_bodies(
+            self.body_thickness,
             *(
                 None if isinstance(each, str) else (each.youngs_modulus, each.poissons_ratio)
                 for each in self.bodies
-            )
+            ),
         )
 
 
 # A client often sends many queries about the same bodies.
 @lru_cache(maxsize=256)
-def _of_bodies(*constants: tuple[float, float] | None) -> materials.Material:
+def _of_bodies(
+    body_thickness: float | None, *constants: tuple[float, float] | None
+) -> materials.Material:
     return materials.from_bodies(
-        [materials.Body(*each) if each else materials.RIGID for each in constants]
+        [materials.Body(*each) if each else materials.RIGID for each in constants],
+        body_thickness=body_thickness,
     )
 
 
@@ -176,7 +191,7 @@ class Moduli(Elastic):
     poissons_ratio: float = quantity(
         "1",
         "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere "
-        "only the warnings `plastic` and `yield` depend on it (0.3 is assumed for `yield`)",
+        "only warnings and `model_error` depend on it, for which 0.3 is assumed",
         default=None,
         gt=-1,
         le=0.5,
@@ -186,7 +201,9 @@ class Moduli(Elastic):
     def effective(self) -> materials.Material:
         """Effective moduli."""
         known = (self.poissons_ratio,) if self.has("poissons_ratio") else ()
-        return materials.Material(self.e_star, self.g_star, poissons_ratios=known)
+        return materials.Material(
+            self.e_star, self.g_star, poissons_ratios=known, body_thickness=self.body_thickness
+        )
 
 
 Material = Annotated[

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Material, Query
+from mdr_service.schemas.contacts import Material, Query, thickness
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
@@ -31,3 +31,4 @@ class FitQuery(Query):
     noise: float = positive(
         "force", "Standard deviation of the forces, by default that of the residuals", default=None
     )
+    body_thickness: float = thickness()

@@ -1,0 +1,103 @@
+"""Stiffness of an elastic layer on a rigid base, which the model of half-spaces neglects.
+
+Lebedev and Ufliand reduce the contact of a layer of thickness h, as MDR that of a half-space, to a
+line load q of the length 2a, here over E* and with a = 1:
+
+    q(x) - int_0^1 K(x, t) q(t) dt = d - g(x),    F = 2 int_0^1 q dx,
+    K = (2/pi) (a/h) int_0^oo (1 - L(w)) cos(w x a/h) cos(w t a/h) dw,
+
+with q(1) = 0 under a rounded indenter. L is the response of a bonded layer to a wave of pressure.
+"""
+
+from collections.abc import Iterator
+from typing import Any, Final
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+
+from verification.case import Case, at
+
+Array = NDArray[np.float64]
+# Gauss points on the line, and over the waves up to the one at which 1 - L is below 1e-12.
+POINTS, WAVES, SHORTEST = 60, 200, 16.0
+# Slope of the cone, and curvature of the ball: the error by the slope is negligible.
+FLAT: Final = 1e-5
+# An estimate is right within a factor of 1.5.
+FACTOR = 0.5
+
+
+def _missing(nu: float, w: Array) -> Array:
+    """1 - L of a layer that is bonded to a rigid base (Hayes et al. 1972)."""
+    kappa = 3 - 4 * nu
+    below = 2 * kappa * np.cosh(2 * w) + 1 + kappa**2 + 4 * w**2
+    return np.asarray((2 * kappa * np.exp(-2 * w) + 1 + kappa**2 + 4 * w**2 + 4 * w) / below)
+
+
+def stiffening(part: float, nu: float, exponent: float) -> tuple[float, float]:
+    """Return d and F over that of a half-space at this depth, less one, for g = x^exponent, a = 1.
+
+    Parameters
+    ----------
+    part : contact radius over the thickness.
+    nu : Poisson's ratio.
+    exponent : 1 for a cone, 2 for a ball, infinite for a flat punch, under which d = 1.
+    """
+    x, weight = (0.5 * (each + shift) for each, shift in zip(leggauss(POINTS), (1, 0), strict=True))
+    nodes, measure = leggauss(WAVES)
+    w = SHORTEST / 2 * (nodes + 1)
+    share = SHORTEST / 2 * measure * _missing(nu, w)
+    waves = np.cos(part * np.multiply.outer(np.append(x, 1.0), w))
+    kernel = 2 / np.pi * part * (waves * share) @ waves[:-1].T * weight
+    ends = np.stack([np.ones(POINTS), x**exponent], axis=1)
+    loads = np.linalg.solve(np.eye(POINTS) - kernel[:-1], ends)
+    unit, shape = np.ones(2) + kernel[-1] @ loads
+    if exponent == np.inf:
+        return 1.0, float(weight @ loads[:, 0] - 1)
+    depth = shape / unit
+    force = 2 * weight @ (depth * loads[:, 0] - loads[:, 1])
+    # A half-space has a^n = d.
+    flat = 2 * exponent / (exponent + 1) * depth ** (1 + 1 / exponent)
+    return float(depth), float(force / flat - 1)
+
+
+def _case(source: str, name: str, profile: Any, part: float, nu: float, d: float, f: float) -> Case:
+    material = {"bodies": ["rigid", {"youngs_modulus": 1.0, "poissons_ratio": nu}]}
+    request = {
+        "profile": profile,
+        "material": material | {"body_thickness": 1 / part},
+        "load": {"indentation_depth": d},
+    }
+    case = f"{name} on a layer, a/h = {part:g}, ν = {nu}: model_error"
+    place = at("model_error")
+    return Case(
+        *(source, "bonded layer", case, "/v1/normal", request, place, f),
+        bound=FACTOR,
+        as_ratio=True,
+    )
+
+
+def integral_equation() -> Iterator[Case]:
+    """Force of punch, ball and cone on a layer at prescribed depth."""
+    for name, profile, exponent, scale in (
+        ("punch", {"kind": "flat_punch", "radius": 1.0}, np.inf, FLAT),
+        ("ball", {"kind": "paraboloid", "radius": 1 / FLAT}, 2.0, FLAT),
+        ("cone", {"kind": "cone", "slope": 2 / np.pi * FLAT}, 1.0, FLAT),
+    ):
+        for part, nu in ((0.05, 0.3), (0.2, 0.0), (0.2, 0.5), (0.5, 0.3)):
+            depth, force = stiffening(part, nu, exponent)
+            yield _case("lebedev", name, profile, part, nu, scale * depth, force)
+
+
+def series() -> Iterator[Case]:
+    """Dimitriadis' series for a ball on an incompressible layer, chi = sqrt(R d)/h."""
+    for chi in (0.1, 0.2, 0.4):
+        force = 1.133 * chi + 1.283 * chi**2 + 0.769 * chi**3 + 0.0975 * chi**4
+        profile = {"kind": "paraboloid", "radius": 1 / FLAT}
+        yield _case("dimitriadis", "ball", profile, chi, 0.5, FLAT, force)
+
+
+def cases() -> Iterator[Case]:
+    """Yield all cases of this module."""
+    yield from integral_equation()
+    yield from series()
