@@ -28,8 +28,9 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
         table, curve = (result["inputs"].pop(name) for name in ("table", "curve"))
         assert path.fullmatch(result["inputs"].pop("path")), address
         assert numbers.fullmatch(result["inputs"].pop("breaks", "")), address
-        uncertainty = result["inputs"].pop("uncertainty", "")
-        assert uncertainty == "" or math.isfinite(uncertainty), address
+        for optional in ("uncertainty", "thickness"):
+            given = result["inputs"].pop(optional, "")
+            assert given == "" or math.isfinite(given), address
         held = [*result["inputs"].values()]
         for columns in (table, curve):
             assert len(columns["r"]) == len(columns["f"])
