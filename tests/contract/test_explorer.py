@@ -8,6 +8,7 @@ from typing import Any
 from urllib.parse import urljoin
 
 import httpx
+import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
@@ -86,8 +87,27 @@ def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     # -(3/2) π w R.
     force = float(visit.number("Pull-off force").split()[0].replace("−", "-"))
     assert force == pytest.approx(-1.5 * math.pi * 0.05, rel=1e-4, abs=0)
-    assert "The model of half-spaces itself errs by about 0." in visit.page.inner_text("#accuracy")
+    text = visit.page.inner_text("#accuracy")
+    assert "The model of half-spaces itself errs by about 0." in text
+    # That of the state, not of the pull-off at which the curve begins.
+    assert float(re.findall(r"relative error ([^ ]+e-\d+)", text)[0]) < 1e-9
+    # Stable and unstable states, as they are drawn: F = 4 E* a³/(3 R) - (8 π E* w a³)^(1/2).
+    drawn = visit.page.evaluate(
+        "[...document.querySelectorAll('.plot')][2].data.map(({ name, x, y }) => [name, x, y])"
+    )
+    assert [name for name, *_ in drawn][2] == "unstable"
+    for _, force, radius in (drawn[0], drawn[2]):
+        a3, e_star = (np.array(radius) * 1e-3) ** 3, 2e6 / 0.75
+        expected = 4 * e_star * a3 / 3e-3 - np.sqrt(8 * np.pi * e_star * 0.05 * a3)
+        assert np.array(force) / 1e3 == pytest.approx(expected, rel=1e-5, abs=1e-12)
     assert not visit.errors
+
+
+def test_thin_gel_is_stiffer_than_a_half_space(visit: Visit) -> None:
+    visit.open("?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&load=1e-4")
+    with visit.changing():
+        visit.fill("thickness", "0.1")
+    assert "thin body" in visit.page.inner_text("#warnings")
 
 
 def test_latest_slider_position_is_drawn(visit: Visit) -> None:

@@ -88,11 +88,33 @@ function shearStressChart(request, field, mu, edges) {
   ]);
 }
 
-/** Return an adhesive contact, with its force against depth from the pull-off on. */
+/**
+ * Return the equilibrium states between first contact and the pull-off under a depth, which are
+ * unstable, or nothing under a flat end: those of the contact without adhesion, less the retraction,
+ * in proportion to the root of the contact radius.
+ */
+async function unstableStates(query, { profile, material }, curve) {
+  const [radius, retraction] = [curve.contact_radius[0], curve.retraction[0]];
+  const deepest = curve.indentation_depth[0] + retraction;
+  if (deepest < 1e-9 * retraction) return [];
+  const depths = Array.from({ length: 41 }, (_, i) => deepest * (i / 40) ** 2);
+  const load = { indentation_depth: depths };
+  const { contact_radius, normal_stiffness, ...free } = await query("Without adhesion", "v1/normal", { profile, material, load });
+  const steps = contact_radius.map((a) => retraction * Math.sqrt(a / radius));
+  const lessOf = (values, by) => values.map((value, i) => value - by(i));
+  return [{
+    contact_radius,
+    indentation_depth: lessOf(free.indentation_depth, (i) => steps[i]),
+    normal_force: lessOf(free.normal_force, (i) => normal_stiffness[i] * steps[i]),
+  }];
+}
+
+/** Return an adhesive contact, with its states on both sides of the pull-off under a depth. */
 async function solveAdhesive(inputs, query) {
   const { profile, material } = basics(inputs);
   const body = { profile, material: { ...material, work_of_adhesion: inputs.w } };
-  const now = single(await query("Contact", "v1/normal", { ...body, load: { [inputs.control]: inputs.load } }));
+  const contact = await query("Contact", "v1/normal", { ...body, load: { [inputs.control]: inputs.load } });
+  const now = single(contact);
   const { pull_off_depth: least, pull_off_force: weakest } = now;
   const span = Math.max(now.indentation_depth, -least) * 1.2 - least;
   const depths = Array.from({ length: 61 }, (_, i) => least + span * (i / 60) ** 2);
@@ -102,11 +124,19 @@ async function solveAdhesive(inputs, query) {
     query("Curve", "v1/normal", { ...body, load: { indentation_depth: depths } }),
     fieldsOf(query, "Pressure", { ...body, load: { [same]: now[same] } }, ["pressure"]),
   ]);
-  const relation = relationChart("Curve", "Force against depth", curve, ["indentation_depth", "normal_force"], now);
+  const unstable = await unstableStates(query, { profile, material }, curve);
   const at = curve.normal_force.indexOf(Math.min(...curve.normal_force));
-  relation.traces.push(marker("pull-off", curve.indentation_depth[at], weakest));
+  // The last points that a prescribed force and a prescribed depth reach.
+  const ends = { ...single(curve, at), normal_force: weakest };
+  const chart = (title, [x, y]) => {
+    const drawn = relationChart("Curve", title, curve, [x, y], now);
+    const others = unstable.map((states) => ({ name: "unstable", x: states[x], y: states[y], role: "limit" }));
+    const pullOff = { ...marker("pull-off", ends[x], ends[y]), role: "second" };
+    return { ...drawn, traces: [...drawn.traces, ...others, pullOff] };
+  };
   return {
-    responses: [curve, field],
+    // The curve begins at the pull-off, next to which the radius is ill-conditioned.
+    responses: [contact, field],
     known: now,
     numbers: numbersOf(now, [
       "contact_radius", "pull_off_force", "pull_off_depth", "indentation_depth", "normal_force", "maximum_pressure",
@@ -114,8 +144,8 @@ async function solveAdhesive(inputs, query) {
     ]),
     charts: [
       pressureChart("Pressure", field, [["a", now.contact_radius]], { size: "wide" }),
-      relation,
-      relationChart("Curve", "Contact radius against force", curve, ["normal_force", "contact_radius"], now),
+      chart("Force against depth", ["indentation_depth", "normal_force"]),
+      chart("Contact radius against force", ["normal_force", "contact_radius"]),
     ],
   };
 }
