@@ -66,8 +66,7 @@ class _Curve:
 
     def __init__(self, profile: Profile, c: float) -> None:
         self.profile, self.c = profile, c
-        end, breaks = profile.last_coordinate, profile.coordinate_breaks
-        top = 10.0**_DECADES if end is None else end
+        breaks, top = profile.coordinate_breaks, min(10.0**_DECADES, profile.domain)
         count = 2 * _DECADES * _PER_DECADE + 1
         parts: list[Any] = [[top], breaks, np.logspace(-_DECADES, _DECADES, count)]
         if has_many_breaks(profile):
@@ -122,13 +121,11 @@ class _Curve:
         nodes = np.union1d(nodes, np.linspace(nodes[at - 1], nodes[at + 1], _FINE))
         values = height(nodes)
         stable = values > 0
-        end = (
-            self.profile.last_coordinate is not None and validation.extremes(self.profile.domain)[1]
-        )
+        end = self.profile.domain
         if not stable[-1] or (stable[0] and values[0] < values[1]):
             reason = (
                 f"to radius {end:.6g}, where the profile ends: extend it, or reduce the work"
-                if end
+                if end < np.inf
                 else "without bound, or its radius at pull-off is not representable"
             )
             detail = f"adhesion spreads the contact {reason}"
@@ -257,7 +254,7 @@ class AdhesiveContact(NormalContact):
     @cached_property
     def edge_errors(self) -> Array:
         """Relative error of the contact radius, of the order of a root next to pull-off [1]."""
-        rounding, name = self.profile.rounding, self.control
+        rounding, name = self.profile.rounding_at(self.coordinate), self.control
         if name not in _SHARES:
             return full(2.0**-52, self.coordinate)
         punch = self.reference.normal_stiffness if name == "normal_force" else 1.0

@@ -5,7 +5,6 @@ near full slip, the rounding of the load is part of their error, whatever the me
 """
 
 from collections.abc import Callable
-from math import inf
 from typing import Final
 
 import numpy as np
@@ -153,8 +152,8 @@ def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> 
     edge : c in the contact coordinate.
     steps : d(a) - d(c) [length] and (F(a) - F(c))/E* [length^2].
     """
-    last, error = profile.last_coordinate, full(0.0, edge)
-    beyond = np.minimum(edge * (1 + 2 * _COORDINATE), inf if last is None else last)
+    error = full(0.0, edge)
+    beyond = np.minimum(edge * (1 + 2 * _COORDINATE), profile.domain)
     for load, step in zip((profile.depth, profile.reduced_force), steps, strict=True):
         below = load(edge)
         wide = step > EARLY / 2 * below

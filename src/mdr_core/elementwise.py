@@ -10,12 +10,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from mdr_core.typing import Parameter
+
 # Types of single numbers and flags; NumPy's doubles are floats as well.
 _NUMBERS: Final = (float, int)
 _FLAGS: Final = (np.bool_, bool)
 
 
-def number(value: float) -> Any:
+def number(value: Parameter) -> Any:
     """Return a value as the single number that the formulas take."""
     return np.float64(value)
 
@@ -80,6 +82,6 @@ def broadcast(value: Any, shape: tuple[int, ...]) -> Any:
     return value if getattr(value, "shape", ()) == shape else np.broadcast_to(value, shape)
 
 
-def full(value: float, like: Any) -> Any:
+def full(value: Parameter, like: Any) -> Any:
     """Return a value in the shape of an array, or as a number."""
     return np.float64(value) if is_number(like) else np.full_like(like, value, dtype=float)

@@ -170,8 +170,7 @@ def _root(profile: Profile, target: Array, *, of_force: bool) -> Array:
     """Contact coordinate of a load within the domain."""
     start = _start(profile, target, of_force=of_force)
     function = load_and_slope(profile, of_force=of_force)
-    end = profile.last_coordinate
-    low, high = (full(x, start) for x in (profile.first_coordinate, inf if end is None else end))
+    low, high = (full(end, start) for end in (profile.first_coordinate, profile.domain))
 
     def sloped(s: Array) -> tuple[Array, Array]:
         value, slope = function(s)

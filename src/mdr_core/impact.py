@@ -194,7 +194,7 @@ def solve(
     require_positive(("tangential_mass",), tangential_mass)
     speeds, along = _velocities(normal_velocity, tangential_velocity)
     last = _largest_coordinates(profile, normal_mass / (2 * start.e_star) * np.square(speeds))
-    results, errors = [], [float(profile.rounding)]
+    results, errors = [], [float(np.max(profile.rounding_at(last)))]
     cases = zip(*(each.ravel().tolist() for each in (last, speeds, along)), strict=True)
     for end, v, w in cases:
         coarse, fine = (
@@ -239,9 +239,8 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
 
 def _largest_coordinates(profile: Profile, energy: Array) -> Array:
     """Contact coordinates at which E/E* of the contact is the kinetic energy [length^3]."""
-    end = np.inf if profile.last_coordinate is None else profile.last_coordinate
-    if end < np.inf:
-        beyond = energy > profile.reduced_energy(number(end))
+    if profile.domain < np.inf:
+        beyond = energy > profile.reduced_energy(number(profile.domain))
         if beyond.any():
             at = first_index(beyond)
             detail = f"the contact would extend beyond radius {profile.domain:.12g}, where the "
@@ -254,7 +253,7 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
         return value, s * profile.reduced_force(s) * profile.depth_slope(s) / value
 
     goal = np.ravel(energy)
-    low, high = np.zeros_like(goal), np.full_like(goal, end)
+    low, high = np.zeros_like(goal), np.full_like(goal, profile.domain)
     with np.errstate(all="ignore"):
         found = invert(stored, goal, np.minimum(high / 2, 1.0), low, high, profile.kind)
     return found.reshape(np.shape(energy))

@@ -34,6 +34,8 @@ _POINTS: Final = 16
 _WIDE: Final = 16.0
 # The same for the contact coordinate.
 _WIDE_FROM_AXIS: Final = 400.0
+# The same for the distance from a pole of the slope.
+_WIDE_AT_POLE: Final = 100.0
 # The same for the contact coordinate beyond a break.
 _WIDE_BEYOND_BREAK: Final = 2.5
 # Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
@@ -200,6 +202,8 @@ class IntervalMoments:
         beyond, long = base > 0, span > 0
         limit = np.where(beyond, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
         wide = (ends[1] > limit * ends[0]) | (~beyond & (low + span > _WIDE * low))
+        start, stop = profile.pole - ends
+        wide |= ~beyond & (start > _WIDE_AT_POLE * stop)
         if some(profile.first_radius > 0):
             shallow = profile.contact_radius(ends[1]) < _SHALLOW * profile.first_radius
             shallow &= ~beyond
@@ -259,7 +263,7 @@ class IntervalMoments:
         """
         profile, (start, stop) = self.profile, ends
         width = stop - start
-        thin = width * width < _EPS * stop * (stop - base)
+        thin = width * width < _EPS * stop * np.minimum(stop - base, profile.pole - stop)
         if some(thin):
             slope = self._slope(stop)
             # An interval may end where g becomes constant.

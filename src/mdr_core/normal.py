@@ -144,7 +144,8 @@ class NormalContact(validity.ContactResults):
     @cached_property
     def error_estimates(self) -> Parameter:
         """Upper bound of the relative error of each case, a single number if all have the same."""
-        profile, rounding = self.profile, self.profile.rounding
+        profile = self.profile
+        rounding = profile.rounding_at(self.coordinate)
         if self.control == "contact_radius" or not (profile.flattens or profile.steepens):
             return rounding
         function, error = load_and_slope(profile, of_force=self.control == "normal_force"), rounding
@@ -157,8 +158,7 @@ class NormalContact(validity.ContactResults):
                 error = error * where(condition > 1, condition, 1.0)
             if profile.steepens:
                 # Just beyond a break the load may change more than the contact radius.
-                end = inf if profile.last_coordinate is None else profile.last_coordinate
-                beyond = np.minimum(self.coordinate * (1 + _RADIUS), end)
+                beyond = np.minimum(self.coordinate * (1 + _RADIUS), profile.domain)
                 load = function(self.coordinate)[0]
                 rise = function(beyond)[0] / load - 1
                 error = np.maximum(error, where(load > 0, rise, 0.0))

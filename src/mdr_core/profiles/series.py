@@ -12,11 +12,9 @@ from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_functions import kappa, power, power_slope
-from mdr_core.profiles.power_sums import cancellation, first_negative_radius, log_terms
+from mdr_core.profiles.power_sums import first_negative_radius, log_terms
 from mdr_core.typing import Array, Flags, Parameter
 
-# Largest ratio of the terms to their sum for which ten digits of the sum are accurate.
-_MAX_CANCELLATION: Final = 1e5
 # Bound on the logarithm of a starting radius, which nearly equal exponents leave undetermined.
 _MAX_LOG: Final = 70.0
 _EPS: Final = float(np.finfo(float).eps)
@@ -75,12 +73,6 @@ class Series(Profile):
             raise InputError(
                 path, "f falls from radius 0: the term of lowest exponent must be positive"
             )
-        if self._cancellation > _MAX_CANCELLATION:
-            raise InputError(
-                path,
-                f"the terms cancel to less than {1 / _MAX_CANCELLATION:g} of their size: "
-                "merge the terms whose exponents are nearly equal",
-            )
 
     @cached_property
     def _powers(self) -> tuple[tuple[float, float], ...]:
@@ -110,23 +102,19 @@ class Series(Profile):
         return min(first_negative_radius(slope_f), first_negative_radius(slope_g))
 
     @property
-    def last_coordinate(self) -> float | None:
-        return None if self.domain == inf else self.domain
-
-    @cached_property
-    def _cancellation(self) -> float:
-        """Largest sum of the terms' sizes over their total, in depth or force, less one [1]."""
-        if self._positive:
-            return 0.0
-        last = log(self.domain) if self.domain < inf else inf
-        depth = log_terms(self._powers, lambda n: float(kappa(n)))
-        force = log_terms(self._powers, lambda n: float(kappa(n)) * 2 * n / (n + 1))
-        return max(cancellation(depth, last), cancellation(force, last))
-
-    @property
     def rounding(self) -> float:  # type: ignore[override]  # a constant of most kinds
-        steep = max(n for _, n in self._powers)
-        return 4e-14 + 8e-15 * steep + 8 * _EPS * self._cancellation
+        return 4e-14 + 8e-15 * max(n for _, n in self._powers)
+
+    def rounding_at(self, coordinate: Array) -> Parameter:
+        """With the cancellation of terms of either sign, in depth and force. See `Profile`."""
+        if self._positive:
+            return self.rounding
+        terms = np.array(
+            [(depth, 2 * n / (n + 1) * depth) for depth, n in self._depths(coordinate)]
+        )
+        with np.errstate(all="ignore"):
+            lost = (np.abs(terms).sum(axis=0) / np.abs(terms.sum(axis=0))).max(axis=0)
+        return self.rounding + 8 * _EPS * where(coordinate > 0, lost, 0.0)
 
     @property
     def scale(self) -> Parameter:

@@ -85,6 +85,4 @@ class SphericalTipCone(TippedCone):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         if self.slope <= _SHALLOW:
             return coordinate >= 0
-        b, tip = self.tangent_radius, self._tip
-        inside = np.minimum(coordinate, b)
-        return (coordinate <= b) & tip.falls_from_axis(tip.coordinate_from_radius(inside))
+        return (coordinate <= self.tangent_radius) & self._tip.falls_from_axis(coordinate)

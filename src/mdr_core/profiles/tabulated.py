@@ -188,10 +188,6 @@ class Tabulated(Profile):
         return self._end
 
     @property
-    def last_coordinate(self) -> float:
-        return self._end
-
-    @property
     def scale(self) -> float:
         return self._end / 2
 

@@ -105,11 +105,10 @@ class Tipped(Profile):
         return where(coordinate <= b, self._tip.dg(np.minimum(coordinate, b)), flank)
 
     def reduced_force(self, coordinate: Array) -> Array:
-        tip = self._tip
         return piecewise(
             coordinate,
             self.tangent_radius,
-            lambda x: tip.reduced_force(tip.coordinate_from_radius(x)),
+            self._tip.reduced_force,
             lambda x: self._flank_force(*self._outer(x)),
         )
 
@@ -120,7 +119,7 @@ class Tipped(Profile):
             x = np.hypot(b, s)
             return self._flank_force(x, s) * self._flank_weight(x, s)
 
-        inner = tip.reduced_energy(tip.coordinate_from_radius(np.minimum(coordinate, b)))
+        inner = tip.reduced_energy(np.minimum(coordinate, b))
         return inner + self._over_flank(density, coordinate)
 
     def _over_flank(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
@@ -137,7 +136,7 @@ class Tipped(Profile):
             x = np.hypot(b, s)
             return self._flank_weight(x, s) / x
 
-        inner = tip.axis_stress(tip.coordinate_from_radius(np.minimum(coordinate, b)))
+        inner = tip.axis_stress(np.minimum(coordinate, b))
         return inner + self._over_flank(density, coordinate) / pi
 
 

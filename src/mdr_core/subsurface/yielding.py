@@ -220,7 +220,7 @@ def _onset(
     radii = [b for b in radii if infinite_deviator(one, b, (nu,), slips_from)]
     forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
     singular = min(map(float, forces), default=inf)
-    last = inf if one.last_coordinate is None else one.reduced_force(np.array(one.last_coordinate))
+    last = inf if one.largest_loads is None else one.largest_loads[1]
     lowest = log(force) - _REACH
     highest = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
     load = min(log(force), highest)
