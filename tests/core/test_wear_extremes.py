@@ -176,7 +176,9 @@ def test_resolution_outside_its_bounds_is_rejected(resolution: int) -> None:
 def test_worn_profile_is_defined_up_to_the_end_of_the_profile() -> None:
     contact = normal.solve(Sphere(2.0), 1.0, indentation_depth=0.1)
     worn = limit.solve(contact, 1.0, 1.0, tangential_displacement=1e-3)
-    assert worn.initial_profile([2.0]).tolist() == [2.0]
+    end = float(contact.profile.domain)
+    height = 2 - np.sqrt((2 - end) * (2 + end))
+    assert worn.initial_profile([end])[0] == pytest.approx(height, rel=1e-14, abs=0)
     with pytest.raises(InputError) as raised:
-        worn.initial_profile([2.0, np.nextafter(2.0, 3.0)])
+        worn.initial_profile([end, np.nextafter(end, 3.0)])
     assert raised.value.path == ("radius", 1)
