@@ -256,7 +256,7 @@ def test_profile_arrays_and_invalid_radii_are_rejected() -> None:
             with pytest.raises(InputError) as failure:
                 method(bad)
             assert failure.value.path == ("radius", 1)
-    with pytest.raises(InputError, match="the profile ends at radius 0.99999999"):
+    with pytest.raises(InputError, match=r"the profile ends at radius 0\.99999999"):
         wear.limiting_profile([0.5, 1.5])
 
 

@@ -60,8 +60,8 @@ class Spheroid(Profile):
         return self.rounding + _EPS / 2 * self.radius / (self.radius - coordinate)
 
     def f(self, radius: Array) -> Array:
-        q = np.square(radius / self.radius)
-        return self.height * q / (1 + np.sqrt(1 - q))
+        root = np.sqrt((self.radius - radius) * (self.radius + radius))
+        return self.height * (radius / self.radius) * radius / (self.radius + root)
 
     def df(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
