@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from mpmath import atanh, cbrt, mpf, pi, sqrt
+from mpmath import atanh, cbrt, gamma, mpf, pi, sqrt
 
 from verification.case import Case, Json, at
 
@@ -44,9 +44,13 @@ def punch() -> Iterator[Case]:
     """Kendall's force of a flat punch."""
     radius = 2e-4
     request = _request({"kind": "flat_punch", "radius": radius}, {"normal_force": 0.0})
-    value = -sqrt(8 * pi * mpf(E_STAR) * W * mpf(radius) ** 3)
-    case = "silicone, a = 0.2 mm: pull_off_force"
-    yield Case("kendall", "flat punch", case, PATH, request, at("pull_off_force"), value)
+    force = -sqrt(8 * pi * mpf(E_STAR) * W * mpf(radius) ** 3)
+    for quantity, value in (
+        ("pull_off_force", force),
+        ("pull_off_depth", -_retraction(mpf(radius))),
+    ):
+        case = f"silicone, a = 0.2 mm: {quantity}"
+        yield Case("kendall", "flat punch", case, PATH, request, at(quantity), value)
 
 
 def cones() -> Iterator[Case]:
@@ -56,6 +60,30 @@ def cones() -> Iterator[Case]:
         value = -54 * mpf(W) ** 2 / (pi * mpf(E_STAR) * mpf(slope) ** 3)
         case = f"silicone, slope {slope}: pull_off_force"
         yield Case("popov-adhesion", "cone", case, PATH, request, at("pull_off_force"), value)
+
+
+def powers() -> Iterator[Case]:
+    """Pull-off of f = C r^n under force and depth, and cones without a load."""
+    c, material = sqrt(2 * pi * W / mpf(E_STAR)), mpf(E_STAR)
+    for n, coefficient in ((1.5, 1.0), (3.0, 1e3), (4.0, 1e6), (6.0, 1e12)):
+        p = mpf(n)
+        rate = sqrt(pi) * p / 2 * gamma(p / 2) / gamma((p + 1) / 2) * mpf(coefficient)
+        # g = rate a^n; a g' is 3/2 of the retraction at pull-off under force, 1/2 under depth.
+        wide, narrow = (
+            (part * c / (p * rate)) ** (1 / (p - mpf("0.5"))) for part in (mpf(1.5), mpf("0.5"))
+        )
+        force = 2 * p / (p + 1) * material * rate * wide ** (p + 1) - 2 * material * c * wide**1.5
+        depth = rate * narrow**p - c * sqrt(narrow)
+        profile = {"kind": "power", "coefficient": coefficient, "exponent": n}
+        request = _request(profile, {"normal_force": 0.0})
+        for quantity, value in (("pull_off_force", force), ("pull_off_depth", depth)):
+            case = f"silicone, r^{n:g}: {quantity}"
+            yield Case("popov-adhesion", "power", case, PATH, request, at(quantity), value, 1e-11)
+    for slope in (0.05, 0.2):
+        request = _request({"kind": "cone", "slope": slope}, {"normal_force": 0.0})
+        a = 32 * mpf(W) / (pi * material * mpf(slope) ** 2)
+        case = f"silicone, slope {slope}, no load: contact_radius"
+        yield Case("popov-adhesion", "cone", case, PATH, request, at("contact_radius"), a, 1e-11)
 
 
 def sphere() -> Iterator[Case]:
@@ -72,5 +100,5 @@ def sphere() -> Iterator[Case]:
 
 def cases() -> Iterator[Case]:
     """Yield all cases of this module."""
-    for part in (ball, punch, cones, sphere):
+    for part in (ball, punch, cones, powers, sphere):
         yield from part()

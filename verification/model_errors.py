@@ -17,7 +17,8 @@ def _material(nu: float) -> dict[str, Any]:
 
 def steep_cones() -> Iterator[Case]:
     """Force over Sneddon's, by the radial displacement that the half-space model neglects."""
-    for nu, slope in ((0.0, 0.1), (0.0, 0.3), (0.2, 0.2), (0.3, 0.1), (0.3, 0.36)):
+    scenes = (0.0, 0.1), (0.0, 0.3), (0.1, 0.2), (0.2, 0.2), (0.3, 0.1), (0.3, 0.36), (0.4, 0.1)
+    for nu, slope in scenes:
         k = (1 - 2 * mpf(nu)) / (4 * (1 - mpf(nu)))
         rise = pi / 4 + mpf("0.15483073") * k * slope
         fall = pi / 2 - mpf("0.83119312") * k * slope
@@ -39,9 +40,31 @@ def steep_cones() -> Iterator[Case]:
         )
 
 
+def balls() -> Iterator[Case]:
+    """Force of a ball at prescribed depth by the same radial displacement, to first order.
+
+    The surface moves inwards by u_r = 4 k M/(E* r), M = int_0^r p s ds, and meets a profile that is
+    lower by f' u_r; the force rises by 2 E* int_0^a f' u_r r/sqrt(a^2 - r^2) dr = 3 k a/(pi R) F.
+    """
+    for nu, slope in ((0.0, 0.02), (0.0, 0.1), (0.3, 0.02), (0.3, 0.1), (0.4, 0.02)):
+        k = (1 - 2 * mpf(nu)) / (4 * (1 - mpf(nu)))
+        request = {
+            "profile": {"kind": "paraboloid", "radius": 1.0},
+            "material": _material(nu),
+            "load": {"contact_radius": slope},
+        }
+        case = f"rigid ball, a/R = {slope}, ν = {nu}: model_error"
+        yield Case(
+            *("hay", "radial displacement", case, "/v1/normal"),
+            *(request, at("model_error"), 3 * k * slope / pi),
+            bound=_FACTOR,
+            as_ratio=True,
+        )
+
+
 def stuck_punches() -> Iterator[Case]:
     """Force of a bonded punch over Boussinesq's, by the coupling of normal and shear stress."""
-    for nu in (0.0, 0.2, 0.3):
+    for nu in (0.0, 0.1, 0.2, 0.3, 0.4):
         request = {
             "profile": {"kind": "flat_punch", "radius": 1.0},
             "material": _material(nu),
@@ -61,4 +84,5 @@ def stuck_punches() -> Iterator[Case]:
 def cases() -> Iterator[Case]:
     """Yield all cases of this module."""
     yield from steep_cones()
+    yield from balls()
     yield from stuck_punches()

@@ -14,6 +14,7 @@ from verification import (
     adhesion,
     frictional_contacts,
     layers,
+    measured,
     model_errors,
     normal_contacts,
     ring_elements,
@@ -66,7 +67,7 @@ class Row:
 
 def cases() -> Iterator[Case]:
     """Yield every case."""
-    own = (normal_contacts, adhesion, frictional_contacts, stresses, abel_pairs)
+    own = (normal_contacts, adhesion, frictional_contacts, stresses, abel_pairs, measured)
     for module in (*own, model_errors, layers, ring_elements):
         yield from module.cases()
 

@@ -24,7 +24,7 @@ from mdr_core.validation import extremes
 # a cone of slope 0.1 on incompressible bodies has one per cent.
 _HALF_SPACE_ERROR: Final = 0.01 * (1 + 1e-9)
 # Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
-# hay, by F/F_Sneddon to first order; a paraboloid has two thirds of it.
+# hay, by F/F_Sneddon to first order; a paraboloid has three quarters.
 _RADIAL: Final = 0.63
 # Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta with it.
 ASSUMED_RATIO: Final = 0.3
