@@ -11,12 +11,15 @@ mpl.use("svg")
 from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
 
 FOLDER = Path(__file__).parents[2] / "docs" / "charts"
 STYLE = {
@@ -24,9 +27,9 @@ STYLE = {
     "axes.grid": True,
     "axes.spines.right": False,
     "axes.spines.top": False,
-    "axes.titlesize": 9.0,
+    "axes.titlesize": 8.5,
     "figure.constrained_layout.use": True,
-    "font.size": 8.0,
+    "font.size": 7.5,
     "grid.alpha": 0.25,
     "legend.frameon": False,
     "lines.linewidth": 1.2,
@@ -36,21 +39,72 @@ STYLE = {
 }
 mpl.rcParams.update(STYLE)
 
-#: Colour of MDR on every chart.
+#: Colour of MDR on every chart, and of other lines.
 MDR_COLOR = "#c1272d"
+BLUE, GREEN, BROWN, VIOLET, GREY = "#1f5fa8", "#2b8a3e", "#8a6d3b", "#6f42c1", "0.35"
+#: Width of every chart [inch]: 700 pixels, which the manual shows unscaled.
+WIDTH = 7.3
 
 
-def panels(rows: int, columns: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
-    """A figure of rows x columns axes, each `width` x `height` inches."""
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(columns * width, rows * height + 0.25), squeeze=False
-    )
+def panels(rows: int, columns: int, height: float) -> tuple[Figure, list[Axes]]:
+    """A figure of rows x columns axes, each `height` inches high."""
+    size = WIDTH, rows * height + 0.25
+    figure, axes = plt.subplots(rows, columns, figsize=size, squeeze=False)
     return figure, list(axes.ravel())
 
 
-def save(figure: Figure, name: str, foot: str) -> None:
-    """Write docs/charts/NAME.svg with a footer line."""
-    figure.supxlabel(foot, fontsize=6.0, color="0.4", x=0.995, ha="right")
+def _name_lines(ax: Axes) -> None:
+    """Write the name of each line beside one of its points, where it covers the least."""
+    figure = ax.get_figure(root=True)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw_without_rendering()
+    named = [line for line in ax.get_lines() if not str(line.get_label()).startswith("_")]
+    points = {line: ax.transData.transform(np.transpose(line.get_data())) for line in named}
+    covered = np.concatenate([_along(each) for each in points.values()])
+    boxes: list[Bbox] = []
+    for line in named:
+        label, color = str(line.get_label()), line.get_color()
+        text = ax.annotate(label, (0, 0), (0, 0), "data", "offset points", color=color)
+        found = []
+        for point in np.transpose(line.get_data()):
+            for ha, va, shift in _SIDES:
+                text.set(ha=ha, va=va, position=shift)
+                text.xy = tuple(point)
+                box = text.get_window_extent(renderer)
+                cost = 999 * sum(box.overlaps(other) for other in boxes) + box.count_contains(
+                    covered
+                )
+                inside = ax.bbox.count_contains(box.corners()) == len(box.corners())
+                found.append((not inside, cost, len(found), tuple(point), ha, va, shift, box))
+        *_, text.xy, ha, va, shift, box = min(found)
+        text.set(ha=ha, va=va, position=shift)
+        boxes.append(box)
+
+
+#: Alignment of a name to its point, and its distance [pt].
+_SIDES = (
+    ("left", "center", (5.0, 0.0)),
+    ("right", "center", (-5.0, 0.0)),
+    ("center", "bottom", (0.0, 5.0)),
+    ("center", "top", (0.0, -5.0)),
+    ("left", "bottom", (4.0, 4.0)),
+    ("left", "top", (4.0, -4.0)),
+    ("right", "bottom", (-4.0, 4.0)),
+    ("right", "top", (-4.0, -4.0)),
+)
+
+
+def _along(points: np.ndarray) -> np.ndarray:
+    """Points close to each other on a polyline."""
+    part = np.linspace(0, len(points) - 1, 40 * len(points))
+    return np.stack([np.interp(part, range(len(points)), each) for each in points.T], axis=-1)
+
+
+def save(figure: Figure, name: str, foot: str, named: Iterable[Axes] = ()) -> None:
+    """Write docs/charts/NAME.svg with a footer line, and names at the lines of some axes."""
+    figure.supxlabel(foot, fontsize=7.0, color="0.4", x=0.995, ha="right")
+    for ax in named:
+        _name_lines(ax)
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / f"{name}.svg", metadata={"Date": None})
     plt.close(figure)

@@ -15,7 +15,7 @@ import numpy as np
 import tamaas
 from ContactMechanics import FreeFFTElasticHalfSpace
 from ContactMechanics.Systems import NonSmoothContactSystem
-from drawing import MDR_COLOR, panels, save, table
+from drawing import BLUE, GREEN, MDR_COLOR, panels, save, table
 from machine import footer
 from SurfaceTopography import Topography
 
@@ -109,15 +109,13 @@ def main() -> None:
             for name in runs
         ]
     table(HEADER, rows, "hertz_contact")
-    figure, (ax,) = panels(1, 1, 6.0, 3.6)
-    for name, color in zip(METHODS, ("#1f5fa8", "#2b8a3e", MDR_COLOR), strict=True):
+    figure, (ax,) = panels(1, 1, 3.2)
+    for name, color in zip(METHODS, (BLUE, GREEN, MDR_COLOR), strict=True):
         seconds, largest, inside = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(seconds, inside, "o-", color=color, label=f"{name}, r < 0.9 a")
         ax.loglog(seconds, largest, "o--", color=color, alpha=0.4, label=f"{name}, everywhere")
-    ax.set(xlabel="CPU time [s]", ylabel="largest error / largest pressure")
-    ax.set_title(f"Hertz contact on {PIXELS[0]}² to {PIXELS[-1]}² pixels")
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    save(figure, "hertz_contact", footer("tamaas", "ContactMechanics"))
+    ax.set(xlabel="CPU time [s]", ylabel="largest error / largest pressure", ylim=(1e-17, 10))
+    save(figure, "hertz_contact", footer("tamaas", "ContactMechanics"), [ax])
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import history_ratio as paths
 import numpy as np
-from drawing import MDR_COLOR, panels, save, table
+from drawing import BLUE, GREEN, GREY, MDR_COLOR, panels, save, table
 from machine import footer
 from measure import medians
 
@@ -36,7 +36,7 @@ def main() -> None:
         for count in SPRINGS
         if count <= 10_000 or form is paths.springs
     }
-    runs["MDR, polyline", 0] = lambda: paths.mdr(d, u)
+    runs["MDR, polyline", 0] = lambda: paths.mdr(d, u).tangential_force
     seconds = medians(runs, SECONDS)
     rows = [
         (name, count or "", seconds[name, count], error(run()))
@@ -44,17 +44,14 @@ def main() -> None:
     ]
     table(HEADER, rows, "history")
     print(f"uncertainty of the reference: {uncertainty:.1e}")
-    figure, (ax,) = panels(1, 1, 6.0, 3.6)
-    for name, color in zip(
-        (*forms, "MDR, polyline"), ("#1f5fa8", "#2b8a3e", MDR_COLOR), strict=True
-    ):
+    figure, (ax,) = panels(1, 1, 3.0)
+    for name, color in zip((*forms, "MDR, polyline"), (BLUE, GREEN, MDR_COLOR), strict=True):
         points = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(*points, "o-", color=color, label=name)
-    ax.axhline(uncertainty, color="0.4", linestyle=":", label="uncertainty of reference")
+    ends = seconds["MDR, polyline", 0], max(seconds.values())
+    ax.loglog(ends, [uncertainty] * 2, ":", color=GREY, label="uncertainty of the reference")
     ax.set(xlabel="CPU time [s]", ylabel="largest error / largest force")
-    ax.set_title(f"F_x over {STEPS} random steps, springs from {SPRINGS[0]} to {SPRINGS[-1]}")
-    ax.legend()
-    save(figure, "history", footer())
+    save(figure, "history", footer(), [ax])
 
 
 if __name__ == "__main__":

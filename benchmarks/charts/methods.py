@@ -60,7 +60,7 @@ def _bare() -> Array:
 def _mdr(case: Case, quantity: str) -> Iterator[MethodRun]:
     known = case.product_profile()
     table = case.profile["kind"] == "tabulated"
-    route = {"paraboloid": "closed form", "cone": "closed form", "tabulated": "panel moments"}
+    route = {"paraboloid": "closed form", "cone": "closed form", "tabulated": "piecewise moments"}
     method = f"MDR, {route.get(case.profile['kind'], 'series or quadrature')}"
     for rtol in TOLERANCES:
         asked = f"rtol {rtol:.0e}"
@@ -69,7 +69,7 @@ def _mdr(case: Case, quantity: str) -> Iterator[MethodRun]:
         if table:
 
             def with_setup(rtol: float = rtol) -> Array:
-                """Includes resolving the panels from the points in every call."""
+                """Includes the fit of the points in every call."""
                 contact = normal.solve(case.product_profile(), 1.0, contact_radius=EDGE, rtol=rtol)
                 return _field(quantity, contact, case.stick, rtol)()
 

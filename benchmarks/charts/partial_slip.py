@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import tamaas
-from drawing import MDR_COLOR, panels, save, table
+from drawing import BLUE, BROWN, GREEN, MDR_COLOR, panels, save, table
 from machine import footer
 
 from mdr_core import fields, normal, tangential
@@ -103,16 +103,14 @@ def main() -> None:
         for (name, count), answer in answers.items()
     ]
     table(HEADER, rows, "partial_slip")
-    figure, (ax,) = panels(1, 1, 6.4, 3.6)
-    colors = ("#1f5fa8", "#2b8a3e", "#8a6d3b", MDR_COLOR)
+    figure, (ax,) = panels(1, 1, 3.0)
+    colors = (BLUE, GREEN, BROWN, MDR_COLOR)
     for name, color in zip((*RUNS, "MDR"), colors, strict=True):
-        seconds, largest, rms = np.array([row[2:] for row in rows if row[0] == name]).T
-        ax.loglog(seconds, largest, "o-", color=color, label=f"{name}, largest")
-        ax.loglog(seconds, rms, "o--", color=color, alpha=0.4, label=f"{name}, rms")
-    ax.set(xlabel="CPU time [s]", ylabel=r"error of $\tau/(\mu p_0)$ for r < 0.9 a")
-    ax.set_title("Partial slip at half the limiting force (Tamaas: other friction law)")
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    save(figure, "partial_slip", footer("tamaas"))
+        seconds, largest, _rms = np.array([row[2:] for row in rows if row[0] == name]).T
+        ax.loglog(seconds, largest, "o-", color=color, label=name)
+    label = r"largest error of $\tau/(\mu p_0)$ for r < 0.9 a"
+    ax.set(xlabel="CPU time [s]", ylabel=label, ylim=(1e-17, 10))
+    save(figure, "partial_slip", footer("tamaas"), [ax])
 
 
 if __name__ == "__main__":

@@ -3,4 +3,4 @@
 import trade
 
 if __name__ == "__main__":
-    trade.chart("pressure", single="rounded punch b/a = 0.95")
+    trade.chart("pressure")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import history_ratio as paths
 import numpy as np
-from drawing import MDR_COLOR, panels, save, table
+from drawing import BLUE, BROWN, GREEN, MDR_COLOR, VIOLET, panels, save, table
 from machine import footer
 from measure import medians
 
@@ -112,7 +112,7 @@ def over_cycles(high: int) -> Runs:
 
 
 def over_table(high: int) -> Runs:
-    """Includes spline, admissibility check, panels, and the pressure at 1000 radii."""
+    """Includes the fit of the points, and the pressure at 1000 radii."""
     r = (np.arange(1000) + 0.5) / 1000
 
     def run(points: int) -> Array:
@@ -130,14 +130,14 @@ def over_table(high: int) -> Runs:
 
 
 def lines() -> Iterator[tuple[str, str, Runs]]:
-    yield "radii", "pressure, paraboloid", over_radii(Paraboloid(1.0), MILLION)
-    yield "radii", "pressure, rounded punch", over_radii(PUNCH, MILLION)
-    yield "radii", f"pressure, table of {TABLE}", over_radii(sampled(TABLE), 100_000)
-    yield "loads", "stick radius, paraboloid", over_loads(Paraboloid(1.0), MILLION)
-    yield "loads", "stick radius, rounded punch", over_loads(PUNCH, 100_000)
-    yield "breakpoints", "history of nested reversals", over_breakpoints(100_000)
-    yield "cycles", "energy of each cycle", over_cycles(100_000)
-    yield "table points", "pressure at 1000 radii, incl. table setup", over_table(100_000)
+    yield "radii", "p(r), paraboloid", over_radii(Paraboloid(1.0), MILLION)
+    yield "radii", "p(r), rounded punch", over_radii(PUNCH, MILLION)
+    yield "radii", f"p(r), table of {TABLE} points", over_radii(sampled(TABLE), 100_000)
+    yield "loads", "c, paraboloid", over_loads(Paraboloid(1.0), MILLION)
+    yield "loads", "c, rounded punch", over_loads(PUNCH, 100_000)
+    yield "breakpoints", "turning points", over_breakpoints(100_000)
+    yield "cycles", "cycles", over_cycles(100_000)
+    yield "table points", "new table, p(r)", over_table(100_000)
 
 
 def exponent(points: dict[int, float]) -> float:
@@ -194,20 +194,18 @@ def main() -> int:
 
 
 def draw(measured: dict[tuple[str, str], tuple[dict[int, float], float]]) -> None:
-    names = list(dict.fromkeys(against for against, _ in measured))
-    figure, axes = panels(2, 3, 3.4, 2.8)
-    for ax, name in zip(axes, names, strict=False):
-        mine = [(of, *rest) for (against, of), rest in measured.items() if against == name]
-        for (of, seconds, power), color in zip(
-            mine, (MDR_COLOR, "#1f5fa8", "#2b8a3e"), strict=False
-        ):
-            label = f"{of}: {power:.2f}"
+    """Draw time against size: radii and loads on the left, the others on the right."""
+    figure, axes = panels(1, 2, 3.2)
+    colors = (MDR_COLOR, BLUE, GREEN, BROWN, VIOLET)
+    for ax, is_bound in zip(axes, (True, False), strict=True):
+        mine = {key: one for key, one in measured.items() if (key[0] in BOUND) == is_bound}
+        for (key, (seconds, _power)), color in zip(mine.items(), colors, strict=False):
+            label = key[1]
             ax.loglog(list(seconds), list(seconds.values()), "o-", color=color, label=label)
-        ax.set(xlabel=name, ylabel="CPU time [s]")
-        ax.legend(fontsize=6.5, title="exponent from 10³ on", title_fontsize=6.5)
-    for ax in axes[len(names) :]:
-        ax.axis("off")
-    save(figure, "scaling", footer())
+        ax.set_ylabel("CPU time [s]" if is_bound else "")
+    axes[0].set_xlabel("number of radii (p) or loads (c)")
+    axes[1].set_xlabel("number of turning points, cycles, or points of the table")
+    save(figure, "scaling", footer(), axes)
 
 
 if __name__ == "__main__":

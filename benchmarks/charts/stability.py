@@ -23,9 +23,9 @@ FOLDER = Path(__file__).parents[2] / "tests" / "stability"
 LOWEST, HIGHEST = 1e-17, 1e2
 #: Error beyond which the naive formula is considered to fail.
 FAILED = 1e-6
-COLUMNS = 3
+COLUMNS = 2
 #: Longest title line in characters.
-TITLE_WIDTH = 52
+TITLE_WIDTH = 60
 HEADER = ("limit", "curve", "MDR error", "naive error", "naive fails at", "naive formula")
 
 
@@ -53,15 +53,14 @@ def draw(limit: str, curves: list[Curve]) -> None:
     """Draw one figure with a panel for every curve."""
     columns = min(COLUMNS, len(curves))
     lines = -(-len(curves) // columns)
-    figure, axes = panels(lines, columns, 3.1, 2.6)
+    figure, axes = panels(lines, columns, 2.6)
     for axis, curve in zip(axes, curves, strict=False):
         panel(axis, curve)
     for axis in axes[len(curves) :]:
         axis.set_axis_off()
     for axis in axes[::columns]:
         axis.set_ylabel("relative error")
-    axes[0].legend(fontsize=6.0)
-    save(figure, f"stability_{limit}", footer())
+    save(figure, f"stability_{limit}", footer(), axes[:1])
 
 
 def panel(axis: Axes, curve: Curve) -> None:
@@ -72,7 +71,7 @@ def panel(axis: Axes, curve: Curve) -> None:
     axis.loglog(x, drawn(curve.ours[order]), "o-", color=MDR_COLOR, label="MDR")
     axis.set_ylim(LOWEST / 2, 2 * HIGHEST)
     axis.set_title(
-        f"{wrapped(curve.title)}\n{wrapped('naive: ' + curve.naive_formula)}", fontsize=7.0
+        f"{wrapped(curve.title)}\n{wrapped('naive: ' + curve.naive_formula)}", fontsize=7.5
     )
     axis.set_xlabel(curve.distance)
 

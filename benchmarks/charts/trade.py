@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from cases import RADII, Case, cases, errors
-from drawing import MDR_COLOR, panels, save, table
+from cases import Case, cases, errors
+from drawing import BLUE, BROWN, GREEN, MDR_COLOR, VIOLET, panels, rows_of, save, table
 from machine import footer
 from measure import medians
 from methods import BARE, MethodRun, method_runs
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 HEADER = ("case", "method", "resolution", "code", "seconds", "largest error", "median error")
 #: Errors below rounding error are drawn here.
@@ -36,96 +31,57 @@ def measured(case: Case, quantity: str) -> Measured:
     ]
 
 
-def chart(quantity: str, single: str | None = None) -> None:
-    """Measure, print and draw all cases; draw the case `single` also in a separate figure."""
-    figure, axes = panels(2, 4, 3.1, 2.9)
-    rows = []
-    foot = footer("PyAbel", "openabel")
-    for ax, case in zip(axes, cases(), strict=False):
-        with np.errstate(all="ignore"):
-            results = measured(case, quantity)
-        rows += [
-            (case.name, entry.method, entry.resolution, "MDR" if entry.is_mdr else "", *numbers)
-            for entry, *numbers in results
-        ]
-        _draw(ax, case.name, results)
-        if case.name == single:
-            single_figure, (single_axes,) = panels(1, 1, 6.4, 3.6)
-            _draw(single_axes, f"{quantity} of the {case.name} at {RADII.size} radii", results)
-            single_axes.legend(*_legend(single_axes), loc="center left", bbox_to_anchor=(1.0, 0.5))
-            save(single_figure, f"{quantity}_best", foot)
-    axes[-1].axis("off")
-    handles: dict[str, object] = {}
-    for ax in axes[:-1]:
-        handles |= dict(zip(*reversed(_legend(ax)), strict=True))
-    axes[-1].legend(handles.values(), handles.keys(), loc="center", fontsize=6.5)
-    figure.suptitle(f"{quantity} at {RADII.size} radii", fontsize=10)
-    save(figure, quantity, foot)
-    table(HEADER, rows, quantity)
-
-
-def _draw(ax: Axes, title: str, results: Measured) -> None:
-    lines: dict[str, list[tuple[float, float, float]]] = {}
-    for entry, *numbers in results:
-        lines.setdefault(entry.method, []).append(tuple(numbers))
-    mdr = {entry.method for entry, *_ in results if entry.is_mdr}
-    for method, points in lines.items():
-        if method == BARE:
-            ax.axvline(points[0][0], color="0.3", linestyle=":", label=BARE)
-            continue
-        seconds, largest, median = np.array(points).T
-        color, marker, width = _style(method, is_mdr=method in mdr)
-        style = "--" if "incl. plan" in method or "incl. table setup" in method else "-"
-        ax.plot(
-            seconds,
-            np.maximum(largest, FLOOR),
-            style,
-            color=color,
-            marker=marker,
-            linewidth=width,
-            label=method,
-            zorder=3 if method in mdr else 2,
-        )
-        ax.plot(seconds, np.maximum(median, FLOOR), style, color=color, alpha=0.25, linewidth=width)
-    ax.set(xscale="log", yscale="log", ylim=(FLOOR / 2, 3), title=title)
-    ax.set_xlabel("CPU time [s]")
-    if ax.get_subplotspec().is_first_col():
-        ax.set_ylabel("relative error: maximum (dark), median (light)")
-
-
-#: One colour per family, one marker per member.
-_FAMILIES = {
-    "scipy": ("#1f5fa8", "ov^"),
-    "tanh-sinh": ("#2b8a3e", "s"),
-    "PyAbel": ("#8a6d3b", "osv^<>"),
-    "openAbel": ("#6f42c1", "odxP"),
-}
-_MEMBERS = (
-    "scipy quad_vec, t² = x² − r²",
-    "scipy quad_vec, x − max(r, b, c) ~ u²",
-    "scipy quad, t² = x² − r²",
-    "PyAbel two_point",
-    "PyAbel three_point",
-    "PyAbel hansenlaw",
-    "PyAbel direct",
-    "PyAbel basex",
-    "PyAbel daun",
-    "openAbel, order 2",
-    "openAbel, order 5",
-    "openAbel incl. plan, order 2",
-    "openAbel incl. plan, order 5",
+#: Cases that are drawn; the others are in the file.
+DRAWN = ("paraboloid", "power law n = 1.5", "rounded punch b/a = 0.95", "table of 200 points")
+#: Lines: name, start of the names of their methods, and colour. Tables are new to every code.
+LINES = (
+    ("MDR", "MDR, ", MDR_COLOR),
+    ("SciPy quad", "scipy", BLUE),
+    ("tanh-sinh", "tanh-sinh", GREEN),
+    ("PyAbel", "PyAbel", BROWN),
+    ("openAbel", "openAbel, ", VIOLET),
+)
+FOR_A_TABLE = (
+    ("MDR, known table", "MDR, piecewise", MDR_COLOR),
+    ("MDR, from the points", "MDR, incl.", "#e07a5f"),
+    *LINES[1:4],
+    ("openAbel", "openAbel incl.", VIOLET),
 )
 
 
-def _style(method: str, *, is_mdr: bool) -> tuple[str, str, float]:
-    if is_mdr:
-        return MDR_COLOR, "D", 2.0
-    family = next(name for name in _FAMILIES if method.startswith(name))
-    color, marks = _FAMILIES[family]
-    members = [name for name in _MEMBERS if name.startswith(family)]
-    return color, marks[members.index(method) % len(marks)] if members else marks[0], 1.0
+def chart(quantity: str) -> None:
+    """Measure, print and draw the cases."""
+    rows = []
+    for case in cases():
+        with np.errstate(all="ignore"):
+            rows += [
+                (case.name, entry.method, entry.resolution, "MDR" if entry.is_mdr else "", *numbers)
+                for entry, *numbers in measured(case, quantity)
+            ]
+    table(HEADER, rows, quantity)
+    draw(quantity)
 
 
-def _legend(ax: Axes) -> tuple[list[object], list[str]]:
-    handles, labels = ax.get_legend_handles_labels()
-    return handles, labels
+def draw(quantity: str) -> None:
+    """Draw the smallest error that each code reaches within a time."""
+    figure, axes = panels(2, 2, 2.6)
+    for ax, case in zip(axes, DRAWN, strict=True):
+        found = [row for row in rows_of(quantity) if row["case"] == case]
+        for name, start, color in FOR_A_TABLE if "table" in case else LINES:
+            points = sorted(
+                (float(row["seconds"]), max(float(row["largest error"]), FLOOR))
+                for row in found
+                if row["method"].startswith(start)
+            )
+            best = np.minimum.accumulate([error for _, error in points])
+            kept = [0, *(np.flatnonzero(np.diff(best)) + 1)]
+            x, y = np.array(points)[kept].T
+            ax.loglog(x, y, "o-", color=color, label=name, zorder=3 if "MDR" in name else 2)
+        ax.set(ylim=(FLOOR / 2, 30), title=case, xlim=(1e-5, 2.0))
+    for ax in axes:
+        subplot = ax.get_subplotspec()
+        if subplot.is_first_col():
+            ax.set_ylabel("largest error / largest value")
+        if subplot.is_last_row():
+            ax.set_xlabel("CPU time [s]")
+    save(figure, quantity, footer("PyAbel", "openabel"), axes)

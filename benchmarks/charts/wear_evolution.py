@@ -11,7 +11,7 @@ from time import thread_time
 
 import numpy as np
 import wear_ratio
-from drawing import MDR_COLOR, panels, save, table
+from drawing import BLUE, GREY, MDR_COLOR, panels, save, table
 from machine import footer
 
 GRIDS = (45, 90, 180, 360)
@@ -59,15 +59,14 @@ def main() -> None:
     ]
     table(HEADER, rows, "wear_evolution")
     print(f"resolutions 96 and 64 differ by {doubt:.1e}")
-    figure, (ax,) = panels(1, 1, 6.0, 3.6)
-    for name, color in (("explicit, cycle by cycle", "#1f5fa8"), ("MDR, implicit", MDR_COLOR)):
+    figure, (ax,) = panels(1, 1, 3.0)
+    for name, color in (("explicit, cycle by cycle", BLUE), ("MDR, implicit", MDR_COLOR)):
         points = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(*points, "o-", color=color, label=name)
-    ax.axhline(doubt, color="0.4", linestyle=":", label="resolution 96 against 64")
+    ends = min(row[2] for row in rows), max(row[2] for row in rows)
+    ax.loglog(ends, [doubt] * 2, ":", color=GREY, label="uncertainty of the reference")
     ax.set(xlabel="CPU time [s]", ylabel="largest error of the worn depth / d")
-    ax.set_title("Wear of a paraboloid over 10⁴ cycles")
-    ax.legend()
-    save(figure, "wear_evolution", footer())
+    save(figure, "wear_evolution", footer(), [ax])
 
 
 if __name__ == "__main__":

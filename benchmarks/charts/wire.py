@@ -105,7 +105,7 @@ def main() -> None:
                 micro = [one * 1e6 for one in (*times, whole)]
                 rows.append((format_name, length, len(text), size, *micro))
     table(HEADER, rows, "wire")
-    figure, axes = panels(1, len(WRITERS), 3.4, 3.0)
+    figure, axes = panels(1, len(WRITERS), 2.8)
     for ax, format_name in zip(axes, WRITERS, strict=True):
         own_rows = [row for row in rows if row[0] == format_name]
         parts = np.array([row[4 : 4 + len(STAGES)] for row in own_rows])
@@ -115,7 +115,7 @@ def main() -> None:
             ax.bar(range(len(own_rows)), column, bottom=bottom, color=color, label=name)
             bottom += column
         labels = [f"{row[1]:,}\n{_readable(row[-1])}" for row in own_rows]
-        ax.set_xticks(range(len(own_rows)), labels, fontsize=6.5)
+        ax.set_xticks(range(len(own_rows)), labels, fontsize=7.0)
         ax.set(title=f"{format_name} response", xlabel="radii, request time")
         ax.grid(visible=False)
     axes[0].set_ylabel("share of request time [%]")

@@ -35,6 +35,8 @@ _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
 _NEAR_NODES, _NEAR_WEIGHTS = composite_rule(16)
 # Sorted radii that share their far pieces.
 _BLOCK: Final = 16
+# Radii whose near pieces are held at once: 40 MiB.
+_MANY: Final = 16_384
 # Ratio of the ends of a piece above which it is divided, so that its angle stays short.
 _RATIO: Final = 2.0
 # Least denominator.
@@ -180,6 +182,9 @@ class SlopePieces:
         low, high, width : ends c and a of the annulus, and a - c as accurate as it is narrow.
         r : radii [length], shape (m,).
         """
+        if r.size > _MANY:
+            blocks = np.array_split(r, -(-r.size // _MANY))
+            return np.concatenate([self.stress(low, high, width, block) for block in blocks])
         if low == 0 and self.smooth_tip:
             r = np.maximum(r, _AXIS * min(self.edges[1], high))
         parts, total = self._parts(low, high, width), np.zeros_like(r)
