@@ -210,6 +210,19 @@ def oblique() -> dict[str, object]:
     }
 
 
+def carried_on() -> dict[str, object]:
+    """Masing's rule from u_x = 0.2 to -0.1 µm, the state, and on to 0."""
+    radius, depth, full_slip = 0.01, 8e-7, 0.3 * 115e9 / 95e9 * 8e-7
+    limit = 0.3 * 4 / 3 * 115e9 * sqrt(radius) * depth**1.5
+    steps = [2e-7, 3e-7 / 2, 1e-7 / 2]
+    first, second, third = (limit * (1 - (1 - u / full_slip) ** 1.5) for u in steps)
+    return {
+        "tangential_force": [first - 2 * second + 2 * third],
+        "slip_fronts": [sqrt(radius * depth * (1 - u / full_slip)) for u in steps],
+        "regime": ["partial_slip"],
+    }
+
+
 def cone_with_separation() -> dict[str, object]:
     """Cone: F_x/(µ F_N) = 1 − (1 − u_x/u_max)², Eqs. (5.47), (5.48), and a separation."""
     slope, depth, friction = 0.1, 1e-4, 0.5
@@ -409,6 +422,7 @@ HISTORY_TEXTBOOK = {
     "mindlin_deresiewicz": mindlin_deresiewicz,
     "residual": residual,
     "oblique": oblique,
+    "carried_on": carried_on,
     "cone_with_a_gap": cone_with_separation,
 }
 STRESS_TEXTBOOK = {

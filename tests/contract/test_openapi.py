@@ -160,7 +160,7 @@ def test_every_member_states_its_dimension() -> None:
         for name, field in chain(*(part["properties"].items() for part in parts)):
             if name == "amplitude":
                 assert field["description"].endswith("[as the mean]")
-            elif name not in {"method", "warnings", "regime"}:
+            elif name not in {"method", "warnings", "regime", "final_state"}:
                 assert re.search(r"\[[a-z0-9/*^]+\]$", field["description"]), (query, name)
 
 

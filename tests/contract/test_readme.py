@@ -13,6 +13,7 @@ from pathlib import Path
 
 import httpx
 import pytest
+from playwright._impl._driver import compute_driver_executable
 
 from mdr_service.settings import PREFIX, Settings
 from tests.conftest import Client
@@ -125,6 +126,16 @@ def test_python_examples_print_their_output() -> None:
             with contextlib.redirect_stdout(output):
                 exec(code.replace(":8000", f":{port}"), {})  # noqa: S102 -- our own pages
             same_text(output.getvalue(), shown)
+
+
+@pytest.mark.long
+def test_javascript_examples_print_their_output() -> None:
+    port = free_port()
+    with running(service(port), port):
+        for code, shown in examples("js", "text"):
+            script = code.replace(":8000", f":{port}")
+            node = [compute_driver_executable()[0], "--input-type=module", "--eval", script]
+            same_text(subprocess.check_output(node, text=True), shown)
 
 
 @pytest.mark.long

@@ -14,7 +14,8 @@ import numpy as np
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
-from mdr_core.history.slip_memory import LoadPoints
+from mdr_core.history.saved_state import UNLOADED, SavedState
+from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import FINITE, extremes, not_negative
@@ -31,12 +32,24 @@ class SampledPath:
     """The unloaded contact."""
     normal_name: str
     tangential_name: str
-    normal: Array
-    """Depth or normal force at each sample."""
-    tangential: Array
-    """Displacement or tangential force at each sample."""
+    normal_loads: Array
+    """Depth or normal force at the start and at each sample, shape (n + 1,)."""
+    tangential_loads: Array
+    """Displacement or tangential force at the start and at each sample, shape (n + 1,)."""
     per_step: int
     """Samples on each load step, the last of which is its given point."""
+    begin: SavedState
+    """State at the start."""
+
+    @property
+    def normal(self) -> Array:
+        """Depth or normal force at each sample, shape (n,)."""
+        return self.normal_loads[1:]
+
+    @property
+    def tangential(self) -> Array:
+        """Displacement or tangential force at each sample, shape (n,)."""
+        return self.tangential_loads[1:]
 
     @cached_property
     def step(self) -> Indices:
@@ -70,17 +83,18 @@ class SampledPath:
         """Samples whose step is straight neither over depths nor over forces."""
         if self.over_forces != self.depth_prescribed:
             return np.zeros(self.normal.shape, dtype=bool)
-        first, second = (np.diff(load, prepend=0.0) != 0 for load in (self.normal, self.tangential))
+        first, second = (np.diff(each) != 0 for each in (self.normal_loads, self.tangential_loads))
         return np.asarray(first & second)
 
     @cached_property
     def prescribed(self) -> Array:
-        """Depth [length] or reduced force F_N/E* [length^2] at each sample."""
-        return self.normal if self.depth_prescribed else self.normal / self.start.e_star
+        """Depth [length] or reduced force F_N/E* [length^2] at the start and at each sample."""
+        loads = self.normal_loads
+        return loads if self.depth_prescribed else loads / self.start.e_star
 
     @cached_property
     def contact_coordinate(self) -> Array:
-        """Contact coordinate at each sample, that of zero load in separation."""
+        """Contact coordinate at the start and at each sample, that of zero load in separation."""
         # Equal loads get equal coordinates: the last bit may depend on an element's position.
         load, index = np.unique(np.maximum(self.prescribed, 0.0), return_inverse=True)
         of_force = not self.depth_prescribed
@@ -89,22 +103,33 @@ class SampledPath:
 
     @property
     def _normal_coordinate(self) -> Array:
-        """Normal coordinate at each sample, <= 0 in separation."""
+        """Normal coordinate at the start and at each sample, <= 0 in separation."""
         prescribed = self.prescribed
         if self.depth_prescribed != self.over_forces:
             return prescribed
         s, index = np.unique(self.contact_coordinate, return_inverse=True)
         return np.where(prescribed > 0, self.moments.normal(s)[index], np.minimum(prescribed, 0.0))
 
-    @cached_property
+    @property
     def load_points(self) -> LoadPoints:
-        """One straight step to each sample, in normal coordinates and reduced tangential loads.
+        """One straight step to each sample, in normal coordinates and reduced tangential loads."""
+        normal, tangential = self.coordinates[:, 1:]
+        return LoadPoints(normal, tangential, self.continues, self.step)
+
+    @cached_property
+    def at_start(self) -> tuple[tuple[Polyline, ...], Array]:
+        """Polylines at the start, and arcs that their segments are part of, see `SavedState`."""
+        return self.begin.restored(*self.coordinates[:, 0].tolist())
+
+    @cached_property
+    def coordinates(self) -> Array:
+        """Normal and tangential coordinate at the start and at each sample, shape (2, n + 1).
 
         Raises InputError for a tangential force above mu F_N at a sample.
         """
         mu, e_star = self.start.friction_coefficient, self.start.e_star
         scale = mu * e_star / (1.0 if self.over_forces else self.start.g_star)
-        normal, tangential = self._normal_coordinate, self.tangential / scale
+        normal, tangential = self._normal_coordinate, self.tangential_loads / scale
         # The rounding of `scale` and of samples between the points does not decide between the
         # regimes.
         apart = np.abs(tangential)
@@ -112,19 +137,19 @@ class SampledPath:
         near = np.zeros(0, dtype=np.intp)
         if apart.max() >= -2 * _ROUNDING * normal.max():
             near = np.flatnonzero(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
-        given = near[(near + 1) % self.per_step == 0]
-        n, at_limit, prescribed = normal[given], tangential[given], np.abs(self.tangential[given])
-        limit = scale * n
+        given = near[near % self.per_step == 0]
+        n, at_limit = normal[given], tangential[given]
+        limit, prescribed = scale * n, np.abs(self.tangential_loads[given])
         if self.over_forces:
-            tangential = self.within_friction(normal, tangential, self.step)
-            limit = mu * (e_star * n if self.depth_prescribed else self.normal[given])
+            tangential = self.within_friction(normal, tangential, np.append(-1, self.step))
+            limit = mu * (e_star * n if self.depth_prescribed else self.normal_loads[given])
         least, most = np.nextafter(n, 0.0), np.nextafter(n, 2 * n)
         size = np.where(prescribed < limit, np.minimum(np.abs(at_limit), least), n)
         if not self.over_forces:
             size = np.where(prescribed > limit, np.maximum(np.abs(at_limit), most), size)
         tangential[near] = np.copysign(normal[near], tangential[near])
         tangential[given] = np.copysign(size, at_limit)
-        return LoadPoints(normal, tangential, self.continues, self.step)
+        return np.array([normal, tangential])
 
     def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
         """Return tangential forces that do not exceed friction.
@@ -132,7 +157,7 @@ class SampledPath:
         Parameters
         ----------
         normal, tangential : reduced forces F_N/E* and F_x/(mu E*) [length^2], shape (n,).
-        step : load step of each.
+        step : load step of each, -1 at the start.
 
         Raises
         ------
@@ -141,8 +166,10 @@ class SampledPath:
         limit = np.maximum(normal, 0.0)
         beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + _ROUNDING))
         if beyond.size:
+            at = int(step[beyond[0]])
+            place = "history", "tangential", self.tangential_name, at
             raise InputError(
-                ("history", "tangential", self.tangential_name, int(step[beyond[0]])),
+                place if at >= 0 else ("initial_state", "tangential"),
                 "no equilibrium: between the point before and this one the force exceeds "
                 "friction_coefficient x normal_force; reduce it, or prescribe "
                 "tangential_displacement",
@@ -157,14 +184,16 @@ def build(
     normal: tuple[str, Array],
     tangential: tuple[str, Array],
     samples_per_step: int,
+    begin: SavedState = UNLOADED,
 ) -> SampledPath:
-    """Return the samples on the straight steps between the given points, from zero load.
+    """Return the samples on the straight steps between the given points.
 
     Parameters
     ----------
     start : the unloaded contact.
     normal, tangential : name and points, shape (n,) or, for one of the two, a single value.
     samples_per_step : evenly spaced samples on each step, >= 1.
+    begin : state from which the first step starts.
 
     Raises
     ------
@@ -182,20 +211,22 @@ def build(
             f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}: give one or as many",
         )
     points = np.broadcast_arrays(normal_points, tangential_points)
-    first, second = (_along(each, samples_per_step) for each in points)
-    return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step)
+    first, second = (
+        _along(np.append(before, each), samples_per_step)
+        for before, each in zip((begin.normal, begin.tangential), points, strict=True)
+    )
+    return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step, begin)
 
 
 def _along(points: Array, count: int) -> Array:
-    """Samples that divide the steps between points evenly, the last of which is the point."""
+    """The first point, and samples that divide the steps to the following ones evenly."""
     if count == 1:
         return points
-    start = np.append(0.0, points[:-1])[:, None]
-    stop = points[:, None]
+    start, stop = points[:-1, None], points[1:, None]
     share = np.arange(1, count + 1)
     # Two forces in proportion remain so up to rounding, even where they approach zero.
     samples = start * ((count - share) / count) + stop * (share / count)
-    return np.asarray(np.where(start == stop, stop, samples).ravel())
+    return np.append(points[0], np.where(start == stop, stop, samples))
 
 
 def _checked(axis: str, name: str, value: Array) -> Array:

@@ -18,6 +18,7 @@ from mdr_core.breaks import has_many_breaks
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments
 from mdr_core.history.load_path import SampledPath
+from mdr_core.history.saved_state import SETS
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.history.traction_vertices import widths
@@ -33,7 +34,7 @@ _MIN_CHORDS_ON_STEP: Final = 8
 # Chords of all steps together, which bounds time and memory.
 _MAX_TOTAL_CHORDS: Final = 400_000
 # Halvings from the coarsest set of chords to the finest.
-_HALVINGS: Final = 2
+_HALVINGS: Final = SETS - 1
 # The error of the extrapolated results, in units of the change by the last halving.
 _SAFETY: Final = 2.0
 # The same on tables, where chords converge less regularly: the largest factor for 100 rough tables
@@ -41,6 +42,8 @@ _SAFETY: Final = 2.0
 _SAFETY_ON_TABLES: Final = 10.0
 # A corner of chords is off its arc by less than this part of its normal coordinate.
 _NEAREST: Final = 1e-3
+# A contact coordinate that is not zero.
+_TINY: Final = float(np.finfo(float).tiny)
 # Newton's method converges from a chord to its arc in four steps.
 _NEWTON_STEPS: Final = 6
 
@@ -56,20 +59,20 @@ class NonlinearSteps:
         """Profile of the contact."""
         return self.path.start.profile
 
-    @cached_property
+    @property
     def coordinate(self) -> Array:
-        """Contact coordinate of each sample, after that of zero load; shape (n + 1,)."""
-        return np.append(self.profile.first_coordinate, self.path.contact_coordinate)
+        """Contact coordinate at the start and at each sample, shape (n + 1,)."""
+        return self.path.contact_coordinate
 
-    @cached_property
+    @property
     def conjugate(self) -> Array:
-        """Prescribed depth or reduced force of each sample, after zero; shape (n + 1,)."""
-        return np.append(0.0, self.path.prescribed)
+        """Prescribed depth or reduced force at the start and at each sample, shape (n + 1,)."""
+        return self.path.prescribed
 
-    @cached_property
+    @property
     def tangential(self) -> Array:
-        """Tangential coordinate of each sample, after zero; shape (n + 1,)."""
-        return np.append(0.0, self.path.load_points.tangential)
+        """Tangential coordinate at the start and at each sample, shape (n + 1,)."""
+        return self.path.coordinates[1]
 
     @cached_property
     def rate(self) -> Array:
@@ -77,6 +80,21 @@ class NonlinearSteps:
         rise, moved = np.diff(self.conjugate), np.diff(self.tangential)
         nonlinear = self.path.nonlinear
         return np.where(nonlinear, moved / np.where(rise == 0, 1.0, rise), 0.0)
+
+    @property
+    def arcs(self) -> Array:
+        """Rate of the arc of each load step, and conjugate and tangential coordinate of its end.
+
+        Those at the start come last: their load steps are negative. Shape (3, m).
+        """
+        ends = np.arange(self.path.per_step, self.conjugate.size, self.path.per_step)
+        own = [self.rate[ends - 1], self.conjugate[ends], self.tangential[ends]]
+        return np.hstack([own, self.path.at_start[1]])
+
+    @cached_property
+    def larger(self) -> Array:
+        """Contact coordinate of the larger end of each arc, > 0."""
+        return np.maximum(np.maximum(self.coordinate[1:], self.coordinate[:-1]), _TINY)
 
     @cached_property
     def _parts(self) -> tuple[Indices, Array, Array]:
@@ -90,20 +108,25 @@ class NonlinearSteps:
         low, high = np.sort(self.profile.contact_radius(np.stack([start, stop])), axis=0)
         turned = np.flatnonzero((low < turn) & (turn < high))
         at = self.profile.coordinate_from_radius(turn[turned])
-        owner = np.concatenate([np.arange(start.size), turned])
-        starts, stops = np.append(start, at), np.append(stop, stop[turned])
-        stops[turned] = at
-        order = np.argsort(owner, kind="stable")
-        return owner[order], starts[order], stops[order]
+        breaks = np.zeros(0) if has_many_breaks(self.profile) else self.profile.coordinate_breaks
+        low, high = np.minimum(start, stop), np.maximum(start, stop)
+        which, crossing = np.nonzero((low < breaks[:, None]) & (breaks[:, None] < high))
+        owner = np.concatenate([np.arange(start.size), turned, crossing])
+        starts = np.concatenate([start, at, breaks[which]])
+        order = np.lexsort((np.sign(stop - start)[owner] * starts, owner))
+        owner, starts = owner[order], starts[order]
+        last = np.append(np.diff(owner) > 0, True)
+        return owner, starts, np.where(last, stop[owner], np.roll(starts, -1))
 
     def chords(self, finest: int, halvings: int) -> tuple[LoadPoints, Indices]:
         """Return the ends of the chords, and which of them are the samples.
 
-        `finest` chords reach from the axis to the largest contact after the last halving.
+        `finest` chords reach from the axis to the larger end of an arc after the last halving: they
+        do not depend on other load steps, so that a path has those of its pieces.
         """
         owner, start, stop = self._parts
         fewest = min(_MIN_CHORDS_ON_STEP, _MAX_TOTAL_CHORDS / (start.size << _HALVINGS))
-        needed = np.abs(stop - start) / np.max(self.coordinate) * finest / 2**_HALVINGS
+        needed = np.abs(stop - start) / self.larger[owner] * finest / 2**_HALVINGS
         count = np.ceil(np.maximum(needed, fewest)).astype(int) << halvings
         count[self.rate[owner] == 0] = 1
         part, last = np.repeat(np.arange(count.size), count), np.cumsum(count) - 1
@@ -133,9 +156,8 @@ class NonlinearSteps:
         """
         tree = slip_memory.as_tree(line)
         # Of each segment, below the vertex of its index.
-        end = (line.load_step + 1) * self.path.per_step
-        on_face = tree.on_face
-        rate = np.where(on_face, 0.0, self.rate[end - 1])
+        arcs, on_face = self.arcs[:, line.load_step], tree.on_face
+        rate = np.where(on_face, 0.0, arcs[0])
         rate[0] = 0.0
         if not rate.any():
             return None
@@ -147,9 +169,7 @@ class NonlinearSteps:
             own = np.where(tree.slope[corners + 1] < 0, 0, 1)
             sums = line.sums[corners, own]
             sign = np.where(own == 0, 1.0, -1.0)
-            coordinate[corners] = self._on_arcs(
-                coordinate[corners], end[corners], sign * rate[corners], sign, sums
-            )
+            coordinate[corners] = self._on_arcs(coordinate[corners], arcs[:, corners], sign, sums)
         width = widths(self.path.moments, tree, coordinate)
         beside = np.concatenate([corners - 1, corners])
         width[beside] = np.diff(coordinate)[beside]
@@ -164,16 +184,16 @@ class NonlinearSteps:
             inverse=self.path.over_forces,
         )
 
-    def _on_arcs(self, s: Array, end: Indices, rate: Array, sign: Array, sums: Array) -> Array:
+    def _on_arcs(self, s: Array, arcs: Array, sign: Array, sums: Array) -> Array:
         """Return the contact coordinates at which n +- tangential on arcs is equal to `sums`."""
         profile, start, moments = self.profile, s, self.path.moments
-        normal = moments.normal
+        normal, rate = moments.normal, sign * arcs[0]
         for _ in range(_NEWTON_STEPS):
             slope = profile.depth_slope(s)
             force = slope * 2 * profile.contact_radius(s)
             rise = force + rate * slope if moments.over_forces else slope + rate * force
-            moved = moments.conjugate(s) - self.conjugate[end]
-            miss = normal(s) + sign * self.tangential[end] + rate * moved - sums
+            moved = moments.conjugate(s) - arcs[1]
+            miss = normal(s) + sign * arcs[2] + rate * moved - sums
             s = s - miss / np.where(rise > 0, rise, np.nan)
         # Where the arc is all but parallel to the face, the corner of the chords is as good.
         moved = np.abs(normal(s) - normal(start))
@@ -278,16 +298,17 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
     """
     if path.over_forces:
         # A force that changes while the bodies are separated exceeds friction there.
-        conjugate = path.prescribed
-        separated = np.minimum(conjugate, np.append(0.0, conjugate[:-1])) < 0
-        path.within_friction(
-            0 * conjugate, np.where(separated & path.nonlinear, 1.0, 0.0), path.step
-        )
+        separated = np.minimum(path.prescribed[1:], path.prescribed[:-1]) < 0
+        beyond = np.where(separated & path.nonlinear, 1.0, 0.0)
+        path.within_friction(0 * beyond, beyond, path.step)
     nonlinear = NonlinearSteps(path)
-    travel = np.sum(np.abs(np.diff(nonlinear.coordinate))) / np.max(nonlinear.coordinate)
-    finest = int(min(max(rtol ** (-1 / 3), _MIN_CHORDS), _MAX_CHORDS, _MAX_TOTAL_CHORDS / travel))
-    sets = []
-    for halvings in range(_HALVINGS + 1):
+    finest = max(rtol ** (-1 / 3), _MIN_CHORDS)
+    travel = np.sum(np.abs(np.diff(nonlinear.coordinate)) / nonlinear.larger)
+    finest = int(min(finest, _MAX_CHORDS, _MAX_TOTAL_CHORDS / max(travel, 1.0)))
+    sets, (lines, _) = [], path.at_start
+    if len(lines) == 1:
+        lines *= SETS
+    for halvings, line in enumerate(lines):
         points, last = nonlinear.chords(finest, halvings)
-        sets.append((StepResults(path.moments, points), last))
+        sets.append((StepResults(path.moments, points, line, path.begin.regime), last))
     return ExtrapolatedResults(nonlinear, tuple(sets))

@@ -226,6 +226,34 @@ def stacked(span: Array, slope: Array, load_step: Indices) -> Polyline:
     return Polyline(read_only(vertices), normal, tangential)
 
 
+def through(sums: Array, load_step: Indices, normal: float, tangential: float) -> Polyline:
+    """Return the polyline through vertices to a load point, without a check.
+
+    Parameters
+    ----------
+    sums : normal + anchor, normal - anchor and the low parts of both, from the axis, shape (n, 4).
+    load_step : label of the segment above each vertex, shape (n,).
+    normal, tangential : coordinates of the load point.
+    """
+    vertices = np.zeros((len(sums) + 1, COLUMNS))
+    top = normal + tangential, normal - tangential
+    low = (
+        kernel.rounding(normal, each, total)
+        for each, total in zip((tangential, -tangential), top, strict=True)
+    )
+    vertices[:, :NORMAL] = np.vstack([sums, [*top, *low]])
+    vertices[1:, STEP] = load_step
+    vertices[:, NORMAL] = np.abs(vertices[:, :NORMAL].sum(axis=1)) / 2
+    step = np.diff(vertices[:, :NORMAL], axis=0)
+    vertices[0, GROWTH:ANCHOR] = 1.0
+    vertices[1:, GROWTH:ANCHOR] = step[:, :LOW] + step[:, LOW:]
+    # Summed exactly, since the anchor may grow far less than both sums.
+    signs = 0.5, -0.5, 0.5, -0.5
+    parts = np.hstack([vertices[1:, :NORMAL] * signs, vertices[:-1, :NORMAL] * np.negative(signs)])
+    vertices[1:, ANCHOR] = [fsum(row) for row in parts.tolist()]
+    return Polyline(vertices, normal, tangential)
+
+
 def read_only(values: Array) -> Array:
     """Return the array, marked read-only."""
     values.flags.writeable = False

@@ -1,5 +1,6 @@
 """Load histories: forces, displacements, energies and slip regimes at every sample."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Final
@@ -10,20 +11,23 @@ from numpy.typing import ArrayLike
 from mdr_core import conditioning, normal, validity
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
-from mdr_core.history import load_path, nonlinear_steps, slip_memory
+from mdr_core.history import load_path, nonlinear_steps, saved_state, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import SampledPath
 from mdr_core.history.nonlinear_steps import ExtrapolatedResults
+from mdr_core.history.saved_state import UNLOADED, SavedState
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import extremes, only_one
+from mdr_core.validation import extremes, not_negative, only_one
 
 # Rounding error of the sums over the segments, relative to that of the profile.
 _SUMS: Final = 40.0
+# Place of the normal load from which a history starts.
+_BEGIN: Final = ("initial_state", "normal")
 
 
 @dataclass(frozen=True, repr=False)
@@ -121,8 +125,8 @@ class LoadHistory(validity.ContactResults):
 
     @cached_property
     def dissipated_energy(self) -> Array:
-        """Energy dissipated by friction since the start [force length]."""
-        return np.cumsum(self.dissipation)
+        """Energy dissipated by friction since the bodies were unloaded [force length]."""
+        return self.path.begin.dissipated_energy + np.cumsum(self.dissipation)
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
@@ -153,6 +157,22 @@ class LoadHistory(validity.ContactResults):
         if self.path.over_forces:
             line = self._over_depths(part.conjugate_step[at[1:]], line)
         return replace(self.path.start, polyline=line, curved_segments=curved_segments)
+
+    @property
+    def final_state(self) -> dict[str, Any]:
+        """State at the end, with which `solve` carries the history on; JSON can hold it."""
+        if isinstance(self.results, ExtrapolatedResults):
+            lines, arcs = [each.last for each, _ in self.results.sets], self.results.nonlinear.arcs
+        else:
+            lines, arcs = [self.results.last], None
+        return SavedState(
+            self.path.begin.contact,
+            float(self.path.normal[-1]),
+            float(self.path.tangential[-1]),
+            float(self.dissipated_energy[-1]),
+            str(self.regime[-1]),
+            [saved_state.saved(each, arcs) for each in lines],
+        )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
         """Return a polyline over reduced forces as one over depths, with the same slopes."""
@@ -209,6 +229,7 @@ def solve(
     tangential_force: ArrayLike | None = None,
     samples_per_step: int = 1,
     rtol: float = 1e-10,
+    initial_state: Mapping[str, Any] | None = None,
 ) -> LoadHistory:
     """Return the results of a load history that starts from the unloaded bodies.
 
@@ -233,6 +254,8 @@ def solve(
         sign, shape (n,). One of the two may be a single value for all points.
     samples_per_step : evenly spaced samples from each point to the next, >= 1.
     rtol : relative accuracy, 1e-13 to 1e-3.
+    initial_state : `final_state` of a history of the same contact and controls, which this one
+        carries on: a path in pieces has the results of the path as a whole.
 
     Returns
     -------
@@ -241,7 +264,8 @@ def solve(
     Raises
     ------
     InputError : not exactly one of each pair, points that are not finite, a negative normal force,
-        a depth beyond the end of the profile, or |F_x| > mu F_N anywhere on the path.
+        a depth beyond the end of the profile, |F_x| > mu F_N anywhere on the path, or an initial
+        state that is none of this contact.
 
     Examples
     --------
@@ -264,12 +288,21 @@ def solve(
     }
     pressed = only_one(("history", "normal"), normal_load)
     pushed = only_one(("history", "tangential"), tangential_load)
-    path = load_path.build(start, pressed, pushed, samples_per_step)
+    moduli = start.e_star, start.g_star, float(friction_coefficient)
+    contact = saved_state.digest(profile, *map(float, moduli), pressed[0], pushed[0])
+    begin = UNLOADED._replace(contact=contact)
+    if initial_state is not None:
+        begin = SavedState.parsed(initial_state, contact)
+        if pressed[0] == "normal_force" and begin.normal < 0:
+            raise InputError(_BEGIN, not_negative("normal_force"))
+    path = load_path.build(start, pressed, pushed, samples_per_step, begin)
     _require_solvable(path, rtol)
+    lines, _ = path.at_start
     # Under a flat punch depth and force are proportional, so that every step is straight.
-    if path.nonlinear.any() and not profile.has_no_partial_slip:
+    if len(lines) > 1 or (path.nonlinear.any() and not profile.has_no_partial_slip):
         return LoadHistory(path, e_star, nonlinear_steps.results(path, rtol), rtol)
-    return LoadHistory(path, e_star, StepResults(path.moments, path.load_points), rtol)
+    results = StepResults(path.moments, path.load_points, lines[0], begin.regime)
+    return LoadHistory(path, e_star, results, rtol)
 
 
 def _require_solvable(path: SampledPath, rtol: float) -> None:
@@ -280,13 +313,15 @@ def _require_solvable(path: SampledPath, rtol: float) -> None:
     least, most = extremes(path.normal)
     if least <= 0 < most:
         least = float(path.normal[path.normal > 0].min())
-    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0))):
+    # A state below the smallest load has a solution as well.
+    begin = max(path.begin.normal, least, 0.0)
+    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0), begin)):
         try:
             given = {path.normal_name: number(load)}
             normal.solve(path.start.profile, path.start.e_star, **given, rtol=rtol)
         except InputError as error:
             if error.path[:1] != ("load",):
                 raise
-            at = int(path.step[np.argmax(path.normal == load)])
-            place = "history", "normal", path.normal_name, at
+            at = path.step[path.normal == load]
+            place = ("history", "normal", path.normal_name, int(at[0])) if at.size else _BEGIN
             raise InputError(place, error.detail) from None

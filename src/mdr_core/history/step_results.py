@@ -34,13 +34,17 @@ class _Block(NamedTuple):
 
 @dataclass(frozen=True)
 class StepResults:
-    """Results after each straight load step from no load, in reduced units.
+    """Results after each of a sequence of straight load steps, in reduced units.
 
     Each is computed on first use; the slip memory is followed once for all, up to `_KEPT` steps.
     """
 
     moments: IntervalMoments
     points: LoadPoints
+    start: Polyline
+    """Polyline before the first step."""
+    regime_before: str
+    """Slip regime before the first step."""
 
     @cached_property
     def shear(self) -> Array:
@@ -77,13 +81,13 @@ class StepResults:
             full = limited & (tree.parent[tree.parent[top]] < 0)
             return np.where(top >= 0, np.where(full, 3, np.where(limited, slips, 1)), 0)
 
-        codes = self._per_step(code).astype(np.intp)
-        deeper = np.diff(self.points.normal, prepend=0.0)
-        further = np.abs(np.diff(self.points.tangential, prepend=0.0))
+        codes, before = self._per_step(code).astype(np.intp), REGIMES.index(self.regime_before)
+        deeper = np.diff(self.points.normal, prepend=self.start.normal)
+        further = np.abs(np.diff(self.points.tangential, prepend=self.start.tangential))
         rounding = np.where(deeper > 0, _ROUNDING * self.points.normal, 0.0)
         known = (codes < 2) | (further - deeper > rounding)
         last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
-        return np.maximum(np.where(last < 0, 1, codes[last]), codes > 0)
+        return np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
 
     @property
     def last(self) -> Polyline:
@@ -109,7 +113,7 @@ class StepResults:
         return list(self._follow())
 
     def _follow(self) -> Iterator[_Block]:
-        line = slip_memory.separated(0.0, 0.0)
+        line = self.start
         for begin in range(0, self.points.normal.size, _BLOCK):
             points = LoadPoints._make(row[begin : begin + _BLOCK] for row in self.points)
             tree, line = slip_memory.follow(line, points)

@@ -86,6 +86,7 @@ class Tabulated(Profile):
         if uncertainty is not None and not 0 <= uncertainty < np.inf:
             detail = "must be a standard uncertainty of the heights, positive or 0"
             raise InputError(("profile", "uncertainty"), detail)
+        self.uncertainty = uncertainty
         self.fit = fit_table(self.r, self.values, self._breaks, uncertainty)
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
         """True if the profile deviates from the points by no more than their uncertainty."""

@@ -15,22 +15,25 @@ from mdr_service.schemas.load_paths import Cycles, HistoryQuery, LoadPath
 from mdr_service.settings import SETTINGS
 
 _CYCLES: Final = ("energy_per_cycle", "secant_stiffness")
-_HISTORY: Final = members(HistoryAnswer, _CYCLES)
+_HISTORY: Final = members(HistoryAnswer, (*_CYCLES, "final_state"))
 
 
 def solve_history(query: HistoryQuery) -> LoadHistory:
     """Return the load history of a query, given by its points or as cycles."""
     require_one_of(query, "history", "cycles")
     require_few_samples(query)
-    return solve_path(query)
+    if not query.has("initial_state"):
+        return solve_path(query)
+    if query.has("cycles"):
+        raise InputError(("initial_state",), "is valid with history only, not with cycles")
+    return solve_path(query, initial_state=query.initial_state.model_dump())
 
 
-def solve_path(query: HistoryQuery | LoadedQuery) -> LoadHistory:
+def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
     """Return the load history of a query with any number of samples."""
     name = "history" if query.has("history") else "cycles"
     given: LoadPath = getattr(query, name)
     solve: Any = load_history.solve
-    more: dict[str, float] = {}
     if isinstance(given, Cycles):
         solve = load_history.cycles
         more = {"normal_amplitude": given.normal.amplitude, "count": given.count}
@@ -58,9 +61,11 @@ def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
     """Return forces, displacements and energies at the samples of a load history."""
     names = (*_HISTORY, *_CYCLES) if isinstance(history, LoadCycles) else _HISTORY
     values = {name: np.asarray(getattr(history, name)) for name in names}
-    return checked(query, values) | response_metadata(
+    state = {"final_state": history.final_state} if query.return_state else {}
+    about = response_metadata(
         query, history, history.method, history.error_estimate, notices(query, history)
     )
+    return checked(query, values) | state | about
 
 
 def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from mdr_core.errors import Remedy
+from mdr_service.schemas.load_paths import HistoryState, Regime
 from mdr_service.schemas.quantities import left_out, quantity
 
 _number = partial(quantity, "1")
@@ -123,7 +124,7 @@ class HistoryAnswer(SolvedAnswer):
     dissipated_energy: list[float] = _energy("Energy dissipated by slip since the start")
     elastic_energy: list[float] = _energy("Elastic energy of the normal load")
     tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
-    regime: list[Literal["no_contact", "stick", "partial_slip", "full_slip"]] = Field(
+    regime: list[Regime] = Field(
         description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
     )
     slip_fronts: list[float] = _length(
@@ -135,6 +136,7 @@ class HistoryAnswer(SolvedAnswer):
     secant_stiffness: list[float] = _stiffness(
         "Range of F_x over the range of u_x in each cycle, at its turning points", default=None
     )
+    final_state: HistoryState = left_out("State at the end, with `return_state`.")
 
 
 class ImpactAnswer(SolvedAnswer):

@@ -1,12 +1,15 @@
 """Requests about load histories: points of a load path, or identical cycles."""
 
 from abc import abstractmethod
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from mdr_service.schemas.contacts import Choice, Query, friction
 from mdr_service.schemas.quantities import (
+    LARGEST,
     ScalarOrArray,
+    Signed,
     SignedScalarOrArray,
     Size,
     Strict,
@@ -16,6 +19,10 @@ from mdr_service.schemas.quantities import (
     quantity,
 )
 from mdr_service.settings import SETTINGS
+
+Regime = Literal["no_contact", "stick", "partial_slip", "full_slip"]
+# Sums of a vertex and their low parts, and the numbers of an arc.
+_Vertex = Annotated[list[float], Field(min_length=4, max_length=7)]
 
 
 class NormalPoints(Choice):
@@ -135,12 +142,41 @@ class Cycles(LoadPath):
         return 2 + 2 * self.count
 
 
+class HistoryState(Strict):
+    """State at the end of a history, with which another request carries it on."""
+
+    contact: str = Field(
+        description="Digest of the profile, the moduli, the friction coefficient and the controls.",
+        max_length=64,
+    )
+    normal: Signed = quantity("as the control", "Last depth or normal force")
+    tangential: Signed = quantity("as the control", "Last tangential displacement or force")
+    dissipated_energy: float = quantity(
+        "force*length", "Energy dissipated by slip since the start", ge=0, le=LARGEST**3
+    )
+    regime: Regime = Field(description="Slip regime of the last sample.")
+    polylines: list[list[_Vertex]] = Field(
+        description="Slip memory: the vertices of a polyline from the axis, without the load point "
+        "[length], or [length²] under a tangential force: normal coordinate + anchor, normal "
+        "coordinate − anchor, and the low parts of both. Three polylines, with three numbers more "
+        "on each arc, after steps along which a depth and a tangential force, or a normal force "
+        "and a displacement, both change.",
+        min_length=1,
+        max_length=3,
+    )
+
+
 class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles")]}):
     """Contact with friction on a load path."""
 
     friction_coefficient: float = friction()
     history: History = left_out("Arbitrary load path, given by its points.")
     cycles: Cycles = left_out("In place of `history`: identical cycles of the tangential load.")
+    initial_state: HistoryState = left_out(
+        "`final_state` of the history that this one carries on, of the same contact and controls; "
+        "with `history` only."
+    )
+    return_state: bool = Field(default=False, description="Return `final_state`.")
 
     @property
     def loads(self) -> int:
@@ -150,6 +186,12 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     def path(self) -> LoadPath:
         """Load path; None if neither is given."""
         return self.cycles if self.has("cycles") else self.history
+
+    @property
+    def numbers(self) -> int:
+        """Number of values of the state, which takes time as others do."""
+        lines = self.initial_state.polylines if self.has("initial_state") else []
+        return sum(len(vertex) for line in lines for vertex in line)
 
     def place(self, index: int) -> tuple[str | int, ...]:
         name = "cycles" if self.has("cycles") else "history"

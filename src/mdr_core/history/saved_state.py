@@ -1,0 +1,115 @@
+"""State of a load history, as JSON holds it, from which another history carries on."""
+
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from typing import Any, Final, NamedTuple, Self
+
+import numpy as np
+
+from mdr_core.errors import InputError
+from mdr_core.history import slip_memory
+from mdr_core.history.slip_layout import ANCHOR, GROWTH, NORMAL
+from mdr_core.history.slip_memory import Polyline
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+
+# Numbers of a vertex, and of the arc above it.
+_SUMS, _ARC = NORMAL, 3
+SETS: Final = 3
+"""Sets of chords from which the results of nonlinear load steps are extrapolated."""
+# By rounding a sum may decrease along a polyline by this part of the normal coordinate.
+_ROUNDING: Final = 1e-12
+# Attributes that define a table, which has no parameters.
+_TABLE: Final = ("r", "values", "breaks", "uncertainty")
+
+
+class SavedState(NamedTuple):
+    """State between two load steps."""
+
+    contact: str
+    """Digest of the profile, the moduli, the friction coefficient and the controls."""
+    normal: float
+    """Prescribed depth or normal force."""
+    tangential: float
+    """Prescribed displacement or tangential force."""
+    dissipated_energy: float
+    """Energy dissipated by friction since the bodies were unloaded."""
+    regime: str
+    """Slip regime."""
+    polylines: Sequence[Sequence[Sequence[float]]]
+    """Polyline of the slip memory, or those on each set of chords of nonlinear load steps.
+
+    They have the vertices below the load point, from the axis: the sums normal + anchor and normal
+    - anchor, the low parts of both, and where the segment above is part of an arc its rate, and the
+    conjugate and the tangential coordinate of its end.
+    """
+
+    @classmethod
+    def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
+        """Return the state of a `contact` from its members; raise InputError if it is of none."""
+        if given.keys() != set(cls._fields):
+            raise InputError(("initial_state",), f"must have the members {', '.join(cls._fields)}")
+        if given["contact"] != contact:
+            raise InputError(
+                ("initial_state", "contact"),
+                "belongs to another profile, material, friction coefficient or control: repeat "
+                "those of the history that ended in this state",
+            )
+        if len(given["polylines"]) not in {1, SETS}:
+            raise InputError(("initial_state", "polylines"), f"must be one polyline, or {SETS}")
+        return cls(**given)
+
+    def restored(self, normal: float, tangential: float) -> tuple[tuple[Polyline, ...], Array]:
+        """Return the polylines up to the load point, and the arcs, shape (3, m).
+
+        The load steps of the segments are the indices of their arcs, from the end.
+
+        Raises InputError if a polyline is impossible, because friction limits its slope.
+        """
+        place = "initial_state", "polylines"
+        if normal <= 0:
+            if any(self.polylines) or self.regime != "no_contact":
+                raise InputError(place, "must be empty, and the regime no_contact, in separation")
+            lines = [slip_memory.separated(normal, tangential)] * len(self.polylines)
+            return tuple(lines), np.zeros((_ARC, 0))
+        if not all(self.polylines) or self.regime == "no_contact":
+            raise InputError(place, "must have vertices, and the regime one of contact, in contact")
+        padding = [0.0] * _ARC
+        rows = [
+            np.array([[*row, *padding][: _SUMS + _ARC] for row in each]) for each in self.polylines
+        ]
+        arcs, labels = np.unique(np.concatenate(rows)[:, _SUMS:], axis=0, return_inverse=True)
+        ends = np.cumsum([len(each) for each in rows])
+        steps = np.split(labels.ravel() - len(arcs), ends[:-1])
+        found = []
+        for index, (each, step) in enumerate(zip(rows, steps, strict=True)):
+            line = slip_memory.through(each[:, :_SUMS], step, normal, tangential)
+            growth = line.vertices[1:, GROWTH:ANCHOR]
+            good = (growth.min(axis=1) >= -_ROUNDING * normal) & (growth.max(axis=1) > 0)
+            good[0] &= line.vertices[0, NORMAL] == 0
+            if not good.all():
+                detail = "exceeds the next vertex in a sum, or is the first one and not on the axis"
+                raise InputError((*place, index, int(np.argmin(good))), detail)
+            np.maximum(growth, 0.0, out=growth)
+            found.append(line)
+        return tuple(found), arcs.T
+
+
+UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ([],))
+"""State of bodies before first contact."""
+
+
+def saved(line: Polyline, arcs: Array | None) -> list[list[float]]:
+    """Return the vertices of a polyline below the load point, as `SavedState` has them."""
+    rows = line.vertices[:-1, :_SUMS].tolist()
+    if arcs is None:
+        return rows
+    above = arcs[:, line.load_step[1:]].T.tolist()
+    return [row + arc if arc[0] else row for row, arc in zip(rows, above, strict=True)]
+
+
+def digest(profile: Profile, *others: object) -> str:
+    """Return a digest of a profile and other values."""
+    names = profile.parameters or _TABLE
+    own = {name: np.asarray(getattr(profile, name)).tolist() for name in names}
+    return sha256(repr((profile.kind, own, others)).encode()).hexdigest()[:16]
