@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from scipy.interpolate import BPoly
 
-from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.elementwise import every, full, is_number, some, where
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
@@ -152,11 +152,13 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
     c = [profile.contact_radius(part) for part in slip[1:]]
 
     def field(load: Indices, at: Array) -> Array:
-        inner = InnerEnd(slip[0][load], c[0][load], slip[1][load]) if slip else None
-        stress = profile.pressure_kernel_at(Annulus(edge[load], inner), at, _RTOL)
+        outer, annulus = edge[load], whole(edge[load])
+        if slip:
+            annulus = Annulus(outer, slip[0][load], c[0][load], coordinate=slip[1][load])
+        stress = profile.pressure_kernel_at(annulus, at, _RTOL)
         if rim is None:
             return stress
-        ratio = profile.contact_radius(at) / profile.contact_radius(edge[load])
+        ratio = profile.contact_radius(at) / profile.contact_radius(outer)
         height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _RTOL))
         return stress - rim[load] * (1 / height - 1)
 

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import settings
 
 from mdr_core.abel import two_root
-from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus, whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +25,7 @@ repeatable = settings(derandomize=True, deadline=None, max_examples=60)
 
 def two_root_integral(weight: Callable[[Array, Array], Array], r: Array, a: float) -> Array:
     upper = np.full(r.shape, np.sqrt((a - B) * (a + B)))
-    annulus = Annulus(upper, outer_radius=np.full(r.shape, a))
+    annulus = whole(upper, np.full(r.shape, a))
     return two_root.two_root_integral(weight, B, r, annulus, rtol=RTOL)
 
 
@@ -65,8 +65,8 @@ def test_one_sided_annulus_equals_difference() -> None:
     def weight(x: Array, s: Array) -> Array:
         return (2 * s - B * np.arctan(s / B)) * s / x
 
-    stick_edge = InnerEnd(upper - lower, np.full(r.shape, c))
-    annulus = two_root.two_root_integral(weight, B, r, Annulus(upper, stick_edge), rtol=RTOL)
-    whole = two_root.two_root_integral(weight, B, r, Annulus(upper), rtol=RTOL)
-    inner = two_root.two_root_integral(weight, B, r, Annulus(lower), rtol=RTOL)
-    assert np.allclose(annulus, whole - inner, rtol=1e-12, atol=0)
+    ends = Annulus(upper, upper - lower, np.full(r.shape, c)), whole(upper), whole(lower)
+    annulus, outer, inner = (
+        two_root.two_root_integral(weight, B, r, each, rtol=RTOL) for each in ends
+    )
+    assert np.allclose(annulus, outer - inner, rtol=1e-12, atol=0)

@@ -128,7 +128,7 @@ def kernel(profile: Profile, coordinate: float, width: float, r: np.ndarray) -> 
         return np.full(r.shape, value)
 
     c = float(profile.contact_radius(np.array(coordinate - width)))
-    annulus = abel.annulus.Annulus(full(coordinate), abel.annulus.InnerEnd(full(width), full(c)))
+    annulus = abel.annulus.Annulus(full(coordinate), full(width), full(c))
     return profile.pressure_kernel(annulus, r, RTOL)
 
 
@@ -145,8 +145,8 @@ def test_wide_annulus_equals_difference_of_kernels(name: str) -> None:
         r = r[1:] if name in {"cone", "table"} else r
         ones = np.ones_like(r)
         annulus = kernel(profile, high, high - low, r)
-        whole = profile.pressure_kernel(abel.annulus.Annulus(high * ones), r, RTOL)
-        inner = profile.pressure_kernel(abel.annulus.Annulus((high - (high - low)) * ones), r, RTOL)
+        whole = profile.pressure_kernel(abel.annulus.whole(high * ones), r, RTOL)
+        inner = profile.pressure_kernel(abel.annulus.whole((high - (high - low)) * ones), r, RTOL)
         # The cancelled part is at most about ten times the difference.
         assert np.allclose(annulus, whole - inner, rtol=1e-11, atol=1e-14 * whole.max())
 
@@ -156,5 +156,5 @@ def test_annulus_over_the_whole_contact(name: str) -> None:
     profile = profile_of(name)
     high = float(profile.coordinate_from_radius(np.array(A)))
     r = np.array([1e-9, 0.3, 0.97, 0.9999]) * A
-    whole = profile.pressure_kernel(abel.annulus.Annulus(np.full(r.shape, high)), r, RTOL)
+    whole = profile.pressure_kernel(abel.annulus.whole(np.full(r.shape, high)), r, RTOL)
     assert np.allclose(kernel(profile, high, high, r), whole, rtol=1e-12, atol=0)

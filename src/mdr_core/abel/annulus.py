@@ -7,19 +7,8 @@ import numpy as np
 from mdr_core.typing import Array, Flags, Indices, Parameter
 
 
-class InnerEnd(NamedTuple):
-    """Inner end c of an annulus, as a width and as a radius."""
-
-    width: Array
-    """Difference of the coordinates of a and c, free of cancellation."""
-    radius: Array
-    """c [length], so that c - r is exact next to it."""
-    coordinate: Array | None = None
-    """c in the coordinate, where points are given in it as well; None if they are radii."""
-
-
 class Annulus(NamedTuple):
-    """Ends of the annulus c <= x <= a, each in the forms that are free of cancellation.
+    """Ends of the annulus c <= x <= a, free of cancellation.
 
     The coordinate is the contact coordinate of a profile, the radius, or, beyond a break b,
     sqrt(x^2 - b^2), as the function that takes the annulus states. The ends are single numbers, or
@@ -28,19 +17,25 @@ class Annulus(NamedTuple):
 
     outer: Array
     """Coordinate of a."""
-    inner: InnerEnd | None = None
-    """None for c = 0, the whole contact."""
-    outer_radius: Array | None = None
-    """a [length] if the radius is prescribed, so that a - r is exact; None if it is not."""
+    width: Array
+    """Difference of the coordinates of a and c."""
+    inner: Array
+    """c [length], so that c - r is exact next to it; zero for the whole contact."""
+    edge: Array | None = None
+    """a [length] where it is exact, so that a - r is; None where the coordinate is."""
+
+    coordinate: Array | None = None
+    """Coordinate of c, where points are given in it as well; None if they are radii."""
 
     def at(self, chosen: Flags | Indices) -> "Annulus":
         """Return the annuli of the chosen points."""
+        parts: Any = self
+        return Annulus(*(part if np.size(part) == 1 else part[chosen] for part in parts))
 
-        def pick(part: Any) -> Any:
-            return part if part is None or part.size == 1 else part[chosen]
 
-        inner = None if self.inner is None else InnerEnd(*map(pick, self.inner))
-        return Annulus(pick(self.outer), inner, pick(self.outer_radius))
+def whole(outer: Array, edge: Array | None = None) -> Annulus:
+    """Return the annulus that is the whole contact; parameters: see `Annulus`."""
+    return Annulus(outer, outer, 0 * outer, edge)
 
 
 def inverse_hypot(x: Array, b: Parameter) -> Array:
@@ -54,23 +49,15 @@ def inverse_hypot(x: Array, b: Parameter) -> Array:
 
 def root_step(annulus: Annulus, r: Array) -> Array:
     """Return sqrt(a^2 - r^2) - sqrt(c^2 - r^2), the second term for r < c only [length]."""
-    a, inner, _ = annulus
+    a, width, c, *_ = annulus
     root_a = np.sqrt((a - r) * (a + r))
-    if inner is None:
-        return root_a
-    width, c, _ = inner
-    root_c = inverse_hypot(c, r)
-    return np.where(c > r, width * (a + c) / (root_a + root_c), root_a)
+    return np.where(c > r, width * (a + c) / (root_a + inverse_hypot(c, r)), root_a)
 
 
 def log_ratio(annulus: Annulus, r: Array) -> Array:
     """Return arccosh(a/r) - arccosh(c/r) [1], also at r = 0."""
-    a, inner, _ = annulus
-    if inner is None:
-        low, root_low, step = r, np.zeros(1), (a - r) + np.sqrt((a - r) * (a + r))
-    else:
-        low = np.maximum(r, inner.radius)
-        root_low = np.sqrt((low - r) * (low + r))
-        step = np.minimum(a - r, inner.width) + root_step(annulus, r)
+    a, width, c, *_ = annulus
+    low = np.maximum(r, c)
+    step = np.minimum(a - r, width) + root_step(annulus, r)
     with np.errstate(divide="ignore"):
-        return np.log1p(step / (low + root_low))
+        return np.log1p(step / (low + inverse_hypot(low, r)))

@@ -5,10 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
+from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, smooth_parts
 from mdr_core.abel.two_root import two_root_integral
-from mdr_core.elementwise import some
 from mdr_core.typing import Array
 
 # Closer to the axis than this part of the radius at which an interval starts its stress is that on
@@ -27,13 +26,11 @@ def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol
     Parameters
     ----------
     branches : intervals of g'.
-    annulus : a and c as radii; where c is a single number, so is a.
+    annulus : a and c as radii.
     r : radii 0 <= r < a [length], shape (m,); on the axis that next to it, if a tip is sharp.
     rtol : relative tolerance.
     """
-    outer, inner, _ = annulus
-    width, c = (outer, 0.0 * outer) if inner is None else inner[:2]
-    a, width, c = (np.broadcast_to(part, r.shape) for part in (outer, width, c))
+    a, width, c = (np.broadcast_to(part, r.shape) for part in annulus[:3])
     narrow, total = width < a / 2, np.zeros(r.shape)
     for branch in smooth_parts(branches, a.max()):
         low = np.maximum(c, max(branch.base, branch.start))
@@ -52,9 +49,7 @@ def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol
     base = branch.base
     if base == 0:
         r = np.maximum(r, np.where(low > 0, _NEAR_AXIS * low, _NEXT_TO_AXIS * high))
-    top, inner = inverse_hypot(high, base), None
-    if some(low > base):
-        roots = np.maximum(top + inverse_hypot(low, base), _TINY)
-        inner = InnerEnd(gap * (low + high) / roots, low)
-    ends = Annulus(top, inner, high)
+    top = inverse_hypot(high, base)
+    roots = np.maximum(top + inverse_hypot(low, base), _TINY)
+    ends = Annulus(top, gap * (low + high) / roots, low, high)
     return two_root_integral(branch.weight, base, r, ends, rtol=rtol, growth=branch.steepness)

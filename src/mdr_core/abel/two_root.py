@@ -63,30 +63,24 @@ def two_root_integral(
     --------
     The arccosh(a/b) of Eq. (5.53), as the integral of F = x/s at the axis; b = 1, a = 2.
 
-    >>> annulus = Annulus(np.array([np.sqrt(3.0)]))
+    >>> annulus = whole(np.array([np.sqrt(3.0)]))
     >>> axis = np.zeros(1)
     >>> value = two_root_integral(lambda x, s: x / x, 1.0, axis, annulus, rtol=1e-12)
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
-    upper, inner, edge = annulus
+    upper, width, c, edge, coordinate = annulus
     break2, on_break = (b - r) * (b + r), r == b
     # a^2 - r^2, from the radius where that is exact.
     outer2 = np.maximum(upper * upper + break2, 0.0) if edge is None else (edge - r) * (edge + r)
-    lower, begin, gap2 = 0.0 * upper, np.full(1, b), upper * upper
-    if inner is not None:
-        begin, lower = np.maximum(inner.radius, b), upper - inner.width
-        wide = inverse_hypot(begin, b) if inner.coordinate is None else inner.coordinate
-        lower = where(inner.width > upper / 2, wide, lower)
-        gap2 = inner.width * (upper + lower)
+    begin = np.maximum(c, b)
+    wide = inverse_hypot(begin, b) if coordinate is None else coordinate
+    lower = where(width > upper / 2, wide, upper - width)
     # sqrt(c^2 - r^2), zero for r >= c.
     root = inverse_hypot(begin, r)
     if beyond is not None:
-        break2, on_break, outer2 = (
-            -beyond * beyond,
-            beyond == 0,
-            (upper - beyond) * (upper + beyond),
-        )
+        break2, on_break = -beyond * beyond, beyond == 0
+        outer2 = (upper - beyond) * (upper + beyond)
         root = inverse_hypot(lower, beyond)
     infinite = None
     if some(on_break):
@@ -104,9 +98,9 @@ def two_root_integral(
     epsilon, shift = np.sqrt(np.abs(break2)), np.maximum(-break2, 0.0)
     # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
     roots = np.sqrt(outer2) * np.where(root > 0, lower, epsilon) + root * upper
-    covered2 = np.where(root > 0, gap2, outer2)
+    covered2 = np.where(root > 0, width * (upper + lower), outer2)
     length = np.arcsinh(covered2 / np.maximum(roots, _TINY))
-    start = None if inner is None else np.arcsinh(np.minimum(root, lower) / epsilon)
+    start = np.arcsinh(np.minimum(root, lower) / epsilon) if some(lower > 0) else None
 
     def h(y: Array, index: Indices) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.

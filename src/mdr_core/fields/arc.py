@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import Branch, arccosine, slope_integral
 from mdr_core.abel.stress import stress_integral
 from mdr_core.profiles import Profile
@@ -37,10 +37,7 @@ class Arc:
         """int k g'(x)/sqrt(x^2 - r^2) dx over the arc, from r on [1]; shape (m,)."""
         result, inside = np.zeros(r.shape), r < self.high
         if inside.any():
-            ends = (np.array([part]) for part in (self.high, self.width, self.low))
-            high, width, low = ends
-            inner = InnerEnd(width, low) if self.low > 0 else None
-            annulus = Annulus(high, inner)
+            annulus = Annulus(*(np.array([part]) for part in (self.high, self.width, self.low)))
             result[inside] = stress_integral(self.branches, annulus, r[inside], rtol)
         return result
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
-from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.adhesion import AdhesiveContact
 from mdr_core.elementwise import every, number
 from mdr_core.normal import NormalContact
@@ -78,7 +78,7 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
 
     def values(load: int, r: Array) -> Array:
         edge = number(a[load]) if contact.control == "contact_radius" else None
-        annulus = Annulus(number(coordinate[load]), outer_radius=edge)
+        annulus = whole(number(coordinate[load]), edge)
         return contact.e_star * stress(contact.profile, annulus, a[load], r, rtol)
 
     return fill(shape, values, radius)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
-from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import number
 from mdr_core.fields.arc import Arc
 from mdr_core.fields.normal import by_load, fill, stress
@@ -54,10 +54,8 @@ class Traction(NamedTuple):
 
     def annulus(self, i: int) -> Annulus:
         """Return the i-th annulus."""
-        end = InnerEnd(self.width[i], self.radius[i])
-        whole = i == 0 and not self.profile.has_no_partial_slip
         outer = self.radius[i + 1] if self.exact else None
-        return Annulus(self.coordinate[i + 1], None if whole else end, outer)
+        return Annulus(self.coordinate[i + 1], self.width[i], self.radius[i], outer)
 
     def stress(self, r: Array, rtol: float) -> Array:
         """Return the stress at radii, over mu E* [1], shape (m,)."""

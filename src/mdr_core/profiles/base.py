@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus, InnerEnd
+from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import (
     Branch,
     Kernel,
@@ -254,13 +254,6 @@ class Profile(ABC):
         """Difference a - c of the radii at the contact coordinates s_a and s_a - width [length]."""
         return width
 
-    def radial(self, annulus: Annulus) -> Annulus:
-        """Return the annulus in the radius instead of the contact coordinate."""
-        outer, inner, a = annulus
-        if inner is not None:
-            inner = InnerEnd(self.radius_width(outer, inner.width), inner.radius)
-        return Annulus(self.contact_radius(outer) if a is None else a, inner)
-
     # The normal contact.
 
     def depth(self, coordinate: Array) -> Array:
@@ -445,8 +438,8 @@ class Profile(ABC):
         radius : radii 0 <= r < a [length], shape (m,).
         rtol : relative tolerance.
         """
-        total = stress_integral(self.branches, self.radial(annulus), radius, rtol) / np.pi
-        if annulus.inner is None and some(axis := radius == 0):
+        total = stress_integral(self.branches, annulus, radius, rtol) / np.pi
+        if some(axis := (radius == 0) & (annulus.inner == 0)):
             total[axis] = self.axis_stress(annulus.at(axis).outer)
         return total
 

@@ -108,8 +108,7 @@ class FlatPunch(Profile):
 
         Source: mdr-5, Eq. (5.34). Parameters: see `Profile`.
         """
-        depth = annulus.outer if annulus.inner is None else annulus.inner.width
-        return depth / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
+        return annulus.width / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """Zero: all springs slip at once. Parameters: see `Profile`."""

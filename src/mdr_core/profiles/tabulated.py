@@ -9,7 +9,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
-from mdr_core.abel.annulus import Annulus, InnerEnd, inverse_hypot
+from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.errors import InputError
@@ -428,21 +428,16 @@ class Tabulated(Profile):
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
-        outer, inner, edge = annulus
-        a = outer if edge is None else edge
-        width, c = (a, np.zeros_like(a)) if inner is None else inner[:2]
+        a, width, c, *_ = annulus
         total = _of_each(self._spline.stress, (c, a, width), radius) / np.pi
         for factor, shape in self._flanks:
             b = shape.flat_radius
             s_a = inverse_hypot(np.maximum(a, b), b)
-            beyond = None
-            if inner is not None:
-                s_c = inverse_hypot(np.maximum(c, b), b)
-                gap = np.where(c > b, width * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0), s_a)
-                beyond = InnerEnd(gap, np.maximum(c, b))
+            s_c = inverse_hypot(np.maximum(c, b), b)
+            gap = np.where(c > b, width * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0), s_a)
             on = np.broadcast_to(s_a > 0, radius.shape)
             if on.any():
-                part = Annulus(s_a, beyond, edge).at(on)
+                part = Annulus(s_a, gap, c, a).at(on)
                 total[on] += factor * shape.pressure_kernel(part, radius[on], rtol)
         return total
 

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.annulus import whole
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
 from mdr_core.wear.worn_annulus import RTOL
@@ -54,7 +54,7 @@ def pressure(stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
     moduli = np.ravel(np.broadcast_to(e_star, radius.shape))
 
     def values(load: Indices, at: Array) -> Array:
-        inner = profile.pressure_kernel(Annulus(edge[load]), at, RTOL)
+        inner = profile.pressure_kernel(whole(edge[load]), at, RTOL)
         annulus = step[load] / (np.pi * np.sqrt((c[load] - at) * (c[load] + at)))
         return np.asarray(moduli[load] * (inner + annulus))
 
