@@ -63,7 +63,8 @@ def two_root_integral(
     --------
     The arccosh(a/b) of Eq. (5.53), as the integral of F = x/s at the axis; b = 1, a = 2.
 
-    >>> annulus = whole(np.array([np.sqrt(3.0)]))
+    >>> top = np.array([np.sqrt(3.0)])
+    >>> annulus = Annulus(top, top, np.zeros(1))
     >>> axis = np.zeros(1)
     >>> value = two_root_integral(lambda x, s: x / x, 1.0, axis, annulus, rtol=1e-12)
     >>> float(f"{value[0]:.6g}")
