@@ -6,11 +6,14 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch
+from mdr_core.elementwise import some
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.power_law_integral import power_law_integral
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.quadrature import integrate
+from mdr_core.typing import Array, Flags, Indices, Parameter
 
 # a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
 # (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
@@ -18,6 +21,7 @@ _SHALLOW: Final = 0.64
 # Largest a/R. At the equator the load is infinite, and next to it a does not resolve the load.
 _END: Final = 1 - 1e-8
 _EPS: Final = float(np.finfo(float).eps)
+_TINY: Final = float(np.finfo(float).tiny)
 
 
 class Spheroid(Profile):
@@ -82,6 +86,41 @@ class Spheroid(Profile):
         t = coordinate / self.radius
         bracket = t * t * t + (1 + t * t) * tanh_gap(self._artanh(coordinate))
         return self.height * self.radius * bracket
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+        """(h/(pi R)) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
+
+        With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the
+        pole at R vanish, and the pole's part is elementary.
+
+        Source: notes, §2. Parameters: see `Profile`.
+        """
+        a, width, c, *_ = annulus
+        r, big = radius, self.radius
+        square, rest_a = ((big - x) * (big + x) for x in (r, a))
+        stretch, tilt2 = big / np.sqrt(square), r * r / square
+
+        def h(y: Array, index: Indices) -> Array:
+            # arcsinh(z)/q for q = z sqrt(1 + z^2), with one root and a logarithm.
+            z2 = np.sinh(y, out=y)
+            z2 *= stretch[index]
+            z2 *= z2
+            z2 += tilt2[index]
+            q = np.sqrt(z2 * (1 + z2))
+            return np.log1p(2 * (z2 + q)) / (2 * q)
+
+        top = inverse_hypot(a, r) / np.sqrt(rest_a)
+        length, start = np.arcsinh(top), None
+        if some(c > 0):
+            low = np.maximum(c, r)
+            rest_c = (big - low) * (big + low)
+            bottom = inverse_hypot(low, r) / np.sqrt(rest_c)
+            # arcsinh(top) - arcsinh(bottom), free of cancellation.
+            covered = np.where(c > r, width * (a + c), (a - r) * (a + r)) / rest_a / rest_c
+            sums = np.maximum(top / np.sqrt(rest_c) + bottom / np.sqrt(rest_a), _TINY)
+            start, length = np.arcsinh(bottom), np.arcsinh(covered * np.sqrt(square) / sums)
+        smooth = integrate(h, length, rtol, start)
+        return self.height / (pi * big) * stretch * (length + smooth)
 
     def reduced_energy(self, coordinate: Array) -> Array:
         depth = self.depth(coordinate)
