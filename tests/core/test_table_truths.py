@@ -242,6 +242,30 @@ def test_decimal_units_of_rounded_points_change_nothing() -> None:
     assert float(mm.indentation_depth) == pytest.approx(1e3 * depth, rel=SAME, abs=0)
 
 
+#: Seeds of tables with noise, with digits, and with heights that no body has exactly.
+MEASURED = {"noise": 5, "noise, break": 13, "digits, break": 20, "bounds": 6, "decimals": 51}
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_units_order_and_copies_of_measured_points_change_nothing(name: str) -> None:
+    table = instrument_tables.drawn(MEASURED[name], most=200)
+
+    def loads(r: Array, f: Array, unit: float = 1.0) -> Array:
+        uncertainty = None if table.uncertainty is None else unit * table.uncertainty
+        breaks = tuple(unit * b for b in table.breaks)
+        profile = Tabulated(unit * r, unit * f, breaks=breaks, uncertainty=uncertainty)
+        contact = solve(profile, 1.0, contact_radius=profile.domain * np.array([0.5, 0.9]))
+        values = contact.indentation_depth / unit, contact.normal_force / unit**2
+        return np.concatenate(values)
+
+    one = loads(table.r, table.f)
+    index = np.random.default_rng(3).permutation(table.r.size)
+    twice = np.append(index, [0, 3, 3, table.r.size - 1])
+    for unit, order in ((25.4, slice(None)), (1e-3, index), (1.0, twice)):
+        other = loads(table.r[order], table.f[order], unit)
+        assert other == pytest.approx(one, rel=SAME, abs=0), (unit, order)
+
+
 @pytest.mark.parametrize("gap", [1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
 @pytest.mark.parametrize("uncertainty", [None, 1e-9])
 def test_two_nearly_equal_radii(gap: float, uncertainty: float | None) -> None:

@@ -8,7 +8,9 @@ from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
+from scipy.linalg import solve_triangular
 
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
@@ -73,7 +75,7 @@ class TableBasis:
     @cached_property
     def places(self) -> Array:
         """Coefficients of the slope x."""
-        return np.array([self.t[i + 1 : i + 1 + self.degree].mean() for i in range(self.size)])
+        return sliding_window_view(self.t[1:-1], self.degree).mean(axis=1)
 
     @property
     def free(self) -> Flags:
@@ -98,9 +100,26 @@ class TableBasis:
 
     def derivative(self, order: int) -> Array:
         """Coefficients of a derivative, weighted by the root of the support of its splines."""
+        return self.padded(self._weighted(order))
+
+    def _weighted(self, order: int) -> Array:
         inner, degree = self.t[order : self.t.size - order], self.degree - order
         support = (inner[degree + 1 :] - inner[: self.size - order]) / (degree + 1)
-        return self.padded(self._differences(order) * np.sqrt(support)[:, None])
+        return self._differences(order) * np.sqrt(support)[:, None]
+
+    def by_roughness(self, order: int, *, sharp: bool) -> tuple[Array, Array]:
+        """Coefficients (columns, n) of what has no derivative of this order, and of the others.
+
+        Each of the others has one coefficient of the weighted derivative that is 1.
+        """
+        k, inner = self.degree, sliding_window_view(self.t[1:-1], self.degree)
+        pairs = np.square(inner.sum(axis=1)) - np.square(inner).sum(axis=1)
+        powers = np.stack([np.ones(self.size), self.places, pairs / max(k * (k - 1), 1)])
+        smooth = self.padded(powers[0 if sharp else 1 : order])
+        explicit = np.eye(self.heights.shape[1])[self.size - 1 : -1]
+        triangle = np.vstack([np.eye(order, self.size), self._weighted(order)])
+        rough = solve_triangular(triangle, np.eye(self.size)[:, order:], lower=True)
+        return np.vstack([smooth, explicit]).T, self.padded(rough.T).T
 
     def jumps(self) -> Array:
         """Jumps of the last derivative at the inner knots, times its power of their spacing."""

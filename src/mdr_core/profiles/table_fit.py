@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.linalg import solve_triangular
+from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
 from scipy.sparse.linalg import spsolve
 
@@ -38,8 +38,12 @@ _FEW: Final = 12
 _GCV: Final = 1.2
 # Part of the possible degrees of freedom above which no noise is found.
 _NO_NOISE: Final = 0.8
-# Ratios of the weights of roughness and misfit that are tried.
-_WEIGHTS: Final = 10.0 ** np.arange(-16, 16.1, 0.25)
+# Weights of the roughness that are tried, over the one that halves the smoothest bend.
+_WEIGHTS: Final = 10.0 ** np.arange(-14, 6.1, 0.25)
+# Relative difference of the scores of cross-validation that is none.
+_EQUAL_SCORES: Final = 1e-6
+# Part of the largest misfit below which few points leave a slope without roughness open.
+_OPEN: Final = 1e-8
 # Weight of the points against the roughness of an interpolant.
 _HEAVY: Final = 1e6
 # Factor by which a sharp tip has to lower the roughness of an interpolant at the first knots to be
@@ -191,97 +195,124 @@ def _measured(
 ) -> TableFit:
     """Return the smoothest admissible fit within the uncertainty, or the scatter."""
     basis = TableBasis(points, _knots(points, _KNOTS_OF_MEASURED))
-    rough = basis.derivative(min(_ROUGH, basis.degree))
-    without, with_tip = (_Spectrum(basis, rough, uncertainty, sharp=tip) for tip in (False, True))
+    without, with_tip = (_Spectrum(basis, uncertainty, sharp=tip) for tip in (False, True))
     if sharp is None:
         sharp = with_tip.score * (1 + _SHARPER_MEASURED / points.x.size) < without.score
     chosen = with_tip if sharp else without
-    coefficients, spread = chosen.coefficients, chosen.deviations()
+    coefficients = _by_rows(basis, chosen, np.full_like(chosen.coefficients, np.nan))
+    # The posterior of the coefficients. Source: wahba.
+    spread = _SPREAD * chosen.sigma * chosen.root
     used = ~basis.free
     used[-1] = chosen.sharp
     if min(coefficients[used].min(), basis.slopes(coefficients).min()) < _FLOOR:
-        coefficients = _not_negative(basis, rough, chosen)
+        coefficients = _not_negative(basis, chosen)
         scatter = root_mean_square(points.weight * basis.deviation(coefficients))
         spread = spread * max(scatter / chosen.sigma, 1.0)
     return basis.fit(coefficients, spread)
 
 
-def _not_negative(basis: TableBasis, rough: Array, chosen: "_Spectrum") -> Array:
-    """Return the fit of the same weight of roughness with g' above the floor."""
-    points = basis.points
-    result = np.zeros(basis.heights.shape[1])
-    result[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
-    used = np.ones(result.size, dtype=bool)
-    used[-1] = chosen.sharp
-    rough = np.sqrt(chosen.weight) * rough
-    system = np.vstack([basis.heights * points.weight[:, None], rough])[:, used]
-    right = np.concatenate([-basis.deviation(result) * points.weight, -rough @ result])
-    reduced = _triangle(np.column_stack([system, right]))
-    floor, size = result, int(used.sum())
-    for only_offset in (False, True):
+def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
+    """Return the coefficients of least misfit and roughness with g' above the floor.
+
+    They are the nearest ones to those without bounds. Source: lawson-hanson, Ch. 23.
+    """
+    floor = np.zeros(basis.heights.shape[1])
+    floor[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
+    bound = ~basis.free
+    bound[-1] = chosen.sharp
+    found = chosen.coefficients
+    for with_bends in (False, True):
         # A curvature that drops at a break may bring the slope below zero: then it must not drop.
-        free = basis.free[used]
-        free[: basis.size - 1 + 2 * len(points.breaks)] &= not only_offset
-        columns = np.hstack([reduced[:, :-1], -reduced[:, :-1][:, free]])
-        found, _ = nnls(columns, reduced[:, -1], maxiter=100 * columns.shape[1])
-        found[:size][free] -= found[size:]
-        result = floor.copy()
-        result[used] += found[:size]
-        if basis.slopes(result).min() > 0:
+        bound[basis.size : -2 : 2] = with_bends
+        missing, rows = (floor - chosen.coefficients)[bound], chosen.root[bound]
+        unit = np.linalg.norm(np.maximum(missing, 0.0) / np.linalg.norm(rows, axis=1)) or 1.0
+        system, last = np.vstack([rows.T, missing / unit]), np.eye(rows.shape[1] + 1)[-1]
+        factors, _ = nnls(system, last, maxiter=100 * system.shape[1])
+        met = np.zeros_like(bound)
+        met[bound] = factors > 0
+        found = _by_rows(basis, chosen, np.where(met, floor, np.nan))
+        while (below := bound & (found < floor)).any():
+            # Rounding errors hid a bound.
+            met |= below
+            found = _by_rows(basis, chosen, np.where(met, floor, np.nan))
+        if basis.slopes(found).min() > 0:
             break
+    return found
+
+
+def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
+    """Return the coefficients of least misfit and roughness, some of which are given, by QR.
+
+    The largest rows come first, so that a small weight of the roughness keeps its digits.
+    Source: cox-higham.
+    """
+    weight = basis.points.weight
+    rough = np.sqrt(chosen.weight) * basis.derivative(min(_ROUGH, basis.degree))
+    system = np.vstack([basis.heights * weight[:, None], rough])
+    right = np.concatenate([basis.points.y * weight, np.zeros(len(rough))])
+    order = np.argsort(-np.abs(system).max(axis=1), kind="stable")
+    free = np.isnan(given)
+    free[-1] &= chosen.sharp
+    result = np.where(np.isnan(given), 0.0, given)
+    right = (right - system @ result)[order]
+    rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
+    result[np.flatnonzero(free)[column]] = solve_triangular(triangle, rotated)
     return result
 
 
 class _Spectrum:
-    """Solutions of a penalised least-squares problem for every weight of the penalty."""
+    """Solutions of a penalised least-squares problem for every weight of the penalty.
 
-    def __init__(
-        self, basis: TableBasis, rough: Array, uncertainty: float | None, *, sharp: bool
-    ) -> None:
-        self.basis, self.sharp = basis, sharp
+    Slopes without roughness are separated from those that the penalty bends, so that both are as
+    accurate as the heights, whatever the weight.
+
+    Source: elden.
+    """
+
+    def __init__(self, basis: TableBasis, uncertainty: float | None, *, sharp: bool) -> None:
         points = basis.points
-        last = None if sharp else -1
-        matrix, rough = (basis.heights * points.weight[:, None])[:, :last], rough[:, :last]
-        # One triangle for both, so that their squares are those of a sine and a cosine.
-        balance = np.linalg.norm(matrix) / np.linalg.norm(rough)
+        self.sharp = sharp
+        matrix, goal = basis.heights * points.weight[:, None], points.y * points.weight
+        smooth, rough = basis.by_roughness(min(_ROUGH, basis.degree), sharp=sharp)
+        seen, size, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
         # Few points leave directions without misfit and roughness.
-        ridge = _FEWEST**2 * float(np.linalg.norm(matrix)) * np.eye(matrix.shape[1])
-        triangle = _triangle(np.vstack([matrix, balance * rough, ridge]))
-        inverse = solve_triangular(triangle, np.eye(len(triangle)))
-        left, cosine, right = np.linalg.svd(matrix @ inverse, full_matrices=False)
-        part = left.T @ (points.y * points.weight)
-        self._inverse = inverse @ right.T
-        sine2 = np.square(balance * rough @ self._inverse).sum(axis=0)
-        cosine2 = np.square(cosine)
-        rest = max(
-            float(np.sum(np.square(points.y * points.weight)) - np.sum(np.square(part))), 0.0
-        )
-        penalty = np.multiply.outer(_WEIGHTS, sine2)
-        kept = cosine2 / (cosine2 + penalty)
-        misfit = np.square(penalty / (cosine2 + penalty) * part).sum(axis=1) + rest
-        freedom = kept.sum(axis=1)
+        known = size > _OPEN * size[0]
+        seen, smooth = seen[:, known], smooth @ (right[known].T / size[known])
+        bent = matrix @ rough
+        shared = seen.T @ bent
+        base, triangle = np.linalg.qr(bent - seen @ shared)
+        left, size, right = np.linalg.svd(triangle)
+        rough = (rough - smooth @ shared) @ right.T
+        size2 = np.zeros(rough.shape[1])
+        size2[: size.size] = np.square(size)
+        fitted = seen.T @ goal
+        goal = goal - seen @ fitted
+        part = np.zeros_like(size2)
+        part[: size.size] = left.T @ (base.T @ goal)
+        rest = float(np.square(goal - base @ (base.T @ goal)).sum())
+        weights = size2[0] * _WEIGHTS
+        kept = size2 / np.add.outer(weights, size2)
+        misfit = np.square((1 - kept) * part).sum(axis=1) + rest
+        freedom = fitted.size + kept.sum(axis=1)
         count = points.x.size
         left_over = count - _GCV * freedom
         with np.errstate(divide="ignore", invalid="ignore"):
             score = np.where(left_over > 0, count * misfit / np.square(left_over), np.inf)
-        at = int(np.argmin(score)) if np.isfinite(score).any() else 0
+        # Of weights that do not matter the one that leaves most open.
+        at = int(np.argmax(score <= score.min() * (1 + _EQUAL_SCORES)))
         if uncertainty is not None:
             within = np.flatnonzero(misfit <= (count - freedom) * uncertainty**2)
             at = min(at, int(within[-1])) if within.size else 0
         self.score = float(score.min())
         self.freedom = float(freedom[at])
         self.most = min(float(freedom[0]), count / _GCV)
-        self.weight = float(_WEIGHTS[at] * balance**2)
+        self.weight = float(weights[at])
         scatter = float(np.sqrt(misfit[at] / max(count - self.freedom, 1.0)))
         self.sigma = max(uncertainty or scatter, 1e-16)
-        self._root = np.sqrt(kept[at]) / np.maximum(cosine, 1e-300)
-        found = self._inverse @ (kept[at] / np.maximum(cosine, 1e-300) * part)
-        self.coefficients = found if sharp else np.append(found, 0.0)
-
-    def deviations(self) -> Array:
-        """Square root of the posterior covariance of the coefficients. Source: wahba."""
-        spread = _SPREAD * self.sigma * self._inverse * self._root
-        return spread if self.sharp else np.vstack([spread, np.zeros(spread.shape[1])])
+        root = np.sqrt(size2 + self.weight)
+        self.coefficients = smooth @ fitted + rough @ (np.sqrt(size2) / root**2 * part)
+        self.root = np.hstack([smooth, rough / root])
+        """Square root of the inverse of the matrix of misfit and roughness."""
 
 
 def _has_no_noise(points: TablePoints) -> bool:
@@ -290,5 +321,5 @@ def _has_no_noise(points: TablePoints) -> bool:
         return scatter(points) < ROUNDED
     most = min(_KNOTS_OF_MEASURED, points.x.size // 2)
     basis = TableBasis(points, _knots(points, most))
-    spectrum = _Spectrum(basis, basis.derivative(_ROUGH), None, sharp=True)
+    spectrum = _Spectrum(basis, None, sharp=True)
     return spectrum.freedom > _NO_NOISE * spectrum.most

@@ -8,6 +8,7 @@ Source: notes, §5.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Final
 
 import numpy as np
@@ -21,9 +22,9 @@ ROUNDED: Final = 1e-8
 _SAME: Final = 1e-2
 # Neighbours on each side from which a height is predicted.
 _NEIGHBOURS: Final = 3
-# Rounded numbers: largest unit over the step between neighbours, remainder that is rounding error,
-# and part of a unit within which a number is a multiple.
-_FINEST_STEP, _EQUAL, _OF_UNIT = 0.05, 1e-9, 0.05
+# Rounded numbers: largest unit over the step between neighbours, error of a multiple over the
+# largest number, and largest number of units: a smaller one is below `ROUNDED`.
+_FINEST_STEP, _EQUAL, _MOST_UNITS = 0.05, 1e-14, round(1 / (np.sqrt(12) * ROUNDED))
 # Smallest error of a rounded height, over that of most.
 _LEAST_ERROR: Final = 1e-2
 
@@ -48,9 +49,8 @@ class TablePoints:
 def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
     """Sort the points and merge those whose radii differ by less than the spacing resolves."""
     end, height = float(r.max()), float(f.max() - f.min())
-    x, y = given = r / end, (f - f.min()) / height
-    order = np.argsort(x, kind="stable")
-    x, y = x[order], y[order]
+    # A point that is given twice is no second measurement.
+    x, y = given = np.unique(np.stack([r / end, (f - f.min()) / height]), axis=1)
     new = np.append(True, np.diff(x) > _SAME * x[1:] / x.size)
     group = np.cumsum(new) - 1
     count = np.bincount(group)
@@ -62,7 +62,7 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
             ("profile", "f"), "the heights fall away from the axis: reverse their sign"
         )
     weight = np.sqrt(count)
-    of_radius, of_height = _rounding(*given, x.size) if x.size > 2 else (0.0, 0.0)
+    of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
     rounded = max(of_radius, of_height) > ROUNDED
     if rounded:
         # An error of the radius is one of the height on a slope.
@@ -104,11 +104,14 @@ def _rounding(x: Array, y: Array, count: int) -> tuple[float, float]:
 
 
 def _common_unit(values: Array) -> float:
-    """Largest number of which all values are multiples up to rounding, by Euclid's algorithm."""
-    unit = 0.0
-    for value in np.unique(values).tolist():
-        rest = value
-        while rest > _EQUAL:
-            unit, rest = rest, abs(unit - rest * round(unit / rest))
-    parts = values / unit
-    return unit if np.abs(parts - parts.round()).max() < _OF_UNIT else 0.0
+    """Largest number of which all values, the largest of which is 1, are multiples; else 0."""
+    count = 1
+    while count <= _MOST_UNITS:
+        parts = count * values
+        off = np.abs(parts - parts.round())
+        worst = int(np.argmax(off))
+        if off[worst] <= _EQUAL * count:
+            return 1 / count
+        part = Fraction(float(parts[worst])).limit_denominator(_MOST_UNITS // count)
+        count *= max(part.denominator, 2)
+    return 0.0
