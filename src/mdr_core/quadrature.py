@@ -72,8 +72,6 @@ def integrate(
 ) -> Array:
     """Return the integrals of h over [lower, lower + length], h analytic in the strip.
 
-    A steep power is significant only next to the upper end, from which the pieces grow.
-
     Source: notes, §5; trefethen, Thm 19.3.
 
     Parameters
@@ -84,12 +82,9 @@ def integrate(
     lower : lower ends, shape (m,); None for zero.
     growth : power of exp|Re y| that h resembles over part of the interval.
     """
-    points, longest = nodes_of_pieces(rtol), float(length.max(initial=0.0))
-    if growth > STEEP and longest > 0:
-        nodes, weights = rule_of_powers(growth, reach_of_power(1.0, rtol), longest, points)
-        return _apply(h, (1 - nodes, weights), lower, length, np.arange(length.size))
+    points, piece = nodes_of_pieces(rtol), PIECE / max(growth / STEEP, 1.0)
     # A length that is not finite gives an integral that is not, in one piece.
-    counts = np.maximum(np.ceil(np.where(np.isfinite(length), length, 0.0) / PIECE), 1).astype(int)
+    counts = np.maximum(np.ceil(np.where(np.isfinite(length), length, 0.0) / piece), 1).astype(int)
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = (counts == count).nonzero()[0]
@@ -157,14 +152,3 @@ def reach_of_power(exponent: float, rtol: float) -> float:
     """Return log(x0/x) at which (x/x0)^exponent is negligible, or the range of doubles ends."""
     negligible = -log(_NEGLIGIBLE * rtol)
     return min(negligible / exponent, _LOG_RANGE) if exponent > 0 else _LOG_RANGE
-
-
-def rule_of_powers(growth: float, reach: float, length: float, points: int) -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1], from the upper end downwards, for sums of powers.
-
-    At the distance y from the edge powers above reach/y are negligible, so that pieces grow with y.
-    """
-    ends = [0.0]
-    while ends[-1] < length:
-        ends.append(ends[-1] + PIECE * STEEP * max(1 / growth, ends[-1] / reach))
-    return piecewise_rule(points, np.array(ends) / ends[-1])

@@ -11,21 +11,20 @@ On a random path branch prediction fails, so what can be selected by an index is
 from mdr_core.history.slip_layout import ANCHOR, AXIS, GROWTH, LOW, MIRROR, NORMAL, STEP
 from mdr_core.typing import Array, Flags, Indices
 
-# Columns of the sums normal + anchor and normal - anchor.
-FORWARD = 0
-BACKWARD = 1
+# Columns of the sums of a vertex.
+FORWARD = 0  # normal + anchor
+BACKWARD = 1  # normal - anchor
 # Mark of a segment on which both sums grow.
 NEITHER = 2
-# Places of the new load point and of the corner that it makes. Its mirror image is a vertex below
-# the axis that never exceeds it.
-POINT = 0
-CORNER = 1
-# Rows of the vertices of a tree, those of the columns from NORMAL on: normal coordinate, growth of
-# both sums and of the anchor.
-PLACE = 0
-RISE = 1
-FALL = 2
-TURN = 3
+# Places on the stack, below the mirror image of the load point: a vertex below the axis that the
+# load point never exceeds.
+POINT = 0  # new load point
+CORNER = 1  # corner that it makes
+# Rows of the vertices of a tree, those of the columns from NORMAL on.
+PLACE = 0  # normal coordinate
+RISE = 1  # growth of normal + anchor
+FALL = 2  # growth of normal - anchor
+TURN = 3  # growth of the anchor
 
 
 class PolylineStack:

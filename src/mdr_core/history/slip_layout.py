@@ -5,13 +5,15 @@
 LOW = 2
 # Normal coordinate.
 NORMAL = 4
-# Growth of both sums over the segment below the vertex, and that of the anchor, which a difference
-# of both would lose where it is small.
+# Growth of both sums over the segment below the vertex.
 GROWTH = 5
+# Growth of the anchor, which a difference of both would lose where it is small.
 ANCHOR = 7
 # Load step that laid the segment.
 STEP = 8
+# Number of columns.
 COLUMNS = 9
-# Places of the load point's mirror image and of the vertex on the axis.
+# Place of the load point's mirror image.
 MIRROR = 2
+# Place of the vertex on the axis.
 AXIS = 3

@@ -36,8 +36,9 @@ from mdr_core.typing import Array, Flags, Indices
 _VERTICES: Final = 3
 # Beside the vertices removed, the slip front ends on one segment more, or on the axis.
 _ENDS: Final = 2
-# Numbers of a vertex of a tree, and of an interval of springs that slip.
+# Numbers of a vertex of a tree.
 _VERTEX: Final = 4
+# Numbers of an interval of springs that slip.
 _INTERVAL: Final = 7
 # The load point may divide a segment in two, each of which has three intervals.
 _INTERVALS: Final = 6

@@ -438,8 +438,10 @@ class Profile(ABC):
         radius : radii 0 <= r < a [length], shape (m,).
         rtol : relative tolerance.
         """
-        total = stress_integral(self.branches, annulus, radius, rtol) / np.pi
-        if some(axis := (radius == 0) & (annulus.inner == 0)):
+        axis = (radius == 0) & (annulus.inner == 0)
+        places = np.where(axis, annulus.outer, radius)
+        total = stress_integral(self.branches, annulus, places, rtol) / np.pi
+        if some(axis):
             total[axis] = self.axis_stress(annulus.at(axis).outer)
         return total
 

@@ -27,7 +27,6 @@ class Hyperboloid(Profile):
 
     kind: ClassVar[str] = "hyperboloid"
     formula: ClassVar[str] = "tip_radius·slope²·(√(1 + r²/(tip_radius·slope)²) − 1)"
-    similar: ClassVar[bool] = True
 
     @property
     def scale(self) -> Parameter:

@@ -36,8 +36,6 @@ class Spheroid(Profile):
     radius: Parameter
     height: Parameter
 
-    similar: ClassVar[bool] = True
-
     @property
     def domain(self) -> Parameter:
         return self.radius * _END

@@ -172,8 +172,6 @@ class RoundedCone(TippedCone):
     kind: ClassVar[str] = "rounded_cone"
     formula: ClassVar[str] = "r²/(2·tip_radius) for r ≤ b = tip_radius·slope, then slope·(r − b/2)"
 
-    similar: ClassVar[bool] = True
-
     @cached_property
     def tangent_radius(self) -> Parameter:
         return self.tip_radius * self.slope

@@ -27,8 +27,6 @@ class Truncated(Profile):
 
     flat_radius: Parameter
 
-    similar: ClassVar[bool] = True
-
     @property
     def breaks(self) -> tuple[Parameter, ...]:
         return (self.flat_radius,)
