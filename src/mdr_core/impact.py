@@ -226,7 +226,7 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
     speeds = as_numbers(("normal_velocity",), normal_velocity)
     along = as_numbers(("tangential_velocity",), tangential_velocity)
     for name, good, detail in (
-        ("normal_velocity", (speeds > 0) & np.isfinite(speeds), POSITIVE),
+        ("normal_velocity", (speeds > 0) & np.isfinite(speeds), f"{POSITIVE} and finite: approach is positive"),
         ("tangential_velocity", np.isfinite(along), FINITE),
     ):
         if not every(good):

@@ -23,6 +23,7 @@ POSITIVE: Final = "must be positive"
 _NEGATIVE: Final = {
     "indentation_depth": ": it counts from first contact, give 0 before it",
     "normal_force": ": compression is positive",
+    "normal_velocity": ": approach is positive",
 }
 TIGHTEST, LOOSEST = 1e-13, 1e-3
 """Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""

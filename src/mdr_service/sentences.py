@@ -15,6 +15,7 @@ from mdr_core.validation import BODIES, FINITE, POSITIVE, not_negative
 from mdr_service.schemas.batch import BatchQuery
 from mdr_service.schemas.contacts import UNION_FIELDS, UNION_ITEMS, Choice
 from mdr_service.schemas.profiles import MODELS, OF_NUMBERS
+from mdr_service.schemas.quantities import BRANCHES
 from mdr_service.schemas.queries import SCHEMAS
 
 Path = tuple[str | int, ...]
@@ -62,7 +63,7 @@ def request_model(name: str) -> _Model | None:
 
 def path(error: ErrorDetails) -> Path:
     """Return the path into the request: the location without the branches of unions."""
-    steps, found = iter(error["loc"]), []
+    steps, found = (step for step in error["loc"] if step not in BRANCHES), []
     for step in steps:
         found.append(step)
         if step in UNION_FIELDS:

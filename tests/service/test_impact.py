@@ -54,6 +54,24 @@ def test_one_velocity_serves_all(client: Client) -> None:
     assert one == both
 
 
+@pytest.mark.parametrize(
+    ("velocity", "place", "detail"),
+    [
+        (-1, "normal_velocity", "must not be negative: approach is positive"),
+        (0, "normal_velocity", "must be positive and finite: approach is positive"),
+        ([1, -1], "normal_velocity.1", "must not be negative: approach is positive"),
+        ([1, 0], "normal_velocity.1", "must be positive and finite: approach is positive"),
+        ([], "normal_velocity", "at least one value is needed"),
+    ],
+)
+def test_pointer_leads_to_the_velocity(
+    client: Client, velocity: float | list[float], place: str, detail: str
+) -> None:
+    document = client.post(PATH, query(normal_velocity=velocity, tangential_velocity=1)).json()
+    assert document["errors"] == [{"pointer": "/" + place.replace(".", "/"), "detail": detail}]
+    assert document["detail"] == f"{place}: {detail}"
+
+
 def test_sliding_example_has_its_closed_form(client: Client) -> None:
     # w - 2 mu m v/m_t.
     document = client.post(PATH, EXAMPLES["impact"]["cylinder"]["value"]).json()

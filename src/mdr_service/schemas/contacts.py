@@ -276,5 +276,5 @@ class TangentialQuery(NormalQuery):
 
 # Pydantic inserts the branch of a union after these fields, or after the index of their items,
 # into the location of an error.
-UNION_FIELDS = frozenset({"profile", "material", *Load.model_fields, *Tangential.model_fields})
+UNION_FIELDS = frozenset({"profile", "material"})
 UNION_ITEMS = frozenset({"bodies"})
