@@ -353,9 +353,7 @@ def solve(
     material = e_star if isinstance(e_star, Material) else None
     modulus: Any = normal_modulus(e_star)
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
-        validation.require_positive(("material", field), value)
-        if np.ndim(value):
-            raise InputError(("material", field), "must be a single number with adhesion")
+        validation.require_single_positive(("material", field), value)
     loads = (indentation_depth, normal_force, contact_radius)
     name, load = validation.only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
     if not (np.size(load) and np.isfinite(load).all()):

@@ -21,7 +21,13 @@ from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import FINITE, as_numbers, first_index, require_positive, require_type
+from mdr_core.validation import (
+    FINITE,
+    as_numbers,
+    first_index,
+    require_single_positive,
+    require_type,
+)
 
 PARAMETERS: Final = ("e_star", "contact_point", "force_offset")
 """Quantities that can be fitted."""
@@ -161,7 +167,7 @@ def solve(
         raise InputError(("e_star",), reason)
     for name, value in (("e_star", e_star), ("noise", noise)):
         if value is not None:
-            require_positive((name,), value)
+            require_single_positive((name,), value)
     model = _Model(profile, depth, force, tuple(fit), e_star)
     deepest = profile.largest_loads
     if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:

@@ -27,10 +27,11 @@ from mdr_core.validation import (
     POSITIVE,
     as_numbers,
     first_index,
-    require_positive,
+    require_single_positive,
     require_tolerance,
 )
 
+_APPROACH: Final = f"{POSITIVE} and finite: approach is positive"
 # Samples of the compression. The error is estimated by half as many.
 _SAMPLES: Final = 400
 # Nodes and weights of the time between two samples, in the root of the distance from the first one,
@@ -190,8 +191,8 @@ def solve(
     """
     start = history.unloaded(profile, e_star, g_star, friction_coefficient)
     require_tolerance(rtol)
-    require_positive(("normal_mass",), normal_mass)
-    require_positive(("tangential_mass",), tangential_mass)
+    require_single_positive(("normal_mass",), normal_mass)
+    require_single_positive(("tangential_mass",), tangential_mass)
     speeds, along = _velocities(normal_velocity, tangential_velocity)
     last = _largest_coordinates(profile, normal_mass / (2 * start.e_star) * np.square(speeds))
     results, errors = [], [float(np.max(profile.rounding_at(last)))]
@@ -226,7 +227,7 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
     speeds = as_numbers(("normal_velocity",), normal_velocity)
     along = as_numbers(("tangential_velocity",), tangential_velocity)
     for name, good, detail in (
-        ("normal_velocity", (speeds > 0) & np.isfinite(speeds), f"{POSITIVE} and finite: approach is positive"),
+        ("normal_velocity", (speeds > 0) & np.isfinite(speeds), _APPROACH),
         ("tangential_velocity", np.isfinite(along), FINITE),
     ):
         if not every(good):

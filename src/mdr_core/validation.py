@@ -83,11 +83,26 @@ def only_one(
     return name, as_numbers((*path, name), values)
 
 
+def single(path: tuple[str | int, ...], value: float) -> float:
+    """Return a single finite number as a double, or raise InputError at the path."""
+    numbers = as_numbers(path, value)
+    if numbers.ndim:
+        raise InputError(path, "must be a single number")
+    if not -inf < numbers < inf:
+        raise InputError(path, FINITE)
+    return float(numbers)
+
+
 def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
     """Raise InputError at the path unless all of the value is positive and finite."""
     low, high = extremes(value if isinstance(value, (float, int)) else as_numbers(path, value))
     if not (low > 0 and high < inf):
         raise InputError(path, POSITIVE if low <= 0 else FINITE)
+
+
+def require_single_positive(path: tuple[str | int, ...], value: float) -> None:
+    """Raise InputError at the path unless the value is one number, positive and finite."""
+    require_positive(path, single(path, value))
 
 
 def not_negative(name: str) -> str:
@@ -139,13 +154,13 @@ def require_inside(name: str, outside: Flags, domain: Parameter) -> None:
 
 def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:
     """Raise InputError at the path unless -1 < nu <= 1/2."""
-    if not -1 < value <= 0.5:
+    if not -1 < single(path, value) <= 0.5:
         raise InputError(path, "must be greater than -1 and at most 0.5")
 
 
 def require_tolerance(rtol: float, tightest: float = TIGHTEST) -> None:
     """Raise InputError unless the relative accuracy lies from the tightest one to 1e-3."""
-    if not tightest <= rtol <= LOOSEST:
+    if not tightest <= single(("rtol",), rtol) <= LOOSEST:
         raise InputError(("rtol",), f"must lie from {tightest} to {LOOSEST}")
 
 

@@ -4,6 +4,7 @@ The expectations were written first, as what a reader would have to be told to c
 """
 
 import json
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -265,6 +266,7 @@ PRESSED = mdr.normal.solve(mdr.Paraboloid(0.01), PAIR, normal_force=10.0)
 HISTORY: Any = mdr.history.solve(
     mdr.Paraboloid(0.01), PAIR, PAIR, 0.3, normal_force=10.0, tangential_force=[0.0, 1.0]
 )
+STATE = mdr.history.unloaded(mdr.Paraboloid(1), PAIR, PAIR, 0.3)
 IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
     "a rubber of 0.6": (lambda: mdr.Body(210e9, 0.6), ["poissons_ratio", "at most 0.5"]),
     "constants swapped": (lambda: mdr.Body(0.3, 210e9), ["poissons_ratio", "at most 0.5"]),
@@ -319,6 +321,43 @@ IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
     "a step from a profile": (
         lambda: mdr.history.advance(mdr.Paraboloid(1), 1e-6, 0.0),
         ["state", "history.unloaded"],
+    ),
+    "a step of several depths": (
+        lambda: mdr.history.advance(STATE, [1e-6, 2e-6], 0.0),
+        ["indentation_depth: must be a single number"],
+    ),
+    "a step to no number": (
+        lambda: mdr.history.advance(STATE, 1e-6, math.nan),
+        ["tangential_displacement: must be finite"],
+    ),
+    "several coefficients of friction": (
+        lambda: mdr.history.unloaded(mdr.Paraboloid(1), PAIR, PAIR, [0.2, 0.3]),
+        ["friction_coefficient: must be a single number"],
+    ),
+    "several masses": (
+        lambda: mdr.impact.solve(
+            mdr.Paraboloid(1),
+            PAIR,
+            PAIR,
+            0.3,
+            normal_mass=[1.0, 2.0],
+            tangential_mass=0.3,
+            normal_velocity=1.0,
+            tangential_velocity=0.0,
+        ),
+        ["normal_mass: must be a single number"],
+    ),
+    "Poisson's ratio as text": (
+        lambda: mdr.Body(210e9, "0.3"),
+        ["poissons_ratio", "number", "not str"],
+    ),
+    "an accuracy as text": (
+        lambda: mdr.normal.solve(mdr.Paraboloid(1), PAIR, normal_force=1, rtol="1e-3"),
+        ["rtol", "number", "not str"],
+    ),
+    "a yield criterion by another name": (
+        lambda: mdr.subsurface.yield_onset_force(PRESSED, 1e9, "mises", poissons_ratio=0.3),
+        ["measure", "von_mises", "maximum_shear"],
     ),
     "pairs as terms": (
         lambda: mdr.Series([(1.0, 2.0)]),

@@ -2,14 +2,12 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import isfinite
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from mdr_core.elementwise import number
 from mdr_core.equivalent_1d import coordinate_from_load
-from mdr_core.errors import InputError
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
@@ -21,9 +19,10 @@ from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import (
     require_inside,
-    require_positive,
+    require_single_positive,
     require_single_profile,
     require_type,
+    single,
 )
 
 
@@ -258,9 +257,9 @@ def unloaded(
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     require_single_profile(profile.swept)
     e_star, g_star = normal_modulus(e_star), shear_modulus(g_star)
-    require_positive(("material", "e_star"), e_star)
-    require_positive(("material", "g_star"), g_star)
-    require_positive(("friction_coefficient",), friction_coefficient)
+    require_single_positive(("material", "e_star"), e_star)
+    require_single_positive(("material", "g_star"), g_star)
+    require_single_positive(("friction_coefficient",), friction_coefficient)
     polyline = slip_memory.separated(0.0, 0.0)
     return ContactState(profile, e_star, g_star, friction_coefficient, polyline)
 
@@ -304,16 +303,12 @@ def advance(
     0.75
     """
     require_type("state", state, ContactState, "a state, as from history.unloaded")
-    if not (isfinite(indentation_depth) and isfinite(tangential_displacement)):
-        raise InputError(("history",), "must be finite")
+    depth = single(("indentation_depth",), indentation_depth)
+    displacement = single(("tangential_displacement",), tangential_displacement)
     profile, largest = state.profile, state.profile.largest_loads
     if largest is not None:
-        require_inside("indentation_depth", number(indentation_depth) > largest[0], profile.domain)
-    line, kept = slip_memory.moved(
-        state.polyline,
-        float(indentation_depth),
-        float(tangential_displacement) / state.displacement_ratio,
-    )
+        require_inside("indentation_depth", number(depth) > largest[0], profile.domain)
+    line, kept = slip_memory.moved(state.polyline, depth, displacement / state.displacement_ratio)
     moduli = state.e_star, state.g_star, state.friction_coefficient
     following = ContactState(profile, *moduli, line, before=state.polyline)
     following.known_edges.extend(state.known_edges[:kept])

@@ -21,7 +21,7 @@ from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import on_rings
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import require_poissons_ratio, require_positive, require_type
+from mdr_core.validation import require_poissons_ratio, require_single_positive, require_type
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
@@ -78,12 +78,16 @@ def largest(
     InputError : another measure or body, or a Poisson's ratio out of range.
     AccuracyError : the contact extends beyond a flat by less than 1e-12 of its radius.
     """
-    if measure not in MEASURES:
-        raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
+    _require_measure(measure)
     require_poissons_ratio(("poissons_ratio",), poissons_ratio)
     under, shape = foundations(contact, body)
     found = [_peak(each, measure, poissons_ratio) for each in under]
     return Peak(*np.array(found).T.reshape(4, *shape))
+
+
+def _require_measure(measure: str) -> None:
+    if measure not in MEASURES:
+        raise InputError(("measure",), f"must be one of {', '.join(MEASURES)}")
 
 
 def yield_onset_force(
@@ -110,7 +114,8 @@ def yield_onset_force(
     InputError : another measure, no load, or a yield strength that is not positive.
     AccuracyError : see `largest`.
     """
-    require_positive(("yield_strength",), yield_strength)
+    require_single_positive(("yield_strength",), yield_strength)
+    _require_measure(measure)
     profile, (columns, shape) = contact.normal.profile, _columns(contact)
     if not np.all(contact.normal.loaded):
         raise InputError(("load",), "the onset of yield needs a load that is not zero")

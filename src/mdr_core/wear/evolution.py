@@ -18,7 +18,7 @@ from mdr_core.typing import Array
 from mdr_core.validation import (
     first_index,
     require_not_negative,
-    require_positive,
+    require_single_positive,
     require_tolerance,
     require_type,
 )
@@ -253,7 +253,7 @@ def solve(
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
     g_star = shear_modulus(g_star)
     name, size = one_amplitude(tangential_displacement, tangential_force)
-    require_positive(("wear_coefficient",), wear_coefficient)
+    require_single_positive(("wear_coefficient",), wear_coefficient)
     require_tolerance(rtol, TIGHTEST_INTEGRATION)
     if not COARSEST <= resolution <= FINEST:
         raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
