@@ -404,6 +404,16 @@ def wear_at_constant_forces() -> dict[str, object]:
     return {"normal_force": [10.0] * 5, "stick_radius": [c] * 5}
 
 
+def wear_in_full_slip() -> dict[str, object]:
+    """Archard's law: K mu F_N times the distance, less the elastic 8 K mu lambda U, U = 2 F d/5."""
+    each = 1e-14 * 0.3 * 25 * 4 * 0.005
+    return {
+        "normal_force": [25.0] * 5,
+        "stick_radius": [0.0] * 5,
+        "worn_volume": [each, 10 * each, 100 * each, 1e3 * each, 5e3 * each],
+    }
+
+
 TEXTBOOK = {
     "hertz": hertz,
     "boussinesq": boussinesq,
@@ -436,7 +446,11 @@ WEAR_TEXTBOOK = {
     "endless": unbounded,
     "held_force": constant_force,
 }
-EVOLUTION_TEXTBOOK = {"shakedown": wear_of_cycles, "held_forces": wear_at_constant_forces}
+EVOLUTION_TEXTBOOK = {
+    "shakedown": wear_of_cycles,
+    "held_forces": wear_at_constant_forces,
+    "reciprocating": wear_in_full_slip,
+}
 # Validity warnings that concern wear itself.
 WEAR_WARNINGS = {
     "amplitudes": {"no_wear"},

@@ -456,7 +456,6 @@ def test_no_wear_without_slip() -> None:
 @pytest.mark.parametrize(
     ("changed", "path"),
     [
-        ({"tangential_displacement": 10.0}, ("tangential", "tangential_displacement")),
         ({"tangential_force": 0.1}, ("tangential",)),
         ({"cycles": [2.0, 1.0]}, ("cycles", 1)),
         ({"cycles": [-1.0]}, ("cycles", 0)),

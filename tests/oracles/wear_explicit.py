@@ -78,11 +78,13 @@ class Scene:
         slip = np.zeros((r.size, r.size))
         slip[1:, :-1] += angle - slope_part
         slip[1:, 1:] += slope_part
+        # On the axis the kernel is a point's, whose integral is pi/2.
+        slip[0, 0] = np.pi / 2
         self._slip = 2 / np.pi * slip
 
     def equivalent(self, f: Array) -> Array:
         """g on the grid."""
-        return np.append(0.0, self._forward @ (np.diff(f) / self.dr))
+        return f[0] + np.append(0.0, self._forward @ (np.diff(f) / self.dr))
 
     def run(
         self,

@@ -138,6 +138,28 @@ def test_evolution_equals_the_core(client: Client, kind: str, control: str) -> N
     assert document["field_error_estimate"] == expected.field_error_estimate(RADII, names)
 
 
+def test_full_slip_wears_the_whole_contact(client: Client) -> None:
+    """Force and depth held; a force amplitude at the limit of friction has no stroke."""
+    moved = {"tangential_displacement": 0.1}
+    for load, code in (
+        ({"normal_force": 1e5}, "endless_wear"),
+        ({"indentation_depth": 1e-3}, "contact_lost"),
+    ):
+        more = {"wear_coefficient": 1e-13, "cycles": [1.0, 1e4], "radius": [0.0, 0.01]}
+        body = query("paraboloid", load, moved, **more)
+        document = client.post(EVOLUTION, body).json()
+        assert code in codes(document)
+        assert document["stick_radius"] == [0.0, 0.0]
+        assert 0 < document["worn_volume"][0] < document["worn_volume"][1]
+        assert document["profile"][1][0] > 0
+    at_limit = {"tangential_force": FRICTION * 1e5}
+    pointer, detail = rejection(client, EVOLUTION, body | {"load": {"normal_force": 1e5}} | {
+        "oscillation": at_limit
+    })  # fmt: skip
+    assert pointer == "/oscillation/tangential_force"
+    assert "prescribe the displacement" in detail
+
+
 def test_limits_of_many_loads(client: Client) -> None:
     loads, pushes = {"normal_force": [1e5, 2e5, 0.0]}, {"tangential_force": [1e4, 8e4, 0.0]}
     document = client.post(LIMIT, query("paraboloid", loads, pushes, radius=RADII)).json()

@@ -2,7 +2,8 @@
 
 In s = sqrt(r^2 - c^2) and X = sqrt(x^2 - c^2) all transforms have the root sqrt(X^2 - s^2),
 whatever the stick radius c is. With sigma = s v and gamma = x omega they map even functions of s/b
-to even functions, and their matrices depend on neither c nor b = sqrt(a^2 - c^2).
+to even functions, and their matrices depend on neither c nor b = sqrt(a^2 - c^2). In full slip
+c = 0, and sigma = b v and gamma = b omega are even themselves.
 
 Source: mdr-5, Eqs. (5.41), (5.74), (5.79); notes, §11.
 """
@@ -41,7 +42,8 @@ class AnnulusMaps:
     cosine: Array
     """cos(theta_j): a pressure is an even function about the contact's edge times this, (n,)."""
     to_slip: Array
-    """omega to v: v(z) = (2/pi) int_0^1 omega(z (1 - u^2)) du, (n, n)."""
+    """omega to v: v(z) = (2/pi) int_0^1 omega(z (1 - u^2)) du, (n, n); in full slip with the
+    weight 1/sqrt(1 - u^2)."""
     from_slip: Array
     """v to omega, the inverse of `to_slip`, (n, n)."""
     to_pressure: Array
@@ -55,11 +57,11 @@ class AnnulusMaps:
     steps: Array
     """d/dz at the points times the weights of int_0^1 dz, (m, n)."""
     mean: Array
-    """Row: (1/2) int_0^1 values dz, (n,)."""
+    """Row: (1/2) int_0^1 values dz, (n,); in full slip int_0^1 values dzeta, zeta = sqrt(z)."""
     at_stick: Array
     """Row: the value at z = 0, (n,)."""
     volume: Array
-    """Row: int_0^1 values zeta^2 dzeta, zeta = sqrt(z), (n,)."""
+    """Row: int_0^1 values zeta^2 dzeta, (n,); in full slip int_0^1 values zeta dzeta."""
 
     def at(self, values: Array, squares: Array) -> Array:
         """Return the interpolant of nodal values at any z in [0, 1], shape (m,)."""
@@ -68,7 +70,7 @@ class AnnulusMaps:
 
 
 @lru_cache(maxsize=16)
-def annulus_maps(nodes: int) -> AnnulusMaps:
+def annulus_maps(nodes: int, *, full_slip: bool = False) -> AnnulusMaps:
     """Return the maps on a number of nodes, evenly spaced in the angle theta of the grading.
 
     Between the nodes functions are local polynomials in theta, reflected at both ends. Where a
@@ -94,7 +96,8 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
         # In y, theta = node -+ y^2, the kernels have no root.
         y, weights = piecewise_rule(_POINTS, np.sqrt(node - ends[row + 1 :: -1]))
         at = node - y * y
-        kernel = _rate(at) / np.sqrt(squares[row] * _gap(node, at, y * y))
+        lever = _squares(at) if full_slip else squares[row]
+        kernel = _rate(at) / np.sqrt(lever * _gap(node, at, y * y))
         to_slip[row] = (kernel * 2 * y * weights / np.pi) @ _interpolation(at, nodes)[0]
         y, weights = piecewise_rule(_POINTS, np.sqrt(ends[row + 1 :] - node))
         at = node + y * y
@@ -103,6 +106,7 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
     at, weights = piecewise_rule(_POINTS, ends)
     points, values, slopes = _squares(at), *_interpolation(at, nodes)
     over_squares = weights * _rate(at)
+    inverse = 1 / np.sqrt(points) if full_slip else 1.0
     inner = theta[:-1]
     scale = (2 * squares[:-1] / _rate(inner))[:, None]
     # A stencil leans to the side from which the material comes.
@@ -121,9 +125,9 @@ def annulus_maps(nodes: int) -> AnnulusMaps:
         outward=outward,
         points=points,
         steps=weights[:, None] * slopes,
-        mean=over_squares / 2 @ values,
+        mean=inverse * over_squares / 2 @ values,
         at_stick=_interpolation(np.zeros(1), nodes)[0][0],
-        volume=(over_squares * np.sqrt(points) / 2) @ values,
+        volume=(inverse * over_squares * np.sqrt(points) / 2) @ values,
     )
     for part in vars(found).values():
         part.flags.writeable = False

@@ -4,7 +4,7 @@ All in the units of `InitialState`.
 
 A slipping point has |s| = mu (E*/G*) sigma, sigma = (2/pi) int_c^r gamma(x)/sqrt(r^2 - x^2) dx with
 gamma(x) = g(x) - (d - D), and wears by dh/dN = kappa p sigma. D is the displacement amplitude
-divided by mu E*/G*. Source: notes, §11.
+divided by mu E*/G*. In full slip c = 0, and sigma is D - d larger. Source: notes, §11.
 """
 
 from dataclasses import dataclass
@@ -74,11 +74,11 @@ class AnnulusState:
 
     @cached_property
     def reduced_amplitude(self) -> float:
-        """D."""
+        """gamma(a): D, and d in full slip."""
         if self.initial.constant_displacement:
-            return 1.0
+            return self.initial.step
         rise = self._stick_rise if self.initial.stick_shrinks else 0.0
-        return 1.0 + self.depth_increase - rise
+        return self.initial.step + self.depth_increase - rise
 
     @cached_property
     def x(self) -> Array:
@@ -91,14 +91,19 @@ class AnnulusState:
         return np.asarray(self.end**2 * self.initial.maps.squares / (self.x + self.stick))
 
     @cached_property
+    def lever(self) -> Array:
+        """gamma/omega: x, and b in full slip."""
+        return np.full(self.x.shape, self.end) if self.initial.full_slip else self.x
+
+    @cached_property
     def growth(self) -> float:
         """a - a_0."""
         return self.stick_shift + float(self.offset[-1]) - self.initial.width
 
     @cached_property
     def unworn(self) -> Array:
-        """(g_0(x) - g_0(c))/x."""
-        return self.initial.rise(self.stick_shift, self.offset) / self.x
+        """omega of the unworn shape: (g_0(x) - g_0(c))/x."""
+        return self.initial.rise(self.stick_shift, self.offset) / self.lever
 
     @cached_property
     def tilt(self) -> tuple[float, float]:
@@ -135,7 +140,7 @@ class AnnulusState:
 
     @cached_property
     def worn_omega(self) -> Array:
-        """(gamma - gamma_0)/x, gamma_0 being gamma of the unworn shape."""
+        """omega without that of the unworn shape."""
         return np.asarray(self.initial.maps.from_slip @ self.worn)
 
     @cached_property
@@ -146,7 +151,7 @@ class AnnulusState:
     @cached_property
     def gamma(self) -> Array:
         """g(x) - (d - D)."""
-        return self.x * self.omega
+        return self.lever * self.omega
 
     @cached_property
     def pressure(self) -> Array:
@@ -155,15 +160,32 @@ class AnnulusState:
 
     @cached_property
     def slip(self) -> Array:
-        """v = sigma/s."""
-        return np.asarray(self.initial.maps.to_slip @ self.unworn + self.worn)
+        """v = sigma/s, and sigma/b in full slip."""
+        v = self.initial.maps.to_slip @ self.unworn + self.worn
+        if self.initial.full_slip:
+            v += (1.0 - self.reduced_amplitude) / self.end
+        return np.asarray(v)
 
     @cached_property
     def worn_integral(self) -> float:
         """int_c^a (gamma - gamma_0) dx."""
         return float(self.end**2 * (self.initial.maps.mean @ self.worn_omega))
 
+    @cached_property
+    def force(self) -> float:
+        """F_N/(2 E*): F_N0(a) and a w(a) - int_c^a w dx, w = g - g_0.
+
+        In full slip it is int (d - g) dx at the nodes: worn depths far above the elastic ones
+        cancel in g_0 and w.
+        """
+        if self.initial.full_slip:
+            mean = float(self.initial.maps.mean @ self.omega)
+            return float(self.end * self.gamma[-1]) - self.end**2 * mean
+        unworn = self.initial.unworn_force(self.growth)
+        return unworn + float(self.x[-1] ** 2 * self.worn_omega[-1]) - self.worn_integral
+
     def spring_wear(self, x: Array) -> Array:
         """Return gamma - gamma_0 at radii x, clipped to those of the annulus."""
         squares = (x - self.stick) * (x + self.stick) / self.end**2
-        return x * self.initial.maps.at(self.worn_omega, np.clip(squares, 0.0, 1.0))
+        lever = self.end if self.initial.full_slip else x
+        return np.asarray(lever * self.initial.maps.at(self.worn_omega, np.clip(squares, 0.0, 1.0)))

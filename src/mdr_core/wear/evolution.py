@@ -35,6 +35,13 @@ COARSEST: Final = 8
 FINEST: Final = 96
 # Smallest tolerance of the integration over the cycles.
 TIGHTEST_INTEGRATION: Final = 1e-10
+# Warnings in full slip.
+_FULL_SLIP: Final = {
+    "contact_lost": "the whole contact slips and wears until nothing touches at the constant "
+    "depth; a groove that a long stroke wears into the counter-body is not included",
+    "endless_wear": "the whole contact slips and wears without bound under the constant force; "
+    "a groove that a long stroke wears into the counter-body is not included",
+}
 FIELDS: Final = ("profile", "worn_depth", "pressure")
 SCALARS: Final = (
     "worn_volume",
@@ -76,13 +83,22 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
         Twice the difference from a run on two thirds of the nodes with a looser integrator,
         and the rounding error of the contact before wear. With a break of the profile in the worn
-        annulus both runs may err alike: there their absolute difference counts.
+        annulus both runs may err alike: there their absolute difference counts. The error of a
+        normal force that wear takes away in full slip is relative to the one before wear.
         """
         worst = self._absolute_difference if self._has_break else 0.0
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
-            worst = max(worst, float((np.abs(value - other) / np.where(value, value, 1.0)).max()))
+            size = self._whole_force if name == "normal_force" else value
+            worst = max(worst, float((np.abs(value - other) / np.where(size, size, 1.0)).max()))
         return _SAFETY * worst + self.tangential_contact.error_estimate
+
+    @property
+    def _whole_force(self) -> Array:
+        """Normal force, in full slip that before wear [force]."""
+        if self.initial.full_slip:
+            return np.full(self.cycles.shape, float(self.normal.normal_force))
+        return self.normal_force
 
     @property
     def _absolute_difference(self) -> float:
@@ -93,7 +109,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         r, runs = self._samples, (self, self.coarse)
         springs = np.abs(np.subtract(*(run.spring_wear(r) for run in runs)))
         depths = np.abs(np.subtract(*(run.worn_depth(r) for run in runs)))
-        whole = self.normal_force / (2 * self.normal.e_star)
+        whole = self._whole_force / (2 * self.normal.e_star)
         if self.initial.constant_force:
             whole = self.contact_radius * self.indentation_depth
         volume = np.where(self.worn_volume > 0, self.worn_volume, 1.0)
@@ -183,6 +199,9 @@ class WearEvolution(validity.ContactResults, WornSurface):
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         found = list(self.tangential_contact.warnings_without_bodies)
+        if self.initial.full_slip:
+            code = "endless_wear" if self.initial.constant_force else "contact_lost"
+            found.append(Notice(code, _FULL_SLIP[code]))
         if isfinite(self.settled_at):
             found.append(
                 Notice(
@@ -211,7 +230,8 @@ def solve(
 
     df/dN = K mu p(r) S(r), S = 4 |s(r)|: the wear of a cycle is proportional to its friction work
     at each place, so that dV/dN = K W. The depth or the normal force of the contact, whichever
-    was prescribed, and the amplitude are held constant.
+    was prescribed, and the amplitude are held constant. A displacement amplitude may exceed that of
+    full slip: the whole contact wears.
 
     Source: mdr-5, Problem 6; dimaki, the wear law; notes, §11.
 
@@ -233,9 +253,10 @@ def solve(
 
     Raises
     ------
-    InputError : several loads; an amplitude at which full slip occurs, at once or, with
-        the depth and the force amplitude held, after some cycles; cycles that are negative or not
-        ascending; a worn contact that reaches the profile's end.
+    InputError : several loads; a force amplitude at which full slip occurs, at once or, with
+        the depth held, after some cycles; full slip of a flat punch, or full slip that ends because
+        the axis sticks; cycles that are negative or not ascending; a worn contact that reaches the
+        profile's end.
     AccuracyError : the wear is not resolved.
 
     Examples
@@ -266,10 +287,15 @@ def solve(
         if np.ndim(number):
             raise InputError((place,), "must be a single number")
     tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    if tangential_contact.full_slip.any():
+    if contact.profile.has_no_partial_slip and tangential_contact.full_slip.any():
         raise InputError(
             ("tangential", name),
-            "full slip: there is no stick zone; reduce the amplitude",
+            "full slip of a flat punch: the pressure at its edge is infinite; round the edge",
+        )
+    if tangential_contact.full_slip.any() and name == "tangential_force":
+        raise InputError(
+            ("tangential", name),
+            "full slip at any displacement: reduce the force, or prescribe the displacement",
         )
     numbers, nodes = _checked_cycles(cycles), int(resolution) + _MIN_NODES
     initial = InitialState(tangential_contact, float(wear_coefficient), nodes)

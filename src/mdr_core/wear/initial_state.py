@@ -58,8 +58,18 @@ class InitialState:
         return self.normal.control == "normal_force"
 
     @cached_property
+    def full_slip(self) -> bool:
+        """True if there is no stick zone: all of the contact wears."""
+        return bool(self.tangential_contact.full_slip)
+
+    @cached_property
     def constant_displacement(self) -> bool:
-        """True if the displacement amplitude is constant, and with it D; otherwise the force's."""
+        """True if the displacement amplitude is constant, and with it D; otherwise the force's.
+
+        In full slip d is constant in the place of D, unless the normal force is.
+        """
+        if self.full_slip:
+            return not self.constant_force
         return self.tangential_contact.control == "tangential_displacement"
 
     @property
@@ -85,9 +95,14 @@ class InitialState:
 
     @cached_property
     def depth_unit(self) -> float:
-        """D_0 = d_0 - g(c_0) [length], u_x/(mu E*/G*)."""
+        """D_0 = u_x/(mu E*/G*) [length]: d_0 - g(c_0) in partial slip, more in full slip."""
         moved = abs(float(self.tangential_contact.tangential_displacement))
         return moved / float(self.tangential_contact.displacement_ratio)
+
+    @cached_property
+    def step(self) -> float:
+        """gamma(a) before wear [D_0]: that of full slip is the depth."""
+        return float(self.normal.indentation_depth) / self.depth_unit if self.full_slip else 1.0
 
     @cached_property
     def cycle_unit(self) -> float:
@@ -131,7 +146,8 @@ class InitialState:
         A shrinking stick zone takes half as many again: the layer outside it is eight times thinner
         than its distance from the edge, elsewhere both are alike. Source: notes, §11.
         """
-        return annulus_maps(self.nodes * 3 // 2 if self.stick_shrinks else self.nodes)
+        nodes = self.nodes * 3 // 2 if self.stick_shrinks else self.nodes
+        return annulus_maps(nodes, full_slip=self.full_slip)
 
     @cached_property
     def parts(self) -> list[int]:
@@ -144,6 +160,13 @@ class InitialState:
         """Vector of `AnnulusState` before the first cycle."""
         tilt = np.zeros(TILT_TERMS if self.stick_grows else 0)
         return np.concatenate([np.zeros(self.parts[0]), (1.0, 0.0, 0.0), tilt])
+
+    def unworn_force(self, growth: float) -> float:
+        """Return F_N/(2 E*) of the unworn profile after a growth of the contact [b_0 D_0]."""
+        profile, normal = self.normal.profile, self.normal
+        radius = np.asarray(float(normal.contact_radius) + self.length_unit * growth)
+        force = float(profile.reduced_force(profile.coordinate_from_radius(radius)))
+        return force / (2 * self.length_unit * self.depth_unit)
 
     @cached_property
     def _singular(self) -> Array:

@@ -3,7 +3,7 @@
 All rates are linear in those of the edges, b' = db/dN, c' and d': each is a row of four columns,
 times (1, b', c', d'). The edges follow from what holds at all times:
 
-    gamma(a) = D,
+    gamma(a) = D, and d in full slip,
     int_0^a (d - g) dx is constant under a constant normal force,
     c D + int_c^a (D - gamma) dx is constant where the stick zone shrinks,
     gamma(c) = 0 where it grows over worn material.
@@ -25,8 +25,8 @@ from mdr_core.wear.initial_state import InitialState
 _WEAR, _END, _STICK, _DEPTH = range(4)
 # Step of a difference quotient, about the root of the rounding error.
 _STEP: Final = 1e-7
-# Rate at which the integrator's error of gamma(a) - D decays: fast beside the wear, whose unit is
-# 1, and slow beside the steps of the first cycles.
+# Rate at which the integrator's errors of gamma(a) - D, and of the force in full slip, decay: fast
+# beside the wear, whose unit is 1, and slow beside the steps of the first cycles.
 _RETURN: Final = 10.0
 
 
@@ -81,6 +81,15 @@ class _MovingAnnulus(AnnulusState):
         """2 z d worn/dz for material that moves inwards, and its gradient in `worn`."""
         return self._along(self.initial.maps.inward)
 
+    @property
+    def convected(self) -> tuple[Array, Array]:
+        """Rate of `worn` per unit of b'/b, and its gradient in `worn`."""
+        along, gradient = self.inward
+        # In full slip the worn depth is b times `worn`.
+        if self.initial.full_slip:
+            return along - self.worn, gradient - np.eye(along.size)
+        return along, gradient
+
     @cached_property
     def outward(self) -> tuple[Array, Array]:
         """2 z d worn/dz for material that moves outwards, and its gradient in `worn`."""
@@ -113,7 +122,7 @@ class _MovingAnnulus(AnnulusState):
         b = self.end
         columns = np.zeros((self.x.size, 4))
         columns[:, _WEAR] = self.pressure * self.slip
-        columns[:, _END] = self.inward[0] / b
+        columns[:, _END] = self.convected[0] / b
         if self.initial.stick_moves:
             columns[:, _STICK] = self.past_stick[0]
         if self.initial.stick_grows:
@@ -169,7 +178,7 @@ class _MovingAnnulus(AnnulusState):
 
     @cached_property
     def _omega_rates(self) -> Array:
-        """Rates of (gamma - gamma_0)/x at the moving nodes, (n, 4)."""
+        """Rates of `worn_omega` at the moving nodes, (n, 4)."""
         return np.asarray(self.initial.maps.from_slip @ self.worn_rates)
 
     @property
@@ -212,6 +221,8 @@ class _MovingAnnulus(AnnulusState):
         # d - D is the depth g(c) of the stick edge.
         rate[_DEPTH] += (a - c) * float(initial.stick_grows)
         rate[_STICK] += (a - c) * (self.stick_slope if initial.stick_shrinks else 0.0)
+        if initial.full_slip:
+            rate[_WEAR] -= _RETURN * (self.force - initial.unworn_force(0.0))
         whole = np.array([0.0, 0.0, 0.0, a])
         return (whole if initial.constant_force else c * self._amplitude_rate) - rate
 
@@ -219,8 +230,8 @@ class _MovingAnnulus(AnnulusState):
         """Return the gradients by `worn`, of its rates (n, n) and of the velocity (4, n)."""
         initial, maps = self.initial, self.initial.maps
         b, (_, end, stick, _) = self.end, self.velocity
-        stress = maps.to_pressure @ (self.x[:, None] * maps.from_slip) / b
-        direct = self.slip[:, None] * stress + end / b * self.inward[1]
+        stress = maps.to_pressure @ (self.lever[:, None] * maps.from_slip) / b
+        direct = self.slip[:, None] * stress + end / b * self.convected[1]
         direct += np.diag(self.pressure)
         if initial.stick_moves:
             direct += stick * self.past_stick[1]
@@ -230,6 +241,8 @@ class _MovingAnnulus(AnnulusState):
         rows = [self.x[-1] * (last @ direct) + (edge + _RETURN * self.x[-1]) * last]
         if initial.constant_force or initial.stick_shrinks:
             rows.append(-b * b * (mean @ direct) - 2 * b * end * mean)
+            if initial.full_slip:
+                rows[-1] += _RETURN * (b * b) * (last - mean)
         if initial.stick_grows:
             rows.append(stick * self.x[0] / self.offset[0] * maps.from_slip[0])
         edges = np.zeros((4, self.x.size))

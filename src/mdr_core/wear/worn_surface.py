@@ -56,18 +56,12 @@ class WornSurface:
 
     @cached_property
     def normal_force(self) -> Array:
-        """F_N [force]: at a constant depth F_N0(a) + 2 E* (a w(a) - int_c^a w dx), w = g - g_0."""
-        initial = self.initial
-        contact, profile = initial.normal, initial.normal.profile
-        if initial.constant_force or not self.states:
-            return np.full(self.cycles.shape, float(contact.normal_force))
-        edge = profile.coordinate_from_radius(self.contact_radius)
-        e_star, unit = float(contact.e_star), initial.depth_unit * initial.length_unit
-
-        def worn(state: AnnulusState) -> float:
-            return float(state.x[-1] ** 2 * state.worn_omega[-1]) - state.worn_integral
-
-        return np.asarray(e_star * (profile.reduced_force(edge) + 2 * unit * self._each(worn, 0.0)))
+        """F_N [force]: it falls where the depth is constant."""
+        initial, force = self.initial, self.initial.normal.normal_force
+        if initial.constant_force:
+            return np.full(self.cycles.shape, float(force))
+        unit = 2 * float(initial.normal.e_star) * initial.depth_unit * initial.length_unit
+        return self._each(lambda state: unit * state.force, force)
 
     @cached_property
     def worn_volume(self) -> Array:
@@ -163,14 +157,16 @@ def _worn_depth(state: AnnulusState, radius: Array) -> Array:
     """
     result = np.zeros(radius.shape)
     a = float(state.x[-1])
-    inside = (radius > state.stick) & (radius < a)
+    full_slip = state.initial.full_slip
+    inside = ((radius > state.stick) | full_slip) & (radius < a)
     s = inverse_hypot(radius[inside], state.stick)
-    result[inside] = s * state.initial.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
+    worn = state.initial.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
+    result[inside] = (state.end if full_slip else s) * worn
     at, step = state.passed
     if step.any():
-        worn = radius < a
-        root = inverse_hypot(radius[worn][:, None], at)
-        result[worn] += 2 / np.pi * (np.arctan2(root, at) @ step)
+        within = radius < a
+        root = inverse_hypot(radius[within][:, None], at)
+        result[within] += 2 / np.pi * (np.arctan2(root, at) @ step)
     # Below rounding at the edges, and between nodes that are too few, the polynomials may be < 0.
     return np.maximum(result, 0.0)
 

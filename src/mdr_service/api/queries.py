@@ -209,6 +209,10 @@ async def evolution(
     h is the worn depth at a radius, and S the sliding distance of a cycle there. The given controls
     are held constant. A query takes about a second, more with the `resolution` and the numbers of
     cycles. A warning `limit_reached` reports after how many cycles wear stops.
+
+    With a displacement amplitude in full slip, such as a ball in a reciprocating test, the whole
+    contact wears: without bound under a constant force (`endless_wear`), at a constant depth until
+    contact is lost (`contact_lost`).
     """
     return await send("evolution", query)
 

@@ -293,6 +293,7 @@ class EvolutionAnswer(SolvedAnswer):
     """One entry per number of cycles in every list; fields only if requested.
 
     `error_estimate` is that of the quantities without a radius, by comparison with a coarser run.
+    In full slip that of the normal force is relative to the force before wear.
     """
 
     cycles: list[float] = _number("Numbers of cycles, as requested")
@@ -304,7 +305,7 @@ class EvolutionAnswer(SolvedAnswer):
         "Contact radius a, the outer radius of the worn annulus; it tends to `wear_radius` of "
         "`/v1/wear`, unless that response has the warning `path_dependent`"
     )
-    dissipated_energy: list[float] = _energy("Energy dissipated by slip in all cycles")
+    dissipated_energy: list[float] = _energy("Energy dissipated by slip in all cycles, V/K")
     field_error_estimate: float = _number(
         "Estimated error of each field, relative to its largest value or the mean in the contact; "
         "absent without fields",

@@ -67,7 +67,7 @@ class EvolutionQuery(_FrettingQuery):
         description="Exactly one control, held constant: depth or force."
     )
     oscillation: TangentialAmplitude = Field(
-        description="Exactly one amplitude, held constant: displacement or tangential force, "
+        description="Exactly one amplitude, held constant: displacement, or tangential force "
         "below full slip."
     )
     wear_coefficient: float = positive(
