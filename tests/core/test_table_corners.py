@@ -142,3 +142,16 @@ def test_rounded_radii_on_a_long_flat_weight_the_heights() -> None:
     cone = TruncatedCone(0.5, 1.0)
     forces = [float(solve(each, 1.0, contact_radius=0.8).normal_force) for each in (table, cone)]
     assert forces[0] == pytest.approx(forces[1], rel=1e-2, abs=0)
+
+
+@pytest.mark.parametrize("upwards", [False, True])
+@pytest.mark.parametrize(("first", "last"), [(0.0, 0.8), (0.0, 0.7), (-0.2, 0.7)])
+def test_scan_not_measured_from_its_axis_is_told_the_axis(
+    first: float, last: float, *, upwards: bool
+) -> None:
+    axis, position = 0.4, np.linspace(first, last, 81)
+    height = (position - axis) ** 2 / 2
+    with pytest.raises(InputError) as error:
+        Tabulated(position, 1 - height if upwards else height)
+    assert "subtract that of the axis, near 0.4" in error.value.detail
+    assert ("reverse the sign of the heights" in error.value.detail) == upwards

@@ -20,7 +20,7 @@ from scipy.sparse.linalg import spsolve
 
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
-from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, scatter
+from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
 from mdr_core.typing import Array
 
 # Diagonal of a triangle, over the largest, that is rounding error.
@@ -77,7 +77,7 @@ def fit_table(
     ------
     InputError : points of no body whose contact area is a single disc.
     """
-    points = cleaned(np.abs(r), f, breaks)
+    points = cleaned(r, f, breaks)
     if uncertainty is None:
         exact = points.x.size <= _FEW or _has_no_noise(points)
     else:
@@ -88,10 +88,12 @@ def fit_table(
         found = _measured(points, uncertainty and uncertainty / points.scale[1])
     if found.rms > _NO_DISC * points.scale[1]:
         largest, radius = found.largest
+        advice = off_axis(r, f)
         raise InputError(
             ("profile", "f"),
             "no body with a contact area that is a single disc comes near the points: they deviate "
             f"by {100 * largest / points.scale[1]:.2g} % of their height at radius {radius:.3g}; "
+            f"{advice and advice + '; else '}"
             "give the part about the highest point alone, or remove a ring, a hole or outliers",
         )
     return found

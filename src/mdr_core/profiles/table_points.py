@@ -27,6 +27,8 @@ _NEIGHBOURS: Final = 3
 _FINEST_STEP, _EQUAL, _MOST_UNITS = 0.05, 1e-14, round(1 / (np.sqrt(12) * ROUNDED))
 # Smallest error of a rounded height, over that of most.
 _LEAST_ERROR: Final = 1e-2
+# Distance of a scan's axis from r = 0 that is reported, over the last radius.
+_OFF_AXIS: Final = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +49,13 @@ class TablePoints:
 
 
 def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
-    """Sort the points and merge those whose radii differ by less than the spacing resolves."""
-    end, height = float(r.max()), float(f.max() - f.min())
+    """Sort the points and merge those whose radii differ by less than the spacing resolves.
+
+    Radii may have any sign.
+    """
+    end, height = float(np.abs(r).max()), float(f.max() - f.min())
     # A point that is given twice is no second measurement.
-    x, y = given = np.unique(np.stack([r / end, (f - f.min()) / height]), axis=1)
+    x, y = given = np.unique(np.stack([np.abs(r) / end, (f - f.min()) / height]), axis=1)
     new = np.append(True, np.diff(x) > _SAME * x[1:] / x.size)
     group = np.cumsum(new) - 1
     count = np.bincount(group)
@@ -58,9 +63,8 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
     x[-1] = 1.0
     curved = np.square(x) - np.mean(np.square(x))
     if y @ curved <= 0:
-        raise InputError(
-            ("profile", "f"), "the heights fall away from the axis: reverse their sign"
-        )
+        advice = off_axis(r, f) or "reverse their sign"
+        raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
     weight = np.sqrt(count)
     of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
     rounded = max(of_radius, of_height) > ROUNDED
@@ -72,6 +76,16 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
     return TablePoints(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
+
+
+def off_axis(r: Array, f: Array) -> str:
+    """Return what to do with positions of a scan that are not measured from the axis, else ""."""
+    bend, slope, _ = np.polyfit(r, f, 2)
+    axis = -slope / (2 * bend) if bend else 0.0
+    if not r.min() < axis < r.max() or abs(axis) < _OFF_AXIS * np.abs(r).max():
+        return ""
+    reverse = "" if bend > 0 else ", and reverse the sign of the heights"
+    return f"if r is the position on a scan, subtract that of the axis, near {axis:.4g}{reverse}"
 
 
 def scatter(points: TablePoints) -> float:

@@ -7,6 +7,7 @@ const NUMBER = String.raw`\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
 // Words of the service next to numbers that have a unit -> their dimension.
 const WORDS = [
   [/(?:radius|radii)(?: of the body,| =|,)? /, "length", ""],
+  [/of the axis, near /, "length", ""],
   [/deviates by /, "displacement", ""],
   [/a normal force of /, "force", ""],
   ["", "displacement", / in the root mean square/],
