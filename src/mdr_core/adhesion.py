@@ -183,7 +183,8 @@ class AdhesiveContact(NormalContact):
         *(*NORMAL_QUANTITIES, "pull_off_force", "pull_off_depth", "retraction"),
     )
     unusable: ClassVar[str] = (
-        "adhesion with friction, yield or wear is not exact: the tension at the edge is infinite"
+        "adhesion with friction, yield or wear is not exact: the tension at the edge is infinite; "
+        "leave adhesion out"
     )
 
     @cached_property

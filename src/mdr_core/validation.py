@@ -17,7 +17,7 @@ _SMALLEST: Final = 1e-290
 # Largest such result.
 _LARGEST: Final = 1e290
 # Sentences about values, which the service uses as well.
-BODIES: Final = "exactly two bodies are needed"
+BODIES: Final = 'exactly two bodies are needed, of which one can be "rigid"'
 FINITE: Final = "must be finite"
 POSITIVE: Final = "must be positive"
 _NEGATIVE: Final = {
@@ -84,12 +84,10 @@ def only_one(
 
 
 def single(path: tuple[str | int, ...], value: float) -> float:
-    """Return a single finite number as a double, or raise InputError at the path."""
+    """Return a single number as a double, or raise InputError at the path."""
     numbers = as_numbers(path, value)
     if numbers.ndim:
         raise InputError(path, "must be a single number")
-    if not -inf < numbers < inf:
-        raise InputError(path, FINITE)
     return float(numbers)
 
 
@@ -146,8 +144,8 @@ def require_inside(name: str, outside: Flags, domain: Parameter) -> None:
         end = np.broadcast_to(domain, outside.shape)[outside].flat[0]
         raise InputError(
             ("load", name, *first_index(outside)),
-            f"the contact would extend beyond radius {end}, where the profile ends or ceases to be "
-            "admissible",
+            f"the contact would extend beyond radius {end:.12g}, where the profile ends or ceases "
+            "to be admissible: reduce the load, or extend a table",
             outside,
         )
 

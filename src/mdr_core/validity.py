@@ -312,9 +312,9 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     if beta is not None and not some(impossible):
         coupled = number(abs(beta)) > _SIMILARITY
         message = (
-            f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): normal and "
-            "tangential contact are coupled, which the model neglects, by a relative error of this "
-            "order"
+            f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): the model "
+            "neglects the coupling of normal and tangential contact, a relative error of this "
+            "order in stresses, and of a third of its square in forces and displacements"
         )
         size = abs(beta), _SIMILARITY
         return Finding(

@@ -42,6 +42,8 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("dict_type", "profile"): f"must be {_PROFILE}",
     ("model_attributes_type", "profile"): f"must be {_PROFILE}",
     ("literal_error", "bodies"): f"must be {_BODY}",
+    ("model_type", "bodies"): f"must be {_BODY}",
+    ("model_attributes_type", "bodies"): f"must be {_BODY}",
     ("literal_error", "kind"): f"must be {_NUMBERS}; {NOT_NUMBERS}",
     ("missing", "e_star"): f"is required, or {_BODIES}",
     ("missing", "kind"): f"is required, one of {_NUMBERS}",

@@ -51,13 +51,25 @@ BY_HTTP: dict[str, tuple[str, Any, str, list[str]]] = {
         "/v1/normal",
         NORMAL | {"material": {"bodies": [STEEL]}},
         "material.bodies",
-        ["exactly two bodies"],
+        ["exactly two bodies", '"rigid"'],
     ),
     "a body by name": (
         "/v1/normal",
         NORMAL | {"material": {"bodies": [STEEL, "steel"]}},
         "material.bodies.1",
         ["youngs_modulus", "poissons_ratio", '"rigid"'],
+    ),
+    "a wall as null": (
+        "/v1/normal",
+        NORMAL | {"material": {"bodies": [STEEL, None]}},
+        "material.bodies.1",
+        ["youngs_modulus", '"rigid"'],
+    ),
+    "more than a sphere can bear": (
+        "/v1/normal",
+        NORMAL | {"profile": {"kind": "sphere", "radius": 0.01}, "load": {"contact_radius": 0.02}},
+        "load.contact_radius",
+        ["0.0099999999", "reduce the load"],
     ),
     "Poisson's ratio in per cent": (
         "/v1/normal",
