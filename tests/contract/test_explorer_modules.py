@@ -83,7 +83,7 @@ MESSAGES: list[tuple[str, dict[str, Any], str]] = [
         {"profile": {"kind": "sphere", "radius": 0.01}, "load": {"contact_radius": 0.1}},
         (
             "the contact would extend beyond radius 10 mm, where the profile ends or ceases to be "
-            "admissible"
+            "admissible: reduce the load, or extend a table"
         ),
     ),
     (
