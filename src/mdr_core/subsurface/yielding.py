@@ -4,14 +4,13 @@ Source: notes, §12; johnson, section 4.2.
 """
 
 from collections.abc import Callable
-from functools import cache, lru_cache, partial
-from math import atan2, ceil, cos, exp, hypot, inf, log, sin
+from functools import cache, lru_cache
+from math import ceil, cos, exp, inf, log, sin
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
-from scipy.optimize import brentq
 
 from mdr_core import normal, tangential
 from mdr_core.errors import AccuracyError, InputError
@@ -40,9 +39,9 @@ _SHRINK, _FLAT, _ROUNDING, _ROUNDS = 0.3, 4e-6, 1e-11, 100
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
 _RESOLVED: Final = 1e-6
-# Logarithms of the force at the onset: accuracy under a fixed place, step after which the search is
-# complete, and range.
-_XTOL, _AGREED, _REACH = 1e-6, 1e-4, 60.0
+# Logarithms of the force at the onset: distance from a singular one, step of the secant after which
+# the next is negligible, and range.
+_XTOL, _AGREED, _REACH = 1e-6, 3e-4, 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
 
@@ -211,13 +210,10 @@ def _onset(
 ) -> float:
     """Normal force at which the largest stress is `limit`, in the ratio of the forces of a case.
 
-    The body is searched under one load; the next load is that under which the stress is `limit` at
-    the place of the largest one. Since the largest stress is never less than that at a place, the
-    loads approach the onset from above, from the second one on.
+    Secant steps in the logarithms, which are nearly in proportion, within a bracket.
     """
     force, ratio, _, e_star, *_ = case
     at = cache(lambda load: _under(profile, exp(load), *case[1:]))
-    under = cache(lambda load: foundations(at(load), body)[0][0])
     # Slip begins at the contact edge: it reaches every radius that the contact reaches.
     one, slips_from = at(log(force)).normal.profile, 0.0 if ratio > 0 else inf
     # The stress becomes infinite when the contact reaches one of these radii.
@@ -226,61 +222,27 @@ def _onset(
     forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
     singular = min(map(float, forces), default=inf)
     last = inf if one.largest_loads is None else one.largest_loads[1]
-    lowest = log(force) - _REACH
-    highest = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
+    lowest = low = log(force) - _REACH
+    highest = high = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
     load = min(log(force), highest)
-
-    def excess(start: Foundation, place: list[float], other: float) -> float:
-        """Logarithm of the stress over the limit."""
-        stress = _stress_at(start, place, under(other), measure, nu)
-        return float(np.clip(np.log(stress / limit), -_REACH, _REACH))
-
+    # The first step takes the stress to grow like the mean pressure, which is exact for powers.
+    means = [at(each).normal.mean_pressure for each in (load, load - _XTOL)]
+    before, excess, slope = load, 0.0, log(means[0] / means[1]) / _XTOL
     while True:
-        value, *place = _peak(under(load), measure, nu)
-        if value == inf:
+        value = _peak(foundations(at(load), body)[0][0], measure, nu)[0]
+        found = min(max(log(value / limit), -_REACH), _REACH)
+        if value == inf or (load == lowest and found > 0):
             return 0.0
-        # The first step takes the stress to grow like the mean pressure, which is exact for powers.
-        means = [at(each).normal.mean_pressure for each in (load, load - _XTOL)]
-        step = 1 / max(log(means[0] / means[1]) / _XTOL, 1 / _REACH)
-        followed = partial(excess, under(load), place)
-        before, load = load, _zero(followed, load, step, lowest, highest)
-        if load == lowest:
-            return 0.0
-        if load == before == highest:
+        if load == highest and found < 0:
             return singular
+        low, high = (low, load) if found > 0 else (load, high)
+        slope = (found - excess) / (load - before) if load != before else slope
+        before, excess, load = load, found, load - found / max(slope, 1 / _REACH)
         if abs(load - before) <= _AGREED:
             return exp(load)
-
-
-def _stress_at(
-    start: Foundation, place: list[float], under: Foundation, measure: str, nu: float
-) -> float:
-    """Stress at the place of a peak under another load, kept or moved with the edges."""
-    if not under.loaded:
-        return 0.0
-    x, y, z = place
-    ends = [np.array([0.0, *each.load.radius, 2 * each.load.radius[-1]]) for each in (start, under)]
-    if ends[0].size != ends[1].size:
-        ends = [each[[0, -1]] for each in ends]
-    r, first = hypot(x, y), under.load.profile.first_radius
-    width, other = (each.load.radius[-1] - first for each in (start, under))
-    rings = np.array([r, np.interp(r, ends[0], ends[1])]), np.array([z, z * other / width])
-    values = getattr(on_rings(under, (*rings, np.exp(1j * np.full(2, atan2(y, x)))), nu), measure)
-    return float(values.max())
-
-
-def _zero(
-    excess: Callable[[float], float], start: float, step: float, lowest: float, highest: float
-) -> float:
-    """Place at which a growing excess is zero, or the end of the range if there is none."""
-    before = after = start
-    sign = np.sign(excess(start))
-    while sign * (found := excess(after)) > 0:
-        if after == (lowest if sign > 0 else highest):
-            return after
-        before, after = after, min(max(after - step * found, lowest), highest)
-        step *= 2
-    return after if before == after else float(brentq(excess, before, after, xtol=_XTOL))
+        if not low < load < high:
+            ends = {lowest, highest} & {low, high}
+            load = min(ends, key=lambda end: abs(end - load)) if ends else (low + high) / 2
 
 
 @lru_cache(maxsize=256)
