@@ -47,14 +47,9 @@ class SavedState(NamedTuple):
     @classmethod
     def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
         """Return the state of a `contact` from its members; raise InputError if it is of none."""
-        if given.keys() != set(cls._fields):
-            raise InputError(("initial_state",), f"must have the members {', '.join(cls._fields)}")
         if given["contact"] != contact:
-            raise InputError(
-                ("initial_state", "contact"),
-                "belongs to another profile, material, friction coefficient or control: repeat "
-                "those of the history that ended in this state",
-            )
+            detail = "belongs to another profile, material, friction coefficient or control"
+            raise InputError(("initial_state", "contact"), f"{detail}: repeat those of the state")
         if len(given["polylines"]) not in {1, SETS}:
             raise InputError(("initial_state", "polylines"), f"must be one polyline, or {SETS}")
         return cls(**given)
@@ -67,23 +62,19 @@ class SavedState(NamedTuple):
         Raises InputError if a polyline is impossible, because friction limits its slope.
         """
         place = "initial_state", "polylines"
+        empty = {not line for line in self.polylines} | {self.regime == "no_contact"}
+        if empty != {normal <= 0}:
+            raise InputError(place, "must be empty, and the regime no_contact, only in separation")
         if normal <= 0:
-            if any(self.polylines) or self.regime != "no_contact":
-                raise InputError(place, "must be empty, and the regime no_contact, in separation")
             lines = [slip_memory.separated(normal, tangential)] * len(self.polylines)
             return tuple(lines), np.zeros((_ARC, 0))
-        if not all(self.polylines) or self.regime == "no_contact":
-            raise InputError(place, "must have vertices, and the regime one of contact, in contact")
-        padding = [0.0] * _ARC
-        rows = [
-            np.array([[*row, *padding][: _SUMS + _ARC] for row in each]) for each in self.polylines
-        ]
+        columns, none = _SUMS + _ARC, [0.0] * _ARC
+        rows = [np.array([(*row, *none)[:columns] for row in line]) for line in self.polylines]
         arcs, labels = np.unique(np.concatenate(rows)[:, _SUMS:], axis=0, return_inverse=True)
-        ends = np.cumsum([len(each) for each in rows])
-        steps = np.split(labels.ravel() - len(arcs), ends[:-1])
-        found = []
-        for index, (each, step) in enumerate(zip(rows, steps, strict=True)):
-            line = slip_memory.through(each[:, :_SUMS], step, normal, tangential)
+        label, found = iter((labels.ravel() - len(arcs)).tolist()), []
+        for index, vertices in enumerate(rows):
+            sums, steps = vertices[:, :_SUMS], [next(label) for _ in vertices]
+            line = slip_memory.through(sums, steps, normal, tangential)
             growth = line.vertices[1:, GROWTH:ANCHOR]
             good = (growth.min(axis=1) >= -_ROUNDING * normal) & (growth.max(axis=1) > 0)
             good[0] &= line.vertices[0, NORMAL] == 0

@@ -21,6 +21,7 @@ coordinates are depths where displacements are prescribed, and reduced normal fo
 are. Source: notes, §10.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import fsum
@@ -227,7 +228,7 @@ def stacked(span: Array, slope: Array, load_step: Indices) -> Polyline:
     return Polyline(read_only(vertices), normal, tangential)
 
 
-def through(sums: Array, load_step: Indices, normal: float, tangential: float) -> Polyline:
+def through(sums: Array, load_step: Sequence[int], normal: float, tangential: float) -> Polyline:
     """Return the polyline through vertices to a load point, without a check.
 
     Parameters
@@ -237,21 +238,20 @@ def through(sums: Array, load_step: Indices, normal: float, tangential: float) -
     normal, tangential : coordinates of the load point.
     """
     vertices = np.zeros((len(sums) + 1, COLUMNS))
-    top = normal + tangential, normal - tangential
+    forward, backward = normal + tangential, normal - tangential
     low = (
-        kernel.rounding(normal, each, total)
-        for each, total in zip((tangential, -tangential), top, strict=True)
+        kernel.rounding(normal, tangential, forward),
+        kernel.rounding(normal, -tangential, backward),
     )
-    vertices[:, :NORMAL] = np.vstack([sums, [*top, *low]])
+    vertices[:, :NORMAL] = np.vstack([sums, [forward, backward, *low]])
     vertices[1:, STEP] = load_step
     vertices[:, NORMAL] = np.abs(vertices[:, :NORMAL].sum(axis=1)) / 2
     step = np.diff(vertices[:, :NORMAL], axis=0)
     vertices[0, GROWTH:ANCHOR] = 1.0
     vertices[1:, GROWTH:ANCHOR] = step[:, :LOW] + step[:, LOW:]
     # Summed exactly, since the anchor may grow far less than both sums.
-    signs = 0.5, -0.5, 0.5, -0.5
-    parts = np.hstack([vertices[1:, :NORMAL] * signs, vertices[:-1, :NORMAL] * np.negative(signs)])
-    vertices[1:, ANCHOR] = [fsum(row) for row in parts.tolist()]
+    anchors = vertices[:, :NORMAL] * (0.5, -0.5, 0.5, -0.5)
+    vertices[1:, ANCHOR] = [fsum(row) for row in np.hstack([anchors[1:], -anchors[:-1]]).tolist()]
     return Polyline(vertices, normal, tangential)
 
 
