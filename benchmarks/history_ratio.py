@@ -28,6 +28,8 @@ Array = np.ndarray
 STEPS, PART, SPRINGS = 1_000_000, 5_000, 1000
 #: Steps of the reference, and its number of springs.
 CHECKED, MANY = 300, 400_000
+#: Contacts of one step of `history.advance_many`.
+CONTACTS = 10_000
 R, E_STAR, G_STAR, MU = 0.01, 1.1e11, 0.9e11, 0.3
 DEPTH, PARABOLOID = 1e-6, Paraboloid(R)
 FULL_SLIP = MU * E_STAR / G_STAR * DEPTH
@@ -111,6 +113,11 @@ def steps(profile: Profile, d: Array, u: Array) -> Array:
     return force
 
 
+def forces(states: history.ContactStates, d: Array, u: Array) -> tuple[Array, Array]:
+    moved = history.advance_many(states, d, u)
+    return moved.normal_force, moved.tangential_force
+
+
 def rows() -> list[measure.Row]:
     d, u = random_path()
     few, part, more = slice(CHECKED), slice(PART), slice(STEPS // 10)
@@ -149,6 +156,19 @@ def rows() -> list[measure.Row]:
         )
         name = f"history.advance with F_x, {profile.kind} / a step of {SPRINGS} springs in NumPy"
         found.append(measure.row(name, "", rounds, target))
+    # After ten steps, as in a discrete element code.
+    paths = (each[: 11 * CONTACTS].reshape(11, CONTACTS) for each in (d, u))
+    *first, last = zip(*paths, strict=True)
+    states = history.unloaded(PARABOLOID, E_STAR, G_STAR, MU)
+    for loads in first:
+        states = history.advance_many(states, *loads)
+    rounds = measure.interleaved(
+        lambda: steps(PARABOLOID, d[few], u[few]), lambda: forces(states, *last), 2.0
+    )
+    per_contact = [(single / CHECKED, many / CONTACTS) for single, many in rounds]
+    name = f"history.advance with F_x / one of {CONTACTS} contacts of history.advance_many"
+    detail = f"{1e6 * float(np.median(per_contact, axis=0)[1]):.2g} µs a contact"
+    found.append(measure.row(name, "", per_contact, ">= 12", detail))
     return found
 
 

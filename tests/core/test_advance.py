@@ -64,6 +64,44 @@ def test_single_steps_equal_the_whole_path_at_every_step(name: str, path: str) -
     )
 
 
+@every_profile
+def test_many_contacts_have_the_states_of_each(name: str) -> None:
+    paths = [random_path(seed, 12) for seed in range(6)]
+    start = history.unloaded(
+        profile_from(PROFILES[name]), MATERIAL.e_star, MATERIAL.g_star, MATERIAL.mu
+    )
+    states = history.advance_many(start, np.full(6, -1.0), 0.0)
+    single = [history.advance(start, -1.0, 0.0)] * 6
+    assert not states.normal_force.any()
+    for d, u in zip(*(np.transpose(each) for each in zip(*paths, strict=True)), strict=True):
+        states = history.advance_many(states, d, u)
+        single = list(map(history.advance, single, d.tolist(), u.tolist()))
+        for quantity in ("normal_force", "tangential_force"):
+            values = np.array([getattr(each, quantity) for each in single])
+            near = pytest.approx(values, rel=1e-12, abs=1e-13 * np.max(np.abs(values)))
+            assert getattr(states, quantity) == near, quantity
+    for one, other in zip(states, single, strict=True):
+        assert np.array_equal(one.polyline.vertices, other.polyline.vertices)
+        assert one.dissipation == pytest.approx(other.dissipation, rel=1e-12, abs=0)
+    assert states[-1].tangential_displacement == single[-1].tangential_displacement
+    again = history.advance_many(single[0], d[1:3], u[1:3])
+    assert again.tangential_force[1] == pytest.approx(
+        history.advance(single[0], d[2], u[2]).tangential_force, rel=1e-12, abs=0
+    )
+
+
+@pytest.mark.parametrize(
+    ("depth", "displacement"),
+    [([0.1, np.nan], 0.0), ([0.1, 0.1], np.inf), ([0.1, 0.1, 0.1], 0.0), ([0.1, 3.0], 0.0)],
+)
+def test_many_contacts_take_finite_depths_up_to_the_end(depth: object, displacement: float) -> None:
+    table = {"kind": "tabulated", "r": [0.0, 0.5, 1.0, 1.5], "f": [0.0, 0.125, 0.5, 1.125]}
+    start = history.unloaded(profile_from(table), 1.0, 1.0, 0.3)
+    states = history.advance_many(start, [0.1, 0.1], 0.0)
+    with pytest.raises(ValueError, match=r"finite|beyond radius 1\.5|shape"):
+        history.advance_many(states, depth, displacement)
+
+
 @pytest.mark.parametrize("asked", ["always", "at the end"])
 def test_results_do_not_depend_on_what_earlier_states_were_asked(asked: str) -> None:
     d, u = random_path(4)

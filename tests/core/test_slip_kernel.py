@@ -40,6 +40,9 @@ def test_compiled_kernel_is_bit_identical_to_python(
     start = slip_memory.separated(0.0, 0.0)
     compiled = slip_memory.follow(start, points)
     intervals = compiled[0].slip_intervals
+    vertices, path = np.tile(compiled[1].vertices, (9, 1)), rng.normal(0.3, 0.2, (4, 9))
+    contacts = vertices, len(compiled[1].vertices) * np.arange(1, 10), path
+    each = slip_memory.moved_each(*contacts)
     specification = importlib.util.spec_from_file_location("plain", TEXT)
     assert specification is not None
     assert specification.loader is not None
@@ -52,3 +55,5 @@ def test_compiled_kernel_is_bit_identical_to_python(
     for one, other in zip(compiled[1], line, strict=True):
         np.testing.assert_array_equal(one, other)
     np.testing.assert_array_equal(intervals, tree.slip_intervals)
+    for one, other in zip(each, slip_memory.moved_each(*contacts), strict=True):
+        np.testing.assert_array_equal(one, other)

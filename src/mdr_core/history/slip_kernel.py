@@ -8,7 +8,7 @@ On a random path branch prediction fails, so what can be selected by an index is
 `if`. One file holds all functions, since Cython inlines within a module only.
 """
 
-from mdr_core.history.slip_layout import ANCHOR, AXIS, GROWTH, LOW, MIRROR, NORMAL, STEP
+from mdr_core.history.slip_layout import ANCHOR, AXIS, COLUMNS, GROWTH, LOW, MIRROR, NORMAL, STEP
 from mdr_core.typing import Array, Flags, Indices
 
 # Columns of the sums of a vertex.
@@ -89,6 +89,37 @@ class PolylineStack:
             tops[i] = number[self.top]
             self.highest = max(self.highest, self.top)
         return made
+
+    def run_each(
+        self, ends: Indices, path: Array, vertices: Array, moved: Array, moved_ends: Indices
+    ) -> None:
+        """Move the load points of many contacts by one step each.
+
+        Parameters
+        ----------
+        ends : ends of the contacts' polylines among the vertices, shape (n,).
+        path : normal and tangential coordinate before the step and after it, shape (4, n).
+        vertices : rows of all polylines.
+        moved, moved_ends : receive the rows and the ends after the step.
+        """
+        begin = made = 0
+        for i in range(len(ends)):
+            for at in range(begin, ends[i]):
+                self._copy_row(vertices, at, self.rows, AXIS + at - begin)
+            self.top = MIRROR + ends[i] - begin
+            self.x = path[0, i]
+            self.y = path[1, i]
+            self.move(path[2, i], path[3, i], continues=False, load_step=0)
+            for at in range(AXIS, self.top + 1):
+                self._copy_row(self.rows, at, moved, made)
+                made += 1
+            begin = ends[i]
+            moved_ends[i] = made
+
+    def _copy_row(self, source: Array, at: int, target: Array, to: int) -> None:
+        """Copy a vertex."""
+        for column in range(COLUMNS):
+            target[to, column] = source[at, column]
 
     def move(self, x: float, y: float, continues: bool, load_step: int) -> None:  # noqa: FBT001
         """Move the load point straight to (x, y), normal and tangential coordinate.

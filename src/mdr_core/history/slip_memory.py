@@ -137,9 +137,7 @@ class VertexTree:
 
     def at_load_points(self, values: Array) -> Array:
         """Return the values of the vertices of the load points, zero in separation."""
-        found = values[self.top]
-        found[self.top < 0] = 0.0
-        return found
+        return np.append(values, 0.0)[self.top]
 
     def summed(self, step: Array) -> Array:
         """Return for each vertex the sum of the steps from the axis to it."""
@@ -182,6 +180,22 @@ def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, i
     rows, stack = _stacked(line, 1)
     stack.move(normal, tangential, continues=False, load_step=0)
     return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed - AXIS
+
+
+def moved_each(vertices: Array, ends: Indices, path: Array) -> tuple[Array, Indices]:
+    """Return the vertices of many polylines, and their ends, after a straight step of each.
+
+    Parameters
+    ----------
+    vertices : vertices of all polylines, one after another, shape (m, 9).
+    ends : end of each polyline among them, shape (n,).
+    path : normal and tangential coordinates before the step and after it, shape (4, n).
+    """
+    longest = int(np.diff(ends, prepend=0).max())
+    rows = np.empty((AXIS + longest + _VERTICES, COLUMNS))
+    moved, moved_ends = np.empty((len(vertices) + _VERTICES * ends.size, COLUMNS)), ends.copy()
+    kernel.PolylineStack(rows, MIRROR, 0.0, 0.0).run_each(ends, path, vertices, moved, moved_ends)
+    return read_only(moved[: moved_ends[-1]]), moved_ends
 
 
 def _stacked(line: Polyline, steps: int) -> tuple[Array, kernel.PolylineStack]:
