@@ -19,12 +19,13 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
 }
 """Quantities that a sweep computes unless some are named, by query."""
 MAXIMA: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": ("maximum_pressure", "model_error", *PULL_OFF),
-    "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error"),
+    "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
+    "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
     "wear": ("model_error",),
 }
 """Quantities that are computed if they are named: maxima of fields, which take a search and can be
-infinite, `model_error`, and those of adhesive contacts, NaN without adhesion."""
+infinite, `model_error`, `data_error`, NaN without a table, and those of adhesive contacts, NaN
+without adhesion."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""

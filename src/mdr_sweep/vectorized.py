@@ -145,9 +145,13 @@ def _call(
     for name in spec.quantities:
         if name == "model_error":
             # That of a contact alone does not know the bodies.
-            values = validity.model_error(source, query.material.effective)
+            values: Any = validity.model_error(source, query.material.effective)
         else:
             values = getattr(source if hasattr(type(source), name) else contact, name)
+        if values is None:
+            # Nothing is left open by data.
+            results[name] = np.full(size, nan)
+            continue
         results[name] = np.broadcast_to(values, (size,))
         if name not in TEXTS:
             is_maximum = name in MAXIMA[spec.query]

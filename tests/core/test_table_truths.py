@@ -453,6 +453,22 @@ def test_data_error_covers_the_noise() -> None:
     assert np.mean(covered) >= 0.8
 
 
+@pytest.mark.parametrize("name", ["truncated cone", "rounded punch"])
+def test_data_error_beyond_a_declared_break(name: str) -> None:
+    """A jump of slope or curvature that is in error is made up for by the spline."""
+    errors, estimates = [], []
+    for seed in range(10):
+        table = instrument_tables.noisy(name, 200, 1e-2, seed)
+        breaks = tuple(table.length * each for each in BODIES[name].kinks)
+        profile = Tabulated(table.r, table.f, breaks=breaks, uncertainty=table.uncertainty)
+        contact = solve(profile, 1.0, contact_radius=0.9 * table.end)
+        expected = table.depth(0.9 * table.end)
+        errors.append(abs(float(contact.indentation_depth) / expected - 1))
+        estimates.append(float(contact.data_error))
+    assert np.mean(np.less_equal(errors, estimates)) >= 0.8
+    assert max(estimates) <= 10 * max(errors)
+
+
 # Refusals.
 
 R = np.linspace(0.0, 1.0, 30)

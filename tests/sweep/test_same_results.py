@@ -62,6 +62,23 @@ def test_adhesive_rows_equal_the_responses(client: Client) -> None:
     assert forces[3] is None
 
 
+@pytest.mark.parametrize("query", ["normal", "tangential"])
+def test_data_error_of_a_table_is_that_of_the_response(client: Client, query: str) -> None:
+    measured: Row = {"profile.kind": "tabulated", "profile.r": [0.0, 0.2, 0.5, 0.7, 1.0]}
+    measured |= {"profile.f": [0.0, 0.021, 0.12, 0.25, 0.5]}
+    row: Row = {"material.e_star": 1e6}
+    if query == "tangential":
+        row |= {"material.g_star": 8e5, "friction_coefficient": 0.3}
+        row |= {"tangential.tangential_force": 1.0}
+    shapes = measured, {"profile.kind": "sphere", "profile.radius": 1.0}
+    rows = [shape | row | {"load.normal_force": force} for shape in shapes for force in (1e2, 1e4)]
+    found = vectorized.solve(Spec(query, {}, ("data_error",)), table(rows)).column("data_error")
+    both = measured | row | {"load.normal_force": [1e2, 1e4]}
+    expected = client.post(f"/v1/{query}", nested(both)).json()["data_error"]
+    assert found.to_pylist()[:2] == expected
+    assert all(map(math.isnan, found.to_pylist()[2:]))
+
+
 STEEL = {
     "material.bodies.0.youngs_modulus": 210e9,
     "material.bodies.0.poissons_ratio": 0.3,

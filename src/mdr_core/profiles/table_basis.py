@@ -12,8 +12,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
 from scipy.linalg import solve_triangular
 
+from mdr_core.abel.annulus import inverse_hypot
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
+from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone
 from mdr_core.typing import Array, Flags
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
@@ -38,6 +40,8 @@ class TableFit:
     """Largest deviation and its radius [length]."""
     spread: tuple[BSpline, BSpline]
     """Possible deviations of g and of its integral, as functions of a over the last radius."""
+    spread_of_jumps: tuple[tuple[float, Array], ...]
+    """Break over the last radius, and possible deviations of both jumps, shape (2, n)."""
     scale: tuple[float, float]
     """Last radius and height of the table [length]."""
 
@@ -46,6 +50,14 @@ class TableFit:
         end, height = self.scale
         a = np.ravel(radius) / end
         depth, moment = (each(a).reshape(a.size, -1) for each in self.spread)
+        for b, jumps in self.spread_of_jumps:
+            s = inverse_hypot(np.maximum(a, b), b)
+            for shape, jump in zip(
+                (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
+            ):
+                own = shape.depth(s)
+                depth = depth + np.outer(own, jump)
+                moment = moment + np.outer(a * own - shape.reduced_force(s) / 2, jump)
         errors = depth, a[:, None] * depth - moment, moment
         units = height, end * height, end * height
         return tuple(
@@ -166,6 +178,8 @@ class TableBasis:
         off = self.deviation(coefficients)
         worst = int(np.argmax(np.abs(off)))
         possible = self.spline(spread)
+        many = spread.reshape(len(spread), -1)
+        possible_jumps = many[self.size - 1 : -2].reshape(-1, 2, many.shape[1])
         return TableFit(
             self.knots * end,
             rows * powers,
@@ -173,6 +187,7 @@ class TableBasis:
             height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
             (height * float(abs(off[worst])), end * float(self.points.x[worst])),
             (possible.antiderivative(), possible.antiderivative(2)),
+            tuple(zip(self.points.breaks, possible_jumps, strict=True)),
             self.points.scale,
         )
 

@@ -42,6 +42,9 @@ _NO_NOISE: Final = 0.8
 _WEIGHTS: Final = 10.0 ** np.arange(-14, 6.1, 0.25)
 # Relative difference of the scores of cross-validation that is none.
 _EQUAL_SCORES: Final = 1e-6
+# Increase of the score, times the number of points, up to which a weight is plausible: of a
+# likelihood by a factor of e.
+_PLAUSIBLE: Final = 2.0
 # Part of the largest misfit below which few points leave a slope without roughness open.
 _OPEN: Final = 1e-8
 # Weight of the points against the roughness of an interpolant.
@@ -203,7 +206,7 @@ def _measured(
     chosen = with_tip if sharp else without
     coefficients = _by_rows(basis, chosen, np.full_like(chosen.coefficients, np.nan))
     # The posterior of the coefficients. Source: wahba.
-    spread = _SPREAD * chosen.sigma * chosen.root
+    spread = _SPREAD * chosen.sigma * chosen.spread
     used = ~basis.free
     used[-1] = chosen.sharp
     if min(coefficients[used].min(), basis.slopes(coefficients).min()) < _FLOOR:
@@ -311,9 +314,13 @@ class _Spectrum:
         self.weight = float(weights[at])
         scatter = float(np.sqrt(misfit[at] / max(count - self.freedom, 1.0)))
         self.sigma = max(uncertainty or scatter, 1e-16)
-        root = np.sqrt(size2 + self.weight)
-        self.coefficients = smooth @ fitted + rough @ (np.sqrt(size2) / root**2 * part)
-        self.root = np.hstack([smooth, rough / root])
+        found = kept[at] / np.where(size2 > 0, np.sqrt(size2), 1.0)
+        self.coefficients = smooth @ fitted + rough @ (found * part)
+        # The points hardly tell the best weight from a smaller one, which leaves more open.
+        plausible = min(at, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
+        self.root, self.spread = (
+            np.hstack([smooth, rough / np.sqrt(size2 + weights[one])]) for one in (at, plausible)
+        )
         """Square root of the inverse of the matrix of misfit and roughness."""
 
 
