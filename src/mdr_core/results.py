@@ -1,11 +1,12 @@
 """Readable form of results, and their conversion to a dictionary."""
 
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar
 
 import numpy as np
 
-# Digits that a readable form shows; `to_dict` has them all.
-_DIGITS: Final = 7
+# Digits that a readable form shows, and those of an error: more depend on the processor, or mean
+# nothing. `to_dict` has them all.
+_DIGITS, _OF_AN_ERROR = 7, 2
 
 
 class Results:
@@ -36,9 +37,8 @@ class Results:
         """Return the class with one line for each result."""
         values = self.to_dict()
         width = max(map(len, values))
-        # Two digits of an estimate: more depend on the processor.
         shown = {
-            name: f"{value:.2g}" if name.endswith("error_estimate") else _short(value)
+            name: _short(value, _OF_AN_ERROR if "error" in name else _DIGITS)
             for name, value in values.items()
         }
         lines = [f"{name:>{width}}: {text}" for name, text in shown.items()]
@@ -50,9 +50,9 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.ndarray | np.generic) and not value.ndim else value
 
 
-def _short(value: Any) -> str:
+def _short(value: Any, digits: int) -> str:
     if isinstance(value, float):
-        return f"{value:.{_DIGITS}g}"
+        return f"{value:.{digits}g}"
     if isinstance(value, np.ndarray):
         # One line, with the first and the last values of a long array.
         return np.array2string(
@@ -61,7 +61,7 @@ def _short(value: Any) -> str:
             separator=", ",
             threshold=6,
             edgeitems=2,
-            formatter={"float_kind": _short},
+            formatter={"float_kind": lambda number: _short(number, digits)},
         )
     if isinstance(value, list):
         return ", ".join(notice["code"] for notice in value) or "none"
