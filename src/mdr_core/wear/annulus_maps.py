@@ -96,12 +96,13 @@ def annulus_maps(nodes: int, *, full_slip: bool = False) -> AnnulusMaps:
         # In y, theta = node -+ y^2, the kernels have no root.
         y, weights = piecewise_rule(_POINTS, np.sqrt(node - ends[row + 1 :: -1]))
         at = node - y * y
-        lever = _squares(at) if full_slip else squares[row]
-        kernel = _rate(at) / np.sqrt(lever * _gap(node, at, y * y))
+        inner = _squares(at)
+        lever = inner if full_slip else squares[row]
+        kernel = _rate(at) / np.sqrt(lever * (squares[row] - inner))
         to_slip[row] = (kernel * 2 * y * weights / np.pi) @ _interpolation(at, nodes)[0]
         y, weights = piecewise_rule(_POINTS, np.sqrt(ends[row + 1 :] - node))
         at = node + y * y
-        kernel = 1 / np.sqrt(_gap(at, node, y * y))
+        kernel = 1 / np.sqrt(_squares(at) - squares[row])
         to_pressure[row] = (kernel * 2 * y * weights / np.pi) @ _interpolation(at, nodes)[1]
     at, weights = piecewise_rule(_POINTS, ends)
     points, values, slopes = _squares(at), *_interpolation(at, nodes)
@@ -150,15 +151,6 @@ def _rate(theta: Array) -> Array:
     twice = np.sin(2 * theta)
     rate = weight * (4 * other / twice + 2 * STRETCH * other * twice)
     return np.asarray(rate / (weight + other) ** 2)
-
-
-def _gap(high: Array, low: Array, difference: Array) -> Array:
-    """Return z(high) - z(low) from the difference of the angles, without cancellation."""
-    step = np.sin(high + low) * np.sin(difference)
-    cosine = np.cos(low) ** 2
-    grown = np.sin(high) ** 2 * cosine * np.expm1(2 * STRETCH * step) + step
-    total = [_weight(angle) + np.cos(angle) ** 2 for angle in (high, low)]
-    return np.asarray(EDGE * np.exp(-2 * STRETCH * cosine) * grown / (total[0] * total[1]))
 
 
 def _angle(squares: Array) -> Array:
