@@ -394,7 +394,8 @@ def _state(curve: _Curve, name: str, load: Array, e_star: float) -> tuple[Array,
     amount, least = load / unit, curve.least[name]
     below = np.asarray(amount < least * (1 + _LOAD))
     if some(below):
-        detail = f"is below the pull-off, {least * unit:.9g}: there is no contact"
+        pull_off = "pull-off force" if of_force else "pull-off depth"
+        detail = f"is below the {pull_off}, {least * unit:.9g}: there is no contact"
         raise InputError(("load", name, *validation.first_index(below)), detail, below)
     if profile.has_no_partial_slip:
         depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount

@@ -191,8 +191,8 @@ def smoothed(contact: LoadedContact) -> Finding:
     def message() -> str:
         return (
             f"no smooth admissible profile meets the points: it deviates by {largest:.2g} at "
-            f"radius {radius:.3g}, {rms:.2g} in the root mean square. The largest deviation is "
-            f"{100 * extremes(part)[1]:.2g} % of the depth: see data_error"
+            f"radius {radius:.3g}, and by {rms:.2g} in the root mean square. The largest deviation "
+            f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error"
         )
 
     return Finding("smoothed", part > _DEVIATION, message, part, _DEVIATION)

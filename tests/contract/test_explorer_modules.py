@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import numpy as np
+
 from tests.conftest import Client
 from tests.contract.forged_addresses import OFFERED, forged
 from tests.contract.javascript import evaluated
@@ -66,6 +68,8 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line() -> None:
 STEEL = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
 PARABOLOID = {"kind": "paraboloid", "radius": 0.01}
 CONE = {"kind": "truncated_cone", "slope": 0.3, "flat_radius": 2e-4}
+SCAN = np.linspace(0, 6e-4, 25)
+TOPOGRAPHY = {"kind": "tabulated", "r": SCAN.tolist(), "f": (-50 * (SCAN - 3e-4) ** 2).tolist()}
 # Query, body, and its error or last warning in the units of the page.
 MESSAGES: list[tuple[str, dict[str, Any], str]] = [
     (
@@ -104,11 +108,26 @@ MESSAGES: list[tuple[str, dict[str, Any], str]] = [
         {"profile": PARABOLOID, "load": {"normal_force": 2000}, "points": 20},
         "the stresses meet Tresca's criterion under a normal force of 2 kN",
     ),
+    (
+        # 3/2 pi w R.
+        "normal",
+        {"profile": PARABOLOID, "load": {"normal_force": -3}, "material": {"work_of_adhesion": 50}},
+        "is below the pull-off force, −0.0023562 kN: there is no contact",
+    ),
+    (
+        "normal",
+        {"profile": TOPOGRAPHY, "load": {"normal_force": 1}},
+        (
+            "the heights fall away from the axis: if r is the position on a scan, subtract that of "
+            "the axis, near 0.3 mm, and reverse the sign of the heights"
+        ),
+    ),
 ]
 
 
 def message(client: Client, query: str, body: dict[str, Any]) -> str:
     material = {"bodies": [STEEL, STEEL]} | ({"yield_strength": 1e9} if "points" in body else {})
+    material |= body.get("material", {})
     response = client.post(f"/v1/{query}", body | {"material": material}).json()
     found = response.get("errors") or response["warnings"]
     return str(found[-1].get("detail") or found[-1]["message"])
@@ -121,3 +140,13 @@ def test_messages_are_in_the_units_and_words_of_the_page(client: Client) -> None
     calls = [[text, page, labels] for text in messages]
     results = evaluated("messages.js", "module.inWords(...call)", calls)
     assert results == [expected for _, _, expected in MESSAGES]
+
+
+def test_deviations_of_a_table_are_heights(client: Client) -> None:
+    flat = np.maximum(0, np.abs(SCAN - 3e-4) - 1e-4) ** 0.9
+    table = {"kind": "tabulated", "r": (SCAN - 3e-4).tolist(), "f": flat.tolist()}
+    text = message(client, "normal", {"profile": table, "load": {"contact_radius": 2e-4}})
+    page = {"ul": "mm", "ud": "nm", "uf": "N", "oscillation": "tangential_force"}
+    (shown,) = evaluated("messages.js", "module.inWords(...call)", [[text, page, {}]])
+    assert re.search(r"deviates by \S+ nm at radius \S+ mm, and by \S+ nm in the root", shown)
+    assert "see “error by the points”" in shown

@@ -196,9 +196,12 @@ function showAccuracy(responses, notes) {
   const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
   const ofFields = fields ? `, of fields ${quantity(fields, "1", inputs, 2)} of their largest value` : "";
   const model = 100 * Math.max(...responses.flatMap((response) => response.model_error));
+  // The last load is the one of the form.
+  const data = responses.find((response) => response.data_error)?.data_error.at(-1);
+  const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
   $("#accuracy").textContent =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
-    `The model of half-spaces itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.`;
+    `The model of half-spaces itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
   const warnings = [...notes, ...responses.flatMap((response) => response.warnings)];
   const messages = new Map(warnings.map(({ code, message }) => [code, message]));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>

@@ -3,13 +3,13 @@
 import { QUANTITIES } from "./quantities.js";
 import { quantity } from "./units.js";
 
-const NUMBER = String.raw`\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
+const NUMBER = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
 // Words of the service next to numbers that have a unit -> their dimension.
 const WORDS = [
   [/(?:radius|radii)(?: of the body,| =|,)? /, "length", ""],
   [/of the axis, near /, "length", ""],
-  [/deviates by /, "displacement", ""],
-  [/a normal force of /, "force", ""],
+  [/deviates by |pull-off depth, /, "displacement", ""],
+  [/a normal force of |pull-off force, /, "force", ""],
   ["", "displacement", / in the root mean square/],
 ];
 const PATTERNS = WORDS.map(([before, dimension, after]) =>

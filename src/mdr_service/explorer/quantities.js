@@ -35,5 +35,6 @@ export const QUANTITIES = {
   e_star: ["Effective modulus E*", "modulus"],
   contact_point: ["Contact point", "displacement"],
   force_offset: ["Force offset", "force"],
+  data_error: ["error by the points", "1"],
   stress_xx: ["Stress σ_xx", "pressure"],
 };
