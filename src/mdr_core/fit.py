@@ -43,6 +43,8 @@ _SPARE: Final = 2
 # Polynomials over the depth that the residuals of a right shape do not contain, and the probability
 # of a warning that is false.
 _DEGREES, _FALSE_ALARM = 8, 0.01
+# Fall of the force below that before contact, over its rise, that is adhesion.
+_DIP: Final = 0.1
 # Scatter over the largest force that is rounding error.
 _ROUNDING: Final = 1e-11
 
@@ -102,9 +104,15 @@ class Fit(validity.ContactResults):
         """Warnings that do not depend on the bodies."""
         found = list(self.normal.warnings_without_bodies)
         if self.misfit < _FALSE_ALARM:
+            measured = self.normal_force + self.residual
+            before = measured[self.indentation_depth.argmin()]
+            remedy = "" if "force_offset" in self.fit else "; fit the force_offset too"
+            if before - measured.min() > _DIP * (measured.max() - before):
+                remedy = "; the force falls below that before contact: the fit leaves out adhesion"
             message = (
                 f"the residuals are not noise (probability {self.misfit:.1g}): the shape, the "
                 "range of the fit or the model is wrong, and the standard errors do not hold"
+                f"{remedy}"
             )
             found.append(Notice("misfit", message, self.misfit, _FALSE_ALARM))
         return tuple(found)
@@ -288,7 +296,11 @@ class _Model:
         parameters, slopes, residual = self.at(d0)
         touching = int(np.sum(self.depth > d0))
         if touching < len(self.fit) + _SPARE:
-            detail = f"only {touching} points are in contact: measure deeper, or more points"
+            ends = (self.profile.largest_loads or (np.inf,))[0]
+            remedy = "measure deeper, or more points"
+            if ends < np.ptp(self.depth):
+                remedy = f"the profile ends at the depth {ends:.3g}: give a longer one"
+            detail = f"too few points are in contact, {touching}: {remedy}"
             raise InputError(("indentation_depth",), detail)
         if parameters["e_star"] <= 0:
             detail = "falls with the depth: a compressive force is positive, reverse its sign"

@@ -203,3 +203,29 @@ def test_curve_that_is_deeper_than_the_profile_is_refused() -> None:
         fit.solve(
             table, indentation_depth=[0, 0.1, 0.2, 0.3], normal_force=[0, 1, 2, 3.0], fit=["e_star"]
         )
+
+
+def test_misfit_by_an_offset_or_by_adhesion_says_so() -> None:
+    profile, depth = mdr.Paraboloid(1.0), np.linspace(-5e-3, 1e-2, 200)
+    for force, remedy in (
+        (forces(profile) + 1e-3 * forces(profile).max(), "fit the force_offset too"),
+        (adhesive(profile, depth), "leaves out adhesion"),
+    ):
+        (misfit,) = (each for each in fitted(profile, force).warnings if each.code == "misfit")
+        assert misfit.message.endswith(remedy)
+
+
+def adhesive(profile: Profile, depth: Array) -> Array:
+    """Forces of a retraction; the pull-off of a ball of radius 1 is 1e-3."""
+    energy = 1e-3 / (1.5 * np.pi)
+    contact = mdr.adhesion.solve(profile, E_STAR, energy, normal_force=0.0)
+    force, pulled = np.zeros_like(depth), depth > float(contact.pull_off_depth)
+    contact = mdr.adhesion.solve(profile, E_STAR, energy, indentation_depth=depth[pulled])
+    force[pulled] = contact.normal_force
+    return force
+
+
+def test_profile_shorter_than_the_curve_is_said_to_end() -> None:
+    short = mdr.Tabulated(np.linspace(0, 1e-2, 21), np.linspace(0, 1e-2, 21) ** 2 / 2)
+    with pytest.raises(mdr.InputError, match="profile ends at the depth"):
+        fitted(short, forces(mdr.Paraboloid(1.0)))

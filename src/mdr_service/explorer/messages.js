@@ -8,7 +8,7 @@ const NUMBER = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
 const WORDS = [
   [/(?:radius|radii)(?: of the body,| =|,)? /, "length", ""],
   [/of the axis, near /, "length", ""],
-  [/deviates by |pull-off depth, /, "displacement", ""],
+  [/deviates by |pull-off depth, |at the depth /, "displacement", ""],
   [/a normal force of |pull-off force, /, "force", ""],
   ["", "displacement", / in the root mean square/],
 ];
