@@ -17,6 +17,7 @@ from verification import (
     measured,
     model_errors,
     normal_contacts,
+    oblique_impacts,
     ring_elements,
     stresses,
 )
@@ -39,6 +40,11 @@ _NOTES: Final = (
     (
         "The tables of Buie's pair no. 1 converge slowly, with the root of the spacing: the "
         "pressure jumps to zero at the edge, where the slope of g is infinite."
+    ),
+    (
+        "Measured impacts (`kharaz`) and finite elements (`wu`) are read from figures, with the "
+        "uncertainty of reading alone; their deviations are those of the tangential restitution "
+        "e_t, and of w/(mu v)."
     ),
     (
         "For the punch with rounded edges of Ciavarella (Int. J. Solids Struct. 36 (1999) "
@@ -67,8 +73,8 @@ class Row:
 
 def cases() -> Iterator[Case]:
     """Yield every case."""
-    own = (normal_contacts, adhesion, frictional_contacts, stresses, abel_pairs, measured)
-    for module in (*own, model_errors, layers, ring_elements):
+    own = (normal_contacts, adhesion, frictional_contacts, oblique_impacts, stresses, abel_pairs)
+    for module in (*own, measured, model_errors, layers, ring_elements):
         yield from module.cases()
 
 

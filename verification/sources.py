@@ -30,6 +30,11 @@ SOURCES: Final = {
         "V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and "
         "Friction, Springer 2015, chapter 5"
     ),
+    "maw": "N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101-114",
+    "kharaz": (
+        "A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technol. 120 (2001) 281-291, as in Lethe"
+    ),
+    "wu": "finite elements of C.-Y. Wu, as in `chung-ooi`; points of the figure as in Kratos",
     "contactmechanics": "L. Pastewka et al., ContactMechanics, test_reference_solutions.py",
     "jkr": "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301-313",
     "kendall": "K. Kendall, J. Phys. D 4 (1971) 1186-1195",
