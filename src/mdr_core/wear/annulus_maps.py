@@ -17,7 +17,7 @@ import numpy as np
 from mdr_core.quadrature import piecewise_rule
 from mdr_core.typing import Array, Indices
 
-# Grading of the nodes, by the table in notes, §11: the distance from the stick edge grows by about
+# Grading of the nodes, by the errors in notes, §11: the distance from the stick edge grows by about
 # exp(STRETCH) over the nodes ...
 STRETCH: Final = 5.0
 # ... and the last part 1/EDGE of b^2 next to the contact's edge has separate nodes.
