@@ -21,7 +21,7 @@ import measure
 import numpy as np
 
 from mdr_core import history
-from mdr_core.profiles import Paraboloid, Profile, Sphere
+from mdr_core.profiles import Paraboloid, Profile, Sphere, Tabulated
 
 Array = np.ndarray
 
@@ -148,7 +148,9 @@ def rows() -> list[measure.Row]:
         lambda: all_results(d[more], u[more]), lambda: mdr(d[more], u[more]).tangential_force, 2.0
     )
     found.append(measure.row("1e5 random steps, all results / F_x alone", "", rounds, "<= 10"))
-    for profile, target in ((PARABOLOID, "<= 3"), (Sphere(R), "<= 9")):
+    r = np.linspace(0.0, 2 * np.sqrt(R * DEPTH), 200)
+    table = Tabulated(r, R - np.sqrt(R * R - r * r))
+    for profile, target in ((PARABOLOID, "<= 3"), (Sphere(R), "<= 9"), (table, "<= 9")):
         rounds = measure.interleaved(
             lambda body=profile: steps(body, d[few], u[few]),
             lambda: springs(d[few], u[few], SPRINGS),

@@ -78,17 +78,16 @@ class SlopePieces:
         return bool(self.rows[0, 0] == 0)
 
     def _located(self, x: Array) -> tuple[Indices, Array]:
-        """Piece of each place and the distance from its left edge, shape (m,)."""
-        place = np.ravel(x)
-        piece = self.edges[1:-1].searchsorted(place, side="right")
-        return piece, place - self.edges[piece]
+        """Piece of each place and the distance from its left edge."""
+        piece = self.edges[1:-1].searchsorted(x, side="right")
+        return piece, x - self.edges[piece]
 
     def _polynomial(self, rows: Array, piece: Indices, u: Array) -> Array:
         """Value of the polynomials of the pieces (m,) at u (..., m), by Horner's rule."""
-        value = np.zeros_like(u)
-        for row in rows[::-1]:
+        value = rows[-1][piece]
+        for row in rows[-2::-1]:
             value = value * u + row[piece]
-        return value
+        return np.asarray(value)[()]
 
     @cached_property
     def _integrals(self) -> tuple[Array, Array]:
@@ -131,21 +130,22 @@ class SlopePieces:
         return u * (_NEAR_WEIGHTS @ np.where(first, rest, beyond))
 
     def _summed(self, quantity: int, within: Callable[[Indices, Array], Array], x: Array) -> Array:
-        piece, u = self._located(x)
+        piece, u = self._located(np.ravel(x))
         return (self._at_edges[quantity][piece] + within(piece, u)).reshape(np.shape(x))[()]
 
     def slope(self, x: Array) -> Array:
         """g'(x) [1]."""
-        piece, u = self._located(x)
-        return self._polynomial(self.rows, piece, u).reshape(np.shape(x))[()]
+        return self._polynomial(self.rows, *self._located(x))
 
     def depth(self, x: Array) -> Array:
         """g(x) = int_0^x g' [length]."""
-        return self._summed(0, self._depth_in, x)
+        piece, u = self._located(x)
+        return self._at_edges[0][piece] + self._depth_in(piece, u)
 
     def half_force(self, x: Array) -> Array:
         """int_0^x t g'(t) dt [length^2]."""
-        return self._summed(1, self._half_force_in, x)
+        piece, u = self._located(x)
+        return self._at_edges[1][piece] + self._half_force_in(piece, u)
 
     def energy(self, x: Array) -> Array:
         """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""

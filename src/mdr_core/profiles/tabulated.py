@@ -12,6 +12,7 @@ from scipy.interpolate import make_interp_spline
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
+from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.profiles.base import Profile
@@ -225,7 +226,7 @@ class Tabulated(Profile):
         return spline
 
     def _require_inside(self, radius: Array) -> None:
-        if np.any(radius > self._end):
+        if some(radius > self._end):
             raise InputError(("profile", "r"), f"the table ends at radius {self._end:.12g}")
 
     # The shape.
@@ -289,18 +290,17 @@ class Tabulated(Profile):
         return self._inverse(reduced_force, "normal_force", of_force=True)
 
     @cached_property
-    def _at_breaks(self) -> tuple[Array, Array, Array]:
-        """Radii of knots and breaks, with depth and reduced force there."""
-        radii = np.concatenate([self.coordinate_breaks, [self._end]])
-        return radii, self.depth(radii), self.reduced_force(radii)
+    def _at_breaks(self) -> tuple[Array, ...]:
+        """Radii of axis, knots, breaks and end, and depth and reduced force there, with slopes."""
+        radii = np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
+        return radii, *self.depth_and_slope(radii), *self.force_and_slope(radii)
 
     def _inverse(self, target: Array, load: str, *, of_force: bool) -> Array:
-        radii, depths, forces = self._at_breaks
-        loads = forces if of_force else depths
-        require_inside(load, target > loads[-1], self._end)
-        goal = np.ravel(target)
-        piece = np.minimum(loads.searchsorted(goal), radii.size - 1)
-        high, low = radii[piece], np.append(0.0, radii)[piece]
+        radii, *loads = self._at_breaks
+        top, slope = loads[2:] if of_force else loads[:2]
+        require_inside(load, target > top[-1], self._end)
+        piece = np.minimum(top[1:].searchsorted(target) + 1, radii.size - 1)
+        high, low = radii[piece], radii[piece - 1]
         function = self.force_and_slope if of_force else self.depth_and_slope
 
         def sloped(s: Array) -> tuple[Array, Array]:
@@ -308,19 +308,17 @@ class Tabulated(Profile):
             return value, s * slope / value
 
         # From the power that rises as the load does at the upper end.
-        top, slope = function(high)
         with np.errstate(divide="ignore", invalid="ignore"):
-            start = high * (goal / top) ** (top / (high * slope))
+            start = high * (target / top[piece]) ** (top[piece] / (high * slope[piece]))
         inside = (start > low) & (start < high)
-        start = np.where(inside, start, (low + high) / 2)
-        found = invert(sloped, goal, start, low * 0.0, high, self.kind)
-        return found.reshape(np.shape(target))[()]
+        start = where(inside, start, (low + high) / 2)
+        return invert(sloped, target, start, low * 0.0, high, self.kind)
 
     # Fields.
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        edges = np.concatenate([[0.0], self._at_breaks[0]])
+        edges = self._at_breaks[0]
         return tuple(map(self._branch, edges[:-1], edges[1:]))
 
     def _branch(self, start: float, stop: float) -> Branch:
