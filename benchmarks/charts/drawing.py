@@ -103,11 +103,23 @@ def _along(points: np.ndarray) -> np.ndarray:
 def save(figure: Figure, name: str, foot: str, named: Iterable[Axes] = ()) -> None:
     """Write docs/charts/NAME.svg with a footer line, and names at the lines of some axes."""
     figure.supxlabel(foot, fontsize=7.0, color="0.4", x=0.995, ha="right")
+    for ax in figure.axes:
+        for axis in (ax.xaxis, ax.yaxis):
+            if axis.get_scale() == "log":
+                axis.set_major_formatter(_power_of_ten)
     for ax in named:
         _name_lines(ax)
     FOLDER.mkdir(exist_ok=True)
     figure.savefig(FOLDER / f"{name}.svg", metadata={"Date": None})
     plt.close(figure)
+
+
+def _power_of_ten(value: float, _position: object) -> str:
+    """A power of ten in one size of type: exponents of Matplotlib have 7 pixels."""
+    return "10" + str(round(np.log10(value))).translate(_RAISED)
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]], name: str | None = None) -> None:

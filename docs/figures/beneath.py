@@ -54,15 +54,18 @@ def ball(left: Axes, right: Axes) -> None:
         ("maximum_shear", "shear stress (Tresca)", "tresca", BLUE),
         ("von_mises", "von Mises stress", "von_mises", RED),
     ):
-        depth = [one["largest"][measure]["z"][0] / a for one in found]
-        left.plot(FRICTIONS, depth, ".-", color=color, label=name)
+        depth = np.array([one["largest"][measure]["z"][0] / a for one in found])
+        # The peak jumps to the surface, where another one is higher.
+        jump = int(np.argmax(depth == 0))
+        left.plot(FRICTIONS[:jump], depth[:jump], ".-", color=color, label=name)
+        left.plot(FRICTIONS[jump:], depth[jump:], ".-", color=color)
         onset = [one["yield_onset_force"][criterion][0] for one in found]
         # p_0 grows with the cube root of the force.
         pressure = np.array([p0 * (force / LOAD) ** (1 / 3) / 1e9 for force in onset])
         right.plot(FRICTIONS, pressure, ".-", color=color, label=name)
     left.set(xlabel="coefficient of friction µ", ylabel="depth of the largest stress z/a")
     right.set(xlabel="coefficient of friction µ", ylabel="onset of yield $p_0/Y$", ylim=(0, None))
-    left.legend()
+    left.legend(loc="center left")
     right.legend()
 
 
@@ -121,13 +124,17 @@ def fretting(left: Axes, right: Axes) -> None:
         stress = np.array(found["stress_xx"][0][0]) / p0
         left.plot(x, stress, style, color=color, label=name)
     left.set(xlabel="x/a", ylabel=r"$\sigma_{xx}/p_0$ on the surface")
-    left.legend(fontsize=7)
+    left.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     at = np.linspace(-1.5, 1.5, 121), np.linspace(0.0, 1.5, 61)
     plane = {"x": (a * at[0]).tolist(), "z": (a * at[1]).tolist(), "largest": True}
     found = ask("subsurface", fretting_query([0.0, 40.0, -40.0, 0.0]) | plane)
-    shown = right.contourf(*at, np.array(found["von_mises"][0]) / p0, 14, cmap="viridis")
+    shown = right.contourf(
+        *at, np.array(found["von_mises"][0]) / p0, 14, cmap="viridis", extend="max"
+    )
     peak = found["largest"]["von_mises"]
-    right.plot(peak["x"][0] / a, peak["z"][0] / a, "o", color="white", markersize=4)
+    place = peak["x"][0] / a, peak["z"][0] / a
+    right.plot(*place, "o", color=RED, markersize=5, clip_on=False)
+    right.annotate("largest", place, xytext=(0, 6), textcoords="offset points", ha="center")
     right.set(xlabel="x/a", ylabel="z/a", aspect="equal")
     right.grid(visible=False)
     right.invert_yaxis()
