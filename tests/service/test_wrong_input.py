@@ -705,11 +705,6 @@ OTHER_QUERIES = {
         evolution_query(cycles=f"[{'1,' * SETTINGS.max_samples}1]"),
         "/cycles",
     ),
-    "cycles in full slip": (
-        "wear/evolution",
-        evolution_query(oscillation='{"tangential_displacement": 1}'),
-        "/oscillation/tangential_displacement",
-    ),
     "cycles beyond friction": (
         "wear/evolution",
         evolution_query(oscillation='{"tangential_force": 0.31}'),
