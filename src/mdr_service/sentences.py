@@ -28,6 +28,7 @@ _NUMBERS: Final = ", ".join(OF_NUMBERS)
 _BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
 _BODIES: Final = f"bodies (two, each {_BODY})"
 _PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
+_PLAIN: Final = "send plain text in UTF-8, not compressed and without a byte order mark"
 # By the type of the error, and by its type and field.
 _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "dict_type": "must be an object",
@@ -86,7 +87,12 @@ def _field(place: Path) -> str:
 def of_json(message: str) -> str:
     """Return why a text is not JSON, and what to do, from the message of pydantic."""
     reason = message.removeprefix("Invalid JSON: ")
-    remedies = {"key must be": "put names in double quotes", "EOF": "it is empty or cut off"}
+    remedies = {
+        "key must be": "put names in double quotes",
+        "EOF": "it is empty or cut off",
+        "expected value at line 1 column 1": _PLAIN,
+        "invalid unicode": _PLAIN,
+    }
     remedy = next((f"; {text}" for start, text in remedies.items() if reason.startswith(start)), "")
     return f"not valid JSON: {reason}{remedy}"
 
@@ -107,7 +113,14 @@ def sentence(error: ErrorDetails, model: _Model | None) -> str:
 
 
 def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
-    names = _members(_models(error, place[:-1], model))
+    models = _models(error, place[:-1], model)
+    others = [each for each in models if place[-1] not in each.model_fields]
+    if len(others) < len(models):
+        # A member of another branch of the union than the one that was chosen.
+        fields = [field for each in others for field in each.model_fields.items()]
+        rivals = [name for name, field in fields if field.is_required()]
+        return f"cannot be combined with {', '.join(rivals)}"
+    names = _members(models)
     # A range is described by the parameter without `_from` and `_to`.
     listed = ", ".join(name for name in names if not name.endswith(("_from", "_to")))
     return f"there is no such member; there are {listed}"

@@ -47,6 +47,12 @@ BY_HTTP: dict[str, tuple[str, Any, str, list[str]]] = {
         "material.e_star",
         ["bodies", "two", "youngs_modulus", "poissons_ratio", '"rigid"'],
     ),
+    "moduli beside bodies": (
+        "/v1/normal",
+        NORMAL | {"material": {"bodies": [STEEL, STEEL], "e_star": 115e9}},
+        "material.e_star",
+        ["cannot be combined with bodies"],
+    ),
     "one body": (
         "/v1/normal",
         NORMAL | {"material": {"bodies": [STEEL]}},
@@ -175,6 +181,7 @@ BY_HTTP: dict[str, tuple[str, Any, str, list[str]]] = {
     ),
     "a list as a batch": ("/v1/batch", [NORMAL], "", ["object", "queries"]),
     "a trailing comma": ("/v1/normal", '{"load": {},}', "", ["trailing comma", "line 1"]),
+    "a byte order mark": ("/v1/normal", "\ufeff{}", "", ["UTF-8", "byte order mark"]),
     "a dictionary of Python": ("/v1/normal", "{'load': {}}", "", ["double quotes"]),
     "nothing": ("/v1/normal", "", "", ["empty"]),
 }
@@ -196,6 +203,11 @@ BY_URL: dict[str, tuple[str, str, list[str]]] = {
     "radius in a unit": ("radius=10mm&e_star=1e11&normal_force=1", "radius", ["0.01", "unit"]),
     "a decimal comma": ("radius=0,01&e_star=1e11&normal_force=1", "radius", ["decimal comma"]),
     "no modulus": ("radius=1&normal_force=1", "e_star", ["youngs_modulus_1", "poissons_ratio_1"]),
+    "moduli beside bodies": (
+        "radius=1&normal_force=1&e_star=1&youngs_modulus_1=1&poissons_ratio_1=0",
+        "e_star",
+        ["cannot be combined with youngs_modulus_1 and poissons_ratio_1 (and those of body 2"],
+    ),
     "force": ("radius=1&e_star=1&force=1", "force", ["no such member", "normal_force"]),
     "half a range": (
         "radius=1&e_star=1&normal_force_from=1&n=9",
