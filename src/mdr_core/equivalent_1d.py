@@ -53,7 +53,7 @@ def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Ar
         return closed
     if profile.largest_loads is not None:
         name = "normal_force" if of_force else "indentation_depth"
-        require_inside(name, load > profile.largest_loads[of_force], profile.domain)
+        require_inside(("load", name), load > profile.largest_loads[of_force], profile.domain)
     return _root(profile, load, of_force=of_force)
 
 
@@ -69,7 +69,8 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     Raises InputError beyond the end of the profile, and for a flat punch.
     """
     if not every(profile.domain == inf):
-        require_inside("contact_radius", contact_radius > profile.domain, profile.domain)
+        beyond = contact_radius > profile.domain
+        require_inside(("load", "contact_radius"), beyond, profile.domain)
     return profile.coordinate_from_radius(contact_radius)
 
 

@@ -27,6 +27,7 @@ from mdr_core.validation import (
     POSITIVE,
     as_numbers,
     first_index,
+    require_inside,
     require_single_positive,
     require_tolerance,
 )
@@ -242,12 +243,7 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
     """Contact coordinates at which E/E* of the contact is the kinetic energy [length^3]."""
     if profile.domain < np.inf:
         beyond = energy > profile.reduced_energy(number(profile.domain))
-        if beyond.any():
-            at = first_index(beyond)
-            detail = f"the contact would extend beyond radius {profile.domain:.12g}, where the "
-            raise InputError(
-                ("normal_velocity", *at), f"{detail}profile ends: reduce the velocity or the mass"
-            )
+        require_inside(("normal_velocity",), beyond, profile.domain, "velocity or the mass")
 
     def stored(s: Array) -> tuple[Array, Array]:
         value = profile.reduced_energy(s)

@@ -135,17 +135,20 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
         raise InputError((*path, *first_index(bad)), detail, bad)
 
 
-def require_inside(name: str, outside: Flags, domain: Parameter) -> None:
+def require_inside(
+    path: tuple[str, ...], outside: Flags, domain: Parameter, cause: str = "load"
+) -> None:
     """Raise InputError at the first load under which the contact would exceed the `domain`.
 
-    `domain` is the radius at which the profile ends [length], `name` that of the load.
+    `domain` is the radius at which the profile ends [length], `path` the place of the loads, and
+    `cause` their word in the message.
     """
     if some(outside):
         end = np.broadcast_to(domain, outside.shape)[outside].flat[0]
         raise InputError(
-            ("load", name, *first_index(outside)),
+            (*path, *first_index(outside)),
             f"the contact would extend beyond radius {end:.12g}, where the profile ends or ceases "
-            "to be admissible: reduce the load, or extend a table",
+            f"to be admissible: reduce the {cause}, or extend a table",
             outside,
         )
 

@@ -98,8 +98,9 @@ def test_many_contacts_take_finite_depths_up_to_the_end(depth: object, displacem
     table = {"kind": "tabulated", "r": [0.0, 0.5, 1.0, 1.5], "f": [0.0, 0.125, 0.5, 1.125]}
     start = history.unloaded(profile_from(table), 1.0, 1.0, 0.3)
     states = history.advance_many(start, [0.1, 0.1], 0.0)
-    with pytest.raises(ValueError, match=r"finite|beyond radius 1\.5|shape"):
+    with pytest.raises(ValueError, match=r"finite|beyond radius 1\.5|one for each of 2"):
         history.advance_many(states, depth, displacement)
+    assert not history.advance_many(start, [], 0.0).normal_force.size
 
 
 @pytest.mark.parametrize("asked", ["always", "at the end"])

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.elementwise import every
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
@@ -15,7 +16,7 @@ from mdr_core.history.slip_memory import Polyline, VertexTree
 from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import interval_moments
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import FINITE, as_numbers, require_inside
+from mdr_core.validation import FINITE, as_numbers, first_index, require_inside
 
 
 class Polylines(NamedTuple):
@@ -114,20 +115,25 @@ def advance_many(
     >>> (states.tangential_force / (0.5 * states.normal_force)).round(12).tolist()
     [0.0, 0.75, 1.0]
     """
-    loads = (
-        as_numbers(("history",), indentation_depth),
-        as_numbers(("history",), tangential_displacement),
+    given = (
+        ("indentation_depth", indentation_depth),
+        ("tangential_displacement", tangential_displacement),
     )
+    loads = {name: as_numbers((name,), values) for name, values in given}
     if isinstance(states, ContactState):
-        states = _repeated(states, np.broadcast(*loads).size)
-    contact, last, path = states.contact, states.polylines, np.empty((4, len(states)))
-    path[:2] = last.load_points
-    path[2], path[3] = loads
-    if not np.isfinite(path).all():
-        raise InputError(("history",), FINITE)
+        sizes = [values.size for values in loads.values() if np.ndim(values)]
+        states = _repeated(states, sizes[0] if sizes else 1)
+    contact, last, count = states.contact, states.polylines, len(states)
+    path = np.vstack([last.load_points, np.empty((2, count))])
+    for row, (name, values) in zip(path[2:], loads.items(), strict=True):
+        if np.shape(values) not in {(), (count,)}:
+            raise InputError((name,), f"must be one number, or one for each of {count} contacts")
+        if not every(np.isfinite(values)):
+            raise InputError((name, *first_index(~np.isfinite(values))), FINITE)
+        row[:] = values
     profile, largest = contact.profile, contact.profile.largest_loads
     if largest is not None:
-        require_inside("indentation_depth", path[2] > largest[0], profile.domain)
+        require_inside(("indentation_depth",), path[2] > largest[0], profile.domain)
     path[3] /= contact.displacement_ratio
     moved = slip_memory.moved_each(last.vertices, last.ends, path)
     return ContactStates(contact, Polylines(*moved, path[2:]), last)

@@ -20,7 +20,7 @@ cdef class PolylineStack:
         Py_ssize_t[::1] tops
     )
     @cython.locals(at=Py_ssize_t, begin=Py_ssize_t, i=Py_ssize_t, made=Py_ssize_t)
-    cpdef void run_each(
+    cpdef Py_ssize_t run_each(
         self, Py_ssize_t[::1] ends, double[:, ::1] path, const double[:, ::1] vertices,
         double[:, ::1] moved, Py_ssize_t[::1] moved_ends
     )

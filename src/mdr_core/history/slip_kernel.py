@@ -92,8 +92,8 @@ class PolylineStack:
 
     def run_each(
         self, ends: Indices, path: Array, vertices: Array, moved: Array, moved_ends: Indices
-    ) -> None:
-        """Move the load points of many contacts by one step each.
+    ) -> int:
+        """Move the load points of many contacts by one step each; return the number of vertices.
 
         Parameters
         ----------
@@ -115,6 +115,7 @@ class PolylineStack:
                 made += 1
             begin = ends[i]
             moved_ends[i] = made
+        return made
 
     def _copy_row(self, source: Array, at: int, target: Array, to: int) -> None:
         """Copy a vertex."""

@@ -191,11 +191,12 @@ def moved_each(vertices: Array, ends: Indices, path: Array) -> tuple[Array, Indi
     ends : end of each polyline among them, shape (n,).
     path : normal and tangential coordinates before the step and after it, shape (4, n).
     """
-    longest = int(np.diff(ends, prepend=0).max())
+    longest = int(np.diff(ends, prepend=0).max(initial=0))
     rows = np.empty((AXIS + longest + _VERTICES, COLUMNS))
     moved, moved_ends = np.empty((len(vertices) + _VERTICES * ends.size, COLUMNS)), ends.copy()
-    kernel.PolylineStack(rows, MIRROR, 0.0, 0.0).run_each(ends, path, vertices, moved, moved_ends)
-    return read_only(moved[: moved_ends[-1]]), moved_ends
+    stack = kernel.PolylineStack(rows, MIRROR, 0.0, 0.0)
+    made = stack.run_each(ends, path, vertices, moved, moved_ends)
+    return read_only(moved[:made]), moved_ends
 
 
 def _stacked(line: Polyline, steps: int) -> tuple[Array, kernel.PolylineStack]:

@@ -298,7 +298,7 @@ class Tabulated(Profile):
     def _inverse(self, target: Array, load: str, *, of_force: bool) -> Array:
         radii, *loads = self._at_breaks
         top, slope = loads[2:] if of_force else loads[:2]
-        require_inside(load, target > top[-1], self._end)
+        require_inside(("load", load), target > top[-1], self._end)
         piece = np.minimum(top[1:].searchsorted(target) + 1, radii.size - 1)
         high, low = radii[piece], radii[piece - 1]
         function = self.force_and_slope if of_force else self.depth_and_slope
