@@ -129,7 +129,13 @@ def stepped(profile: Profile, v: float, w: float, step: float) -> float:
     return float(velocity[1])
 
 
-@pytest.mark.parametrize("kind", ["paraboloid", "rounded_punch", "sphere"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "paraboloid",
+        *(pytest.param(each, marks=pytest.mark.long) for each in ("rounded_punch", "sphere")),
+    ],
+)
 def test_time_stepping_converges_to_the_result(kind: str) -> None:
     profile = KINDS[kind]
     v = speed(profile)

@@ -50,7 +50,7 @@ def test_estimate_of_nonlinear_steps_on_a_rough_table(seed: int) -> None:
     r = np.linspace(0.0, 1.0, 60)
     f = np.maximum.accumulate(r * r / 2 * (1 + 0.03 * random.standard_normal(r.size)))
     profile = Tabulated(r, f)
-    most = float(profile.reduced_force(np.array(profile.last_coordinate)))
+    most = float(profile.reduced_force(np.array(profile.domain)))
     force = most * random.uniform(0.2, 0.9, 4)
     displacement = float(np.max(profile.domain)) ** 2 * random.uniform(-0.1, 0.1, 4)
     found = history.solve(
