@@ -28,7 +28,7 @@ _NUMBERS: Final = ", ".join(OF_NUMBERS)
 _BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
 _BODIES: Final = f"bodies (two, each {_BODY})"
 _PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
-_PLAIN: Final = "send plain text in UTF-8, not compressed and without a byte order mark"
+_PLAIN: Final = "it is not JSON in plain UTF-8 (no compression, no byte order mark)"
 # By the type of the error, and by its type and field.
 _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "dict_type": "must be an object",

@@ -77,7 +77,7 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     axes = {name: text for name, text in template.items() if str(text).count(":") >= 2}
     axes |= dict(map(_axis, arguments.grid))
     if bool(axes) == bool(arguments.table):
-        raise UsageError("give either --table or axes (--grid, or in the template), not both")
+        raise UsageError("give one of --table and axes (--grid, or START:STOP:N in the template)")
     if any(number is not None and number < 1 for number in (arguments.workers, arguments.chunk)):
         raise UsageError("--workers and --chunk must be at least 1")
     source = Grid(axes) if axes else Table(arguments.table)
