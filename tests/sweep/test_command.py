@@ -236,7 +236,7 @@ def test_expensive_cases_have_small_chunks() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--out", "a.parquet"), "either --table"),
+        (("--out", "a.parquet"), "one of --table"),
         (("--grid", "load.normal_force=1:2:3", "--out", "a.xlsx"), "a.xlsx"),
         (("--grid", "load.normal_force=1:2:3", "--out", "folder.csv"), "folder.csv"),
         (("--grid", "load.normal_force", "--out", "a.csv"), "START:STOP:N"),
