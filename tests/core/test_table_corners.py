@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mdr_core import fields, tangential
+from mdr_core import fields, history, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import solve
 from mdr_core.profiles import Sphere, Tabulated, TruncatedCone, TruncatedParaboloid
@@ -155,3 +155,16 @@ def test_scan_not_measured_from_its_axis_is_told_the_axis(
         Tabulated(position, 1 - height if upwards else height)
     assert "subtract that of the axis, near 0.4" in error.value.detail
     assert ("reverse the sign of the heights" in error.value.detail) == upwards
+
+
+def test_history_next_to_the_edge_of_a_flat() -> None:
+    """Contacts beyond the edge by less than the spacing of doubles, and by 1e-5 of it."""
+    b, end = 0.0522589871276889, 0.160067550986061
+    assert b / end * end != b
+    r = np.union1d(np.linspace(0.0, end, 41), [b])
+    table, cone = Tabulated(r, np.maximum(r - b, 0.0), breaks=[b]), TruncatedCone(b, 1.0)
+    path = {"normal_force": [1e-12, 1e-4, 9e-5, 2e-4], "tangential_force": [0, 5e-7, -6e-11, 2e-5]}
+    found, expected = (
+        history.solve(each, 1.0, 0.9, 0.1, **path).tangential_energy for each in (table, cone)
+    )
+    assert found == pytest.approx(expected, rel=1e-6, abs=0)

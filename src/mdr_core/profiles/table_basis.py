@@ -171,8 +171,8 @@ class TableBasis:
         powers = height / end * end ** -np.arange(float(len(rows)))[:, None]
         jumps = coefficients[self.size - 1 : -2].reshape(-1, 2) * [height / end, height / end**2]
         flanks = tuple(
-            (b * end, slope, bend)
-            for b, (slope, bend) in zip(self.points.breaks, jumps.tolist(), strict=True)
+            (b, slope, bend)
+            for b, (slope, bend) in zip(self.points.declared, jumps.tolist(), strict=True)
             if slope or bend
         )
         off = self.deviation(coefficients)

@@ -40,6 +40,8 @@ class TablePoints:
     weight: Array
     """Weight of the deviation: square root of the number of points that were merged."""
     breaks: tuple[float, ...]
+    declared: tuple[float, ...]
+    """Breaks as they are given [length]."""
     offset_known: bool
     """True if the first point lies on the axis."""
     rounded: bool
@@ -75,7 +77,8 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         typical = float(np.median(error[error > 0]))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
-    return TablePoints(x, y, weight, scaled, bool(x[0] == 0), rounded, (end, height))
+    declared = tuple(breaks)
+    return TablePoints(x, y, weight, scaled, declared, bool(x[0] == 0), rounded, (end, height))
 
 
 def off_axis(r: Array, f: Array) -> str:

@@ -259,6 +259,18 @@ class Tabulated(Profile):
         slope = self._spline.slope(x)
         return slope + sum(factor * shape.dg(x) for factor, shape in self._flanks)
 
+    def depth_slope_beyond(self, coordinate: Array, start: Array, past: Array) -> Array:
+        """Parameters: see `Profile`."""
+        slope = self._spline.slope(coordinate)
+        for factor, shape in self._flanks:
+            b = shape.flat_radius
+            above = where(start == b, past, np.maximum(coordinate - b, 0.0))
+            x, s = b + above, np.sqrt(above * (2 * b + above))
+            slope = slope + where(
+                s > 0, factor * shape.weight(x, s) * x / where(s > 0, s, 1.0), 0.0
+            )
+        return slope
+
     # The normal contact.
 
     def reduced_force(self, coordinate: Array) -> Array:
