@@ -154,6 +154,19 @@ def test_narrow_annulus_next_to_a_flat_wears_to_its_limit(body: Profile) -> None
     assert worn.worn_volume[0] == bound
 
 
+def test_first_cycle_of_a_narrow_annulus_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The wear in it is a part of 1e-6, which the rounding error of the slip must not reach."""
+    body = TruncatedParaboloid(0.3, 1.0)
+    contact = normal.solve(body, 1.0, contact_radius=0.3 * (1 + 1.5e-5))
+    contact = normal.solve(body, 1.0, indentation_depth=float(contact.indentation_depth))
+    force = {"tangential_force": 2e-4 * 0.4 * float(contact.normal_force)}
+    start = tangential.solve(contact, 1.2, 0.4, **force)
+    cycles = InitialState(start, 1e-3, 40).cycle_unit * np.array([1e-6, 1.0])
+    monkeypatch.setattr(integrator, "_MAX_CALLS", 1500)
+    worn = evolution.solve(contact, 1.2, 0.4, wear_coefficient=1e-3, cycles=cycles, **force)
+    assert worn.error_estimate < 1e-3
+
+
 def test_equal_numbers_of_cycles_are_ascending() -> None:
     contact = normal.solve(Paraboloid(1.0), 1.0, indentation_depth=1.0)
     given = {"wear_coefficient": 1e-2, "tangential_displacement": 0.75, "resolution": 8}
