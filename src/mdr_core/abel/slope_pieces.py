@@ -20,6 +20,7 @@ from typing import Any, Final
 
 import numpy as np
 from scipy import sparse
+from scipy.interpolate import PPoly
 
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Indices
@@ -90,36 +91,32 @@ class SlopePieces:
         return np.asarray(value)[()]
 
     @cached_property
-    def _integrals(self) -> tuple[Array, Array]:
-        """Coefficients of the powers 1, 2, ... of u in int g' and in int u g'."""
-        degrees = np.arange(1, len(self.rows) + 1)[:, None]
-        return self.rows / degrees, self.rows / (degrees + 1)
+    def _slope(self) -> PPoly:
+        return PPoly(self.rows[::-1], self.edges)
 
     @cached_property
-    def _at_edges(self) -> Array:
-        """Depth, half force, energy and axial stress up to each edge, shape (4, k + 1)."""
+    def _depth(self) -> PPoly:
+        return self._slope.antiderivative()
+
+    @cached_property
+    def _half_force(self) -> PPoly:
+        moment = np.pad(self.edges[:-1] * self.rows, ((0, 1), (0, 0)))
+        moment[1:] += self.rows
+        return PPoly(moment[::-1], self.edges).antiderivative()
+
+    @cached_property
+    def _energy(self) -> PPoly:
+        half_force = self._half_force.c[::-1]
+        product = np.zeros((len(self.rows) + len(half_force) - 1, self.edges.size - 1))
+        for power, row in enumerate(self.rows):
+            product[power : power + len(half_force)] += 2 * row * half_force
+        return PPoly(product[::-1], self.edges).antiderivative()
+
+    @cached_property
+    def _over_axis(self) -> Array:
+        """Axial stress up to each edge, shape (k + 1,)."""
         every = np.arange(self.edges.size - 1)
-        length = np.diff(self.edges)
-        sums = np.zeros((4, self.edges.size))
-        sums[0, 1:] = np.cumsum(self._depth_in(every, length))
-        sums[1, 1:] = np.cumsum(self._half_force_in(every, length))
-        vars(self)["_at_edges"] = sums
-        sums[2, 1:] = np.cumsum(self._energy_in(every, length))
-        sums[3, 1:] = np.cumsum(self._over_axis_in(every, length))
-        return sums
-
-    def _depth_in(self, piece: Indices, u: Array) -> Array:
-        return u * self._polynomial(self._integrals[0], piece, u)
-
-    def _half_force_in(self, piece: Indices, u: Array) -> Array:
-        within = u * self._polynomial(self._integrals[1], piece, u)
-        return u * within + self.edges[piece] * self._depth_in(piece, u)
-
-    def _energy_in(self, piece: Indices, u: Array) -> Array:
-        """int 2 (half force) g' dx."""
-        at = _FAR_NODES[:, None] * u
-        half = self._at_edges[1][piece] + self._half_force_in(piece, at)
-        return 2 * u * (_FAR_WEIGHTS @ (half * self._polynomial(self.rows, piece, at)))
+        return np.append(0.0, np.cumsum(self._over_axis_in(every, np.diff(self.edges))))
 
     def _over_axis_in(self, piece: Indices, u: Array) -> Array:
         """int g'/x dx; next to the axis without the constant of a sharp tip."""
@@ -129,31 +126,26 @@ class SlopePieces:
         beyond = self._polynomial(self.rows, piece, at) / (self.edges[piece] + at + first)
         return u * (_NEAR_WEIGHTS @ np.where(first, rest, beyond))
 
-    def _summed(self, quantity: int, within: Callable[[Indices, Array], Array], x: Array) -> Array:
-        piece, u = self._located(np.ravel(x))
-        return (self._at_edges[quantity][piece] + within(piece, u)).reshape(np.shape(x))[()]
-
     def slope(self, x: Array) -> Array:
         """g'(x) [1]."""
-        return self._polynomial(self.rows, *self._located(x))
+        return self._slope(x)[()]
 
     def depth(self, x: Array) -> Array:
         """g(x) = int_0^x g' [length]."""
-        piece, u = self._located(x)
-        return self._at_edges[0][piece] + self._depth_in(piece, u)
+        return self._depth(x)[()]
 
     def half_force(self, x: Array) -> Array:
         """int_0^x t g'(t) dt [length^2]."""
-        piece, u = self._located(x)
-        return self._at_edges[1][piece] + self._half_force_in(piece, u)
+        return self._half_force(x)[()]
 
     def energy(self, x: Array) -> Array:
         """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""
-        return self._summed(2, self._energy_in, x)
+        return self._energy(x)[()]
 
     def over_axis(self, x: Array) -> Array:
         """int_0^x g'(t)/t dt of a smooth tip [1]."""
-        return self._summed(3, self._over_axis_in, x)
+        piece, u = self._located(np.ravel(x))
+        return (self._over_axis[piece] + self._over_axis_in(piece, u)).reshape(np.shape(x))[()]
 
     def _parts(self, low: float, high: float, width: float) -> _Parts:
         """Pieces from `low` to `high` = low + width; long ones that start near the axis divided."""
