@@ -231,12 +231,18 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
         ("normal_velocity", (speeds > 0) & np.isfinite(speeds), _APPROACH),
         ("tangential_velocity", np.isfinite(along), FINITE),
     ):
+        if not np.size(good):
+            raise InputError((name,), "at least one value is needed")
         if not every(good):
             raise InputError((name, *first_index(~good)), detail)
-    if speeds.ndim and along.ndim and speeds.shape != along.shape:
+    if speeds.ndim == along.ndim == 1 and speeds.size != along.size:
         detail = f"{along.size} values for {speeds.size} normal velocities: give one, or as many"
         raise InputError(("tangential_velocity",), detail)
-    return np.broadcast_arrays(speeds, along)
+    try:
+        return np.broadcast_arrays(speeds, along)
+    except ValueError:
+        detail = f"the shape {along.shape} does not agree with {speeds.shape} of normal_velocity"
+        raise InputError(("tangential_velocity",), detail) from None
 
 
 def _largest_coordinates(profile: Profile, energy: Array) -> Array:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import mdr_core as mdr
@@ -291,6 +292,14 @@ HISTORY: Any = mdr.history.solve(
     mdr.Paraboloid(0.01), PAIR, PAIR, 0.3, normal_force=10.0, tangential_force=[0.0, 1.0]
 )
 STATE = mdr.history.unloaded(mdr.Paraboloid(1), PAIR, PAIR, 0.3)
+
+
+def impact(**changed: Any) -> mdr.impact.Impact:
+    motion = dict.fromkeys(("normal_mass", "normal_velocity", "tangential_velocity"), 1.0)
+    motion |= {"tangential_mass": 0.3, **changed}
+    return mdr.impact.solve(mdr.Paraboloid(1), PAIR, PAIR, 0.3, **motion)
+
+
 IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
     "a rubber of 0.6": (lambda: mdr.Body(210e9, 0.6), ["poissons_ratio", "at most 0.5"]),
     "constants swapped": (lambda: mdr.Body(0.3, 210e9), ["poissons_ratio", "at most 0.5"]),
@@ -350,6 +359,10 @@ IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
         lambda: mdr.history.advance(STATE, [1e-6, 2e-6], 0.0),
         ["indentation_depth: must be a single number"],
     ),
+    "a list of states": (
+        lambda: mdr.history.advance_many([STATE, STATE], 1e-6, 0.0),
+        ["states", "from advance_many", "not list"],
+    ),
     "a step to no number": (
         lambda: mdr.history.advance(STATE, 1e-6, math.nan),
         ["tangential_displacement: must be finite"],
@@ -358,17 +371,16 @@ IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
         lambda: mdr.history.unloaded(mdr.Paraboloid(1), PAIR, PAIR, [0.2, 0.3]),
         ["friction_coefficient: must be a single number"],
     ),
+    "no velocities": (
+        lambda: impact(normal_velocity=[]),
+        ["normal_velocity: at least one value is needed"],
+    ),
+    "velocities of two shapes": (
+        lambda: impact(normal_velocity=np.ones((1, 2)), tangential_velocity=np.ones((2, 3))),
+        ["tangential_velocity", "(2, 3)", "(1, 2)"],
+    ),
     "several masses": (
-        lambda: mdr.impact.solve(
-            mdr.Paraboloid(1),
-            PAIR,
-            PAIR,
-            0.3,
-            normal_mass=[1.0, 2.0],
-            tangential_mass=0.3,
-            normal_velocity=1.0,
-            tangential_velocity=0.0,
-        ),
+        lambda: impact(normal_mass=[1.0, 2.0]),
         ["normal_mass: must be a single number"],
     ),
     "Poisson's ratio as text": (

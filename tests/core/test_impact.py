@@ -197,3 +197,11 @@ def test_errors_name_the_input(
 def test_rapid_oscillations_are_refused() -> None:
     with pytest.raises(mdr.AccuracyError, match="oscillates"):
         solved(mdr.Cone(0.3), 0.1, 0.01, tangential_mass=1e-4)
+
+
+def test_velocities_broadcast() -> None:
+    v, w = np.array([[1.0], [2.0]]), np.array([5.0, 6.0, 7.0])
+    after = solved(mdr.Paraboloid(1e5), v, w).tangential_rebound_velocity
+    # Sliding throughout.
+    expected = w - 2 * MU * NORMAL_MASS * v / TANGENTIAL_MASS
+    assert after == pytest.approx(expected, rel=1e-12, abs=0)

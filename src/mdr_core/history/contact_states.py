@@ -16,7 +16,7 @@ from mdr_core.history.slip_memory import Polyline, VertexTree
 from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import interval_moments
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import FINITE, as_numbers, first_index, require_inside
+from mdr_core.validation import FINITE, as_numbers, first_index, require_inside, require_type
 
 
 class Polylines(NamedTuple):
@@ -115,6 +115,8 @@ def advance_many(
     >>> (states.tangential_force / (0.5 * states.normal_force)).round(12).tolist()
     [0.0, 0.75, 1.0]
     """
+    needed = "the states from advance_many, or one state, as from history.unloaded"
+    require_type("states", states, ContactState | ContactStates, needed)
     given = (
         ("indentation_depth", indentation_depth),
         ("tangential_displacement", tangential_displacement),
