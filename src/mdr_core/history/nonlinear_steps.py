@@ -59,25 +59,10 @@ class NonlinearSteps:
         """Profile of the contact."""
         return self.path.start.profile
 
-    @property
-    def coordinate(self) -> Array:
-        """Contact coordinate at the start and at each sample, shape (n + 1,)."""
-        return self.path.contact_coordinate
-
-    @property
-    def conjugate(self) -> Array:
-        """Prescribed depth or reduced force at the start and at each sample, shape (n + 1,)."""
-        return self.path.prescribed
-
-    @property
-    def tangential(self) -> Array:
-        """Tangential coordinate at the start and at each sample, shape (n + 1,)."""
-        return self.path.coordinates[1]
-
     @cached_property
     def rate(self) -> Array:
         """Derivative of the tangential coordinate by the conjugate on each arc, shape (n,)."""
-        rise, moved = np.diff(self.conjugate), np.diff(self.tangential)
+        rise, moved = np.diff(self.path.prescribed), np.diff(self.path.coordinates[1])
         nonlinear = self.path.nonlinear
         return np.where(nonlinear, moved / np.where(rise == 0, 1.0, rise), 0.0)
 
@@ -87,14 +72,16 @@ class NonlinearSteps:
 
         Those at the start come last: their load steps are negative. Shape (3, m).
         """
-        ends = np.arange(self.path.per_step, self.conjugate.size, self.path.per_step)
-        own = [self.rate[ends - 1], self.conjugate[ends], self.tangential[ends]]
-        return np.hstack([own, self.path.at_start[1]])
+        path = self.path
+        ends = np.arange(path.per_step, path.prescribed.size, path.per_step)
+        own = [self.rate[ends - 1], path.prescribed[ends], path.coordinates[1, ends]]
+        return np.hstack([own, path.at_start[1]])
 
     @cached_property
     def larger(self) -> Array:
         """Contact coordinate of the larger end of each arc, > 0."""
-        return np.maximum(np.maximum(self.coordinate[1:], self.coordinate[:-1]), _TINY)
+        s = self.path.contact_coordinate
+        return np.maximum(np.maximum(s[1:], s[:-1]), _TINY)
 
     @cached_property
     def _parts(self) -> tuple[Indices, Array, Array]:
@@ -102,7 +89,7 @@ class NonlinearSteps:
 
         An arc is as steep as a face of the cone at one radius: |d(tangential)/dn| = 1.
         """
-        start, stop = self.coordinate[:-1], self.coordinate[1:]
+        start, stop = self.path.contact_coordinate[:-1], self.path.contact_coordinate[1:]
         with np.errstate(divide="ignore"):
             turn = np.abs(self.rate) / 2 if self.path.over_forces else 1 / (2 * np.abs(self.rate))
         low, high = np.sort(self.profile.contact_radius(np.stack([start, stop])), axis=0)
@@ -137,9 +124,9 @@ class NonlinearSteps:
         s[last] = stop
         arc = owner[part]
         samples = np.flatnonzero(np.append(np.diff(arc) > 0, True))
-        moments, rise = self.path.moments, np.diff(self.conjugate)[arc]
-        climbed = (moments.conjugate(s) - self.conjugate[arc]) / np.where(rise == 0, 1.0, rise)
-        tangential = self.tangential[arc] + np.diff(self.tangential)[arc] * climbed
+        moments, (_, tangential) = self.path.moments, self.path.coordinates
+        climbed = moments.conjugate(s) - self.path.prescribed[arc]
+        tangential = tangential[arc] + self.rate[arc] * climbed
         normal = moments.normal(s)
         normal[samples], tangential[samples], *_ = self.path.load_points
         step = self.path.step[arc]
@@ -303,7 +290,7 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
         path.within_friction(0 * beyond, beyond, path.step)
     nonlinear = NonlinearSteps(path)
     finest = max(rtol ** (-1 / 3), _MIN_CHORDS)
-    travel = np.sum(np.abs(np.diff(nonlinear.coordinate)) / nonlinear.larger)
+    travel = np.sum(np.abs(np.diff(path.contact_coordinate)) / nonlinear.larger)
     finest = int(min(finest, _MAX_CHORDS, _MAX_TOTAL_CHORDS / max(travel, 1.0)))
     sets, (lines, _) = [], path.at_start
     if len(lines) == 1:

@@ -2,7 +2,7 @@
 
 cimport cython
 
-cdef Py_ssize_t FORWARD, BACKWARD, COLUMNS, LOW, GROWTH, ANCHOR, STEP, NEITHER
+cdef Py_ssize_t FORWARD, BACKWARD, LOW, GROWTH, ANCHOR, STEP, NEITHER
 cdef Py_ssize_t POINT, CORNER, MIRROR, AXIS, NORMAL, PLACE, RISE, FALL, TURN
 
 
@@ -19,15 +19,11 @@ cdef class PolylineStack:
         Py_ssize_t[::1] number, Py_ssize_t[::1] parent, double[:, ::1] vertices,
         Py_ssize_t[::1] tops
     )
-    @cython.locals(at=Py_ssize_t, begin=Py_ssize_t, i=Py_ssize_t, made=Py_ssize_t)
+    @cython.locals(begin=Py_ssize_t, i=Py_ssize_t, made=Py_ssize_t, size=Py_ssize_t)
     cpdef Py_ssize_t run_each(
         self, Py_ssize_t[::1] ends, double[:, ::1] path, const double[:, ::1] vertices,
         double[:, ::1] moved, Py_ssize_t[::1] moved_ends
     )
-    @cython.locals(column=Py_ssize_t)
-    cdef void _copy_row(
-        self, const double[:, ::1] source, Py_ssize_t at, double[:, ::1] target, Py_ssize_t to
-    ) noexcept
     cpdef void move(self, double x, double y, bint continues, double load_step) noexcept
     cdef void _aim(self, double x, double y) noexcept
     @cython.locals(below=Py_ssize_t)

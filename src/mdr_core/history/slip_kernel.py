@@ -8,7 +8,7 @@ On a random path branch prediction fails, so what can be selected by an index is
 `if`. One file holds all functions, since Cython inlines within a module only.
 """
 
-from mdr_core.history.slip_layout import ANCHOR, AXIS, COLUMNS, GROWTH, LOW, MIRROR, NORMAL, STEP
+from mdr_core.history.slip_layout import ANCHOR, AXIS, GROWTH, LOW, MIRROR, NORMAL, STEP
 from mdr_core.typing import Array, Flags, Indices
 
 # Columns of the sums of a vertex.
@@ -104,23 +104,18 @@ class PolylineStack:
         """
         begin = made = 0
         for i in range(len(ends)):
-            for at in range(begin, ends[i]):
-                self._copy_row(vertices, at, self.rows, AXIS + at - begin)
-            self.top = MIRROR + ends[i] - begin
+            size = ends[i] - begin
+            self.rows[AXIS : AXIS + size] = vertices[begin : ends[i]]
+            self.top = MIRROR + size
             self.x = path[0, i]
             self.y = path[1, i]
             self.move(path[2, i], path[3, i], continues=False, load_step=0)
-            for at in range(AXIS, self.top + 1):
-                self._copy_row(self.rows, at, moved, made)
-                made += 1
+            size = self.top - MIRROR
+            moved[made : made + size] = self.rows[AXIS : AXIS + size]
             begin = ends[i]
+            made += size
             moved_ends[i] = made
         return made
-
-    def _copy_row(self, source: Array, at: int, target: Array, to: int) -> None:
-        """Copy a vertex."""
-        for column in range(COLUMNS):
-            target[to, column] = source[at, column]
 
     def move(self, x: float, y: float, continues: bool, load_step: int) -> None:  # noqa: FBT001
         """Move the load point straight to (x, y), normal and tangential coordinate.

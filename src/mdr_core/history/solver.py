@@ -306,22 +306,21 @@ def solve(
 
 
 def _require_solvable(path: SampledPath, rtol: float) -> None:
-    """Raise InputError unless the normal contact has a solution at all samples.
+    """Raise InputError unless the normal contact has a solution at the start and all samples.
 
     It has, if it has one under the largest load and under the smallest above zero.
     """
-    least, most = extremes(path.normal)
+    loads = path.normal_loads
+    least, most = extremes(loads)
     if least <= 0 < most:
-        least = float(path.normal[path.normal > 0].min())
-    # A state below the smallest load has a solution as well.
-    begin = max(path.begin.normal, least, 0.0)
-    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0), begin)):
+        least = float(loads[loads > 0].min())
+    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0))):
         try:
             given = {path.normal_name: number(load)}
             normal.solve(path.start.profile, path.start.e_star, **given, rtol=rtol)
         except InputError as error:
             if error.path[:1] != ("load",):
                 raise
-            at = path.step[path.normal == load]
-            place = ("history", "normal", path.normal_name, int(at[0])) if at.size else _BEGIN
-            raise InputError(place, error.detail) from None
+            at = int(np.argmax(loads == load))
+            place = "history", "normal", path.normal_name, int(path.step[at - 1])
+            raise InputError(place if at else _BEGIN, error.detail) from None
