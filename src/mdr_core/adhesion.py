@@ -58,7 +58,7 @@ _LOAD, _ROUNDING = 2.0**-49, 1e-13
 _NEAR: Final = 0.1
 
 
-class _Curve:
+class Curve:
     """Equilibrium states of one profile over the contact coordinate, with c = `c`.
 
     Loads are depths [length], and F_N/E* [length^2] under the name `normal_force`.
@@ -172,7 +172,7 @@ class AdhesiveContact(NormalContact):
     Results are those of a `NormalContact`, and the pull-off.
     """
 
-    curve: _Curve
+    curve: Curve
     retraction: Array
     """Retraction from the reference [length]: Delta_l, or less on a flat punch."""
     tabor_number: float = inf
@@ -361,7 +361,7 @@ def solve(
         raise InputError(
             ("load", name), validation.FINITE if np.size(load) else "at least one load is needed"
         )
-    curve = _Curve(profile, sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus))
+    curve = Curve(profile, sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus))
     coordinate, retraction, states = _state(curve, name, load, modulus)
     at_pull_off = float(curve.retraction(curve.at_pull_off))
     contact = AdhesiveContact(
@@ -376,7 +376,7 @@ def solve(
     return contact
 
 
-def _state(curve: _Curve, name: str, load: Array, e_star: float) -> tuple[Array, Array, int]:
+def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, Array, int]:
     """Coordinate and retraction under each load, and the most states under one of them."""
     profile, states = curve.profile, 1
     if name == "contact_radius":

@@ -1,13 +1,17 @@
-"""Modulus, contact point and offset from a measured curve of force over depth.
+"""Modulus, contact point, offset and adhesion from a measured curve of force over depth.
 
-Least squares of F = E* F^(d - d_0) + F_0 with the exact slope dF^/dd = 2 a: linear in E* and F_0,
-and searched in d_0, because the sum of squares may have several minima.
+Least squares of F = E* F^(d - d_0; w/E*) + F_0 with exact slopes: linear in E* and F_0, and
+searched in d_0 and w/E*, because the sum of squares may have several minima. With adhesion F^ is
+that of the outermost stable state, as on unloading, and zero after the pull-off.
 
 Source: notes, §15.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf, pi, sqrt
 from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
@@ -15,12 +19,12 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 from scipy.special import chdtrc, fdtrc
 
-from mdr_core import normal, validity
+from mdr_core import adhesion, normal, validity
 from mdr_core.errors import InputError, Notice
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 from mdr_core.validation import (
     FINITE,
     as_numbers,
@@ -29,15 +33,21 @@ from mdr_core.validation import (
     require_type,
 )
 
-PARAMETERS: Final = ("e_star", "contact_point", "force_offset")
+PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
 """Quantities that can be fitted."""
 # Contact points that are tried first, part of the range of depths before the first of them, and
 # points of the curve that are used there.
 _TRIED, _BEFORE, _USED = 120, 1.0, 100
 # Minima of these from which the search starts, and its largest number of steps.
 _STARTS, _STEPS = 3, 100
-# Relative change of the contact point over the range of depths that is rounding error.
+# Change of the contact point over the range of depths, and of w/E* over itself, that is rounding.
 _CONVERGED: Final = 1e-13
+# Retractions that are tried first, at the contact radius of the whole range of depths and over it.
+_RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
+# Multiple of the pull-off depth beyond which no point is in contact.
+_AFTER: Final = 1.5
+# Part of w/E* that a step leaves, at least: it is positive.
+_LEAST: Final = 0.01
 # Points in contact, at least, in addition to the parameters.
 _SPARE: Final = 2
 # Polynomials over the depth that the residuals of a right shape do not contain, and the probability
@@ -45,6 +55,8 @@ _SPARE: Final = 2
 _DEGREES, _FALSE_ALARM = 8, 0.01
 # Fall of the force below that before contact, over its rise, that is adhesion.
 _DIP: Final = 0.1
+# Contact point [length], and w/E* [length].
+_State = tuple[float, float]
 # Scatter over the largest force that is rounding error.
 _ROUNDING: Final = 1e-11
 
@@ -58,13 +70,18 @@ class Fit(validity.ContactResults):
     normal: NormalContact
     """Fitted contact at the largest depth."""
     indentation_depth: Array
-    """Measured depths, in the coordinate of the curve [length], shape (k,)."""
+    """Measured depths, in the coordinate of the curve [length], shape (k,).
+
+    With adhesion those that are fitted, in ascending order.
+    """
     normal_force: Array
     """Fitted forces at these depths [force], shape (k,)."""
     contact_point: float
     """Depth d_0 of first contact in the coordinate of the curve [length]."""
     force_offset: float
     """Force F_0 without contact [force]."""
+    work_of_adhesion: float
+    """Work of adhesion w [force/length], 0 if it is not fitted."""
     standard_errors: Array
     """Standard deviations of the fitted parameters, shape (n,)."""
     correlation: Array
@@ -82,6 +99,7 @@ class Fit(validity.ContactResults):
         "e_star",
         "contact_point",
         "force_offset",
+        "work_of_adhesion",
         "standard_errors",
         "correlation",
         "noise",
@@ -107,8 +125,9 @@ class Fit(validity.ContactResults):
             measured = self.normal_force + self.residual
             before = measured[self.indentation_depth.argmin()]
             remedy = "" if "force_offset" in self.fit else "; fit the force_offset too"
-            if before - measured.min() > _DIP * (measured.max() - before):
-                remedy = "; the force falls below that before contact: the fit leaves out adhesion"
+            is_adhesive = "work_of_adhesion" in self.fit
+            if not is_adhesive and before - measured.min() > _DIP * (measured.max() - before):
+                remedy = "; the force falls below that before contact: fit the work_of_adhesion too"
             message = (
                 f"the residuals are not noise (probability {self.misfit:.1g}): the shape, the "
                 "range of the fit or the model is wrong, and the standard errors do not hold"
@@ -129,7 +148,7 @@ def solve(
     body_thickness: float | None = None,
     rtol: float = 1e-10,
 ) -> Fit:
-    """Return modulus, contact point and force offset that fit a measured curve best.
+    """Return the parameters of a contact that fit a measured curve best.
 
     Source: notes, §15.
 
@@ -138,8 +157,10 @@ def solve(
     profile : profile of any kind, with single numbers as parameters.
     indentation_depth, normal_force : the curve, in any order, with or without the approach before
         contact [length], [force], shape (k,).
-    fit : parameters to fit, of "e_star", "contact_point" and "force_offset". The contact point and
-        the offset are zero if they are not fitted.
+    fit : parameters to fit, of "e_star", "contact_point", "force_offset" and "work_of_adhesion".
+        All but the modulus are zero if they are not fitted. A curve with adhesion is that of
+        unloading, with or without points after the pull-off. Its points between the least force and
+        the pull-off, states that only a stiff instrument holds, are left out.
     e_star : effective modulus, needed unless it is fitted [pressure].
     noise : standard deviation of the forces, by default that of the residuals [force].
     body_thickness : see `from_bodies` [length].
@@ -176,12 +197,17 @@ def solve(
     for name, value in (("e_star", e_star), ("noise", noise)):
         if value is not None:
             require_single_positive((name,), value)
-    model = _Model(profile, depth, force, tuple(fit), e_star)
+    if "work_of_adhesion" in fit and profile.has_no_partial_slip:
+        detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
+        raise InputError(("fit",), detail)
     deepest = profile.largest_loads
     if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
-    return model.result(model.contact_point(), noise, body_thickness, rtol)
+    model = _Model(profile, depth, force, tuple(fit), e_star, np.ones(depth.size, dtype=bool))
+    if "work_of_adhesion" in fit:
+        model = _adhesive(model)
+    return model.result(model.best(), noise, body_thickness, rtol)
 
 
 def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
@@ -198,68 +224,139 @@ def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array
     return depth, force
 
 
+def _require_points(touching: int, model: "_Model") -> None:
+    if touching < len(model.fit) + _SPARE:
+        ends = (model.profile.largest_loads or (inf,))[0]
+        remedy = "measure deeper, or more points"
+        if ends < np.ptp(model.depth):
+            remedy = f"the profile ends at the depth {ends:.3g}: give a longer one"
+        detail = f"too few points are in contact, {touching}: {remedy}"
+        raise InputError(("indentation_depth",), detail)
+
+
+def _adhesive(curve: "_Model") -> "_Model":
+    """Model of the states beyond the least force, and of the points after the pull-off.
+
+    The latter lie well below the pull-off depth that the former show, and before the largest jump.
+    """
+    order = np.argsort(curve.depth, kind="stable")
+    depth, force = curve.depth[order], curve.force[order]
+    least = int(np.argmin(force))
+    _require_points(depth.size - 1 - least, curve)
+
+    def without_others(count: int) -> _Model:
+        used = np.r_[:count, least + 1 : depth.size]
+        return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
+
+    d0, work = without_others(0).best()
+    pull_off = adhesion.Curve(curve.profile, sqrt(2 * pi * work)).least["indentation_depth"]
+    jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
+    return without_others(min(int(np.searchsorted(depth, d0 + _AFTER * pull_off)), jump))
+
+
 class _Point(NamedTuple):
-    """Best linear parameters for a contact point, with slopes and residuals of the forces."""
+    """Best linear parameters for the nonlinear ones, with slopes and residuals of the forces."""
 
     parameters: dict[str, float]
     slopes: Array
     residual: Array
+    touching: int
 
     @property
     def squares(self) -> float:
         return float(np.sum(np.square(self.residual)))
 
 
+def _forces(
+    profile: Profile, pressed: Array, work: float, touches: Flags
+) -> tuple[Array, Array, Array]:
+    """Forces over E* at depths from first contact, and their slopes in the depth and in w/E*.
+
+    With adhesion the force at less depth than that of the least force is the least.
+    """
+    if not work:
+        contact = normal.solve(profile, 1.0, indentation_depth=np.maximum(pressed, 0.0))
+        slope = np.where(pressed > 0, contact.normal_stiffness, 0.0)
+        return contact.normal_force, slope, np.zeros_like(pressed)
+    force, by_depth, by_work = np.zeros((3, *pressed.shape))
+    c, at = sqrt(2 * pi * work), np.broadcast_to(touches, pressed.shape)
+    # A contact that would spread beyond the profile fits nothing.
+    with suppress(InputError):
+        curve = adhesion.Curve(profile, c)
+        ends = np.array([curve.at_pull_off, curve.stable["indentation_depth"][1][-1]])
+        held = np.clip(pressed[at], *curve.load("indentation_depth", ends))
+        edge, _ = curve.outermost("indentation_depth", held)
+        a = profile.contact_radius(edge)
+        # dF/dd = 2 E* (a - steep), and dF/dc = -2 E* a^(1/2) steep at the same depth.
+        steep = a / curve.excess(0.5, edge)
+        force[at] = curve.load("normal_force", edge)
+        by_depth[at], by_work[at] = 2 * (a - steep), -2 * np.sqrt(a) * steep * pi / c
+    return force, by_depth, by_work
+
+
 @dataclass(frozen=True, eq=False)
 class _Model:
-    """Curve, and the model whose linear parameters follow from a contact point."""
+    """Curve, and the model whose linear parameters follow from contact point and w/E*."""
 
     profile: Profile
     depth: Array
     force: Array
     fit: tuple[str, ...]
     e_star: float | None
+    touches: Flags
+    """Points that are not after a pull-off."""
 
-    def contact_point(self) -> float:
-        """Return the contact point of the least sum of squares."""
-        if "contact_point" not in self.fit:
-            return 0.0
+    def best(self) -> _State:
+        """Return contact point and w/E* of the least sum of squares."""
         low, high = float(self.depth.min()), float(self.depth.max())
-        start = low - _BEFORE * (high - low)
-        if self.profile.largest_loads is not None:
+        limits, tried, works = (0.0, 0.0), np.zeros(1), np.zeros(1)
+        deepest = (
+            inf if self.profile.largest_loads is None else float(self.profile.largest_loads[0])
+        )
+        if "contact_point" in self.fit:
             # The curve has to stay on the profile.
-            start = max(start, high - float(self.profile.largest_loads[0]))
+            limits = max(low - _BEFORE * (high - low), high - deepest), high
+            tried = np.linspace(*limits, _TRIED, endpoint=False)
+        if "work_of_adhesion" in self.fit:
+            reach = normal.solve(self.profile, 1.0, indentation_depth=min(high - low, deepest))
+            works = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reach.contact_radius)
         some = np.argsort(self.depth)[:: max(1, self.depth.size // _USED)]
-        coarse = _Model(self.profile, self.depth[some], self.force[some], self.fit, self.e_star)
-        tried = np.linspace(start, high, _TRIED, endpoint=False)
-        pressed = np.maximum(coarse.depth - tried[:, None], 0.0)
-        reduced = normal.solve(self.profile, 1.0, indentation_depth=pressed).normal_force
-        squares = np.array([np.sum(np.square(coarse.linear(row)[1])) for row in reduced])
-        inner = np.pad(squares, 1, constant_values=np.inf)
-        minima = np.flatnonzero((squares <= inner[:-2]) & (squares <= inner[2:]))
-        best = minima[np.argsort(squares[minima])][:_STARTS]
-        found = [coarse.refined(float(tried[i]), start, high) for i in best]
-        return self.refined(min(found, key=lambda d0: coarse.at(d0).squares), start, high)
+        used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
+        coarse = replace(self, **used)
+        starts: list[tuple[float, _State]] = []
+        for work in works.tolist():
+            pressed = coarse.depth - tried[:, None]
+            forces, *_ = _forces(self.profile, pressed, work, coarse.touches)
+            squares = np.array([np.sum(np.square(coarse.linear(row)[1])) for row in forces])
+            inner = np.pad(squares, 1, constant_values=inf)
+            minima = np.flatnonzero((squares <= inner[:-2]) & (squares <= inner[2:]))
+            starts += [(squares[i], (float(tried[i]), work)) for i in minima]
+        found = [coarse.refined(state, *limits) for _, state in sorted(starts)[:_STARTS]]
+        return self.refined(min(found, key=lambda state: coarse.at(state).squares), *limits)
 
-    def refined(self, d0: float, low: float, high: float) -> float:
-        """Return the contact point of the nearest minimum by the Gauss-Newton method."""
-        span, here = high - low, self.at(d0)
+    def refined(self, state: _State, low: float, high: float) -> _State:
+        """Return the nearest minimum by the Gauss-Newton method."""
+        span, here, fixed = high - low, self.at(state), dict.fromkeys(PARAMETERS, 0.0)
         for _ in range(_STEPS):
+            d0, work = state
             scale = np.linalg.norm(here.slopes, axis=0)
             scale = np.where(scale > 0, scale, 1.0)
             change, *_ = np.linalg.lstsq(here.slopes / scale, here.residual, rcond=None)
-            step = float((change / scale)[self.fit.index("contact_point")])
+            step, part = fixed | dict(zip(self.fit, change / scale, strict=True)), 1.0
             # Half of a step that leads too far.
-            while abs(step) > _CONVERGED * span:
-                moved = min(max(d0 + step, low), high - _CONVERGED * span)
-                there = self.at(moved)
+            while True:
+                moved = min(max(d0 + part * step["contact_point"], low), high - _CONVERGED * span)
+                modulus = here.parameters["e_star"] + part * step["e_star"]
+                total = work * here.parameters["e_star"] + part * step["work_of_adhesion"]
+                other = max(total / modulus, _LEAST * work) if modulus > 0 else work
+                if abs(moved - d0) <= _CONVERGED * span and abs(other - work) <= _CONVERGED * work:
+                    return state
+                there = self.at((moved, other))
                 if there.squares < here.squares:
                     break
-                step /= 2
-            else:
-                break
-            d0, here = moved, there
-        return d0
+                part /= 2
+            state, here = (moved, other), there
+        return state
 
     def linear(self, reduced: Array) -> tuple[dict[str, float], Array]:
         """Return the best modulus and offset for forces over E*, and the residuals."""
@@ -276,32 +373,27 @@ class _Model:
             goal - matrix / scale @ solved
         )
 
-    def at(self, d0: float) -> _Point:
-        """Return the best fit with a contact point."""
-        pressed = np.maximum(self.depth - d0, 0.0)
-        contact = normal.solve(self.profile, 1.0, indentation_depth=pressed)
-        linear, residual = self.linear(contact.normal_force)
+    def at(self, state: _State) -> _Point:
+        """Return the best fit with a contact point and w/E*."""
+        d0, work = state
+        forces, by_depth, by_work = _forces(self.profile, self.depth - d0, work, self.touches)
+        linear, residual = self.linear(forces)
         columns = {
-            "e_star": contact.normal_force,
-            "contact_point": -linear["e_star"] * contact.normal_stiffness * (self.depth > d0),
-            "force_offset": np.ones_like(pressed),
+            # At constant w.
+            "e_star": forces - work * by_work,
+            "contact_point": -linear["e_star"] * by_depth,
+            "force_offset": np.ones_like(forces),
+            "work_of_adhesion": by_work,
         }
         slopes = np.column_stack([columns[name] for name in self.fit])
-        return _Point(linear, slopes, residual)
+        return _Point(linear, slopes, residual, int(np.count_nonzero(by_depth)))
 
     def result(
-        self, d0: float, noise: float | None, body_thickness: float | None, rtol: float
+        self, state: _State, noise: float | None, body_thickness: float | None, rtol: float
     ) -> Fit:
-        """Return the fit at the contact point, or an InputError."""
-        parameters, slopes, residual = self.at(d0)
-        touching = int(np.sum(self.depth > d0))
-        if touching < len(self.fit) + _SPARE:
-            ends = (self.profile.largest_loads or (np.inf,))[0]
-            remedy = "measure deeper, or more points"
-            if ends < np.ptp(self.depth):
-                remedy = f"the profile ends at the depth {ends:.3g}: give a longer one"
-            detail = f"too few points are in contact, {touching}: {remedy}"
-            raise InputError(("indentation_depth",), detail)
+        """Return the fit with nonlinear parameters, or an InputError."""
+        parameters, slopes, residual, touching = self.at(state)
+        _require_points(touching, self)
         if parameters["e_star"] <= 0:
             detail = "falls with the depth: a compressive force is positive, reverse its sign"
             raise InputError(("normal_force",), detail)
@@ -311,12 +403,11 @@ class _Model:
         # The inverse of a triangle, because the square of the matrix would lose half of the digits.
         inverse = np.linalg.inv(np.linalg.qr(slopes / scale, mode="r"))
         deviations = np.linalg.norm(inverse, axis=1)
-        contact = normal.solve(
-            self.profile,
-            Material(parameters["e_star"], body_thickness=body_thickness),
-            indentation_depth=max(float(self.depth.max()) - d0, 0.0),
-            rtol=rtol,
-        )
+        material = Material(parameters["e_star"], body_thickness=body_thickness)
+        work = state[1] * material.e_star
+        solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
+        deepest = max(float(self.depth.max()) - state[0], 0.0)
+        contact = solve(self.profile, material, indentation_depth=deepest, rtol=rtol)
         condition = float(np.linalg.norm(inverse, 2))
         sigma = noise or scatter
         return Fit(
@@ -324,8 +415,9 @@ class _Model:
             contact,
             self.depth,
             self.force - residual,
-            d0,
+            state[0],
             parameters["force_offset"],
+            work,
             sigma * deviations / scale,
             (inverse @ inverse.T) / np.multiply.outer(deviations, deviations),
             residual,

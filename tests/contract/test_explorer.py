@@ -103,6 +103,20 @@ def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     assert not visit.errors
 
 
+def test_work_of_adhesion_is_fitted(visit: Visit) -> None:
+    # JKR at E* = 1 N/m², R = 1 m, w = 1e-3 N/m.
+    a = np.geomspace(0.1, 0.4, 40)
+    d, force = a**2 - np.sqrt(2e-3 * np.pi * a), 4 / 3 * a**3 - np.sqrt(8e-3 * np.pi * a**3)
+    columns = [",".join(f"{x:.12g}" for x in column) for column in (d, force)]
+    fitted = "contact_point,force_offset,work_of_adhesion"
+    visit.open(
+        f"?tab=fit&kind=paraboloid&radius=1&fitted={fitted}#d={columns[0]}&F={columns[1]}&ud=m&uF=N"
+    )
+    assert visit.page.locator("#problem").is_hidden()
+    assert visit.number("Work of adhesion").startswith("0.001 ")
+    assert not visit.errors
+
+
 def test_thin_gel_is_stiffer_than_a_half_space(visit: Visit) -> None:
     visit.open("?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&load=1e-4")
     with visit.changing():

@@ -47,6 +47,81 @@ def test_exact_curve_returns_its_parameters(shape: str) -> None:
     assert [notice.code for notice in found.warnings if notice.code == "misfit"] == []
 
 
+W = 2e-4
+#: Contact radius -> depth and F/E* without adhesion, in closed form.
+REFERENCES = {
+    "paraboloid": lambda a: (a**2, 4 / 3 * a**3),
+    "cone": lambda a: (np.pi / 2 * 0.3 * a, np.pi / 2 * 0.3 * a**2),
+    "sphere": lambda a: (
+        a * np.arctanh(2 * a),
+        (a**2 + 0.25) * np.arctanh(2 * a) - a / 2,
+    ),
+}
+
+
+def jkr(shape: str, radii: Array) -> tuple[Array, Array]:
+    """Depth and force of JKR, from 20 points after the pull-off."""
+    depth, force = REFERENCES[shape](radii)
+    step = np.sqrt(2 * np.pi * radii * W / E_STAR)
+    d, f = depth - step, E_STAR * (force - 2 * radii * step)
+    return np.append(np.linspace(-0.1, -0.06, 20), d) + D_0, np.append(np.zeros(20), f) + F_0
+
+
+# The pull-off of the cone is at a = 4.2e-3 under a force, at 4.7e-4 under the depth of a stiff
+# instrument; those of the ball at 0.062 and 0.030.
+@pytest.mark.parametrize(
+    ("given", "shape", "least"),
+    [
+        ("ball", "paraboloid", 0.062),
+        ("sphere", "sphere", 0.04),
+        ("known modulus", "cone", 3e-3),
+        ("stiff instrument", "cone", 4.8e-4),
+    ],
+)
+def test_exact_adhesive_curve_returns_its_parameters(given: str, shape: str, least: float) -> None:
+    depth, force = jkr(shape, np.geomspace(least, 0.15, 60))
+    known = {"e_star": E_STAR} if given == "known modulus" else {}
+    names = [*ALL, "work_of_adhesion"][len(known) :]
+    found = fit.solve(
+        SHAPES[shape], indentation_depth=depth, normal_force=force, fit=names, **known
+    )
+    expected = {"e_star": E_STAR, "contact_point": D_0, "force_offset": F_0, "work_of_adhesion": W}
+    for name, value in expected.items():
+        assert getattr(found, name) == pytest.approx(value, rel=1e-7, abs=0), name
+    assert found.residual == pytest.approx(0, abs=1e-10 * force.max())
+    assert isinstance(found.normal, mdr.adhesion.AdhesiveContact)
+
+
+def test_pull_off_of_a_flat_punch_is_no_fit() -> None:
+    with pytest.raises(mdr.InputError, match="only the pull-off of a flat punch"):
+        fitted(
+            SHAPES["flat punch"], forces(SHAPES["flat punch"]), fit=["work_of_adhesion"], e_star=1
+        )
+
+
+@pytest.mark.parametrize("sign", [0, -1])
+def test_curves_without_a_rise_are_no_adhesive_contact(sign: int) -> None:
+    force = sign * forces(SHAPES["paraboloid"])
+    with pytest.raises(mdr.InputError, match=r"in contact, 0: measure deeper|falls with the depth"):
+        fitted(SHAPES["paraboloid"], force, fit=["e_star", "work_of_adhesion"])
+
+
+@pytest.mark.long
+def test_intervals_cover_the_work_of_adhesion() -> None:
+    depth, force = jkr("paraboloid", np.geomspace(0.055, 0.15, 80))
+    names, random = (*ALL, "work_of_adhesion"), np.random.default_rng(4)
+    off = []
+    for _ in range(20):
+        noisy = force - 0.03 * force.min() * random.standard_normal(force.size)
+        found = fit.solve(
+            SHAPES["paraboloid"], indentation_depth=depth, normal_force=noisy, fit=names
+        )
+        values = np.array([getattr(found, name) for name in names]) - [E_STAR, D_0, F_0, W]
+        off.append(values / found.standard_errors)
+    assert np.sum(np.abs(off) > 1.972) <= 12
+    assert 0.7 < np.std(off) < 1.3
+
+
 @pytest.mark.parametrize("order", ["descending", "shuffled", "no approach"])
 def test_order_and_approach_change_nothing(order: str) -> None:
     profile, index = SHAPES["hyperboloid"], np.arange(DEPTH.size)
@@ -209,7 +284,7 @@ def test_misfit_by_an_offset_or_by_adhesion_says_so() -> None:
     profile, depth = mdr.Paraboloid(1.0), np.linspace(-5e-3, 1e-2, 200)
     for force, remedy in (
         (forces(profile) + 1e-3 * forces(profile).max(), "fit the force_offset too"),
-        (adhesive(profile, depth), "leaves out adhesion"),
+        (adhesive(profile, depth), "fit the work_of_adhesion too"),
     ):
         (misfit,) = (each for each in fitted(profile, force).warnings if each.code == "misfit")
         assert misfit.message.endswith(remedy)

@@ -84,3 +84,21 @@ def test_errors_point_at_the_input(
     (error,) = response.json()["errors"]
     assert error["pointer"] == pointer
     assert words in error["detail"]
+
+
+def test_work_of_adhesion_from_a_curve_of_jkr(client: Client) -> None:
+    # E* = 1, R = 1: d = a² - (2πwa)^(1/2), F = 4/3 a³ - (8πwa³)^(1/2), in another coordinate.
+    a, w = np.geomspace(0.1, 0.4, 40), 1e-3
+    curve = {
+        "indentation_depth": (a**2 - np.sqrt(2 * np.pi * w * a) + 0.5).tolist(),
+        "normal_force": (4 / 3 * a**3 - np.sqrt(8 * np.pi * w * a**3)).tolist(),
+        "fit": ["e_star", "contact_point", "work_of_adhesion"],
+    }
+    ball = {"kind": "paraboloid", "radius": 1.0}
+    document = client.post(PATH, {"profile": ball, **curve}).json()
+    FitAnswer.model_validate(document)
+    found = [document[name][0] for name in curve["fit"]]
+    assert found == pytest.approx([1.0, 0.5, w], rel=1e-8, abs=0)
+    assert document["force_offset"] == [0.0]
+    # Only a depth holds the states up to the least force.
+    assert len(document["residual"]) == a.size - 1 - np.argmin(curve["normal_force"])

@@ -55,7 +55,7 @@ async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send)
     "/v1/normal/fit",
     operation_id="fit",
     tags=["contact"],
-    summary="Modulus, contact point and force offset from a measured curve of force over depth",
+    summary="Modulus, contact point, offset and adhesion from a measured curve of force over depth",
     response_model=answers.FitAnswer,
     responses=RESULT,
 )

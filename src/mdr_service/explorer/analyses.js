@@ -110,6 +110,8 @@ export const ANALYSES = {
       choices: [
         ["none", "nothing"], ["contact_point", "contact point"],
         ["contact_point,force_offset", "contact point, force offset"],
+        ["contact_point,work_of_adhesion", "contact point, work of adhesion"],
+        ["contact_point,force_offset,work_of_adhesion", "contact point, force offset, work of adhesion"],
       ],
     }],
     solve: solveFit,

@@ -23,9 +23,12 @@ const DEFAULTS = {
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
 };
 
+const POINT = "contact_point", OFFSET = `${POINT},force_offset`;
+const FITTED = [POINT, OFFSET, ...[POINT, OFFSET].map((names) => `${names},work_of_adhesion`)];
+
 // Input that is chosen -> its choices.
 const CHOICES = {
-  tab: TABS, fitted: ["none", "contact_point", "contact_point,force_offset"], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
+  tab: TABS, fitted: ["none", ...FITTED], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };

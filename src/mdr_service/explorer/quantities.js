@@ -36,5 +36,6 @@ export const QUANTITIES = {
   contact_point: ["Contact point", "displacement"],
   force_offset: ["Force offset", "force"],
   data_error: ["error by the points", "1"],
+  work_of_adhesion: ["Work of adhesion", "N/m"],
   stress_xx: ["Stress σ_xx", "pressure"],
 };

@@ -417,9 +417,11 @@ export async function solveFit(inputs, query) {
     const [value, error] = [found[name][0], found.standard_errors[i]];
     return [label, `${quantity(value, dimension, inputs)} ± ${quantity(error, dimension, inputs, 2)}`];
   });
-  const order = depths.map((_, i) => i).sort((i, j) => depths[i] - depths[j]);
+  // With adhesion some of the measured points are left out.
+  const { indentation_depth: used } = found;
+  const order = used.map((_, i) => i).sort((i, j) => used[i] - used[j]);
   const sorted = (column) => order.map((i) => column[i]);
-  const x = sorted(depths);
+  const x = sorted(used);
   const [xAxis, yAxis] = [QUANTITIES.indentation_depth, QUANTITIES.normal_force];
   const correlation = found.correlation[0][1];
   return {
@@ -435,7 +437,7 @@ export async function solveFit(inputs, query) {
       {
         request: "Fit", title: "Force against depth", size: "wide", x: xAxis, y: yAxis,
         traces: [
-          { name: "measured", x, y: sorted(forces), mode: "markers", role: "second" },
+          { name: "measured", x: depths, y: forces, mode: "markers", role: "second" },
           { name: "fit", x, y: sorted(found.normal_force) },
         ],
       },

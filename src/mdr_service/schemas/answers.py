@@ -98,6 +98,7 @@ class FitAnswer(SolvedAnswer):
     e_star: list[float] = _pressure("Effective modulus E*")
     contact_point: list[float] = _length("Depth of first contact, in the depths of the curve")
     force_offset: list[float] = _force("Force without contact")
+    work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
     standard_errors: list[float] = quantity(
         "as the parameter", "Standard deviations of the fitted parameters"
     )
@@ -107,7 +108,9 @@ class FitAnswer(SolvedAnswer):
         "Probability that residuals of the right shape are as far from noise; below 0.01 with the "
         "warning `misfit`"
     )
-    indentation_depth: list[float] = _length("Measured depths")
+    indentation_depth: list[float] = _length(
+        "Measured depths; with adhesion without those between the least force and the pull-off"
+    )
     normal_force: list[float] = _force("Fitted forces")
     residual: list[float] = _force("Measured less fitted forces")
 

@@ -9,7 +9,7 @@ from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
 
-Fitted = Literal["e_star", "contact_point", "force_offset"]
+Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
 _CURVE = {"min_length": 3, "max_length": SETTINGS.max_loads, "fail_fast": True}
 
 
@@ -25,7 +25,8 @@ class FitQuery(Query):
     )
     fit: Annotated[list[Fitted], OnceEach] = Field(
         default=["e_star", "contact_point"],
-        description="Parameters to fit; contact point and offset are otherwise 0.",
+        description="Parameters to fit; all but the modulus are otherwise 0. With "
+        "`work_of_adhesion` the curve is that of unloading.",
         min_length=1,
     )
     noise: float = positive(
