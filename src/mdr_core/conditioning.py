@@ -18,11 +18,9 @@ from mdr_core.typing import Array, Flags
 _EPS: Final = float(np.finfo(float).eps)
 # Relative distance over which the slope of a wide annulus is averaged next to a break.
 _STEP: Final = 4e-11
-# Relative rounding error of a load, and of a contact coordinate.
-_LOAD, _COORDINATE = 8 * _EPS, 2 * _EPS
+# Relative rounding error of a contact coordinate.
+_COORDINATE: Final = 2 * _EPS
 _TINY: Final = float(np.finfo(float).tiny)
-# Exponent of the width of a narrow annulus in the dissipated energy.
-_CUBE: Final = 3.0
 # Part of full slip up to which all condition numbers are small.
 _LATE: Final = 0.9
 # Relative distance from the limiting force within which the contact slides.
@@ -62,7 +60,8 @@ def near_full_slip(
         load, slope = load_and_slope(profile, of_force=force_prescribed)(low)
         other_load, other_slope = other(low)
         moved = load / (slope * np.maximum(1 - ratio, _EPS / 2))
-        condition = _CUBE * moved * other_slope / (other(high)[0] - other_load)
+        # The energy of a narrow annulus grows with the cube of its width.
+        condition = 3 * moved * other_slope / (other(high)[0] - other_load)
         if edges:
             radial = moved * profile.radius_slope(low)
             c, a = profile.contact_radius(low), profile.contact_radius(high)
@@ -111,7 +110,7 @@ def of_sliding(
 def narrow_annulus(coordinate: Array, width: Array) -> Array:
     """Return the condition number 3 a/(a - c) of each annulus between two edges [1]."""
     slips = width > 0
-    return where(slips, _CUBE * coordinate / where(slips, width, 1.0), 0.0)
+    return where(slips, 3 * coordinate / where(slips, width, 1.0), 0.0)
 
 
 def of_edge_slope(contact: NormalContact, width: Array) -> Array:
@@ -125,17 +124,10 @@ def of_edge_slope(contact: NormalContact, width: Array) -> Array:
         return full(0.0, width)
     at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
-        if contact.control == "contact_radius":
-            load, slope, rounding = contact.contact_radius, profile.radius_slope(at), _COORDINATE
-        else:
-            of_force, rounding = contact.control == "normal_force", _LOAD
-            load, slope = load_and_slope(profile, of_force=of_force)(at)
-        error = np.maximum(rounding * load / (at * slope), _COORDINATE)
-        if profile.flattens:
-            error = np.maximum(error, contact.edge_errors)
+        error = np.maximum(contact.edge_errors, _COORDINATE)
         step = np.maximum(np.minimum(where(width > 0, width / at, _STEP), _STEP), error)
         # A radius that is the coordinate itself does not move onto a break that it has not reached.
-        exact = (contact.control == "contact_radius") & (at == load)
+        exact = (contact.control == "contact_radius") & (at == contact.contact_radius)
         sides = np.stack(np.broadcast_arrays((1 - step) * at, where(exact, at, (1 + step) * at)))
         # g'(a) is their ratio.
         slopes = profile.depth_slope(sides) / profile.radius_slope(sides)

@@ -11,16 +11,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, inf, pi, sqrt
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from mdr_core.abel.two_root import Weight
 from mdr_core.quadrature import integrate, reach_of_power
 from mdr_core.typing import Array, Indices
-
-# Part of s(r) above which an angle removes the root at r, and below which log(s) resolves g'.
-_UPPER: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -192,7 +189,7 @@ def _annulus_ends(
 def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float) -> Array:
     """Integrals in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it."""
     base, (s_low, s_high, s_r, root_low, root_high) = branch.base, ends
-    split = np.minimum(np.maximum(_UPPER * s_r, s_low), s_high)
+    split = np.minimum(np.maximum(s_r / 2, s_low), s_high)
     # Relative to r, where a narrow interval is accurate.
     top = root_high / (s_high + s_r)
     root_split = np.where(split > s_low, np.sqrt((s_r - split) * (s_r + split)), root_low)

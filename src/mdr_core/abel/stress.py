@@ -10,11 +10,6 @@ from mdr_core.abel.displacement import Branch, smooth_parts
 from mdr_core.abel.two_root import two_root_integral
 from mdr_core.typing import Array
 
-# Closer to the axis than this part of the radius at which an interval starts its stress is that on
-# the axis.
-_NEAR_AXIS: Final = 1e-8
-# The same for an interval that starts on the axis, as a part of the radius at which it ends.
-_NEXT_TO_AXIS: Final = 1e-120
 _TINY: Final = float(np.finfo(float).tiny)
 
 
@@ -48,7 +43,8 @@ def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol
     """Stress integral over low < x < high, gap = high - low, at radii below high."""
     base = branch.base
     if base == 0:
-        r = np.maximum(r, np.where(low > 0, _NEAR_AXIS * low, _NEXT_TO_AXIS * high))
+        # Nearer to the axis the stress is that on it, up to rounding error.
+        r = np.maximum(r, np.where(low > 0, 1e-8 * low, 1e-120 * high))
     top = inverse_hypot(high, base)
     roots = np.maximum(top + inverse_hypot(low, base), _TINY)
     ends = Annulus(top, gap * (low + high) / roots, low, high)

@@ -24,9 +24,6 @@ from mdr_core.typing import Array, Indices
 Weight = Callable[[Array, Array], Array]
 
 _TINY: Final = float(np.finfo(float).tiny)
-# Root of |r^2 - b^2| of a radius on the break, over b and the least s of the annulus: its square is
-# rounding error.
-_NEXT_TO_BREAK: Final = 1e-8
 
 
 def two_root_integral(
@@ -89,8 +86,9 @@ def two_root_integral(
         index = np.flatnonzero(on_break & (lower <= 0))
         pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)))[0] != 0
         infinite = index[pole]
-        # Other points on the break take the rule of one just above it.
-        above = _NEXT_TO_BREAK * np.minimum(where(lower > 0, lower, upper), b)
+        # Other points on the break take the rule of one just above it, by the rounding error of b^2
+        # and of the least s^2 of the annulus.
+        above = 1e-8 * np.minimum(where(lower > 0, lower, upper), b)
         break2 = np.where(on_break, -above * above, break2)
         root = np.where(on_break, lower, root)
         # Integrals that are not used are short.

@@ -25,8 +25,6 @@ _TOO_CLOSE: Final = 4.0
 # Largest error of a field by that of an edge, relative to its largest value, on a grid with room
 # enough: a tenth of the errors estimated elsewhere.
 _GRID_ERROR: Final = 1e-12
-# End of a grid, in largest contact radii.
-_BEYOND: Final = 1.5
 
 
 class Edges(NamedTuple):
@@ -139,7 +137,7 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     known = edges(contact)
     profile = (contact.normal if isinstance(contact, TangentialContact) else contact).profile
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
-    end = _BEYOND * float(np.max(known.radius)) or 1.0
+    end = 1.5 * float(np.max(known.radius)) or 1.0
     if not profile.has_no_partial_slip:
         end = min(end, float(np.max(profile.domain)))
     exact = known.error == 0

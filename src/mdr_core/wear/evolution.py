@@ -54,14 +54,16 @@ SCALARS: Final = (
 
 # Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
 _MIN_NODES: Final = 16
-# The second run of the error estimates: nodes and tolerance as parts of those of the first.
+# Nodes of the second run of the error estimates, as a part of those of the first.
 _COARSER: Final = 2 / 3
+# Tolerance of the second run over that of the first.
 _LOOSER: Final = 4.0
-# Factors of the difference in an estimate, of scalars and fields. The error of a scalar is at most
-# 0.8 times the difference where it falls like 1/resolution^2; the thin peak of the pressure next to
-# a moving stick edge falls more slowly, and beside a break both runs may err alike.
+# Factor of the difference in an estimate of a scalar, whose error is at most 0.8 times the
+# difference where it falls like 1/resolution^2.
 _SAFETY: Final = 2.0
+# The same of a field: the thin peak of the pressure next to a moving stick edge falls more slowly.
 _OF_FIELDS: Final = 4.0
+# The same beside a break, where both runs may err alike.
 _AT_BREAKS: Final = 10.0
 # Beyond such an estimate neither of the two runs is near the truth.
 _UNRESOLVED: Final = 0.25
