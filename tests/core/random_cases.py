@@ -102,8 +102,8 @@ PROFILE_GENERATORS: dict[str, Callable[[Draw], dict[str, Any]]] = {
     "cone": lambda draw: {"slope": _spread(draw, -3, 0)},
     "power": _power,
     "series": _series,
-    "sphere": lambda draw: {"radius": 1 + _spread(draw, -9, 3)},
-    "ellipsoid": lambda draw: {"radius": 1 + _spread(draw, -9, 2), "height": _spread(draw, -2, 2)},
+    "sphere": lambda draw: {"radius": 1 + _spread(draw, -5, 3)},
+    "ellipsoid": lambda draw: {"radius": 1 + _spread(draw, -5, 2), "height": _spread(draw, -2, 2)},
     "hyperboloid": lambda draw: {
         "slope": _spread(draw, -2, 0),
         "tip_radius": _spread(draw, -5, 3),

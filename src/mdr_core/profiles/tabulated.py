@@ -321,7 +321,9 @@ class Tabulated(Profile):
 
         # From the power that rises as the load does at the upper end.
         with np.errstate(divide="ignore", invalid="ignore"):
-            start = high * (target / top[piece]) ** (top[piece] / (high * slope[piece]))
+            # The operator ** of one number and of many may differ in the last bit.
+            power = np.power(target / top[piece], top[piece] / (high * slope[piece]))
+            start = high * power
         inside = (start > low) & (start < high)
         start = where(inside, start, (low + high) / 2)
         return invert(sloped, target, start, low * 0.0, high, self.kind)
