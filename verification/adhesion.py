@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from mpmath import atanh, cbrt, gamma, mpf, pi, sqrt
+from mpmath import atanh, cbrt, gamma, linspace, mpf, pi, sqrt
 
 from verification.case import Case, Json, at
 
@@ -98,7 +98,24 @@ def sphere() -> Iterator[Case]:
             yield Case("maugis", "sphere", case, PATH, request, at(quantity, i), value)
 
 
+def curve() -> Iterator[Case]:
+    """Modulus, first contact and work of adhesion from a curve of unloading."""
+    radius, first, e_star = mpf("0.001"), mpf("1e-5"), mpf(E_STAR)
+    radii = linspace(mpf("4.5e-5"), mpf("2e-4"), 60)
+    depths = [a**2 / radius - _retraction(a) + first for a in radii]
+    forces = [e_star * (4 * a**3 / (3 * radius) - 2 * a * _retraction(a)) for a in radii]
+    request = {
+        "profile": {"kind": "paraboloid", "radius": 0.001},
+        "indentation_depth": [float(d) for d in depths],
+        "normal_force": [float(force) for force in forces],
+        "fit": ["e_star", "contact_point", "work_of_adhesion"],
+    }
+    for quantity, value in zip(request["fit"], (e_star, first, mpf(W)), strict=True):
+        case = f"silicone, R = 1 mm, curve of unloading: {quantity}"
+        yield Case("jkr", "curve", case, "/v1/normal/fit", request, at(quantity), value, 1e-10)
+
+
 def cases() -> Iterator[Case]:
     """Yield all cases of this module."""
-    for part in (ball, punch, cones, powers, sphere):
+    for part in (ball, punch, cones, powers, sphere, curve):
         yield from part()
