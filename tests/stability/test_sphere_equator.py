@@ -187,3 +187,27 @@ def test_equator_and_small_contact_limits(name: str) -> None:
 @pytest.mark.parametrize("name", ["depth, a -> 0", "force, a -> 0"])
 def test_naive_formula_fails(name: str) -> None:
     CURVES[name]().naive_fails(1e-6)
+
+
+@pytest.mark.parametrize("control", ["indentation_depth", "normal_force"])
+def test_error_of_a_load_next_to_the_equator(control: str) -> None:
+    """The rounding of the radius is within the estimate, and below 1e-9 up to the end."""
+    size = 0.7321
+    for gap in steps(0.1, 2e-8, 30):
+        with mp.workdps(40):
+            big = mpf(size)
+
+            def loads(v: mpf, big: mpf = big) -> dict[str, mpf]:
+                t = mp.tanh(v)
+                return {
+                    "indentation_depth": big * v * t,
+                    "normal_force": big * big * ((1 + t * t) * v - t),
+                }
+
+            near = mp.atanh(1 - mpf(gap))
+            given = float(loads(near)[control])
+            exact = loads(mp.findroot(lambda v, given=given: loads(v)[control] - given, near))
+            contact = normal.solve(Sphere(size), 1.0, **{control: given})
+            for name, truth in exact.items():
+                error = abs(mpf(float(getattr(contact, name))) / truth - 1)
+                assert error <= min(contact.error_estimate, 1e-9)
