@@ -167,6 +167,14 @@ def test_first_cycle_of_a_narrow_annulus_takes_few_steps(monkeypatch: pytest.Mon
     assert worn.error_estimate < 1e-3
 
 
+def test_limit_within_the_rounding_error_of_a_flat_is_rejected() -> None:
+    """Else a worn volume would be negative."""
+    contact = normal.solve(TruncatedCone(0.4, 0.7), 1.3, indentation_depth=[1e-3, 1e-11])
+    with pytest.raises(AccuracyError, match="edge of a flat") as caught:
+        limit.solve(contact, 0.9, 0.4, tangential_displacement=1e-12)
+    assert caught.value.path == ("load", "indentation_depth", 1)
+
+
 def test_equal_numbers_of_cycles_are_ascending() -> None:
     contact = normal.solve(Paraboloid(1.0), 1.0, indentation_depth=1.0)
     given = {"wear_coefficient": 1e-2, "tangential_displacement": 0.75, "resolution": 8}

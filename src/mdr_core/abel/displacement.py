@@ -96,9 +96,15 @@ class _Ends(NamedTuple):
 
 
 def slope_integral(
-    branches: Sequence[Branch], low: Array, high: Array, r: Array, kernel: Kernel, rtol: float
+    branches: Sequence[Branch],
+    low: Array,
+    high: Array,
+    r: Array,
+    *kernels: Kernel,
+    rtol: float,
+    width: Array | None = None,
 ) -> Array:
-    """Return int_low^high g'(x) K(x, sqrt(r^2 - x^2)) dx.
+    """Return int_low^high g'(x) K(x, sqrt(r^2 - x^2)) dx, one row for each kernel K (k, m).
 
     Source: mdr-5, Eqs. (5.41), (5.75), integrated by parts; notes, §7.
 
@@ -106,84 +112,29 @@ def slope_integral(
     ----------
     branches : intervals of g', ascending.
     low, high, r : 0 <= low <= high <= r [length], shape (m,).
-    kernel : K.
+    kernels : K of each integral.
     rtol : relative tolerance.
+    width : r - low, where it has more digits than the difference; high = r [length].
     """
-    total = np.zeros_like(r)
+    total = np.zeros((len(kernels), r.size))
     for branch in smooth_parts(branches, high.max(initial=0.0)):
         start = np.maximum(low, max(branch.base, branch.start))
         end = np.minimum(high, branch.stop)
-        index = np.flatnonzero(end > start)
+        # An annulus may be narrower than the rounding error of its radii.
+        narrow = False if width is None else (start == low) & (low < branch.stop) & (width > 0)
+        index = np.flatnonzero((end > start) | narrow)
         if index.size:
             start, end, far = start[index], end[index], r[index]
             s_low, s_high, s_r = (
                 np.sqrt((x - branch.base) * (x + branch.base)) for x in (start, end, far)
             )
             root_low, root_high = (np.sqrt((far - x) * (far + x)) for x in (start, end))
+            if width is not None:
+                own = np.sqrt(width * (2 * low + width))[index]
+                root_low = np.where(start == low[index], own, root_low)
             ends = _Ends(s_low, s_high, s_r, root_low, root_high)
-            total[index] += _branch(branch, ends, [kernel], rtol)[0]
-    return total
-
-
-def annulus_integrals(
-    branches: Sequence[Branch],
-    low: Array,
-    width: Array,
-    below: Callable[[float], Array],
-    kernels: Sequence[Kernel],
-    rtol: float,
-) -> Array:
-    """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, however narrow that is.
-
-    One row for each kernel K, shape (k, m).
-
-    Source: notes, §7.
-
-    Parameters
-    ----------
-    branches : intervals of g', ascending.
-    low, width : inner radius and width of the annulus [length], shape (m,).
-    below : below(x) = low - x, as accurate as the width even where low and x are close [length].
-    kernels : K of each integral.
-    rtol : relative tolerance.
-    """
-    total = np.zeros((len(kernels), low.size))
-    for branch in smooth_parts(branches, (low + width).max(initial=0.0)):
-        begin = max(branch.base, branch.start)
-        inside = below(begin) + width > 0
-        if branch.stop < inf:
-            inside &= below(branch.stop) < 0
-        index = np.flatnonzero(inside)
-        if index.size:
-            ends = _annulus_ends(branch, low, width, below, index)
             total[:, index] += _branch(branch, ends, kernels, rtol)
     return total
-
-
-def _annulus_ends(
-    branch: Branch, low: Array, width: Array, below: Callable[[float], Array], index: Indices
-) -> _Ends:
-    """Part of a branch between low and r = low + width, every root from its own width."""
-    base, begin, stop = branch.base, max(branch.base, branch.start), branch.stop
-    c, w = low[index], width[index]
-    r = c + w
-
-    def root(gap: Array, at: float | Array) -> Array:
-        """sqrt(r^2 - at^2) from gap = r - at."""
-        return np.asarray(np.sqrt(np.maximum(gap, 0.0) * (r + at)))
-
-    above_base = below(base)[index]
-    above_begin = above_base if begin == base else below(begin)[index]
-    s_r = root(above_base + w, base)
-    later = above_begin < 0
-    at_begin = sqrt((begin - base) * (begin + base))
-    s_low = np.where(later, at_begin, np.sqrt(np.maximum(above_base, 0.0) * (c + base)))
-    root_low = np.where(later, root(above_begin + w, begin), root(w, c))
-    if not stop < inf:
-        return _Ends(s_low, s_r, s_r, root_low, np.zeros_like(s_r))
-    past = below(stop)[index] + w
-    s_high = np.where(past > 0, sqrt((stop - base) * (stop + base)), s_r)
-    return _Ends(s_low, s_high, s_r, root_low, root(past, stop))
 
 
 def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float) -> Array:

@@ -47,7 +47,7 @@ class Arc:
         at = r[r > self.low]
         if at.size:
             low, high = np.full(at.shape, self.low), np.minimum(at, self.high)
-            value = slope_integral(self.branches, low, high, at, arccosine, rtol)
+            value = slope_integral(self.branches, low, high, at, arccosine, rtol=rtol)[0]
             result[r > self.low] = 2 / np.pi * value
         return result
 
@@ -55,7 +55,9 @@ class Arc:
         """int k g'(x) dx from each radius on the arc to its end [length]; shape (m,)."""
         end = np.full(x.shape, self.high)
         branches = self.branches
-        return slope_integral(branches, x, end, end, lambda at, _root: np.ones_like(at), _RTOL)
+        return slope_integral(
+            branches, x, end, end, lambda at, _root: np.ones_like(at), rtol=_RTOL
+        )[0]
 
     @property
     def branches(self) -> list[Branch]:

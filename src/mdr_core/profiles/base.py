@@ -4,7 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
@@ -15,7 +15,6 @@ from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import (
     Branch,
     Kernel,
-    annulus_integrals,
     arccosine,
     arcsine,
     slope_integral,
@@ -356,19 +355,10 @@ class Profile(ABC):
             found[:, own] = branch.weight(x[:, own], s[:, own])
         return found
 
-    def annulus_integrals(
-        self,
-        low: Array,
-        width: Array,
-        below: Callable[[float], Array],
-        kernels: Sequence[Kernel],
-        rtol: float,
-    ) -> Array:
-        """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, for each K (k, m).
-
-        Parameters: see `displacement.annulus_integrals`.
-        """
-        return annulus_integrals(self.branches, low, width, below, kernels, rtol)
+    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:
+        """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width; (k, m) for k K."""
+        r = low + width
+        return slope_integral(self.branches, low, r, r, *kernels, rtol=rtol, width=width)
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
         """Slip S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
@@ -382,7 +372,7 @@ class Profile(ABC):
         """
         # Next to the axis arccos(x/r) = pi/2 - x/r, of which the integrals are closed.
         near = np.maximum(c, np.cbrt(rtol) * r)
-        value = slope_integral(self.branches, near, r, r, arccosine, rtol)
+        value = slope_integral(self.branches, near, r, r, arccosine, rtol=rtol)[0]
         if np.any(near > c):
             value += np.pi / 2 * (self.g(near) - self.g(c))
             step = self.force_within(near) - self.force_within(c)
@@ -402,7 +392,7 @@ class Profile(ABC):
         """
         # Next to the axis arcsin(x/r) = x/r, of which the integral is closed.
         near = np.minimum(a, np.sqrt(rtol) * r)
-        value = slope_integral(self.branches, near, a, r, arcsine, rtol)
+        value = slope_integral(self.branches, near, a, r, arcsine, rtol=rtol)[0]
         value += self.force_within(near) / (2 * r)
         return 2 / np.pi * value
 

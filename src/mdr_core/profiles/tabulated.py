@@ -392,17 +392,10 @@ class Tabulated(Profile):
                 value[own] = self._spline.under(low, self._end, r[own], kernel)
         return value
 
-    def annulus_integrals(
-        self,
-        low: Array,
-        width: Array,
-        below: Callable[[float], Array],
-        kernels: Sequence[Kernel],
-        rtol: float,
-    ) -> Array:
+    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:
         """Parameters: see `Profile`."""
         if self._flanks:
-            return super().annulus_integrals(low, width, below, kernels, rtol)
+            return super().annulus_integrals(low, width, *kernels, rtol=rtol)
         found = [
             self._spline.annulus(c, w, kernels)
             for c, w in zip(low.tolist(), width.tolist(), strict=True)

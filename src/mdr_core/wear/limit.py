@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
 from mdr_core.elementwise import broadcast, some, where
-from mdr_core.errors import InputError, Notice, Remedy
+from mdr_core.errors import AccuracyError, InputError, Notice, Remedy
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.stick_zone import CONTROLS
@@ -35,6 +35,8 @@ _NARROW: Final = 1.5
 _AT_END: Final = 0.99
 # Exponent of the slip width in the worn volume, with room.
 _OF_VOLUME: Final = 3.0
+# Relative error of a worn volume above which there is no answer.
+_UNRESOLVED: Final = 0.1
 _EPS: Final = float(np.finfo(float).eps)
 # Relative distance from the stick radius within which the error of a field is not estimated.
 _TOO_CLOSE: Final = 4 * _EPS
@@ -256,10 +258,28 @@ class LimitingWear(validity.ContactResults):
     def error_estimate(self) -> float:
         """Bound on the relative error of every quantity without a radius."""
         contact, width_error = self.tangential_contact, self.stick_zone.width_error
+        lost = float(self.edge_rounding.max(initial=0.0))
         if CONTROLS[contact.control] == contact.normal.control:
-            return contact.error_estimate
+            return contact.error_estimate + lost
         # The stick radius before wear, which may be that of the onset of full slip, has no part.
-        return extremes(contact.step_error + _OF_VOLUME * width_error)[1]
+        return extremes(contact.step_error + _OF_VOLUME * width_error)[1] + lost
+
+    @property
+    def edge_rounding(self) -> Array:
+        """Relative error of the worn volumes by the distance of c from a flat or a jump, (loads,).
+
+        The slope of g has a root or a pole there, and the distance is a difference of radii.
+        """
+        c, width = (np.ravel(x)[:, None] for x in (self.stick_radius, self.wear_width))
+        profile = self.normal.profile
+        edges = np.array([profile.first_radius, *profile.infinite_pressure_radii], dtype=float)
+        beyond = c - edges
+        worn = (edges > 0) & (beyond >= 0) & (np.ravel(self.stick_zone.step)[:, None] > 0)
+        gap = np.where(worn, np.maximum(beyond, _EPS * edges), 1.0)
+        # No width at all is found where the distance is dominated by rounding error.
+        size = np.sqrt(gap * (gap + np.where(width < inf, width, 0.0)))
+        rounding = np.where(worn, _EPS * edges / size, 0.0).max(axis=1, initial=0.0)
+        return np.asarray(_OF_VOLUME * rounding)
 
     def field_error_estimate(self, radius: ArrayLike, quantities: Iterable[str]) -> float:
         """Return the error of fields by that of the stick radius [1].
@@ -277,11 +297,9 @@ class LimitingWear(validity.ContactResults):
         r, end = checked_radii(radius), np.ravel(self.wear_radius)[:, None]
         away = np.abs(r - c)
         product = np.where((away <= _TOO_CLOSE * c) | (step <= 0), inf, away * (r + c))
-        found = [0.0]
+        found, error = [0.0], error + _EPS * c
         if "pressure" in names:
-            # Unlike the worn depth it follows from the radius, not from the coordinate.
-            moved = error + _EPS * c
-            found.append(np.max(np.where(r < c + moved, moved * c / product, 0.0)))
+            found.append(np.max(np.where(r < c + error, error * c / product, 0.0)))
         if names & {"worn_depth", "limiting_profile"}:
             highest = _HIGHEST * zone.annulus.angle(np.ravel(self.wear_width))[:, None]
             worn = (c > 0) & (c - error < r) & (r < end + error)
@@ -340,6 +358,7 @@ def solve(
     ------
     InputError : a prescribed contact radius; an amplitude that is negative or not finite; a force
         amplitude above mu F_N; an annulus that would reach beyond the end of the profile.
+    AccuracyError : a contact next to the edge of a flat in whose rounding error its annulus lies.
 
     Examples
     --------
@@ -365,6 +384,13 @@ def solve(
     unworn = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
     result = LimitingWear(unworn, limiting_stick.find(unworn, size))
     _require_room(result)
+    lost = result.edge_rounding > _UNRESOLVED
+    if lost.any():
+        raise AccuracyError(
+            "the worn annulus lies within the rounding error of its distance from the edge of a "
+            "flat, or from a jump of the slope: increase the load",
+            ("load", contact.control, *first_index(lost.reshape(np.shape(result.wear_width)))),
+        )
     beyond = ~result.stick_zone.unbounded & ~np.isfinite(result.wear_radius)
     if beyond.any():
         raise InputError(

@@ -28,7 +28,7 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
 
     def values(load: Indices, at: Array) -> Array:
         annuli = annulus.chosen(load)
-        width = annuli.at(at)
+        width = at - annuli.stick
         # S(0; r) is the profile itself.
         lag = np.where(profile.has_no_partial_slip, 0.0, profile.f(at))
         some = np.flatnonzero(annuli.stick > 0)

@@ -56,7 +56,7 @@ class LimitingStick:
     @cached_property
     def annulus(self) -> WornAnnulus:
         """Worn annuli of all loads, in one row."""
-        return WornAnnulus(self.profile, np.ravel(self.radius), np.ravel(self.coordinate))
+        return WornAnnulus(self.profile, np.ravel(self.radius))
 
 
 def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:

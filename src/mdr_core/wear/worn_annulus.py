@@ -1,12 +1,11 @@
 """Annulus c < r < c + w outside the stick zone, with the relative accuracy of its width w.
 
 The worn depth follows from g - g(c) in the annulus. Near incipient slip the annulus is narrow: its
-width is the unknown, and every integral is taken over the width, never between two radii.
+width is the unknown, and the root at the inner edge follows from it, not from two radii.
 Source: notes, §9.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import factorial
 from typing import Final
 
@@ -35,13 +34,6 @@ class WornAnnulus:
     profile: Profile
     stick: Array
     """c, the inner edge [length]."""
-    coordinate: Array
-    """c in the profile's contact coordinate; undefined where c lies inside the flat."""
-
-    @cached_property
-    def flat(self) -> float:
-        """Radius of the profile's flat, zero for none."""
-        return float(self.profile.first_radius)
 
     @property
     def largest_width(self) -> Array:
@@ -51,29 +43,9 @@ class WornAnnulus:
         ends += [b.pole * (1 - _BEFORE_POLE) for b in self.profile.branches if b.stop >= b.pole]
         return np.asarray(min(ends) - self.stick)
 
-    def at(self, radius: Array) -> Array:
-        """Return the width of the annulus that ends at a radius >= c [length]."""
-        return np.asarray((radius - self.flat) - self.below(self.flat))
-
-    def below(self, radius: float) -> Array:
-        """Return c - radius [length]; for the flat or a break, as accurate as the coordinate."""
-        plain, profile = self.stick - radius, self.profile
-        if profile.has_no_partial_slip or radius not in self._special:
-            return plain
-        start = profile.coordinate_from_radius(np.asarray(radius))
-        beyond = (self.stick >= radius) & (self.coordinate >= start)
-        edge = np.where(beyond, self.coordinate, start)
-        return np.where(beyond, profile.radius_width(edge, edge - start), plain)
-
-    @cached_property
-    def _special(self) -> set[float]:
-        """Radii at which a coordinate starts; none is needed at the axis."""
-        breaks = (float(np.asarray(b)) for b in self.profile.breaks)
-        return {self.flat, *breaks} - {0.0}
-
     def chosen(self, which: Indices) -> "WornAnnulus":
         """Return some of the annuli."""
-        return WornAnnulus(self.profile, self.stick[which], self.coordinate[which])
+        return WornAnnulus(self.profile, self.stick[which])
 
     def slip_kernel(self, width: Array) -> Array:
         """Return S(c; c + w) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
@@ -132,7 +104,7 @@ class WornAnnulus:
         """Return int_c^r g'(x) K dx for each kernel K, shape (k, m)."""
         if self.profile.has_no_partial_slip:
             return np.zeros((len(kernels), width.size))
-        return self.profile.annulus_integrals(self.stick, width, self.below, kernels, RTOL)
+        return self.profile.annulus_integrals(self.stick, width, *kernels, rtol=RTOL)
 
 
 def _rate(x: Array, root: Array) -> Array:
