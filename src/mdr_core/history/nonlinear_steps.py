@@ -25,7 +25,7 @@ from mdr_core.history.traction_vertices import widths
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
-# Chords of the finest set from the axis to the largest contact: rtol^(-1/3), within these limits.
+# Chords of the finest set from the axis to the larger end of an arc: rtol^(-1/3), within limits.
 _MIN_CHORDS: Final = 64
 # They take 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
 _MAX_CHORDS: Final = 1024
