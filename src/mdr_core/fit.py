@@ -249,7 +249,10 @@ def _adhesive(curve: "_Model") -> "_Model":
         return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
 
     d0, work = without_others(0).best()
-    pull_off = adhesion.Curve(curve.profile, sqrt(2 * pi * work)).least["indentation_depth"]
+    try:
+        pull_off = adhesion.Curve(curve.profile, sqrt(2 * pi * work)).least["indentation_depth"]
+    except InputError as error:
+        raise InputError(("profile",), error.detail) from None
     jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
     return without_others(min(int(np.searchsorted(depth, d0 + _AFTER * pull_off)), jump))
 

@@ -99,6 +99,14 @@ def test_pull_off_of_a_flat_punch_is_no_fit() -> None:
         )
 
 
+def test_tip_on_which_adhesion_has_no_pull_off_is_no_fit() -> None:
+    depth, force = jkr("paraboloid", np.geomspace(0.062, 0.15, 20))
+    names = ["e_star", "work_of_adhesion"]
+    with pytest.raises(mdr.InputError, match="adhesion spreads the contact") as error:
+        fit.solve(mdr.Power(1.0, 0.4), indentation_depth=depth, normal_force=force, fit=names)
+    assert error.value.path == ("profile",)
+
+
 @pytest.mark.parametrize("sign", [0, -1])
 def test_curves_without_a_rise_are_no_adhesive_contact(sign: int) -> None:
     force = sign * forces(SHAPES["paraboloid"])
