@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 
 from mdr_command import ExitStatus
 from mdr_core.errors import InputError
-from mdr_core.profiles import Tabulated
+from mdr_core.profiles.tabulated import tip_points
 from mdr_core.table_reader import Points, metres, read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
@@ -188,8 +188,8 @@ def _tip(coefficients: str, largest_height: str | None, unit: str) -> Points:
     except ValueError as error:
         detail = "gives numbers with commas between them, with --largest-height"
         raise InputError(("area_coefficients",), detail) from error
-    tip, scale = Tabulated.from_area_coefficients(numbers, most), metres(unit)
-    return Points(scale * tip.r, scale * tip.values)
+    r, f = tip_points(numbers, most)
+    return Points(metres(unit) * r, metres(unit) * f)
 
 
 def _options(command: str) -> dict[str, FieldInfo]:

@@ -106,10 +106,7 @@ class Tabulated(Profile):
         area : A(h) [length^2], shape (k,).
         uncertainty : see `Tabulated`.
         """
-        section = np.asarray(area, dtype=float)
-        if np.any(section < 0):
-            raise InputError(("profile", "area"), "must not be negative")
-        return cls(np.sqrt(section / np.pi), height, uncertainty=uncertainty)
+        return cls(_radii(area), height, uncertainty=uncertainty)
 
     @classmethod
     def from_area_coefficients(cls, coefficients: Sequence[float], largest_height: float) -> Self:
@@ -122,11 +119,8 @@ class Tabulated(Profile):
         coefficients : C0, C1, ...; Ci has the dimension length^(2 - 2^(1 - i)).
         largest_height : height up to which the tip is described [length].
         """
-        if not 0 < largest_height < np.inf:
-            raise InputError(("profile", "largest_height"), "must be positive")
-        h = largest_height * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
-        area = sum(c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients))
-        return cls.from_area_function(h, area)
+        r, h = tip_points(coefficients, largest_height)
+        return cls(r, h)
 
     @classmethod
     def from_force_depth(cls, depth: ArrayLike, force: ArrayLike, e_star: float) -> Self:
@@ -445,6 +439,22 @@ class Tabulated(Profile):
                 part = Annulus(s_a, gap, c, a).at(on)
                 total[on] += factor * shape.pressure_kernel(part, radius[on], rtol)
         return total
+
+
+def tip_points(coefficients: Sequence[float], largest_height: float) -> tuple[Array, Array]:
+    """Radii and heights of a tip. Parameters: see `Tabulated.from_area_coefficients`."""
+    if not 0 < largest_height < np.inf:
+        raise InputError(("profile", "largest_height"), "must be positive")
+    h = largest_height * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
+    return _radii(sum(c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients))), h
+
+
+def _radii(area: ArrayLike) -> Array:
+    """Radii of discs of these areas."""
+    section = np.asarray(area, dtype=float)
+    if np.any(section < 0):
+        raise InputError(("profile", "area"), "must not be negative")
+    return np.sqrt(section / np.pi)
 
 
 def _of_each(
