@@ -77,23 +77,27 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     coarse: WornSurface = field(kw_only=True)
     """Worn contact by fewer nodes and a looser tolerance, for the error estimates."""
+    rtol: float = field(kw_only=True)
+    """Tolerance of the integration over the cycles [1]."""
     quantities: ClassVar[tuple[str, ...]] = ("cycles", *SCALARS)
 
     @cached_property
     def error_estimate(self) -> float:
         """Estimate of the relative error of every scalar [1].
 
-        Twice the difference from a run on two thirds of the nodes with a looser integrator,
-        and the rounding error of the contact before wear. With a break of the profile in the worn
-        annulus both runs may err alike: there their absolute difference counts. The error of a
-        normal force that wear takes away in full slip is relative to the one before wear.
+        Twice the difference from a run on two thirds of the nodes with a looser integrator, the
+        tolerance of that, and the rounding error of the contact before wear. With a break of the
+        profile in the worn annulus both runs may err alike: there their absolute difference counts.
+        The error of a normal force that wear takes away in full slip is relative to the one before.
         """
         worst = self._absolute_difference if self._has_break else 0.0
         for name in SCALARS:
             value, other = getattr(self, name), getattr(self.coarse, name)
             size = self._whole_force if name == "normal_force" else value
             worst = max(worst, float((np.abs(value - other) / np.where(size, size, 1.0)).max()))
-        return _SAFETY * worst + self.tangential_contact.error_estimate
+        # The errors of two integrations may be equal.
+        tolerance = _LOOSER * self.rtol if self.states else 0.0
+        return _SAFETY * worst + tolerance + self.tangential_contact.error_estimate
 
     @property
     def _whole_force(self) -> Array:
@@ -304,7 +308,7 @@ def solve(
     coarser = replace(initial, nodes=int(nodes * _COARSER))
     parts = integrate(initial, numbers, rtol)
     other = WornSurface(coarser, numbers, *integrate(coarser, numbers, _LOOSER * rtol))
-    found = WearEvolution(initial, numbers, *parts, coarse=other)
+    found = WearEvolution(initial, numbers, *parts, coarse=other, rtol=rtol)
     if not found.error_estimate < _UNRESOLVED:
         detail = "the worn annulus is not resolved: more nodes may resolve it"
         raise AccuracyError(detail, ("resolution",))
