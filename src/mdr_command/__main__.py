@@ -117,7 +117,8 @@ def _run(given: Sequence[str]) -> int:
         return ExitStatus.NOT_INSTALLED
     arguments, unknown = parser.parse_known_args(given)
     if unknown:
-        sys.stderr.write(f"mdr {name}: there is no {' '.join(unknown)}; see mdr {name} --help\n")
+        said = f"there is no {' '.join(unknown)}; see mdr {name} --help, with an example:"
+        sys.stderr.write(f"mdr {name}: {said} {COMMANDS[name].example}\n")
         return ExitStatus.INVALID_INPUT
     status: int = arguments.run(arguments)
     return status

@@ -43,6 +43,7 @@ _OTHER_OPTIONS: Final = frozenset(
 _AREA_OPTIONS: Final = {"profile.largest_height": "largest_height"}
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
+_ONCE: Final = "is given more than once; several loads are a range (--help), or JSON"
 _REQUEST: Final = "a request is a JSON object"
 _NOT_NUMBERS: Final = "a table needs --table, a series a request in JSON"
 _BY_OPTIONS: Final = "; give a table with --table, and numbers with options (--help)"
@@ -99,6 +100,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         for name, field in fields.items():
             group.add_argument(
                 f"--{name.replace('_', '-')}",
+                action="append",
                 default=argparse.SUPPRESS,
                 metavar="TEXT" if name in _TEXTS else "NUMBER",
                 help=(field.description or "").replace("%", "%%"),
@@ -142,7 +144,10 @@ def _content(arguments: argparse.Namespace) -> bytes:
         raise InputError(("output",), f"{detail}--format")
     media_type = FORMATS[format_]
     look = content_negotiation.appearance(media_type, arguments.size, arguments.units)
-    given = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
+    values = {each: vars(arguments)[each] for each in _options(name) if each in arguments}
+    if several := [each for each, found in values.items() if len(found) > 1]:
+        raise InputError((several[0],), _ONCE)
+    given = {each: found[0] for each, found in values.items()}
     profile = _table(arguments, given)
     if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))

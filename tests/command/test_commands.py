@@ -47,7 +47,15 @@ def test_unknown_command_exits_with_usage(
 
 def test_unknown_option_exits_with_its_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert command.main(["normal", "--nothing", "1"]) == 2
-    assert capsys.readouterr().err == "mdr normal: there is no --nothing; see mdr normal --help\n"
+    error = capsys.readouterr().err
+    assert error.startswith("mdr normal: there is no --nothing; see mdr normal --help")
+
+
+def test_command_without_options_shows_that_it_takes_a_file(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert command.main(["subsurface", "--table", "ball.csv", "--normal-force", "1"]) == 2
+    assert "mdr subsurface request.json" in capsys.readouterr().err
 
 
 def test_missing_module_raises(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -45,6 +45,7 @@ def test_the_suffix_of_the_file_gives_the_format(tmp_path: Path) -> None:
         (["--normal-force", "-.5E+2"], "--normal-force"),
         (["--normal-force", "ten"], "--normal-force"),
         (["--normal-force", "1", "--slope", "1"], "--slope"),
+        (["--normal-force", "1", "--normal-force", "2"], "--normal-force"),
         ([], "--indentation-depth"),
     ],
 )
