@@ -246,6 +246,8 @@ def test_invalid_value_is_reported_at_its_field(visit: Visit) -> None:
     visit.page.fill("#field-radius", "ten")
     assert radius.locator(".problem").inner_text() == "not a number"
     assert visit.state() == "unreadable"
+    visit.page.fill("#field-radius", "0,5")
+    assert radius.locator(".problem").inner_text() == "write a decimal point in place of the comma"
     visit.page.fill("#field-radius", "-1")
     radius.locator(".problem").get_by_text("must be positive").wait_for()
     assert visit.page.locator("#problem").inner_text() == (

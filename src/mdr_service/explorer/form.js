@@ -1,7 +1,7 @@
 // Fields of the form: a number with its unit and a slider, a list of numbers, or a choice.
 
 import { make } from "./dom.js";
-import { read, shown, unit } from "./units.js";
+import { noNumber, read, shown, unit } from "./units.js";
 
 const SPAN = 100;
 
@@ -70,7 +70,7 @@ export function numberRow(field, inputs, reference, { change, fail }) {
   });
   text.addEventListener("input", () => {
     const value = read(text.value, dimension, inputs);
-    mark(element, Number.isNaN(value) ? "not a number" : "");
+    mark(element, Number.isNaN(value) ? noNumber(text.value) : "");
     if (Number.isNaN(value)) return fail(key);
     slider.value = to(value);
     tell(value);

@@ -3,7 +3,7 @@
 import { make, makeButton, makeTable } from "./dom.js";
 import { pathPoints } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
-import { format, read, shown, unit, withUnit } from "./units.js";
+import { format, noNumber, read, shown, unit, withUnit } from "./units.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT, PAD] = [420, 240, 34];
@@ -129,7 +129,7 @@ function table(points, inputs, commit, fail) {
       const value = read(target.value, QUANTITIES[control][1], inputs);
       if (Number.isNaN(value)) {
         target.setAttribute("aria-invalid", "true");
-        target.closest(".field").querySelector(".problem").textContent = `Point ${i + 1}: not a number`;
+        target.closest(".field").querySelector(".problem").textContent = `Point ${i + 1}: ${noNumber(target.value)}`;
         fail();
         return;
       }

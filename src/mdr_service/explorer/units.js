@@ -82,6 +82,11 @@ export function numberOf(text) {
   return Math.abs(number) <= LARGEST ? number : NaN;
 }
 
+/** Return what is wrong with a text that holds no number. */
+export function noNumber(text) {
+  return text.includes(",") ? "write a decimal point in place of the comma" : "not a number";
+}
+
 /** Return a number times a power of ten without its rounding error, like the product of decimals. */
 export function times(number, factor) {
   return Number((number * factor).toPrecision(15));
