@@ -326,6 +326,16 @@ def test_phone_shows_the_main_numbers_while_any_slider_moves(visit: Visit) -> No
         assert moved["y"] + moved["height"] <= 844
 
 
+@pytest.mark.parametrize("case", ["tab=stress&push=ratio&amount=1", "tab=cycle&path=100,0;100,30"])
+def test_largest_stress_at_the_surface_is_that_of_full_slip(visit: Visit, case: str) -> None:
+    visit.open(f"?{case}&kind=paraboloid&mu=0.3&body=2&up=MPa")
+    # Hamilton (1983): at the trailing edge.
+    p_0 = (6 * 100 * (2.1e11 / 2 / 0.91) ** 2 / (math.pi**3 * 0.01**2)) ** (1 / 3)
+    expected = p_0 * ((1 - 2 * 0.3) / 3 + (4 + 0.3) * math.pi * 0.3 / 8) / 1e6
+    shown = visit.number("Largest σ_xx, surface of body 2").split()[0]
+    assert float(shown) == pytest.approx(expected, rel=1e-4, abs=0)
+
+
 def test_energy_per_cycle_is_the_area_of_the_closed_loop(visit: Visit) -> None:
     # Full slip of a flat punch: the area is that of 4 mu F_N by the displacement beyond sticking.
     visit.open("?tab=cycle&kind=flat_punch&mu=0.3&ud=m&uf=N&tangential=tangential_displacement"

@@ -8,6 +8,8 @@ const SHARE = ["Share of µF_N", "1"];
 
 export const BODIES = { 1: "Body 1 (indenter)", 2: "Body 2 (flat)" };
 
+const STRESSED = { key: "body", label: "Stress in", choices: [1, 2].map((i) => [i, BODIES[i]]) };
+
 export const THICKNESS = {
   key: "thickness", label: "Thickness on a rigid base", dimension: "length", optional: true, placeholder: "half-space",
 };
@@ -65,6 +67,7 @@ export const ANALYSES = {
       FRICTION,
       { key: "normal", label: "Normal control", choices: choicesOf(NORMAL) },
       { key: "tangential", label: "Tangential control", choices: choicesOf(TANGENTIAL) },
+      STRESSED,
     ],
     solve: solveCycle,
   },
@@ -85,7 +88,7 @@ export const ANALYSES = {
     lead: "What stresses act at the surface and beneath it, and at which load does the material yield?",
     fields: (inputs) => [
       ...pushFields(inputs),
-      { key: "body", label: "Stress in", choices: [1, 2].map((i) => [i, BODIES[i]]) },
+      STRESSED,
       { key: "yield", label: "Yield strength", dimension: "pressure" },
     ],
     solve: solveStress,

@@ -41,7 +41,7 @@ function numbersOf(state, names) {
 
 /**
  * Return the stress σ_xx on the surface along the tangential force, where fretting fatigue begins:
- * its request, and its chart with the edges of zones.
+ * its request, its largest value, and its chart with the edges of zones.
  */
 async function surfaceStress(query, inputs, body, radius, edges) {
   const even = Array.from({ length: 161 }, (_, i) => radius * (i / 40 - 2));
@@ -50,10 +50,12 @@ async function surfaceStress(query, inputs, body, radius, edges) {
     ...body, body: inputs.body, x: [...at].sort((a, b) => a - b), z: [0], quantities: ["stress_xx"],
   });
   const chart = {
-    request: "Along the surface", title: "Stress σ_xx along the surface", edges, mirrored: true,
+    request: "Along the surface", title: `Stress σ_xx along the surface of body ${inputs.body}`, edges, mirrored: true,
     x: ALONG, y: QUANTITIES.stress_xx, traces: [{ name: "σ_xx", x, y: stress[0][0] }],
   };
-  return { response, chart };
+  // Next to a sharp edge it is infinite.
+  const largest = stress[0][0].includes(null) ? null : Math.max(...stress[0][0]);
+  return { response, chart, numbers: [[`Largest σ_xx, surface of body ${inputs.body}`, largest, "pressure"]] };
 }
 
 const marker = (name, x, y) => ({ name, x: [x], y: [y], mode: "markers", role: "marker" });
@@ -242,6 +244,7 @@ export async function solveCycle(inputs, query) {
     numbers: [
       ["Energy per cycle", ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
       ...numbersOf(end, ["tangential_displacement", "dissipated_energy"]),
+      ...surface.flatMap(({ numbers }) => numbers),
       ["Regime at the end", end.regime.replace("_", " ")],
       ...numbersOf(end, ["contact_radius", "normal_force", "tangential_force"]),
     ],
@@ -334,6 +337,7 @@ export async function solveStress(inputs, query) {
       ["x of the largest stress", mises.x, "length"],
       ["Largest shear stress", shear.value, "pressure"],
       ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
+      ...surface.numbers,
       ...numbersOf(now, ["maximum_pressure", "contact_radius"]),
     ],
     charts: [
