@@ -336,6 +336,13 @@ def test_largest_stress_at_the_surface_is_that_of_full_slip(visit: Visit, case: 
     assert float(shown) == pytest.approx(expected, rel=1e-4, abs=0)
 
 
+def test_wear_coefficient_is_a_worn_volume_per_energy(visit: Visit) -> None:
+    visit.open("?tab=wear")
+    visit.fill("wear", "2e-4")
+    assert visit.page.locator(".field[data-key=wear]").inner_text().endswith("mm³/J")
+    assert json.loads(request(visit, "Evolution"))["wear_coefficient"] == 2e-13
+
+
 def test_energy_per_cycle_is_the_area_of_the_closed_loop(visit: Visit) -> None:
     # Full slip of a flat punch: the area is that of 4 mu F_N by the displacement beyond sticking.
     visit.open("?tab=cycle&kind=flat_punch&mu=0.3&ud=m&uf=N&tangential=tangential_displacement"

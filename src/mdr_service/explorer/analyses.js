@@ -107,7 +107,7 @@ export const ANALYSES = {
   },
   fit: {
     title: "Fit",
-    lead: "A curve of force over depth was measured: which modulus has the contact, and where does it begin?",
+    lead: "A curve of force over depth was measured: which modulus has the contact, and where does it begin? ± is a standard error.",
     fields: () => [{
       key: "fitted", label: "Fitted beside E*",
       choices: [

@@ -21,7 +21,7 @@ const DERIVED = {
   energy: { force: 1, displacement: 1 },
   stiffness: { force: 1, displacement: -1 },
   volume: { length: 3 },
-  "1/pressure": { fixed: "1/Pa", factor: 1 },
+  "1/pressure": { fixed: "mm³/J", factor: 1e-9 },
   1: { fixed: "", factor: 1 },
 };
 
