@@ -164,6 +164,21 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
     assert visit.number("Contact radius a").startswith("0.186")
 
 
+def test_topography_of_a_scan_becomes_a_profile(visit: Visit) -> None:
+    visit.open("?kind=tabulated")
+    problem = visit.page.locator("#problem-table")
+    # A ball of radius 10 mm, whose summit is at 0.35 mm.
+    rows = [f"{i / 50:.2f};{7 - 50 * (i / 50 - 0.35) ** 2:.4f}" for i in range(41)]
+    visit.page.fill("#table", "\n".join(["x [mm]; z [µm]", *rows]))
+    problem.get_by_text("of the axis, near 0.35 mm, and reverse the sign of the heights").wait_for()
+    visit.page.click("#table-fields .reverse")
+    problem.get_by_text("of the axis, near 0.35 mm; else").wait_for()
+    with visit.changing():
+        visit.page.click("#table-fields .centre")
+    assert visit.page.input_value("#table").startswith("r [mm], f [µm]\n-0.35, -0.875\n")
+    assert visit.number("Contact radius a").startswith("0.186")
+
+
 def test_area_function_fills_the_table(visit: Visit) -> None:
     visit.open("?kind=tabulated&control=indentation_depth&load=1e-7")
     note = visit.page.locator("#table-note")

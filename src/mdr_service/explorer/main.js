@@ -202,7 +202,9 @@ function showAccuracy(responses, notes) {
   $("#accuracy").textContent =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
     `The model of half-spaces itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
-  const warnings = [...notes, ...responses.flatMap((response) => response.warnings)];
+  // The estimate of the error is shown above, and the page does not set `rtol`.
+  const warnings = [...notes, ...responses.flatMap((response) => response.warnings)]
+    .filter(({ code }) => code !== "accuracy");
   const messages = new Map(warnings.map(({ code, message }) => [code, message]));
   $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>
     make("li", {}, make("strong", {}, code.replaceAll("_", " ")), ` ${inWords(message, inputs, labels())}`)));
