@@ -37,5 +37,4 @@ export const QUANTITIES = {
   force_offset: ["Force offset", "force"],
   data_error: ["error by the points", "1"],
   work_of_adhesion: ["Work of adhesion", "N/m"],
-  stress_xx: ["Stress σ_xx", "pressure"],
 };

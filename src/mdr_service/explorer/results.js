@@ -50,12 +50,13 @@ async function surfaceStress(query, inputs, body, radius, edges) {
     ...body, body: inputs.body, x: [...at].sort((a, b) => a - b), z: [0], quantities: ["stress_xx"],
   });
   const chart = {
-    request: "Along the surface", title: `Stress σ_xx along the surface of body ${inputs.body}`, edges, mirrored: true,
-    x: ALONG, y: QUANTITIES.stress_xx, traces: [{ name: "σ_xx", x, y: stress[0][0] }],
+    request: "Along the surface", title: "Stress σ_xx along the surface", edges, mirrored: true,
+    x: ALONG, y: [`σ_xx in body ${inputs.body}`, "pressure"], traces: [{ name: "σ_xx", x, y: stress[0][0] }],
   };
-  // Next to a sharp edge it is infinite.
-  const largest = stress[0][0].includes(null) ? null : Math.max(...stress[0][0]);
-  return { response, chart, numbers: [[`Largest σ_xx, surface of body ${inputs.body}`, largest, "pressure"]] };
+  // At a sharp edge or tip it is infinite, in tension or compression.
+  const isFinite = !stress[0][0].includes(null);
+  const numbers = isFinite ? [[`Largest σ_xx, body ${inputs.body}`, Math.max(...stress[0][0]), "pressure"]] : [];
+  return { response, chart, numbers };
 }
 
 const marker = (name, x, y) => ({ name, x: [x], y: [y], mode: "markers", role: "marker" });
@@ -338,7 +339,7 @@ export async function solveStress(inputs, query) {
       ["Largest shear stress", shear.value, "pressure"],
       ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
       ...surface.numbers,
-      ...numbersOf(now, ["maximum_pressure", "contact_radius"]),
+      ...numbersOf(now, ["contact_radius"]),
     ],
     charts: [
       {
