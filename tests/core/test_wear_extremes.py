@@ -124,6 +124,22 @@ def test_stick_edge_that_moves_inwards_past_a_break_is_an_error() -> None:
     assert early.stick_radius[0] > 0.5
 
 
+def test_jump_of_slope_in_a_narrow_annulus_is_an_error_that_names_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    body = kinked()
+    contact = normal.solve(body, 1.3, contact_radius=1 + 9e-7)
+    within = normal.solve(body, 1.3, contact_radius=1 - 1e-7)
+    contact = normal.solve(body, 1.3, indentation_depth=float(contact.indentation_depth))
+    moved = 0.4 * 1.3 / 0.9 * float(contact.indentation_depth - within.indentation_depth)
+    monkeypatch.setattr(integrator, "_MAX_CALLS", 500)
+    with pytest.raises(AccuracyError, match=r"the worn annulus contains radius 1,") as caught:
+        evolution.solve(
+            contact, 0.9, 0.4, wear_coefficient=2e-4, cycles=[1e8], tangential_displacement=moved
+        )
+    assert caught.value.path == ("cycles",)
+
+
 @pytest.mark.parametrize("place", [0.1, 0.5, 0.9])
 def test_first_wear_of_a_narrow_annulus_about_a_break_is_within_its_estimate(place: float) -> None:
     """Against the friction work of a cycle from partial slip."""
