@@ -24,6 +24,7 @@ from mdr_core.profiles import (
     SphericalTipCone,
     Tabulated,
     TruncatedCone,
+    TruncatedParaboloid,
 )
 from mdr_core.subsurface import (
     MEASURES,
@@ -281,6 +282,14 @@ def test_infinite_stresses() -> None:
         assert np.isinf(peak.value)
         assert (float(peak.x), float(peak.z)) == (radius, 0)
         assert float(yield_onset_force(contact, STRENGTH, poissons_ratio=0.3)) == 0
+
+
+def test_punch_that_yields_at_its_edge_under_any_load() -> None:
+    """The search ends where the stress beneath the edge no longer depends on the load."""
+    punch = normal.solve(TruncatedParaboloid(1.0, 4.0), 1.0, indentation_depth=0.05)
+    peak = largest(punch, "maximum_shear", poissons_ratio=0.5)
+    strength = float(peak.value) / 10
+    assert float(yield_onset_force(punch, strength, poissons_ratio=0.5)) == 0
 
 
 def test_slope_discontinuity_yields_when_the_contact_reaches_it() -> None:

@@ -195,3 +195,15 @@ def test_what_full_slip_does_not_answer_is_rejected() -> None:
     with pytest.raises(InputError, match="the axis sticks") as caught:
         worn("ball", HELD[0], 1.05)
     assert caught.value.path == ("cycles", 4)
+
+
+@pytest.mark.parametrize("load", [{"normal_force": 0.0}, {"indentation_depth": 0.0}])
+@pytest.mark.parametrize("profile", [Paraboloid(1.0), RoundedPunch(0.5, 2.0)])
+def test_an_unloaded_contact_does_not_wear(profile: Profile, load: dict[str, float]) -> None:
+    contact = normal.solve(profile, 1.0, **load)
+    worn = evolution.solve(
+        contact, 0.8, 0.3, wear_coefficient=1e-3, cycles=[1e5], tangential_displacement=0.1
+    )
+    assert worn.worn_volume == worn.dissipated_energy == 0
+    assert worn.worn_depth([0.0, 0.2, 0.6]).max() == 0
+    assert not {"endless_wear", "contact_lost"} & {each.code for each in worn.warnings}

@@ -13,6 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
 
 from mdr_core import normal, tangential
+from mdr_core.elementwise import number
 from mdr_core.errors import AccuracyError, InputError
 from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
@@ -222,9 +223,11 @@ def _onset(
     forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
     singular = min(map(float, forces), default=inf)
     last = inf if one.largest_loads is None else one.largest_loads[1]
-    lowest = low = log(force) - _REACH
+    # Nearer the edge of a flat the stress beneath it no longer depends on the load.
+    least = e_star * float(one.reduced_force(number(_RESOLVED * one.first_radius)))
+    lowest = low = max(log(force) - _REACH, log(least) + _XTOL if least > 0 else -inf)
     highest = high = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
-    load = min(log(force), highest)
+    load = max(min(log(force), highest), lowest)
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
     means = [at(each).normal.mean_pressure for each in (load, load - _XTOL)]
     before, excess, slope = load, 0.0, log(means[0] / means[1]) / _XTOL

@@ -205,7 +205,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         found = list(self.tangential_contact.warnings_without_bodies)
-        if self.initial.full_slip:
+        if self.initial.full_slip and self.initial.slips:
             code = "endless_wear" if self.initial.constant_force else "contact_lost"
             found.append(Notice(code, _FULL_SLIP[code]))
         if isfinite(self.settled_at):

@@ -49,8 +49,8 @@ class InitialState:
 
     @property
     def slips(self) -> bool:
-        """True if there is a slip annulus, and so wear."""
-        return float(self.tangential_contact.slip_width) > 0
+        """True if there is a loaded slip annulus, and so wear."""
+        return float(self.tangential_contact.slip_width) > 0 and float(self.normal.normal_force) > 0
 
     @cached_property
     def constant_force(self) -> bool:
