@@ -190,6 +190,13 @@ class IntervalMoments:
         breaks, normal = self._breaks
         ends, first = np.array([breaks[:-1], breaks[1:]]), np.arange(breaks.size)
         panels = self.over_smooth(normal[:-1], np.diff(normal), ends, ends[0])
+        # The moments add up to the step of the slope 2a or 1/(2a). They scale with the length in
+        # the normal coordinate, which has no digits on a flat.
+        radius = self.profile.contact_radius(breaks)
+        whole = 2 * np.diff(radius)
+        whole = whole / (4 * radius[1:] * radius[:-1]) if self.over_forces else whole
+        total = panels.weights.sum(axis=0)
+        panels.weights[:] *= whole / np.where(total > 0, total, 1.0)
         table, found = np.zeros((3, breaks.size, breaks.size)), panels
         for step in range(1, breaks.size):
             table[:, first[:-step], first[step:]] = found.weights

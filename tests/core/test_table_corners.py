@@ -168,3 +168,30 @@ def test_history_next_to_the_edge_of_a_flat() -> None:
         history.solve(each, 1.0, 0.9, 0.1, **path).tangential_energy for each in (table, cone)
     )
     assert found == pytest.approx(expected, rel=1e-6, abs=0)
+
+
+@pytest.mark.parametrize("count", [40, 200])
+def test_work_of_friction_over_a_nearly_flat_part(count: int) -> None:
+    """W = (2 mu^2 E*^2/G*) int_0^a (d - g) g dx by Gauss's rule on each piece of the slope."""
+    r = np.linspace(0.0, 1.5, count)
+    table = Tabulated(r, r * r / 200 + 2 * np.maximum(r - 0.52, 0.0))
+    contact = solve(table, 1.0, indentation_depth=0.028)
+    force, a = 0.3 * float(contact.normal_force), float(contact.contact_radius)
+    ends = np.append(table.fit.edges[table.fit.edges < a], a)[:, None]
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    half = np.diff(ends, axis=0) / 2
+    g = table.g(np.ravel(ends[:-1] + half * (1 + nodes)))
+    expected = 2 * 0.3**2 / 0.8 * np.ravel(half * weights) @ ((0.028 - g) * g)
+    slid = tangential.solve(contact, 0.8, 0.3, tangential_force=force)
+    path = {"indentation_depth": [0.028] * 2, "tangential_force": [0.0, force]}
+    followed = history.solve(table, 1.0, 0.8, 0.3, **path)
+    assert float(slid.dissipated_energy) == pytest.approx(expected, rel=1e-12, abs=0)
+    assert followed.dissipated_energy[1] == pytest.approx(expected, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("breaks", [[1.0], [1.0, 1.0]])
+def test_table_of_three_points_with_a_break(breaks: list[float]) -> None:
+    table = Tabulated([0.0, 1.0, 2.0], [0.0, 0.0, 1.0], breaks=breaks)
+    contact = solve(table, 1.0, contact_radius=1.5)
+    assert float(contact.indentation_depth) > 0
+    assert np.isfinite(fields.pressure(contact, [0.0, 0.5, 1.2])).all()

@@ -35,6 +35,8 @@ def test_arrays_are_bit_identical_to_json(
 ) -> None:
     result = arrays(ask(client, path, query, NPZ))
     document = client.post(path, query).json()
+    # The state of a history has no array.
+    document.pop("final_state", None)
     assert list(result) == list(document)
     warnings = document.pop("warnings")
     warning_array = result.pop("warnings")

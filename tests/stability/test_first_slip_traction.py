@@ -52,15 +52,12 @@ A = 1.02
 class Annulus:
     """Exact coordinate and width of an annulus, and its kernel integral."""
 
-    def __init__(self, name: str, profile: Profile) -> None:
+    def __init__(self, name: str) -> None:
         self.kind = SHAPES[name]["kind"]
         self.body = shape_of(SHAPES[name])
-        self.profile = profile
 
     def radius(self, coordinate: mpf) -> mpf:
         """Radius from the profile's contact coordinate, in mpmath."""
-        if self.kind == "sphere":
-            return mpf(self.profile.radius) * mp.tanh(coordinate)
         if self.kind in {"rounded_punch", "truncated_cone"}:
             return mp.sqrt(self.body.b**2 + coordinate**2)
         return coordinate
@@ -90,7 +87,7 @@ def test_narrow_annulus(name: str, relative: float) -> None:
     coordinate = float(profile.coordinate_from_radius(np.array(A)))
     width = relative * coordinate
     with mp.workdps(40):
-        truth = Annulus(name, profile)
+        truth = Annulus(name)
         a = float(truth.radius(mpf(coordinate)))
         c = float(truth.radius(mpf(coordinate) - mpf(width)))
         places = [a * part for part in INSIDE] + [c + (a - c) * part for part in FRACTIONS]

@@ -261,7 +261,11 @@ def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
     result = np.where(np.isnan(given), 0.0, given)
     right = (right - system @ result)[order]
     rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
-    result[np.flatnonzero(free)[column]] = solve_triangular(triangle, rotated)
+    # Few points leave coefficients open: these are zero.
+    size = np.abs(np.diagonal(triangle))
+    rank = np.count_nonzero(size > np.finfo(float).eps * size[0])
+    known = np.flatnonzero(free)[column[:rank]]
+    result[known] = solve_triangular(triangle[:rank, :rank], rotated[:rank])
     return result
 
 
