@@ -81,8 +81,28 @@ def stuck_punches() -> Iterator[Case]:
         )
 
 
+def transverse_slip() -> Iterator[Case]:
+    """Displacement in Cattaneo's problem by boundary elements with slip across the load."""
+    body = {"youngs_modulus": 1.0, "poissons_ratio": 0.3}
+    request = {
+        "profile": {"kind": "paraboloid", "radius": 1.0},
+        "material": {"bodies": [body, body]},
+        "load": {"contact_radius": 1e-3},
+        "friction_coefficient": 0.3,
+        "tangential": {"stick_radius": 5e-4},
+    }
+    yield Case(
+        *("aspher", "displacement", "partial slip, ν = 0.3: model_error", "/v1/tangential"),
+        *(request, at("model_error"), mpf("0.0057")),
+        bound=_FACTOR,
+        uncertainty=0.01,
+        as_ratio=True,
+    )
+
+
 def cases() -> Iterator[Case]:
     """Yield all cases of this module."""
     yield from steep_cones()
     yield from balls()
     yield from stuck_punches()
+    yield from transverse_slip()

@@ -35,6 +35,7 @@ SOURCES: Final = {
         "A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technol. 120 (2001) 281-291, as in Lethe"
     ),
     "wu": "finite elements of C.-Y. Wu, as in `chung-ooi`; points of the figure as in Kratos",
+    "aspher": "boundary elements of ASPHER 0.1.3 with Coulomb's friction, 64 x 64 elements",
     "contactmechanics": "L. Pastewka et al., ContactMechanics, test_reference_solutions.py",
     "jkr": "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301-313",
     "kendall": "K. Kendall, J. Phys. D 4 (1971) 1186-1195",
