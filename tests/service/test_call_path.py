@@ -55,7 +55,7 @@ def recorded(files: set[str]) -> Iterator[None]:
 
 async def served(path: str, body: bytes) -> set[str]:
     """Return the files from the bytes of a request on its socket to the end of its response."""
-    app, state, files = create_app(), dict[str, Any](), set[str]()
+    app, state, found = create_app(), dict[str, Any](), list[set[str]]()
     config = uvicorn.Config(app, http=BoundedProtocol, lifespan="off", log_config=None)
     config.load()
     head = f"POST {path} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
@@ -77,9 +77,12 @@ async def served(path: str, body: bytes) -> set[str]:
             # The first requests build the framework's middleware stack, and fit a table.
             for _ in range(4):
                 assert (await ask()).startswith(b"HTTP/1.1 200 ")
-            with recorded(files):
-                await ask()
-    return files
+            for _ in range(3):
+                found.append(set())
+                with recorded(found[-1]):
+                    await ask()
+    # The supervision of the compute processes, which runs now and then, is part of no request.
+    return set.intersection(*found)
 
 
 def test_small_query_passes_few_files() -> None:
