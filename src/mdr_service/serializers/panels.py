@@ -49,7 +49,7 @@ class Units(NamedTuple):
     pressure: str
 
 
-class Curve(NamedTuple):
+class DrawnCurve(NamedTuple):
     """Points (x, y), and the name of their load; one that is a reference is dashed."""
 
     x: Array
@@ -63,7 +63,7 @@ class Panel(NamedTuple):
 
     x: str
     y: str
-    curves: list[Curve]
+    curves: list[DrawnCurve]
 
 
 class Map(NamedTuple):
@@ -115,11 +115,11 @@ def _over_positions(
             continue
         rows = np.reshape(field, (-1, at.size))[:, order]
         if y == "initial_profile":
-            curves = [Curve(at, rows[0], "initial", is_reference=True)]
+            curves = [DrawnCurve(at, rows[0], "initial", is_reference=True)]
         elif len(rows) > 1 and (rows == rows[0]).all():
-            curves = [Curve(at, rows[0], "all loads", is_reference=True)]
+            curves = [DrawnCurve(at, rows[0], "all loads", is_reference=True)]
         else:
-            curves = [Curve(at, rows[i], _name(control, loads[i], units)) for i in chosen]
+            curves = [DrawnCurve(at, rows[i], _name(control, loads[i], units)) for i in chosen]
         name = _SHARED.get(y, y)
         panels.setdefault(name, Panel(x, name, [])).curves.extend(curves)
     return title, list(panels.values())
@@ -144,7 +144,7 @@ def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, li
             x,
             y,
             [
-                Curve(
+                DrawnCurve(
                     at[parts[i]], np.asarray(result[y])[parts[i]], _name(control, values[i], units)
                 )
                 for i in chosen
