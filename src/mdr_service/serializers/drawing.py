@@ -135,7 +135,8 @@ def _draw_map(axes: _Axes, panel: Map) -> Any:
     # Each value fills the cell around its point: what lies between was not computed.
     colors = axes.pcolormesh(panel.at_x, panel.at_z, shown, rasterized=True, **style)
     axes.grid(visible=False)
-    axes.set_ylim(panel.at_z[-1], panel.at_z[0])
+    if np.ptp(panel.at_z):
+        axes.set_ylim(panel.at_z[-1], panel.at_z[0])
     if _FLAT < np.ptp(panel.at_z) / (np.ptp(panel.at_x) or 1.0) < 1 / _FLAT:
         axes.set_aspect("equal")
     return colors
