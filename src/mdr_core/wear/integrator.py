@@ -27,9 +27,9 @@ _VANISHED: Final = 1e-3
 _FIRST: Final = 1e-100
 # Distance from a slope jump, as a part of the stick radius, at which the stick edge passes it.
 _AT_BREAK: Final = 1e-3
-# Most evaluations of the rates, some seconds. The equator of a sphere takes 4,700, a jump of the
-# slope in the annulus up to 13,000.
-_MAX_CALLS: Final = 15_000
+# Most evaluations of the rates, some seconds. A jump of the slope in the annulus takes up to 3,000,
+# the equator of a sphere 4,700.
+_MAX_CALLS: Final = 6_000
 # Tolerance below which they grow by its fourth root.
 _EASY: Final = 1e-6
 
