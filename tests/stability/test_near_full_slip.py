@@ -173,3 +173,30 @@ def test_traction_with_vanishing_stick_zone() -> None:
 def _traction(x: mpf, c: mpf) -> mpf:
     inner = mp.sqrt(max((c - x) * (c + x), mpf(0)))
     return 2 / (mp.pi * mpf(BIG)) * (mp.sqrt(1 - x * x) - inner)
+
+
+@pytest.mark.parametrize("margin", [1e-8, 1e-11, 1e-14])
+def test_traction_with_a_stick_edge_just_beyond_a_flat(margin: float) -> None:
+    """The stick radius rounds away its distance from the flat, which its coordinate resolves."""
+    b, a, r = 0.8, 0.801, np.array([0.0, 0.3, 0.6])
+    contact = normal.solve(RoundedPunch(b, BIG), 1.0, contact_radius=a)
+    force = float(contact.normal_force) * (1 - margin)
+    result = tangential.solve(contact, 1.0, 1.0, tangential_force=force)
+    with mp.workdps(30):
+        low, high = (
+            mpf(float(s)) for s in (result.stick_coordinate, mp.sqrt(mpf(a) ** 2 - mpf(b) ** 2))
+        )
+
+        def exact(at: mpf) -> mpf:
+            """(1/pi) int dg/ds / sqrt(x^2 - r^2) ds, Eq. (5.70)."""
+
+            def integrand(s: mpf) -> mpf:
+                x = mp.sqrt(mpf(b) ** 2 + s * s)
+                slope = (2 * s - b * mp.atan(s / b)) / BIG
+                return slope * s / x / mp.sqrt(x * x - at * at) / mp.pi
+
+            return mp.quad(integrand, [low, high])
+
+        expected = [float(exact(mpf(float(at)))) for at in r]
+    found = fields.shear_stress(result, r, rtol=RTOL)
+    assert found == pytest.approx(expected, rel=1e-12, abs=0)

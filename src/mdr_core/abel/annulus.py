@@ -25,7 +25,7 @@ class Annulus(NamedTuple):
     """a [length] where it is exact, so that a - r is; None where the coordinate is."""
 
     coordinate: Array | None = None
-    """Coordinate of c, where points are given in it as well; None if they are radii."""
+    """Coordinate of c, which has more digits next to a break; None if it is to follow from c."""
 
     def at(self, chosen: Flags | Indices) -> "Annulus":
         """Return the annuli of the chosen points."""

@@ -55,7 +55,8 @@ class Traction(NamedTuple):
     def annulus(self, i: int) -> Annulus:
         """Return the i-th annulus."""
         outer = self.radius[i + 1] if self.exact else None
-        return Annulus(self.coordinate[i + 1], self.width[i], self.radius[i], outer)
+        coordinate = self.coordinate[i : i + 2]
+        return Annulus(coordinate[1], self.width[i], self.radius[i], outer, coordinate[0])
 
     def stress(self, r: Array, rtol: float) -> Array:
         """Return the stress at radii, over mu E* [1], shape (m,)."""
