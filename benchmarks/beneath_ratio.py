@@ -10,7 +10,7 @@ from mdr_core.profiles import Paraboloid, Profile, RoundedPunch, Tabulated
 from mdr_core.subsurface import stress
 from mdr_service.dispatch import respond
 from mdr_service.schemas.subsurface import SubsurfaceQuery
-from mdr_service.serializers import json
+from mdr_service.serializers import JSON
 
 Array = np.ndarray
 POINTS, NU, E_STAR = 100, 0.3, 3.0
@@ -78,9 +78,7 @@ def rows() -> list[measure.Row]:
         rows_.append(measure.row(what, "", rounds, target, detail))
 
         def request(model=MODELS[name]) -> object:
-            return respond(
-                "subsurface", SubsurfaceQuery.model_validate(GIVEN | model), json.MEDIA_TYPE
-            )
+            return respond("subsurface", SubsurfaceQuery.model_validate(GIVEN | model), JSON)
 
         rounds = measure.interleaved(request, mdr, 2.0)
         what = f"whole subsurface request, {name}, 1e4 points / its stresses alone"

@@ -30,7 +30,7 @@ from tests.core.evaluations import PROFILES
 from mdr_service.dispatch import respond
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import NormalQuery
-from mdr_service.serializers.json import MEDIA_TYPE
+from mdr_service.serializers import JSON
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -159,7 +159,7 @@ def _in_process(kind: str, query: str) -> measure.Row:
     texts, name = bodies(kind, query), "history" if query in PATHS else query
 
     def ours() -> bytes:
-        return respond(name, next(texts).encode(), MEDIA_TYPE)
+        return respond(name, next(texts).encode(), JSON)
 
     def bare() -> str:
         return json.dumps(json.loads(next(texts)))

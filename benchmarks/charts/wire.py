@@ -25,14 +25,13 @@ from measure import medians
 
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.fields import StressQuery
-from mdr_service.serializers import csv, npz
-from mdr_service.serializers import json as json_format
+from mdr_service.serializers import FORMATS, WRITE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 LENGTHS = (1, 10, 100, 1000, 10_000, 100_000)
-WRITERS = {"JSON": json_format, "CSV": csv, "NumPy": npz}
+MEDIA_TYPES = {"JSON": FORMATS["json"], "CSV": FORMATS["csv"], "NumPy": FORMATS["npz"]}
 SECONDS, SAMPLES = 2.0, 400
 STAGES = ("validation", "compute", "assembly", "serialisation", "HTTP")
 HEADER = ("form", "radii", "bytes in", "bytes out", *(f"{name} [us]" for name in STAGES), "all")
@@ -47,7 +46,7 @@ def body(length: int) -> bytes:
 
 def stages(text: bytes, format_name: str) -> tuple[dict[str, Callable[[], object]], int]:
     """Duration of each stage, and the response."""
-    question, write = QUERIES["stress"], WRITERS[format_name].write
+    question, write = QUERIES["stress"], WRITE[MEDIA_TYPES[format_name]]
     query = StressQuery.model_validate_json(text)
     found = question.solve(query)
     document = question.result(query, found)
@@ -92,21 +91,21 @@ def main() -> None:
     rows = []
     command = [sys.executable, "-m", "mdr_command", "serve", "--port"]
     with wire_ratio.server(command) as port, connection(port) as link:
-        for format_name, writer in WRITERS.items():
+        for format_name, media_type in MEDIA_TYPES.items():
             for length in LENGTHS:
                 text = body(length)
                 runs, size = stages(text, format_name)
                 seconds = medians(runs, SECONDS)
-                once = ask(link, text, writer.MEDIA_TYPE)
+                once = ask(link, text, media_type)
                 count = max(9, min(SAMPLES, round(SECONDS / 2 / once)))
-                whole = median(ask(link, text, writer.MEDIA_TYPE) for _ in range(count))
+                whole = median(ask(link, text, media_type) for _ in range(count))
                 times = [seconds[name] for name in STAGES[:-1]]
                 times.append(max(whole - sum(times), 0.0))
                 micro = [one * 1e6 for one in (*times, whole)]
                 rows.append((format_name, length, len(text), size, *micro))
     table(HEADER, rows, "wire")
-    figure, axes = panels(1, len(WRITERS), 2.8)
-    for ax, format_name in zip(axes, WRITERS, strict=True):
+    figure, axes = panels(1, len(MEDIA_TYPES), 2.8)
+    for ax, format_name in zip(axes, MEDIA_TYPES, strict=True):
         own_rows = [row for row in rows if row[0] == format_name]
         parts = np.array([row[4 : 4 + len(STAGES)] for row in own_rows])
         share = 100 * parts / parts.sum(axis=1, keepdims=True)

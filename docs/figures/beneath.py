@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mdr_service.dispatch import respond
-from mdr_service.serializers.json import MEDIA_TYPE
+from mdr_service.serializers import JSON
 
 FOLDER: Final = Path(__file__).parent
 STEEL: Final = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
@@ -23,7 +23,7 @@ BLUE, RED, GREY = "tab:blue", "tab:red", "0.5"
 
 def ask(name: str, query: dict[str, Any]) -> dict[str, Any]:
     """Return the response to a request, as JSON."""
-    found: dict[str, Any] = json.loads(respond(name, json.dumps(query).encode(), MEDIA_TYPE))
+    found: dict[str, Any] = json.loads(respond(name, json.dumps(query).encode(), JSON))
     return found
 
 

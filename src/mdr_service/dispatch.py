@@ -22,19 +22,18 @@ from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery
-from mdr_service.serializers import PICTURES, WRITE, json
+from mdr_service.serializers import JSON, PICTURES, WRITE, write_json
 from mdr_service.serializers.picture import AS_USUAL, Appearance
 from mdr_service.settings import SETTINGS
 
 _logger: Final = logging.getLogger(__name__)
-# Numbers in the response to a query that runs on the event loop, about ten for each load: when no
-# other request is in progress, and beside others. They take some milliseconds, and the time of a
-# round trip to a compute process.
-_PER_LOAD, _MAX_ALONE, _MAX_AT_ONCE = 10, 2_500, 100
+# Most numbers in the response to a query that runs on the event loop, about ten for each load:
+# fields at a thousand radii, which take a millisecond or two.
+_AT_ONCE, _PER_LOAD = 1_100, 10
 
 
-def is_short(query: Query, requests: int) -> bool:
-    """Return True if a query runs on the event loop, for which all `requests` in progress wait.
+def is_short(query: Query) -> bool:
+    """Return True if a query runs on the event loop, for which all other requests wait.
 
     The limit of time of a compute process bounds any other query.
     """
@@ -46,7 +45,7 @@ def is_short(query: Query, requests: int) -> bool:
         or (query.path and query.path.nonlinear)
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
-    return not is_slow and size <= max(_MAX_ALONE // max(requests, 1), _MAX_AT_ONCE)
+    return not is_slow and size <= _AT_ONCE
 
 
 def respond(
@@ -112,7 +111,7 @@ def _entry(item: BatchItem) -> bytes:
     if isinstance(item.query, ValidationError):
         return _problem(problems.from_validation(item.query))
     try:
-        content = respond(item.ask, item.query, json.MEDIA_TYPE)
+        content = respond(item.ask, item.query, JSON)
     except problems.FAILURES as error:
         return _problem(problems.to_problem(error))
     except Exception:
@@ -122,4 +121,4 @@ def _entry(item: BatchItem) -> bytes:
 
 
 def _problem(error: ServiceError) -> bytes:
-    return json.write({"status": error.type.status, "problem": problems.document(error)})
+    return write_json({"status": error.type.status, "problem": problems.document(error)})

@@ -9,7 +9,7 @@ from mdr_service import problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.schemas.contacts import NormalQuery
-from mdr_service.serializers import json
+from mdr_service.serializers import JSON
 
 # A steel ball of 10 mm pressed into steel by a micrometre (SI units).
 _RADIUS, _MODULUS, _DEPTH = 0.01, 1.15e11, 1e-6
@@ -30,7 +30,7 @@ _ROUNDING: Final = 1e-14
 def self_test() -> None:
     """Solve a Hertzian contact; raise ServiceError if the result is wrong."""
     query = NormalQuery.model_validate(_QUERY)
-    result: dict[str, Any] = orjson.loads(respond("normal", query, json.MEDIA_TYPE))
+    result: dict[str, Any] = orjson.loads(respond("normal", query, JSON))
     for name, expected in _EXPECTED.items():
         if not isclose(result[name][0], expected, rel_tol=_ROUNDING):
             raise ServiceError(problems.NOT_READY, f"{name} of a Hertzian contact is wrong")

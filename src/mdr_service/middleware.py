@@ -5,6 +5,7 @@ import os
 import re
 from asyncio import CancelledError
 from collections.abc import Mapping
+from time import perf_counter
 from typing import Any, Final
 
 import orjson
@@ -23,7 +24,7 @@ from mdr_service import observability, problems
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.serializers import json
+from mdr_service.serializers import JSON
 from mdr_service.settings import SETTINGS
 
 LONG: Final = 65_536
@@ -39,6 +40,9 @@ _ALWAYS: Final = (
     (b"mdr-version", __version__.encode("ascii")),
 )
 
+_OTHER: Final = "other"
+_METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
+_requests: Final = logging.getLogger("mdr_service.requests")
 _logger: Final = logging.getLogger(__name__)
 
 
@@ -123,8 +127,22 @@ class ServiceMiddleware:
         finally:
             if record.held:
                 self.transfers.remove(record)
-            route = scope.get("route")
-            observability.end(record, route.path if isinstance(route, Route) else None)
+            _log(record, scope.get("route"))
+
+
+def _log(record: RequestRecord, route: object) -> None:
+    """Count a finished request and log it."""
+    seconds = perf_counter() - record.start
+    path = route.path if isinstance(route, Route) else _OTHER
+    observability.LATENCIES.labels(path, str(record.status)).observe(seconds)
+    members = {
+        "method": record.method if record.method in _METHODS else _OTHER,
+        "route": path,
+        "status": record.status,
+        "ms": round(1e3 * seconds, 3),
+        "queue_ms": round(1e3 * record.queued, 3),
+    }
+    _requests.info("request", extra={"members": members})
 
 
 class _Sender:
@@ -192,8 +210,8 @@ async def read_body(request: Request) -> bytes:
     The server's protocol bounds the time in which it arrives.
     """
     media_type = header(request.scope, b"content-type").partition(";")[0].strip().lower()
-    if media_type != json.MEDIA_TYPE:
-        detail = f"the Content-Type must be {json.MEDIA_TYPE}"
+    if media_type != JSON:
+        detail = f"the Content-Type must be {JSON}"
         raise ServiceError(problems.UNSUPPORTED_MEDIA_TYPE, detail)
     announced = header(request.scope, b"content-length")
     if announced.isdecimal() and int(announced) > SETTINGS.max_body_bytes:

@@ -15,9 +15,6 @@ from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info
 
 from mdr_core import __version__
 
-_OTHER: Final = "other"
-_METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
-
 REGISTRY: Final = CollectorRegistry()
 LATENCIES: Final = Histogram(
     "mdr_request_seconds",
@@ -47,7 +44,6 @@ LOST_LINES: Final = Counter(
 # Its file descriptor in POSIX.
 _STANDARD_ERROR: Final = 2
 Info("mdr_build", "Version of the service.", registry=REGISTRY).info({"version": __version__})
-_requests: Final = logging.getLogger("mdr_service.requests")
 
 
 class LogStream:
@@ -93,21 +89,6 @@ def client() -> str:
     """Return the address of the client of the current request."""
     record = CURRENT.get()
     return record.client if record else ""
-
-
-def end(record: RequestRecord, route: str | None) -> None:
-    """Count a finished request and log it."""
-    seconds = perf_counter() - record.start
-    route = route or _OTHER
-    LATENCIES.labels(route, str(record.status)).observe(seconds)
-    members = {
-        "method": record.method if record.method in _METHODS else _OTHER,
-        "route": route,
-        "status": record.status,
-        "ms": round(1e3 * seconds, 3),
-        "queue_ms": round(1e3 * record.queued, 3),
-    }
-    _requests.info("request", extra={"members": members})
 
 
 class JsonLines(logging.Formatter):

@@ -57,8 +57,6 @@ class BoundedProtocol(H11Protocol):
         app_state: dict[str, Any],
         _loop: AbstractEventLoop | None = None,
     ) -> None:
-        # For the application: the tasks of all requests in progress.
-        app_state["tasks"] = server_state.tasks
         config.h11_max_incomplete_event_size = MAX_HEADER_BYTES
         super().__init__(config, server_state, app_state, _loop)
         self._rejected = False

@@ -6,7 +6,7 @@ from importlib.metadata import version
 from typing import Any, Final, get_args
 
 from mdr_core import __version__
-from mdr_service.results import members
+from mdr_service.queries.contacts import members
 from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnswer
 from mdr_service.schemas.wear import WearField
 

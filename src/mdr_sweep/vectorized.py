@@ -18,8 +18,7 @@ from mdr_core.profiles import KINDS
 from mdr_core.tangential import TangentialContact
 from mdr_service import problems
 from mdr_service.queries import QUERIES
-from mdr_service.queries.contacts import body, control, friction
-from mdr_service.results import findings
+from mdr_service.queries.contacts import body, control, findings, friction
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
 from mdr_service.schemas.queries import SCHEMAS

@@ -7,7 +7,6 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
 from dataclasses import dataclass
 from io import BytesIO
 from itertools import pairwise
@@ -173,31 +172,6 @@ def test_headers_are_limited_in_bytes_and_number(
             assert str(MAX_HEADER_BYTES) in document["detail"]
         else:
             assert body == before[0][1]
-
-
-@pytest.mark.alone
-def test_longer_query_runs_on_the_event_loop_only_beside_few_others(
-    served: Served, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    in_processes = []
-
-    async def compute(function: Callable[..., bytes], *arguments: object) -> bytes:
-        in_processes.append(arguments)
-        return function(*arguments)
-
-    monkeypatch.setattr(served.app.state.workers, "run_in_process", compute)
-    # Two hundred loads are expected to take between half a millisecond and two.
-    query = CONE | {"material": {"e_star": 1, "g_star": 0.9}, "friction_coefficient": 0.3}
-    query |= {"tangential": {"tangential_force": 0.1}}
-    query |= {"load": {"normal_force": [1.0 + 0.01 * i for i in range(200)]}}
-    text = post(json.dumps(query).encode()).replace(b"/v1/normal", b"/v1/tangential")
-    assert served.responses(text)[0][0] == 200
-    assert not in_processes
-    with ExitStack() as stack:
-        for _ in range(20):
-            stack.enter_context(served.connect()).sendall(post()[:-1])
-        assert served.responses(text)[0][0] == 200
-    assert len(in_processes) == 1
 
 
 def test_rejected_connection_is_closed_after_the_response(served: Served) -> None:

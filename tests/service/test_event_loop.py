@@ -38,24 +38,6 @@ def test_errors_of_a_long_range_point_at_parameters(client: Client) -> None:
         assert [each["pointer"] for each in problem["errors"]] == ["/answers"]
 
 
-@pytest.mark.parametrize(
-    "body",
-    [
-        CONE | {"load": {"normal_force": 1}} | {f"a{n}": 0 for n in range(1700)},
-        CONE | {"profile": {"kind": "series", "terms": [{}] * 60}, "load": {"normal_force": 1}},
-    ],
-    ids=["unknown members", "empty terms"],
-)
-def test_many_errors_are_listed_in_a_compute_process(
-    client: Client, monkeypatch: pytest.MonkeyPatch, body: object
-) -> None:
-    with monkeypatch.context() as patch:
-        patch.setattr(problems, "from_validation", never)
-        response = client.post("/v1/normal", body)
-    assert response.status_code == 422
-    assert len(response.json()["errors"]) > 10
-
-
 def test_batch_of_invalid_queries_is_answered_by_a_compute_process(
     client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:

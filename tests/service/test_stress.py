@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mdr_core import fields, normal, tangential
-from mdr_service import results
+from mdr_service.queries.contacts import singular
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_normal import E_STAR, PROFILES
@@ -150,7 +150,7 @@ def test_unreached_accuracy_is_warned_of_once(client: Client) -> None:
 def test_warning_lists_five_singular_radii(radii: int, listed: str) -> None:
     radius = np.arange(1, radii + 1) / 10
     infinite = np.full((1, radii), np.inf)
-    (notice,) = results.singular(radius, {"pressure": infinite}, {"pressure": True})
+    (notice,) = singular(radius, {"pressure": infinite}, {"pressure": True})
     assert notice.message == f"pressure is infinite at radius {listed}"
 
 

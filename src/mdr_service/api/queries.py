@@ -1,14 +1,15 @@
 """Endpoints of the queries, by POST and by URL parameters."""
 
+from collections.abc import Callable
 from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Body, Depends, Query, Request
+from fastapi.types import DecoratedCallable
 from starlette.responses import Response
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
 from mdr_service.api.query_route import BatchResponder, QueryRoute, Responder, url_parameters
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.schemas import answers
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
 from mdr_service.schemas.examples import EXAMPLES
@@ -31,17 +32,21 @@ def _examples(name: str) -> Any:
     return Body(openapi_examples=EXAMPLES[name])
 
 
+def _described(name: str, tag: str, summary: str) -> dict[str, Any]:
+    """Return the arguments that declare an endpoint of a query."""
+    path, _, answer = SCHEMAS[name]
+    texts = {"tags": [tag], "summary": summary}
+    return {"path": path, **texts, "response_model": answer, "responses": RESULT}
+
+
+def _post(name: str, tag: str, summary: str) -> Callable[[DecoratedCallable], DecoratedCallable]:
+    return router.post(operation_id=name, **_described(name, tag, summary))
+
+
 # `QueryRoute` reads the signatures of these functions and does the same, faster.
 
 
-@router.post(
-    "/v1/normal",
-    operation_id="normal",
-    tags=["contact"],
-    summary="Normal contact under a depth, a force or a contact radius",
-    response_model=answers.NormalAnswer,
-    responses=RESULT,
-)
+@_post("normal", "contact", "Normal contact under a depth, a force or a contact radius")
 async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send) -> Response:
     """Compute the frictionless contact of a profile with an elastic half-space.
 
@@ -51,13 +56,10 @@ async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send)
     return await send("normal", query)
 
 
-@router.post(
-    "/v1/normal/fit",
-    operation_id="fit",
-    tags=["contact"],
-    summary="Modulus, contact point, offset and adhesion from a measured curve of force over depth",
-    response_model=answers.FitAnswer,
-    responses=RESULT,
+@_post(
+    "fit",
+    "contact",
+    "Modulus, contact point, offset and adhesion from a measured curve of force over depth",
 )
 async def fit(query: Annotated[FitQuery, _examples("fit")], send: Send) -> Response:
     """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
@@ -69,13 +71,10 @@ async def fit(query: Annotated[FitQuery, _examples("fit")], send: Send) -> Respo
     return await send("fit", query)
 
 
-@router.post(
-    "/v1/tangential",
-    operation_id="tangential",
-    tags=["contact"],
-    summary="Partial slip under a tangential force or displacement, or a stick radius",
-    response_model=answers.TangentialAnswer,
-    responses=RESULT,
+@_post(
+    "tangential",
+    "contact",
+    "Partial slip under a tangential force or displacement, or a stick radius",
 )
 async def tangential(
     query: Annotated[TangentialQuery, _examples("tangential")], send: Send
@@ -88,14 +87,7 @@ async def tangential(
     return await send("tangential", query)
 
 
-@router.post(
-    "/v1/tangential/history",
-    operation_id="history",
-    tags=["contact"],
-    summary="Load history: an arbitrary load path or identical cycles",
-    response_model=answers.HistoryAnswer,
-    responses=RESULT,
-)
+@_post("history", "contact", "Load history: an arbitrary load path or identical cycles")
 async def history(query: Annotated[HistoryQuery, _examples("history")], send: Send) -> Response:
     """Follow a load path from first contact, and return samples along it.
 
@@ -113,14 +105,7 @@ async def history(query: Annotated[HistoryQuery, _examples("history")], send: Se
     return await send("history", query)
 
 
-@router.post(
-    "/v1/tangential/impact",
-    operation_id="impact",
-    tags=["contact"],
-    summary="Oblique impact: rebound, duration and loss of energy by friction",
-    response_model=answers.ImpactAnswer,
-    responses=RESULT,
-)
+@_post("impact", "contact", "Oblique impact: rebound, duration and loss of energy by friction")
 async def impact(query: Annotated[ImpactQuery, _examples("impact")], send: Send) -> Response:
     """Compute the rebound of bodies that hit each other with normal and tangential velocities.
 
@@ -132,14 +117,7 @@ async def impact(query: Annotated[ImpactQuery, _examples("impact")], send: Send)
     return await send("impact", query)
 
 
-@router.post(
-    "/v1/stress",
-    operation_id="stress",
-    tags=["contact"],
-    summary="Surface stresses, slip and displacement over the radius",
-    response_model=answers.StressAnswer,
-    responses=RESULT,
-)
+@_post("stress", "contact", "Surface stresses, slip and displacement over the radius")
 async def stress(query: Annotated[StressQuery, _examples("stress")], send: Send) -> Response:
     """Compute the fields named in `quantities`, and nothing else, by load and radius.
 
@@ -149,13 +127,10 @@ async def stress(query: Annotated[StressQuery, _examples("stress")], send: Send)
     return await send("stress", query)
 
 
-@router.post(
-    "/v1/subsurface",
-    operation_id="subsurface",
-    tags=["contact"],
-    summary="Stresses beneath the surface of either body, their peaks and the onset of yield",
-    response_model=answers.SubsurfaceAnswer,
-    responses=RESULT,
+@_post(
+    "subsurface",
+    "contact",
+    "Stresses beneath the surface of either body, their peaks and the onset of yield",
 )
 async def subsurface(
     query: Annotated[SubsurfaceQuery, _examples("subsurface")], send: Send
@@ -170,14 +145,7 @@ async def subsurface(
     return await send("subsurface", query)
 
 
-@router.post(
-    "/v1/wear",
-    operation_id="wear",
-    tags=["wear"],
-    summary="Limiting state of fretting wear under a small oscillation",
-    response_model=answers.WearAnswer,
-    responses=RESULT,
-)
+@_post("wear", "wear", "Limiting state of fretting wear under a small oscillation")
 async def wear(query: Annotated[WearQuery, _examples("wear")], send: Send) -> Response:
     """Compute the limiting profile: the annulus outside the stick zone wears until it is unloaded.
 
@@ -193,13 +161,10 @@ async def wear(query: Annotated[WearQuery, _examples("wear")], send: Send) -> Re
     return await send("wear", query)
 
 
-@router.post(
-    "/v1/wear/evolution",
-    operation_id="evolution",
-    tags=["wear"],
-    summary="Fretting wear over the cycles: profile and pressure up to the limiting state",
-    response_model=answers.EvolutionAnswer,
-    responses=RESULT,
+@_post(
+    "evolution",
+    "wear",
+    "Fretting wear over the cycles: profile and pressure up to the limiting state",
 )
 async def evolution(
     query: Annotated[EvolutionQuery, _examples("evolution")], send: Send
@@ -240,15 +205,9 @@ _get_router: Final = APIRouter(responses=GET_FAILURES, dependencies=[Depends(url
 
 def _declare_get(name: str, tag: str, title: str, model: Any) -> None:
     """Declare the endpoint of a query by URL parameters, whose model is made from the request."""
+    texts = tag, f"{title} by parameters, for spreadsheets and browsers"
 
-    @_get_router.get(
-        SCHEMAS[name].path,
-        operation_id=f"get_{name}",
-        tags=[tag],
-        summary=f"{title} by parameters, for spreadsheets and browsers",
-        response_model=SCHEMAS[name].answer,
-        responses=RESULT,
-    )
+    @_get_router.get(operation_id=f"get_{name}", **_described(name, *texts))
     async def get(parameters: Annotated[model, Query()], request: Request) -> Response:
         """Return the response of `POST` for numbers and at most one range.
 

@@ -1,13 +1,12 @@
 """Responses to queries: their format, where they are computed, and the route of their endpoints."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence, Sized
+from collections.abc import Callable, Sequence
 from inspect import signature
 from typing import Annotated, Any, ClassVar, Final, get_args
 
 from fastapi import Query, Request
 from fastapi.routing import APIRoute
-from pydantic import ValidationError
 from starlette.responses import Response
 
 from mdr_service import problems
@@ -17,14 +16,12 @@ from mdr_service.middleware import header, read_body
 from mdr_service.problems import ServiceError
 from mdr_service.schemas import contacts
 from mdr_service.schemas.batch import BatchQuery
-from mdr_service.serializers import FORMATS, PICTURES, json
+from mdr_service.serializers import FORMATS, JSON, PICTURES
 from mdr_service.serializers.picture import AS_USUAL
 from mdr_service.workers import AT_ONCE_BYTES
 
 # Bound; the longest query has about forty.
 _MAX_PARAMETERS: Final = 100
-# A list of errors on the event loop takes 0.1 ms up to this number.
-_MAX_ERRORS_AT_ONCE: Final = 100
 
 
 class Responder:
@@ -44,11 +41,10 @@ class Responder:
         accept = header(request.scope, b"accept", "*/*")
         # Most clients accept anything, and take a picture as it is.
         is_json = format_ is None and accept == "*/*"
-        self.media_type = json.MEDIA_TYPE if is_json else media_type(format_, accept, self.formats)
+        self.media_type = JSON if is_json else media_type(format_, accept, self.formats)
         is_usual = size is None and units is None
         self.appearance = AS_USUAL if is_usual else appearance(self.media_type, size, units)
         self.workers = request.app.state.workers
-        self.tasks: Sized = request.scope.get("state", {}).get("tasks", ())
 
     async def __call__(
         self,
@@ -59,7 +55,7 @@ class Responder:
         """Return the content, of a long query or an unparsed one from a compute process."""
         arguments = name, query, self.media_type, members, self.appearance
         is_drawn = self.media_type in PICTURES
-        if isinstance(query, contacts.Query) and not is_drawn and is_short(query, len(self.tasks)):
+        if isinstance(query, contacts.Query) and not is_drawn and is_short(query):
             content = respond(*arguments)
         else:
             content = await self.workers.run_in_process(respond, *arguments)
@@ -96,12 +92,7 @@ class QueryRoute(APIRoute):
                 raise _invalid(dict.fromkeys(given, "there is no such parameter"))
             query: Any = await read_body(request)
             if len(query) <= responder.at_once_bytes:
-                try:
-                    query = model.model_validate_json(query)
-                except ValidationError as error:
-                    # A compute process finds and lists more of them.
-                    if error.error_count() <= _MAX_ERRORS_AT_ONCE:
-                        raise
+                query = model.model_validate_json(query)
             return await responder(name, query)
 
         return handle

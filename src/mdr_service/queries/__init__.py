@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
 from mdr_service.queries.contacts import (
+    Result,
     normal_result,
     solve_normal,
     solve_tangential,
@@ -18,7 +19,6 @@ from mdr_service.queries.impacts import impact_result, solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
 from mdr_service.queries.wear import evolution_result, solve_evolution, solve_wear, wear_result
-from mdr_service.results import Result
 
 
 class QueryType(NamedTuple):

@@ -13,9 +13,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import TIGHTEST
-from mdr_service.queries.contacts import solve_normal, solve_tangential
-from mdr_service.queries.load_paths import require_few_samples, solve_path
-from mdr_service.results import (
+from mdr_service.queries.contacts import (
     Contact,
     Result,
     checked,
@@ -23,7 +21,10 @@ from mdr_service.results import (
     require_one_of,
     response_metadata,
     singular,
+    solve_normal,
+    solve_tangential,
 )
+from mdr_service.queries.load_paths import require_few_samples, solve_path
 from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, StressQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS

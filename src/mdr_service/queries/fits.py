@@ -5,8 +5,7 @@ import numpy as np
 from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
-from mdr_service.queries.contacts import ADHESION, profile
-from mdr_service.results import Result, checked
+from mdr_service.queries.contacts import ADHESION, Result, checked, profile
 from mdr_service.schemas.fits import FitQuery
 
 

@@ -4,8 +4,16 @@ from typing import Final
 
 from mdr_core import impact
 from mdr_core.impact import Impact
-from mdr_service.queries.contacts import body, friction
-from mdr_service.results import Result, by_load, checked, members, notices, response_metadata
+from mdr_service.queries.contacts import (
+    Result,
+    body,
+    by_load,
+    checked,
+    friction,
+    members,
+    notices,
+    response_metadata,
+)
 from mdr_service.schemas.answers import ImpactAnswer
 from mdr_service.schemas.impacts import ImpactQuery
 

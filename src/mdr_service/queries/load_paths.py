@@ -7,8 +7,17 @@ import numpy as np
 from mdr_core import history as load_history
 from mdr_core.errors import InputError
 from mdr_core.history import LoadCycles, LoadHistory
-from mdr_service.queries.contacts import body, control, friction
-from mdr_service.results import Result, checked, members, notices, require_one_of, response_metadata
+from mdr_service.queries.contacts import (
+    Result,
+    body,
+    checked,
+    control,
+    friction,
+    members,
+    notices,
+    require_one_of,
+    response_metadata,
+)
 from mdr_service.schemas.answers import HistoryAnswer
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.load_paths import Cycles, HistoryQuery, LoadPath

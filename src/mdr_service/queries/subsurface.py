@@ -10,8 +10,8 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.normal import not_reached
 from mdr_core.typing import Array, Flags
+from mdr_service.queries.contacts import Contact, Result, checked, notices, response_metadata
 from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
-from mdr_service.results import Contact, Result, checked, notices, response_metadata
 from mdr_service.schemas.contacts import Bodies
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 

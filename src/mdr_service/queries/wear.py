@@ -11,18 +11,22 @@ from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
-from mdr_service.queries.contacts import body, control, friction, paired, solve_normal
-from mdr_service.queries.fields import require_few_numbers
-from mdr_service.results import (
+from mdr_service.queries.contacts import (
     Result,
     Wear,
+    body,
     by_load,
     checked,
+    control,
+    friction,
     members,
     notices,
+    paired,
     response_metadata,
     singular,
+    solve_normal,
 )
+from mdr_service.queries.fields import require_few_numbers
 from mdr_service.schemas.answers import EvolutionAnswer, WearAnswer
 from mdr_service.schemas.wear import EvolutionField, EvolutionQuery, WearField, WearQuery
 

@@ -4,10 +4,19 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Final
 
-from mdr_service.serializers import csv, json, npz, picture
+import numpy as np
+import orjson
 
+from mdr_service.serializers import csv, npz, picture
+
+JSON: Final = "application/json"
+"""Media type of JSON."""
+write_json: Final = partial(
+    orjson.dumps, default=np.ndarray.tolist, option=orjson.OPT_SERIALIZE_NUMPY
+)
+"""JSON: numbers with all their digits, infinities as null."""
 FORMATS: Final[Mapping[str, str]] = {
-    "json": json.MEDIA_TYPE,
+    "json": JSON,
     "csv": csv.MEDIA_TYPE,
     "npz": npz.MEDIA_TYPE,
     "txt": csv.PLAIN_TEXT,
@@ -17,7 +26,8 @@ FORMATS: Final[Mapping[str, str]] = {
 PICTURES: Final = frozenset(picture.MEDIA_TYPES.values())
 """Media types of pictures."""
 WRITE: Final[Mapping[str, Callable[..., bytes]]] = {
-    **{module.MEDIA_TYPE: module.write for module in (json, csv, npz)},
+    JSON: write_json,
+    **{module.MEDIA_TYPE: module.write for module in (csv, npz)},
     csv.PLAIN_TEXT: csv.write_cells,
     **{each: partial(picture.write, name=name) for name, each in picture.MEDIA_TYPES.items()},
 }
