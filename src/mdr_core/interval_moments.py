@@ -23,25 +23,18 @@ from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Flags, Indices
 
 # Intervals evaluated at once, so that their nodes stay in the processor's cache.
 _BLOCK: Final = 1024
 # Gauss nodes on an interval without a break, see notes, §10.
 _POINTS: Final = 16
-# An interval before the first break is wide if the normal coordinate grows by more than this factor
-# on it. Differences of closed forms over a wide interval do not suffer cancellation.
-_WIDE: Final = 16.0
-# The same for the contact coordinate.
-_WIDE_FROM_AXIS: Final = 400.0
-# The same for the distance from a pole of the slope.
-_WIDE_AT_POLE: Final = 100.0
-# The same for the contact coordinate beyond a break.
-_WIDE_BEYOND_BREAK: Final = 2.5
+# An interval is wide if the normal coordinate grows on it by more than the first factor, or the
+# contact coordinate, or the distance from a pole of the slope, by more than the second, beyond a
+# break by the third. Differences of closed forms over a wide interval hardly suffer cancellation.
+_WIDE_IN_NORMAL, _WIDE, _WIDE_BEYOND_BREAK = 16.0, 3.0, 1.3
 # Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
 _SHALLOW: Final = 1.5
-# So far below a break, as a part of it, all functions are those of the panel that ends there.
-_BELOW: Final = 1e-11
 _EPS: Final = float(np.finfo(float).eps)
 
 
@@ -110,52 +103,35 @@ class IntervalMoments:
             blocks = [slice(i, i + _BLOCK) for i in range(0, low.size, _BLOCK)]
             parts = [self._part(part).over(low[part], span[part], ends[:, part]) for part in blocks]
             return Moments(span, np.concatenate([part.weights for part in parts], axis=1))
-        if not has_many_breaks(self.profile):
-            return self._by_break(low, span, ends)
-        breaks, normal_at_breaks = self._breaks
-        first = np.searchsorted(normal_at_breaks, low, side="right")
-        last = np.searchsorted(normal_at_breaks, low + span, side="left")
-        base, crossed = np.append(0.0, breaks)[first], np.flatnonzero(last > first)
-        start, stop, length = np.maximum(ends[0], base), ends[1].copy(), span.copy()
-        low_break, high_break = first[crossed], last[crossed] - 1
-        bottom, top = normal_at_breaks[[low_break, high_break]]
-        stop[crossed] = breaks[low_break]
-        length[crossed] = np.maximum(bottom - low[crossed], 0.0)
-        rest = np.maximum(span[crossed] - length[crossed] - (top - bottom), 0.0)
-        # The parts above the highest break are further cases.
-        edge = breaks[high_break]
-        above = [edge, np.maximum(ends[1][crossed], edge)]
-        cases = np.append(low, top), np.append(length, rest), np.hstack([[start, stop], above])
-        found = self.over_smooth(*cases, np.append(base, edge))
-        lower, upper = found.at(slice(span.size)), found.at(slice(span.size, None))
-        between = Moments(top - bottom, self._between[:, low_break, high_break])
-        between = lower.at(crossed).joined(between)
-        lower.weights[:, crossed] = between.joined(upper).weights
-        return Moments(span, lower.weights)
-
-    def _by_break(self, low: Array, span: Array, ends: Array) -> Moments:
-        """Return the moments for a profile with one break at most, or one in each case."""
-        if not self.profile.coordinate_breaks.size:
-            return self.over_smooth(low, span, ends, np.zeros_like(span))
         base, _ = break_below(self.profile, ends[1])
-        crossed = base > ends[0]
+        crossed, weights = base > ends[0], np.empty((3, span.size))
         if not some(crossed):
-            return self.over_smooth(low, span, ends, base)
-        # The parts below a break are further cases.
-        below = np.flatnonzero(crossed)
-        inside = np.maximum(_from_below(self.normal, base) - low, 0.0)
-        part = np.where(crossed, np.minimum(inside, span), 0.0)
-        found = self._part(np.append(np.arange(span.size), below)).over_smooth(
-            np.append(low + part, low[below]),
-            np.append(span - part, part[below]),
-            np.hstack([[np.maximum(base, ends[0]), ends[1]], [ends[0][below], base[below]]]),
-            np.append(base, np.zeros(below.size)),
-        )
-        upper, lower = found.at(slice(span.size)), found.at(slice(span.size, None))
+            return Moments(span, self.over_smooth(low, span, ends, base))
+        for chosen, over in (
+            (crossed, IntervalMoments._over_breaks),
+            (~crossed, IntervalMoments.over_smooth),
+        ):
+            cases = low[chosen], span[chosen], ends[:, chosen], base[chosen]
+            weights[:, chosen] = over(self._part(chosen), *cases)
+        return Moments(span, weights)
+
+    def _over_breaks(self, low: Array, span: Array, ends: Array, top: Array) -> Array:
+        """Return the moments over intervals that contain breaks, the highest of which is `top`."""
+        bottom, between = top, np.zeros((3, span.size))
+        if has_many_breaks(self.profile):
+            breaks = self.profile.coordinate_breaks
+            first, last = breaks.searchsorted(ends[0], side="right"), breaks.searchsorted(top)
+            bottom, between = breaks[first], self._between[:, first, last]
+        start, stop = self.normal(np.array([bottom, top]))
+        length = np.clip(start - low, 0.0, span)
+        rest = np.maximum(span - length - (stop - start), 0.0)
+        below, _ = break_below(self.profile, bottom)
+        lower = self.over_smooth(low, length, np.array([ends[0], bottom]), below)
+        upper = self.over_smooth(stop, rest, np.array([top, ends[1]]), top)
         # The first moment is infinite on the axis where forces are prescribed.
         with np.errstate(invalid="ignore"):
-            upper.weights[:, below] = lower.joined(upper.at(below)).weights
-        return Moments(span, upper.weights)
+            inner = Moments(length, lower).joined(Moments(stop - start, between))
+            return inner.joined(Moments(rest, upper)).weights
 
     def mean_slope(self, low: Array, high: Array) -> Array:
         """Return the mean slope of the conjugate between two contact coordinates, low <= high.
@@ -170,16 +146,6 @@ class IntervalMoments:
         edge = 1 / twice if self.over_forces else twice
         return where(apart, conjugate / where(apart, normal, 1.0), edge)
 
-    @cached_property
-    def _breaks(self) -> tuple[Array, Array]:
-        """Coordinates of the profile's breaks and their normal coordinates."""
-        breaks = self.profile.coordinate_breaks
-        breaks = breaks[breaks > self.profile.first_coordinate]
-        # A break that no load reaches may have no normal coordinate in doubles.
-        with np.errstate(over="ignore", invalid="ignore"):
-            normal_at_breaks = _from_below(self.normal, breaks)
-        return breaks, normal_at_breaks
-
     def _slope(self, s: Array) -> Array:
         """Derivative of the normal coordinate with respect to the contact coordinate."""
         return (self.profile.force_slope if self.over_forces else self.profile.depth_slope)(s)
@@ -187,9 +153,10 @@ class IntervalMoments:
     @cached_property
     def _between(self) -> Array:
         """Moments from each break to each later one, shape (3, k, k)."""
-        breaks, normal = self._breaks
-        ends, first = np.array([breaks[:-1], breaks[1:]]), np.arange(breaks.size)
-        panels = self.over_smooth(normal[:-1], np.diff(normal), ends, ends[0])
+        breaks = self.profile.coordinate_breaks
+        normal, ends = self.normal(breaks), np.array([breaks[:-1], breaks[1:]])
+        span, first = np.diff(normal), np.arange(breaks.size)
+        panels = Moments(span, self.over_smooth(normal[:-1], span, ends, ends[0]))
         # The moments add up to the step of the slope 2a or 1/(2a). They scale with the length in
         # the normal coordinate, which has no digits on a flat.
         radius = self.profile.contact_radius(breaks)
@@ -203,27 +170,24 @@ class IntervalMoments:
             found = found.at(slice(None, -1)).joined(panels.at(slice(step, None)))
         return table
 
-    def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Moments:
+    def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Array:
         """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
-        profile, weights = self.profile, np.zeros((3, low.size))
-        beyond, long = base > 0, span > 0
-        limit = np.where(beyond, _WIDE_BEYOND_BREAK, _WIDE_FROM_AXIS)
-        wide = (ends[1] > limit * ends[0]) | (~beyond & (low + span > _WIDE * low))
+        profile, weights, long = self.profile, np.zeros((3, low.size)), span > 0
         start, stop = profile.pole - ends
-        wide |= ~beyond & (start > _WIDE_AT_POLE * stop)
+        wide = (start > _WIDE * stop) | (low + span > _WIDE_IN_NORMAL * low)
+        limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE)
+        wide = (ends[1] > limit * ends[0]) | (wide & (base == 0))
         if some(profile.first_radius > 0):
-            shallow = profile.contact_radius(ends[1]) < _SHALLOW * profile.first_radius
-            shallow &= ~beyond
-            beyond, wide = beyond | shallow, wide & ~shallow
+            wide &= profile.contact_radius(ends[1]) > _SHALLOW * profile.first_radius
         closed, by_rule = wide & long, ~wide & long
         if every(by_rule):
-            return Moments(span, self.over_narrow(span, ends, base, beyond))
+            return self.over_narrow(span, ends, base)
         if some(closed):
             weights[:, closed] = self._part(closed).over_wide(span[closed], ends[:, closed])
         if some(by_rule):
-            at = span[by_rule], ends[:, by_rule], base[by_rule], beyond[by_rule]
+            at = span[by_rule], ends[:, by_rule], base[by_rule]
             weights[:, by_rule] = self._part(by_rule).over_narrow(*at)
-        return Moments(span, weights)
+        return weights
 
     def _part(self, chosen: Flags | Indices | slice) -> "IntervalMoments":
         """The chosen cases of a sweep."""
@@ -258,19 +222,19 @@ class IntervalMoments:
         whole = sign * (slope[1] - slope[0])
         return np.array([whole - 2 * first + second, 2 * (first - second), second])
 
-    def over_narrow(self, span: Array, ends: Array, base: Array, beyond: Flags) -> Array:
+    def over_narrow(self, span: Array, ends: Array, base: Array) -> Array:
         """Return the moments over narrow intervals, by Gauss' rule in the contact coordinate.
 
         Parameters
         ----------
         span, ends : see `over_wide`.
-        base : contact coordinates of the breaks below, zero for none, shape (m,).
-        beyond : True beyond a break or a flat's edge, where all is smooth in the root of the
-            distance from `base`; elsewhere it is in the logarithm.
+        base : contact coordinates of the breaks below, zero for none, shape (m,); beyond one all is
+            smooth in the root of the distance from it.
         """
         profile, (start, stop) = self.profile, ends
         width = stop - start
-        thin = width * width < _EPS * stop * np.minimum(stop - base, profile.pole - stop)
+        from_pole = np.where(base > 0, inf, profile.pole - stop)
+        thin = width * width < _EPS * stop * np.minimum(stop - base, from_pole)
         if some(thin):
             slope = self._slope(stop)
             # An interval may end where g becomes constant.
@@ -279,9 +243,11 @@ class IntervalMoments:
                 estimate = span / slope
             width = np.where(thin & (estimate > 0), np.minimum(estimate, stop), width)
         share, weights, cumulative = cumulative_rule(_POINTS)
-        place, moved = _in_logarithm(stop, width, share, np.where(beyond, 0.0, 1 / profile.pole))
-        if some(beyond):
-            root, climb = _in_root(stop - base, start - base, width, share)
+        place, moved = stop - width * (1 - share), np.broadcast_to(width, (_POINTS, span.size))
+        if some(base > 0):
+            high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
+            climb = width / np.where(high > 0, high + bottom, inf)
+            root, beyond = bottom + climb * share, base > 0
             place = np.where(beyond, np.minimum(base + root * root, stop), place)
             moved = np.where(beyond, 2 * root * climb, moved)
             origin, past = np.where(beyond, base, place), np.where(beyond, root * root, 0.0)
@@ -309,29 +275,3 @@ def interval_moments(profile: Profile, *, over_forces: bool) -> IntervalMoments:
 
 # The sums between breaks take as long as a short history; those of 2000 points have 1 MB.
 _of_table: Final = lru_cache(maxsize=16)(IntervalMoments)
-
-
-def _from_below(function: Function, breaks: Array) -> Array:
-    """Limit of a function from below: above, an infinite slope magnifies rounding errors."""
-    near, far = function(np.multiply.outer([1 - _BELOW, 1 - 2 * _BELOW], breaks))
-    return np.asarray(2 * near - far)
-
-
-def _in_logarithm(
-    stop: Array, width: Array, share: Array, per_pole: Parameter
-) -> tuple[Array, Array]:
-    """Return the places at parts `share` of intervals in log(s/(R - s)), and their derivatives.
-
-    1/R = `per_pole`, zero for the logarithm of s.
-    """
-    ahead = 1 - stop * per_pole
-    stretch = -np.log1p(-np.minimum(width / stop, 1 - _EPS)) + np.log1p(width * per_pole / ahead)
-    place = stop / (ahead * np.exp(stretch * (1 - share)) + stop * per_pole)
-    return place, place * (1 - place * per_pole) * stretch
-
-
-def _in_root(top: Array, bottom: Array, width: Array, share: Array) -> tuple[Array, Array]:
-    """Return roots of distances from a break, `top` and `bottom` at the ends, and derivatives."""
-    high, low = (np.sqrt(np.maximum(distance, 0.0)) for distance in (top, bottom))
-    climb = width / np.where(high > 0, high + low, inf)
-    return low + climb * share, climb
