@@ -46,7 +46,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
     add("--scheduler", metavar="ADDRESS", help="Dask scheduler, for example tcp://host:8786")
     add("--workers", type=int, help="number of processes (all cores if that saves time)")
     add("--chunk", type=int, help="cases in a chunk (as many as take about a second)")
-    add("--plan", action="store_true", help="print estimated time, memory and disk use, then exit")
+    add("--plan", action="store_true", help="print estimated time and disk use, then exit")
 
 
 def run(arguments: argparse.Namespace) -> int:

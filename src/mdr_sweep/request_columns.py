@@ -13,6 +13,7 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from mdr_service.schemas.flat import leaves
+from mdr_service.schemas.quantities import SMALLEST
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_sweep.spec import Spec
 
@@ -33,12 +34,10 @@ class Field:
     type: str
     low: float
     high: float
-    smallest: float
-    """Smallest magnitude besides 0."""
 
     def accepts(self, values: Values) -> NDArray[np.bool_]:
         """Return True for the values within the bounds, False for NaN."""
-        is_significant = (np.abs(values) >= self.smallest) | (values == 0)
+        is_significant = (np.abs(values) >= SMALLEST) | (values == 0)
         return np.asarray(is_significant & (values >= self.low) & (values <= self.high))
 
     def fits(self, kind: pa.DataType) -> bool:
@@ -89,8 +88,7 @@ def _fields(query: str) -> Mapping[str, Field]:
         # A load takes a number or a list; a case of a sweep has one number.
         if name not in _OVER_RADIUS and not (name in found and leaf["type"] == "array"):
             low, high = leaf.get("minimum", -inf), leaf.get("maximum", inf)
-            smallest = leaf.get("x-smallest-magnitude", 0.0)
-            found[name] = Field(leaf["type"], low, high, smallest)
+            found[name] = Field(leaf["type"], low, high)
     return found
 
 

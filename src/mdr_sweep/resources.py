@@ -1,7 +1,6 @@
-"""Time, memory and disk space of a sweep, extrapolated from a sample of its cases."""
+"""Time and disk space of a sweep, extrapolated from a sample of its cases."""
 
 import os
-import resource
 import sys
 from collections.abc import Iterator
 from math import log2
@@ -20,8 +19,8 @@ _SAMPLE_SECONDS: Final = 0.1
 _FIRST_SAMPLE: Final = 16
 # Time of a chunk [s]: a lost worker loses little, and transfer takes a small part.
 _CHUNK_SECONDS: Final = 1.0
-# Processor time that a worker process takes to start and import this package, as measured [s].
-START_SECONDS: Final = 1.0
+# Time that worker processes take to start and import this package, as measured [s].
+START_SECONDS: Final = 2.0
 
 
 class Estimate(NamedTuple):
@@ -34,8 +33,6 @@ class Estimate(NamedTuple):
     """Worker processes; 0 where their start takes longer than they save."""
     seconds: float
     """Time on an idle machine, including the start of the workers and the writing."""
-    memory: float
-    """Peak memory of all processes [bytes], each as large as this one after the sample."""
     disk: float
     """Size of the chunks and of the result, which exist side by side at the end [bytes]."""
 
@@ -47,7 +44,6 @@ class Estimate(NamedTuple):
         yield f"chunks   {-(-self.rows // self.chunk):,} of {self.chunk:,} cases"
         time = f"{self.seconds:,.1f} s ({self.seconds / 3600:,.1f} h)"
         yield f"time     about {time} on an idle machine, in {where}"
-        yield f"memory   about {self.memory / 1024**2:,.0f} MiB"
         yield f"disk     at most {self.disk / 1024**2:,.0f} MiB during the sweep"
 
 
@@ -84,14 +80,10 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     processes = workers or (processors if saved > START_SECONDS else 1)
     processes = 0 if processes == 1 else processes
     start_up = START_SECONDS if processes else 0.0
-    # In KiB on Linux, in bytes on macOS.
-    unit = 1 if sys.platform == "darwin" else 1024
-    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
     return Estimate(
         rows=source.rows,
         chunk=min(2 ** int(log2(max(_CHUNK_SECONDS / solving, 1.0))), tables.ROW_GROUP),
         processes=processes,
         seconds=start_up + source.rows * (solving / max(processes, 1) + writing),
-        memory=own * (1 + processes),
         disk=2 * source.rows * rows.nbytes / part.num_rows,
     )

@@ -1,16 +1,9 @@
-"""Distribution of chunks over processes, or over a Dask cluster."""
+"""Distribution of chunks over the workers of a Dask scheduler, on this machine or a cluster."""
 
-import os
-import signal
-from collections.abc import Generator, Iterable, Iterator
-from concurrent import futures
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Generator, Iterable
+from concurrent.futures import CancelledError
 from importlib import import_module
-from itertools import chain
-from multiprocessing import get_context, parent_process
-from threading import Thread
-from typing import Final
+from typing import Any, Final
 
 import pyarrow as pa
 
@@ -21,84 +14,53 @@ Chunk = tuple[int, pa.RecordBatch]
 """Index of a chunk, and its cases or the rows of the result."""
 # Chunks in flight for each worker: one that is solved, and one that waits. Bounds the memory.
 _AHEAD: Final = 2
-# Pools lost one after the other, without a completed chunk, after which the sweep ends.
-_MAX_LOST: Final = 3
-_THREADS: Final = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+# Environment of the workers on this machine. More BLAS threads than cores slow each other down. The
+# memory trimming of Dask's default is left out: it makes allocation slower than the computation.
+_ENVIRONMENT: Final = dict.fromkeys(
+    ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), 1
+)
+_SETTINGS: Final = {
+    "distributed.nanny.pre-spawn-environ": _ENVIRONMENT,
+    # An interrupt by the terminal is left to the client, which closes its workers.
+    "distributed.worker.preload": ["import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"],
+}
 
 
-def in_processes(spec: Spec, chunks: Iterable[Chunk], workers: int) -> Generator[Chunk, None, None]:
-    """Yield each chunk as it is completed by worker processes.
+def in_workers(
+    spec: Spec, chunks: Iterable[Chunk], address: str | None, processes: int
+) -> Generator[Chunk, None, None]:
+    """Yield each chunk as it is completed by the workers of the scheduler at an address.
 
-    If a worker is lost, all are replaced, and their chunks are solved again. After an interrupt
-    the workers finish their chunks: one that is terminated while it returns a chunk would leave
-    its pool waiting for the rest.
+    Without an address, `processes` workers are started on this machine. Dask replaces those that
+    are lost, and solves their chunks again.
     """
-    # More BLAS threads than cores slow each other down.
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    spawn = get_context("spawn")
-    in_flight: dict[int, pa.RecordBatch] = {}
-    remaining = iter(chunks)
-    lost = 0
-    while lost < _MAX_LOST:
-        try:
-            with futures.ProcessPoolExecutor(workers, spawn, _end_with_parent) as executor:
-                for each in _solved(executor, workers, spec, remaining, in_flight):
-                    lost = 0
-                    yield each
-                return
-        except BrokenProcessPool:
-            lost += 1
-    listed = ", ".join(map(str, in_flight))
-    raise SweepError(f"{lost} workers were lost in turn in chunks {listed}; memory may be short")
-
-
-def on_cluster(spec: Spec, chunks: Iterable[Chunk], address: str) -> Generator[Chunk, None, None]:
-    """Yield each chunk as it is completed by the workers of a Dask scheduler."""
     distributed = import_module("distributed")
+    where = {"address": address} if address else _on_this_machine(processes)
     try:
-        with distributed.Client(address) as client, client.get_executor(pure=False) as executor:
-            workers = max(sum(client.nthreads().values()), 1)
-            yield from _solved(executor, workers, spec, chunks, {})
+        with distributed.Client(**where) as client:
+            limit = _AHEAD * max(sum(client.nthreads().values()), 1)
+            solved = distributed.as_completed(with_results=True)
+            for index, batch in chunks:
+                work = spec, versions(), index, _to_bytes(batch)
+                solved.add(client.submit(solve, *work, pure=False))
+                if solved.count() >= limit:
+                    yield next(solved)[1]
+            for _, chunk in solved:
+                yield chunk
     except distributed.KilledWorker as error:
         raise SweepError(f"several workers were lost on one chunk: {error}") from None
     except ImportError as error:
         raise SweepError(f"a worker lacks a package: {error}") from None
-    except (OSError, futures.CancelledError) as error:
-        raise SweepError(f"the Dask scheduler {address} does not respond: {error}") from None
+    except (OSError, CancelledError) as error:
+        raise SweepError(f"the Dask scheduler does not respond: {error}") from None
 
 
-def solve(spec: Spec, expected: dict[str, str], batch: bytes) -> bytes:
-    """Return the solved rows of a batch, in a worker that has the expected versions."""
+def solve(spec: Spec, expected: dict[str, str], index: int, batch: bytes) -> Chunk:
+    """Return a solved chunk, in a worker that has the expected versions."""
     if versions() != expected:
         raise SweepError(f"a worker has {versions()}, the client {expected}")
-    return _to_bytes(vectorized.solve(spec, _from_bytes(batch)))
-
-
-def _solved(
-    executor: futures.Executor,
-    workers: int,
-    spec: Spec,
-    chunks: Iterable[Chunk],
-    in_flight: dict[int, pa.RecordBatch],
-) -> Iterator[Chunk]:
-    """Solve the chunks in flight, which a lost pool has left, and then the others."""
-    pending: dict[futures.Future[bytes], int] = {}
-
-    def completed() -> Iterator[Chunk]:
-        for future in futures.wait(pending, return_when=futures.FIRST_COMPLETED).done:
-            rows, index = _from_bytes(future.result()), pending.pop(future)
-            del in_flight[index]
-            yield index, rows
-
-    expected = versions()
-    for index, batch in chain(list(in_flight.items()), chunks):
-        in_flight[index] = batch
-        with _interrupts_blocked():
-            pending[executor.submit(solve, spec, expected, _to_bytes(batch))] = index
-        while len(pending) >= _AHEAD * workers:
-            yield from completed()
-    while pending:
-        yield from completed()
+    with pa.ipc.open_stream(batch) as reader:
+        return index, vectorized.solve(spec, reader.read_next_batch())
 
 
 def _to_bytes(batch: pa.RecordBatch) -> bytes:
@@ -109,27 +71,7 @@ def _to_bytes(batch: pa.RecordBatch) -> bytes:
     return bytes(sink.getvalue())
 
 
-def _from_bytes(data: bytes) -> pa.RecordBatch:
-    with pa.ipc.open_stream(data) as reader:
-        return reader.read_next_batch()
-
-
-@contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Block SIGINT for this process and those started here, which only this one then handles."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _end_with_parent() -> None:
-    """End this worker when its parent is killed, which the queue of a pool does not detect."""
-
-    def end() -> None:
-        if parent := parent_process():
-            parent.join()
-        os._exit(1)
-
-    Thread(target=end, daemon=True).start()
+def _on_this_machine(processes: int) -> dict[str, Any]:
+    """Return the arguments of a client that starts worker processes."""
+    import_module("dask").config.set(_SETTINGS)
+    return {"n_workers": processes, "threads_per_worker": 1, "dashboard_address": None}

@@ -50,10 +50,9 @@ def run(arguments: Namespace) -> int:
     with checkpoint.opened(manifest, restart=arguments.restart) as done:
         missing = [index for index in range(-(-source.rows // chunk)) if index not in done]
         chunks = zip(missing, source.batches(chunk, missing), strict=True)
-        if arguments.scheduler:
-            solved = scheduler.on_cluster(spec, chunks, arguments.scheduler)
-        elif estimate.processes:
-            solved = scheduler.in_processes(spec, chunks, estimate.processes)
+        if arguments.scheduler or estimate.processes:
+            workers = arguments.scheduler, estimate.processes
+            solved = scheduler.in_workers(spec, chunks, *workers)
         else:
             solved = ((index, vectorized.solve(spec, batch)) for index, batch in chunks)
         rows = min(len(done) * chunk, source.rows)

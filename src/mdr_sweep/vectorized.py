@@ -23,7 +23,7 @@ from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_sweep.request_columns import Column, Values, read_columns
-from mdr_sweep.spec import ERROR, MAXIMA, TEXTS, WARNING, Spec
+from mdr_sweep.spec import ERROR, TEXTS, WARNING, Spec
 
 Rows = NDArray[np.intp]
 Results = dict[str, NDArray[Any]]
@@ -139,7 +139,7 @@ def _call(
             contact, **with_arrays(friction(query) | control(query.tangential))
         )
     results: Results = {WARNING: _warnings(query, source, size)}
-    # Overflow, and the infinite mean pressure of a sharp tip without a load, are solved one by one.
+    # Overflow, and infinite pressures, are solved one by one.
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
         if name == "model_error":
@@ -153,8 +153,7 @@ def _call(
             continue
         results[name] = np.broadcast_to(values, (size,))
         if name not in TEXTS:
-            is_maximum = name in MAXIMA[spec.query]
-            solved &= ~np.isnan(values) if is_maximum else np.isfinite(values)
+            solved &= np.isfinite(values)
     return solved, results
 
 

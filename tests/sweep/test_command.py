@@ -6,7 +6,6 @@ import json
 import subprocess
 import sys
 from argparse import ArgumentParser
-from collections.abc import Callable
 from decimal import Decimal
 from itertools import chain
 from pathlib import Path
@@ -20,7 +19,7 @@ import pytest
 
 from mdr_core.errors import InputError
 from mdr_service.schemas.flat import flat, nested
-from mdr_sweep import command, resources, sweep, vectorized
+from mdr_sweep import command, resources, vectorized
 from mdr_sweep.checkpoint import Checkpoint
 from mdr_sweep.request_columns import field
 from mdr_sweep.spec import QUANTITIES, Spec, UsageError
@@ -410,56 +409,6 @@ def test_checkpoint_of_another_sweep_is_rejected(tmp_path: Path) -> None:
     (checkpoint.folder / "manifest.json").unlink()
     with checkpoint.opened({"chunk": 2}, restart=False) as done:
         assert done == set()
-
-
-def flipped(content: bytes) -> bytes:
-    """Return the content with one bit of a stored number flipped: the middle of the columns."""
-    middle = len(content) // 2
-    return content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
-
-
-@pytest.mark.parametrize("damage", [flipped, lambda c: c[: len(c) // 2], lambda _: b""])
-def test_damaged_chunk_is_named_and_solved_again_once_deleted(
-    folder: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    damage: Callable[[bytes], bytes],
-) -> None:
-    command_line = ("normal", "--template", "ball.json", "--chunk", "2", "--out")
-    assert run(*command_line, "whole.parquet") == 0
-
-    def full_disk(*_arguments: object) -> None:
-        raise OSError("no space left on device")
-
-    with monkeypatch.context() as patch:
-        patch.setattr(sweep, "write", full_disk)
-        assert run(*command_line, "result.parquet") == 1
-    chunk = sorted(folder.glob("result.parquet.work/*.arrow"))[1]
-    chunk.write_bytes(damage(chunk.read_bytes()))
-    capsys.readouterr()
-    assert run(*command_line, "result.parquet") == 1
-    message = capsys.readouterr().err.splitlines()[-1]
-    assert str(chunk) in message
-    assert "--restart" in message
-    assert not Path("result.parquet").exists()
-    chunk.unlink()
-    assert run(*command_line, "result.parquet") == 0
-    assert Path("result.parquet").read_bytes() == Path("whole.parquet").read_bytes()
-
-
-@pytest.mark.parametrize("content", [b"", b'{"chunk": 2', b"\xff"])
-def test_damaged_manifest_is_named(
-    folder: Path, capsys: pytest.CaptureFixture[str], content: bytes
-) -> None:
-    manifest = folder / "result.parquet.work" / "manifest.json"
-    manifest.parent.mkdir()
-    manifest.write_bytes(content)
-    command_line = ("normal", "--template", "ball.json", "--out", "result.parquet")
-    assert run(*command_line) == 2
-    message = capsys.readouterr().err
-    assert str(manifest) in message
-    assert "--restart" in message
-    assert run(*command_line, "--restart") == 0
 
 
 def test_rows_are_independent_of_the_batch_size(tmp_path: Path) -> None:
