@@ -1,5 +1,7 @@
 """Wear that cannot be resolved or represented raises an error that names its cause."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -181,6 +183,24 @@ def test_first_cycle_of_a_narrow_annulus_takes_few_steps(monkeypatch: pytest.Mon
     monkeypatch.setattr(integrator, "_MAX_CALLS", 1500)
     worn = evolution.solve(contact, 1.2, 0.4, wear_coefficient=1e-3, cycles=cycles, **force)
     assert worn.error_estimate < 1e-3
+
+
+@pytest.mark.parametrize("body", [Power(1.0, 3.0), Sphere(2.5), TruncatedCone(0.5, 1.0)])
+def test_tightest_tolerance_takes_few_steps_in_mixed_control(
+    body: Profile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rounding errors of the rate of the wear that a growing stick zone retains stay below it."""
+    contact = normal.solve(body, 1.3, contact_radius=1.0)
+    moved = 0.2 * 1.3 / 0.9 * float(contact.indentation_depth)
+    contact = normal.solve(body, 1.3, normal_force=float(contact.normal_force))
+    given: dict[str, Any] = {"wear_coefficient": 1e-6, "resolution": 16, "cycles": [1e-3, 100.0]}
+    given |= {"tangential_displacement": moved}
+    monkeypatch.setattr(integrator, "_MAX_CALLS", 600)
+    worn = evolution.solve(contact, 0.9, 0.4, rtol=1e-10, **given)
+    rough = evolution.solve(contact, 0.9, 0.4, **given)
+    for name in ("worn_volume", "stick_radius"):
+        off = pytest.approx(getattr(worn, name), rel=1e-4, abs=0)
+        assert getattr(rough, name) == off, name
 
 
 def test_limit_within_the_rounding_error_of_a_flat_is_rejected() -> None:

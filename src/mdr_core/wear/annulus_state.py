@@ -34,8 +34,9 @@ class AnnulusState:
     """b = sqrt(a^2 - c^2)."""
     stick_shift: float
     """c - c_0, without the rounding error of c in a narrow annulus."""
-    depth_increase: float
-    """d - d_0."""
+    retained_wear: float
+    """w_c = g(c) - g_0(c): wear that the springs keep when a growing stick zone gets there. Where
+    it does not grow, d - d_0."""
     tilt_terms: Array
     """Where the stick zone grows, the tilt C(r) = -(2/pi) int arccos(c/r) dw_c of the surface
     outside as a Chebyshev series in 1/r, from a_0 to the largest contact radius; else empty."""
@@ -47,9 +48,9 @@ class AnnulusState:
     def of(cls, initial: InitialState, vector: Array) -> Self:
         """Return the state of a vector of the integrator: the numbers above, one after another."""
         inner, tilted = initial.parts
-        end, stick_shift, depth_increase = vector[inner:tilted].tolist()
+        end, stick_shift, retained_wear = vector[inner:tilted].tolist()
         worn, tilt = vector[:inner], vector[tilted:]
-        return cls(initial, worn, end, stick_shift, depth_increase, tilt)
+        return cls(initial, worn, end, stick_shift, retained_wear, tilt)
 
     @property
     def stick(self) -> float:
@@ -62,10 +63,10 @@ class AnnulusState:
         radius, worn = np.empty((2, 0)) if self.trail is None else self.trail
         return (radius[1:] + radius[:-1]) / 2, np.diff(worn)
 
-    @cached_property
-    def retained_wear(self) -> float:
-        """w_c = g(c) - g_0(c): wear that the springs keep when a growing stick zone gets there."""
-        return self.depth_increase - self._stick_rise
+    @property
+    def depth_increase(self) -> float:
+        """d - d_0."""
+        return self.retained_wear + (self._stick_rise if self.initial.stick_grows else 0.0)
 
     @cached_property
     def _stick_rise(self) -> float:

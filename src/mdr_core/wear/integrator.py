@@ -27,11 +27,8 @@ _VANISHED: Final = 1e-3
 _FIRST: Final = 1e-100
 # Distance from a slope jump, as a part of the stick radius, at which the stick edge passes it.
 _AT_BREAK: Final = 1e-3
-# Most evaluations of the rates, some seconds. A jump of the slope in the annulus takes up to 3,000,
-# the equator of a sphere 4,700.
+# Most evaluations of the rates, one to two seconds. The tightest tolerance takes up to 5,000.
 _MAX_CALLS: Final = 6_000
-# Tolerance below which they grow by its fourth root.
-_EASY: Final = 1e-6
 
 
 def integrate(
@@ -59,12 +56,12 @@ def integrate(
     if first < _FIRST:
         detail = "the wear in so few cycles is too small to be resolved: request more cycles"
         raise AccuracyError(detail, ("cycles",))
-    calls, most = 0, _MAX_CALLS * max(1.0, _EASY / rtol) ** 0.25
+    calls = 0
 
     def counted(time: float, vector: Array) -> Array:
         nonlocal calls
         calls += 1
-        if calls > most:
+        if calls > _MAX_CALLS:
             raise _unresolved(AnnulusState.of(initial, vector), time)
         return rates(initial, vector)
 
@@ -107,7 +104,7 @@ def _unresolved(state: AnnulusState, scaled: float) -> AccuracyError:
     room = _AT_BREAK * edge
     inside = jumps[(jumps > max(stick - room, 0.0)) & (jumps < edge + room)]
     if not inside.size:
-        detail = "the wear over the cycles is not resolved: more nodes may resolve it"
+        detail = "the wear over the cycles is not resolved: more nodes or a looser rtol may help"
         return AccuracyError(detail, ("resolution",))
     passes = initial.stick_moves and abs(inside[0] - stick) < room
     detail = (

@@ -21,8 +21,8 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 
-# Columns of a rate: by wear alone, and per unit of the rates of b, c and d.
-_WEAR, _END, _STICK, _DEPTH = range(4)
+# Columns of a rate: by wear alone, and per unit of the rates of b, c and w_c, or d.
+_WEAR, _END, _STICK, _RETAINED = range(4)
 # Step of a difference quotient, about the root of the rounding error.
 _STEP: Final = 1e-7
 # Rate at which the integrator's errors of gamma(a) - D, and of the force in full slip, decay: fast
@@ -47,8 +47,8 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
     gradient = np.concatenate([in_worn[:-1], in_edges[_END:]])
     found = np.zeros((vector.size, vector.size))
     if initial.stick_grows:
-        passing = in_edges[_DEPTH] - state.stick_slope * in_edges[_STICK]
-        gradient = np.concatenate([gradient, np.multiply.outer(state.tilt_rates, passing)])
+        passing = np.multiply.outer(state.tilt_rates, in_edges[_RETAINED])
+        gradient = np.concatenate([gradient, passing])
         # The wear at the last node is the tilt there.
         found[:, tilted:] = np.multiply.outer(gradient[:, -1], state.tilt_basis[0] / state.end)
     found[:, :inner] = gradient[:, :-1]
@@ -129,12 +129,11 @@ class _MovingAnnulus(AnnulusState):
             # The growth of w_c lowers all slip outside.
             zeta = b * np.sqrt(self.initial.maps.squares)
             lever = 2 / np.pi * np.arctan2(zeta, self.stick) / zeta
-            columns[:, _STICK] += lever * self.stick_slope
-            columns[:, _DEPTH] = -lever
+            columns[:, _RETAINED] = -lever
             # The wear at the last node is the tilt there.
             value, slope = self.tilt
             columns[-1, _END] = (slope * self.motion[0, -1] - value / b) / b
-            columns[-1, _STICK] = slope * self.motion[1, -1] / b + lever[-1] * self.stick_slope
+            columns[-1, _STICK] = slope * self.motion[1, -1] / b
         return columns
 
     @property
@@ -145,7 +144,7 @@ class _MovingAnnulus(AnnulusState):
 
     @cached_property
     def velocity(self) -> Array:
-        """1 and the rates of b, c and d."""
+        """1 and the rates of b, c and w_c, or d."""
         found = np.array([1.0, 0.0, 0.0, 0.0])
         found[self.moving] = self._solve(self.conditions[:, _WEAR])
         return found
@@ -154,8 +153,8 @@ class _MovingAnnulus(AnnulusState):
     def rates(self) -> Array:
         """Rates of the whole vector."""
         worn = self.worn_rates @ self.velocity
-        passing = self.velocity[_DEPTH] - self.stick_slope * self.velocity[_STICK]
-        tilt = self.tilt_rates * passing if self.initial.stick_grows else self.tilt_terms
+        grows = self.initial.stick_grows
+        tilt = self.tilt_rates * self.velocity[_RETAINED] if grows else self.tilt_terms
         return np.concatenate([worn[:-1], self.velocity[_END:], tilt])
 
     def _solve(self, right: Array) -> Array:
@@ -173,7 +172,8 @@ class _MovingAnnulus(AnnulusState):
         if self.initial.constant_force or self.initial.stick_shrinks:
             rows.append(self._carried_force)
         if self.initial.stick_grows:
-            rows.append(np.array([0.0, 0.0, self.gamma[0] / self.offset[0], -1.0]))
+            worn_slope = self.x[0] * self.worn_omega[0] / self.offset[0]
+            rows.append(np.array([0.0, 0.0, worn_slope, -1.0]))
         return np.array(rows)
 
     @cached_property
@@ -199,7 +199,7 @@ class _MovingAnnulus(AnnulusState):
         """Rate of gamma(a) - D, with the return of its error."""
         omega, a = self._omega_rates[-1].copy(), self.x[-1]
         slope = float(self.initial.slope(self.x[-1:])[0])
-        omega[_END:_DEPTH] += (slope - self.unworn[-1]) / a * self.motion[:, -1]
+        omega[_END:_RETAINED] += (slope - self.unworn[-1]) / a * self.motion[:, -1]
         omega[_STICK] -= self.stick_slope / a
         row = a * omega + self._radius_rate * self.omega[-1] - self._amplitude_rate
         row[_WEAR] += _RETURN * (self.gamma[-1] - self.reduced_amplitude)
@@ -217,13 +217,10 @@ class _MovingAnnulus(AnnulusState):
         rate = b * b * (initial.maps.mean @ self._omega_rates)
         rate -= self._radius_rate * a * self.worn_omega[-1]
         rate[_END] += 2 * self.worn_integral / b
-        rate[_STICK] -= (a - c) * self.stick_slope
-        # d - D is the depth g(c) of the stick edge.
-        rate[_DEPTH] += (a - c) * float(initial.stick_grows)
-        rate[_STICK] += (a - c) * (self.stick_slope if initial.stick_shrinks else 0.0)
+        rate[_RETAINED] += (a - c) * float(initial.stick_grows)
         if initial.full_slip:
             rate[_WEAR] -= _RETURN * (self.force - initial.unworn_force(0.0))
-        whole = np.array([0.0, 0.0, 0.0, a])
+        whole = np.array([0.0, 0.0, a * self.stick_slope, a])
         return (whole if initial.constant_force else c * self._amplitude_rate) - rate
 
     def gradients(self) -> tuple[Array, Array]:
