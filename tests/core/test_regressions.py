@@ -421,9 +421,9 @@ def test_arc_of_zero_length() -> None:
     material = 1.0, 10.0, 0.5
     depth = 1 + np.array([0.0, 4.0, 0.0, 4.0]) * 2.0**-52
     # The force is far below the friction limit, so slip is negligible.
-    push = 1e-18 * np.array([0.0, 1.0, -1.0, 0.5])
+    push = 1e-8 * np.array([0.0, 1.0, -1.0, 0.5])
     body = profiles.Paraboloid(1.0)
     way = history.solve(body, *material, indentation_depth=depth, tangential_force=push)
     # F_x = 2 G* a u_x.
-    np.testing.assert_allclose(way.tangential_displacement, push / 20, rtol=1e-9)
+    np.testing.assert_allclose(way.tangential_displacement, push / 20, rtol=1e-6)
     assert np.all(way.dissipation >= 0)

@@ -30,7 +30,7 @@ def test_oblique_loading_sticks(profile: Profile, part: float) -> None:
 @pytest.mark.parametrize("control", ["forces", "displacements"])
 @pytest.mark.parametrize("profile", [*PROFILES, FlatPunch(1.0)], ids=lambda profile: profile.kind)
 def test_results_have_a_limit_at_small_amplitudes(profile: Profile, control: str) -> None:
-    """Tangential loads a millionth as large have results of the same ratios, up to the larger."""
+    """Loads a thousandth as large have results of the same ratios, up to the size of the larger."""
 
     def scaled(amplitude: float) -> list[np.ndarray]:
         if control == "forces":
@@ -49,5 +49,5 @@ def test_results_have_a_limit_at_small_amplitudes(profile: Profile, control: str
             getattr(found, name) / amplitude**n for name, n in zip(RESULTS, powers, strict=True)
         ]
 
-    for small, large in zip(scaled(1e-16), scaled(1e-10), strict=True):
-        assert small == pytest.approx(large, rel=1e-8, abs=1e-9 * np.abs(large).max())
+    for small, large in zip(scaled(1e-7), scaled(1e-4), strict=True):
+        assert small == pytest.approx(large, rel=1e-3, abs=1e-4 * np.abs(large).max())

@@ -42,9 +42,11 @@ class Traction(NamedTuple):
     radius: Array
     """The same as radii [length]."""
     width: Array
-    """Widths in the contact coordinate, without cancellation, shape (n,)."""
+    """Widths in the contact coordinate, shape (n,)."""
     slope: Array
     """k [1]; zero on an arc."""
+    above: Array
+    """q_x/(mu E*) at their outer ends [length], shape (n,)."""
     arcs: tuple[Arc | None, ...] = ()
     """Arc of each annulus; none at all if all load steps are linear."""
     exact: bool = False
@@ -68,13 +70,17 @@ class Traction(NamedTuple):
             result += arc.stress(r, rtol) / np.pi
         return result
 
-    def depth_from(self, i: int, x: Array) -> Array:
-        """Return the depth from radii x in or below the i-th annulus to its upper end [length]."""
+    def step(self, i: int, x: Array) -> Array:
+        """Return the growth of q_x/(mu E*) from the outer end of the i-th annulus to x [length]."""
+        if self.arcs and (arc := self.arcs[i]):
+            return arc.anchor_step(np.maximum(x, arc.low))
+        if not self.slope[i]:
+            return np.zeros(x.shape)
         at = np.maximum(self.profile.coordinate_from_radius(x), self.coordinate[i])
         x, top = np.maximum(x, self.radius[i]), np.maximum(self.coordinate[i + 1], at)
         width = self.profile.coordinate_width(self.radius[i + 1], x, top, at)
         width = np.where(at == self.coordinate[i], self.width[i], width)
-        return equivalent_1d.depth_step(self.profile, top, width, at)
+        return self.slope[i] * equivalent_1d.depth_step(self.profile, top, width, at)
 
 
 def shear_stress(
@@ -203,12 +209,9 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
         inside = r < load.radius[-1]
         x = np.maximum(r[inside], load.radius[0])
         total = np.zeros(x.shape)
-        for i, slope in enumerate(load.slope):
-            below, arc = x < load.radius[i + 1], load.arcs[i] if load.arcs else None
-            if arc is not None:
-                total[below] += arc.anchor_step(np.maximum(x[below], arc.low))
-            elif slope:
-                total[below] += slope * load.depth_from(i, x[below])
+        for i, above in enumerate(load.above.tolist()):
+            here = (load.radius[i] <= x) & (x < load.radius[i + 1])
+            total[here] = above + load.step(i, x[here])
         result[inside] = load.modulus * total
         return result
 
@@ -244,21 +247,27 @@ def _at_end(state: ContactState) -> Traction:
     known = profile, state.e_star, modulus, state.displacement_ratio
     if not state.in_contact:
         ends, nothing = np.zeros(1), np.zeros(0)
-        return Traction(*known, ends, ends, nothing, nothing)
+        return Traction(*known, ends, ends, nothing, nothing, nothing)
     if profile.has_no_partial_slip:
         depth = state.load[:1] / modulus
         ends = np.append(profile.first_coordinate, state.coordinate[-1])
-        return Traction(*known, ends, profile.contact_radius(ends), np.abs(depth), np.sign(depth))
+        rows = profile.contact_radius(ends), np.abs(depth), np.sign(depth), 0 * depth
+        return Traction(*known, ends, *rows)
     radius = profile.contact_radius(segments.coordinate)
-    arcs: tuple[Arc | None, ...] = ()
-    if segments.rate.any():
-        width = profile.radius_width(segments.coordinate[1:], segments.width)
-        columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], width))
-        arcs = tuple(
-            Arc(profile, rate, segments.inverse, *interval) if rate else None
-            for rate, *interval in zip(*columns, strict=True)
-        )
-    return Traction(*known, segments.coordinate, radius, segments.width, segments.slope, arcs)
+    width = np.diff(segments.coordinate)
+    rows = segments.coordinate, radius, width, segments.slope
+    if not segments.rate.any():
+        return Traction(*known, *rows, state.load[1:] / modulus)
+    wide = profile.radius_width(segments.coordinate[1:], width)
+    columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], wide))
+    arcs = tuple(
+        Arc(profile, rate, segments.inverse, *interval) if rate else None
+        for rate, *interval in zip(*columns, strict=True)
+    )
+    load = Traction(*known, *rows, np.zeros(width.size), arcs)
+    steps = [load.step(i, radius[i : i + 1]) for i in range(1, width.size)]
+    above = np.cumsum(np.append(0.0, steps[::-1]))[::-1]
+    return load._replace(above=above)
 
 
 def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
@@ -273,14 +282,15 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         *(normal.coordinate, normal.contact_radius),
         *(contact.stick_coordinate, contact.stick_radius, contact.width),
         *(contact.sign, contact.full_slip, contact.sign * contact.excess),
+        contact.tangential_displacement / contact.displacement_ratio,
     )
     flat = float(profile.contact_radius(number(first)))
     exact = normal.control == "contact_radius"
 
     def traction(load: int) -> Traction:
-        e_star, mu_e, ratio, *places, sign, slides, excess = (part[load] for part in columns)
+        e_star, mu_e, ratio, *places, sign, slides, excess, moved = (part[load] for part in columns)
         top, a, edge, c, width = places
-        ends, radii, widths, slopes = [first, top], [flat, a], [top - first], [0.0]
+        ends, radii, widths, slopes, above = [first, top], [flat, a], [top - first], [0.0], [0.0]
         if profile.has_no_partial_slip:
             # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
             widths = [top if slides else width]
@@ -289,8 +299,8 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
             slopes = [sign]
         elif width > 0:
             ends, radii = [first, edge, top], [flat, c, a]
-            widths, slopes = [edge - first, width], [0.0, sign]
-        rows = np.array(ends), np.array(radii), np.array(widths), np.array(slopes)
-        return Traction(profile, e_star, mu_e, ratio, *rows, exact=exact, excess=excess)
+            widths, slopes, above = [edge - first, width], [0.0, sign], [moved, 0.0]
+        parts = np.array(ends), np.array(radii), np.array(widths), np.array(slopes), np.array(above)
+        return Traction(profile, e_star, mu_e, ratio, *parts, exact=exact, excess=excess)
 
     return traction

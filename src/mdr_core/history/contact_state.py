@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from math import isfinite
 from typing import Any, ClassVar, NamedTuple
 
@@ -13,7 +14,7 @@ from mdr_core.errors import InputError
 from mdr_core.history import dissipation, slip_memory
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.traction_vertices import SHORT, variance_growth, widths
+from mdr_core.history.traction_vertices import SHORT, variance_growth
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
@@ -34,8 +35,6 @@ class TractionSegments(NamedTuple):
 
     coordinate: Array
     """Contact coordinates of their ends, shape (n + 1,)."""
-    width: Array
-    """Widths in the contact coordinate, without cancellation, shape (n,)."""
     slope: Array
     """Slope of the anchor over depth, from -1 to 1; zero on an arc, see `rate`."""
     rate: Array
@@ -122,33 +121,31 @@ class ContactState(Results):
         known = self.known_edges
         if not known:
             known.append(Edge(*map(number, (self.profile.first_coordinate, 0.0, 0.0))))
-        for vertex in self.polyline.vertices[len(known) :, NORMAL:STEP].tolist():
-            known.append(self._edge(known[-1], *map(number, vertex)))
+        vertices, start = self.polyline.vertices[:, NORMAL:STEP].tolist(), len(known)
+        for lower, upper in pairwise(vertices[start - 1 :]):
+            known.append(self._edge(known[-1], number(upper[0] - lower[0]), *map(number, upper)))
         return known
 
-    def _edge(self, below: Edge, depth: Any, rise: Any, fall: Any, anchor: Any) -> Edge:
-        """Edge of the vertex at a depth, above another one."""
-        profile, span = self.profile, (rise + fall) / 2
+    def _edge(self, below: Edge, span: Any, depth: Any, slope: Any) -> Edge:
+        """Edge of the vertex at a depth, `span` above another one."""
+        profile = self.profile
         if profile.largest_loads is not None:
             # By rounding a corner may be deeper than the load point.
             depth = min(depth, profile.largest_loads[0])
         coordinate = coordinate_from_load(profile, depth, of_force=False)
         force = profile.reduced_force(coordinate)
         grown = force - below.force
-        if profile.has_no_partial_slip:
-            # Depth and force are proportional.
-            grown = force / depth * span
-        elif span < SHORT * depth:
+        if span < SHORT * depth:
             grown = span * self._moments.mean_slope(below.coordinate, coordinate)
-        return Edge(coordinate, force, below.shear + anchor / span * grown)
+        return Edge(coordinate, force, below.shear + slope * grown)
 
     @property
     def _variance(self) -> float:
         """Variance of the anchors, int (anchor - mean)^2 dx over 0 < x < a [length^3]."""
         coordinate, _, shear = np.array(self._edges).T
-        depth, rise, fall, anchor = self.polyline.vertices[:, NORMAL:STEP].T
-        span, ends = (rise + fall)[1:] / 2, np.array([coordinate[:-1], coordinate[1:]])
-        grown = variance_growth(self._moments, depth[:-1], span, anchor[1:], ends, shear[:-1])
+        tree, ends = self._tree, np.array([coordinate[:-1], coordinate[1:]])
+        span, growth = tree.span[1:], (tree.slope * tree.span)[1:]
+        grown = variance_growth(self._moments, tree.normal[:-1], span, growth, ends, shear[:-1])
         return float(grown.sum())
 
     @property
@@ -159,9 +156,9 @@ class ContactState(Results):
     @property
     def load(self) -> Array:
         """q_x of the springs at the vertices [force/length]; linear in w between them."""
-        above = np.cumsum(self._tree.anchor[:0:-1])[::-1]
-        loads = self.friction_coefficient * self.e_star * np.append(above, 0.0)
-        return loads if self.in_contact else loads[:0]
+        forward, backward = self.polyline.vertices[:, :NORMAL].T
+        anchors = self.polyline.tangential - (forward - backward) / 2
+        return self.friction_coefficient * self.e_star * anchors
 
     @cached_property
     def coordinate(self) -> Array:
@@ -178,9 +175,7 @@ class ContactState(Results):
         """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
         if self.curved_segments is not None:
             return self.curved_segments
-        width = widths(self._moments, self._tree, self.coordinate)
-        straight = np.zeros(self.slope.shape)
-        return TractionSegments(self.coordinate, width, self.slope, straight)
+        return TractionSegments(self.coordinate, self.slope, np.zeros(self.slope.shape))
 
     @property
     def contact_radius(self) -> float:

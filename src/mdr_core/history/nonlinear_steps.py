@@ -21,7 +21,6 @@ from mdr_core.history.load_path import SampledPath
 from mdr_core.history.saved_state import SETS
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
-from mdr_core.history.traction_vertices import widths
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
@@ -154,18 +153,14 @@ class NonlinearSteps:
         if corners.size:
             # The sum that is constant above the corner, along the face.
             own = np.where(tree.slope[corners + 1] < 0, 0, 1)
-            sums = line.sums[corners, own]
+            sums = line.vertices[corners, own]
             sign = np.where(own == 0, 1.0, -1.0)
             coordinate[corners] = self._on_arcs(coordinate[corners], arcs[:, corners], sign, sums)
-        width = widths(self.path.moments, tree, coordinate)
-        beside = np.concatenate([corners - 1, corners])
-        width[beside] = np.diff(coordinate)[beside]
         joined = chord[:-1] & chord[1:] & (line.load_step[1:-1] == line.load_step[2:])
         first = np.append(0, np.flatnonzero(~joined) + 1)
         last = np.append(first[1:], chord.size)
         return TractionSegments(
             np.append(coordinate[first], coordinate[-1]),
-            np.add.reduceat(width, first),
             np.where(chord[first], 0.0, tree.slope[1:][first]),
             rate[last],
             inverse=self.path.over_forces,

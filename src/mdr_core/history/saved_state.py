@@ -8,7 +8,7 @@ import numpy as np
 
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
-from mdr_core.history.slip_layout import ANCHOR, GROWTH, NORMAL
+from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
@@ -40,8 +40,8 @@ class SavedState(NamedTuple):
     """Polyline of the slip memory, or those on each set of chords of nonlinear load steps.
 
     They have the vertices below the load point, from the axis: the sums normal + anchor and normal
-    - anchor, the low parts of both, and where the segment above is part of an arc its rate, and the
-    conjugate and the tangential coordinate of its end.
+    - anchor, and where the segment above is part of an arc its rate, and the conjugate and the
+    tangential coordinate of its end.
     """
 
     @classmethod
@@ -75,13 +75,12 @@ class SavedState(NamedTuple):
         for index, vertices in enumerate(rows):
             sums, steps = vertices[:, :_SUMS], [next(label) for _ in vertices]
             line = slip_memory.through(sums, steps, normal, tangential)
-            growth = line.vertices[1:, GROWTH:ANCHOR]
+            growth = np.diff(line.vertices[:, :NORMAL], axis=0)
             good = (growth.min(axis=1) >= -_ROUNDING * normal) & (growth.max(axis=1) > 0)
             good[0] &= line.vertices[0, NORMAL] == 0
             if not good.all():
                 detail = "exceeds the next vertex in a sum, or is the first one and not on the axis"
                 raise InputError((*place, index, int(np.argmin(good))), detail)
-            np.maximum(growth, 0.0, out=growth)
             found.append(line)
         return tuple(found), arcs.T
 

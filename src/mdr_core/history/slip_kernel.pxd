@@ -2,8 +2,8 @@
 
 cimport cython
 
-cdef Py_ssize_t FORWARD, BACKWARD, LOW, GROWTH, ANCHOR, STEP, NEITHER
-cdef Py_ssize_t POINT, CORNER, MIRROR, AXIS, NORMAL, PLACE, RISE, FALL, TURN
+cdef Py_ssize_t FORWARD, BACKWARD, NORMAL, SLOPE, STEP
+cdef double ROUNDING
 
 
 @cython.final
@@ -25,31 +25,15 @@ cdef class PolylineStack:
         double[:, ::1] moved, Py_ssize_t[::1] moved_ends
     )
     cpdef void move(self, double x, double y, bint continues, double load_step) noexcept
-    cdef void _aim(self, double x, double y) noexcept
     @cython.locals(below=Py_ssize_t)
-    cdef void _stick(self, double further, double load_step) noexcept
-    @cython.locals(
-        lower=Py_ssize_t, upper=Py_ssize_t, other=Py_ssize_t, own=Py_ssize_t, source=Py_ssize_t,
-        full=bint, oblique=bint
-    )
-    cdef void _slip(self) noexcept
-    @cython.locals(base=Py_ssize_t, near=bint)
-    cdef void _cut(
-        self, Py_ssize_t lower, Py_ssize_t upper, Py_ssize_t own, Py_ssize_t other, double keep
-    ) noexcept
-    @cython.locals(first=bint)
-    cdef Py_ssize_t _last_reached(self, Py_ssize_t lower, Py_ssize_t upper) noexcept
-    @cython.locals(at=Py_ssize_t)
-    cdef void _extend(self, Py_ssize_t below, double further, double load_step) noexcept
-    cdef Py_ssize_t _constant(self, Py_ssize_t at) noexcept
+    cdef void _stick(self, double deeper, double further, double load_step) noexcept
+    @cython.locals(upper=Py_ssize_t, in_forward=bint, at_vertex=bint)
+    cdef void _slip(self, double forward, double backward) noexcept
+    cdef void _extend(self, Py_ssize_t below, double slope, double load_step) noexcept
     cdef void _put(
-        self, Py_ssize_t at, Py_ssize_t own, double high, double low, double growth
+        self, Py_ssize_t at, double forward, double backward, double normal, double slope,
+        double step
     ) noexcept
-    cdef void _copy(
-        self, Py_ssize_t at, Py_ssize_t source, Py_ssize_t own, double growth
-    ) noexcept
-    cdef double _excess(self, Py_ssize_t upper, Py_ssize_t lower, Py_ssize_t own) noexcept
-    cdef double _normal(self, Py_ssize_t at) noexcept
 
 
 @cython.final
@@ -82,5 +66,3 @@ cdef class SlipFront:
 
 @cython.locals(below=Py_ssize_t, i=Py_ssize_t)
 cpdef accumulate(Py_ssize_t[::1] parent, double[::1] step, double[::1] total)
-cdef double decrease(double x0, double y0, double x, double y) noexcept
-cpdef double rounding(double a, double b, double total) noexcept

@@ -2,29 +2,18 @@
 
 Every load point depends on the one before, so there is nothing for NumPy to vectorise. Cython
 compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it gives the same
-bits, about a hundred times slower.
-
-On a random path branch prediction fails, so what can be selected by an index is not selected by an
-`if`. One file holds all functions, since Cython inlines within a module only.
+bits, about a hundred times slower. One file holds all functions, since Cython inlines within a
+module only.
 """
 
-from mdr_core.history.slip_layout import ANCHOR, AXIS, GROWTH, LOW, MIRROR, NORMAL, STEP
+from mdr_core.history.slip_layout import NORMAL, SLOPE, STEP
 from mdr_core.typing import Array, Flags, Indices
 
 # Columns of the sums of a vertex.
 FORWARD = 0  # normal + anchor
 BACKWARD = 1  # normal - anchor
-# Mark of a segment on which both sums grow.
-NEITHER = 2
-# Places on the stack, below the mirror image of the load point: a vertex below the axis that the
-# load point never exceeds.
-POINT = 0  # new load point
-CORNER = 1  # corner that it makes
-# Rows of the vertices of a tree, those of the columns from NORMAL on.
-PLACE = 0  # normal coordinate
-RISE = 1  # growth of normal + anchor
-FALL = 2  # growth of normal - anchor
-TURN = 3  # growth of the anchor
+# Relative rounding error of the sums of a corner.
+ROUNDING = 2.0**-51
 
 
 class PolylineStack:
@@ -41,8 +30,8 @@ class PolylineStack:
 
     Parameters
     ----------
-    rows : the vertices, with the columns above, from the place `AXIS` on.
-    top : place of the last vertex; `MIRROR` in separation.
+    rows : the vertices, with the columns of `slip_layout`.
+    top : place of the last vertex; -1 in separation.
     x, y : normal and tangential coordinate of the load point.
     """
 
@@ -73,20 +62,21 @@ class PolylineStack:
         ----------
         path : normal and tangential coordinate of the load points, shape (2, n).
         continues, load_step : see `move`, shape (n,).
-        number : index of each vertex on the stack, -1 below the axis.
-        parent, vertices : those on the stack; receive the parent of every new one, and its rows.
+        number : index of each vertex on the stack.
+        parent, vertices : those on the stack; receive the parent of every new one, -1 on the axis,
+            and its normal coordinate and slope.
         tops : receives the vertex of each load point, -1 in separation.
         """
-        made = self.top + 1 - AXIS
+        made = self.top + 1
         for i in range(len(tops)):
             self.move(path[0, i], path[1, i], continues[i], load_step[i])
             for at in range(self.changed, self.top + 1):
                 number[at] = made
-                parent[made] = number[at - 1]
-                for row in range(TURN + 1):
-                    vertices[row, made] = self.rows[at, NORMAL + row]
+                parent[made] = number[at - 1] if at > 0 else -1
+                vertices[0, made] = self.rows[at, NORMAL]
+                vertices[1, made] = self.rows[at, SLOPE]
                 made += 1
-            tops[i] = number[self.top]
+            tops[i] = number[self.top] if self.top >= 0 else -1
             self.highest = max(self.highest, self.top)
         return made
 
@@ -105,13 +95,13 @@ class PolylineStack:
         begin = made = 0
         for i in range(len(ends)):
             size = ends[i] - begin
-            self.rows[AXIS : AXIS + size] = vertices[begin : ends[i]]
-            self.top = MIRROR + size
+            self.rows[:size] = vertices[begin : ends[i]]
+            self.top = size - 1
             self.x = path[0, i]
             self.y = path[1, i]
             self.move(path[2, i], path[3, i], continues=False, load_step=0)
-            size = self.top - MIRROR
-            moved[made : made + size] = self.rows[AXIS : AXIS + size]
+            size = self.top + 1
+            moved[made : made + size] = self.rows[:size]
             begin = ends[i]
             made += size
             moved_ends[i] = made
@@ -129,190 +119,104 @@ class PolylineStack:
         self.y = y
         self.changed = self.top + 1
         if x <= 0:
-            self.top = MIRROR
-            self.changed = AXIS
+            self.top = -1
+            self.changed = 0
             self.straight = False
             return
-        if self.top < AXIS:
+        if self.top < 0:
             # Contact begins where the straight step crosses normal coordinate zero.
             y0 = y0 + (y - y0) * (-x0 / (x - x0))
             x0 = 0.0
-            self._put(AXIS, FORWARD, y0, 0.0, 1.0)
-            self._put(AXIS, BACKWARD, -y0, 0.0, 1.0)
-            self.rows[AXIS, NORMAL] = self.rows[AXIS, ANCHOR] = self.rows[AXIS, STEP] = 0.0
-            self.top = self.changed = AXIS
-        self._aim(x, y)
-        rise = self._excess(self.top, POINT, FORWARD)
-        fall = self._excess(self.top, POINT, BACKWARD)
-        if max(rise, fall) > 0:
-            self._slip()
+            self._put(0, y0, -y0, 0.0, 0.0, 0.0)
+            self.top = self.changed = 0
+        rise = x + y - self.rows[self.top, FORWARD]
+        fall = x - y - self.rows[self.top, BACKWARD]
+        if rise < 0 or fall < 0:
+            self._slip(x + y, x - y)
             self.straight = False
         else:
             self.straight = self.straight and continues
-            if rise < 0 or fall < 0:
-                self._stick(y - y0, load_step)
+            if rise > 0 or fall > 0:
+                self._stick(x - x0, y - y0, load_step)
                 self.straight = True
 
-    def _aim(self, x: float, y: float) -> None:
-        """Set the load point and its mirror image."""
-        forward = x + y
-        backward = x - y
-        forward_low = rounding(x, y, forward)
-        backward_low = rounding(x, -y, backward)
-        self._put(POINT, FORWARD, forward, forward_low, 0.0)
-        self._put(POINT, BACKWARD, backward, backward_low, 0.0)
-        self._put(MIRROR, FORWARD, -backward, -backward_low, 0.0)
-        self._put(MIRROR, BACKWARD, -forward, -forward_low, 0.0)
-
-    def _stick(self, further: float, load_step: float) -> None:
+    def _stick(self, deeper: float, further: float, load_step: float) -> None:
         """Extend the polyline straight to the load point; one segment for one straight line."""
         below = self.top
-        if self.straight and below > AXIS:
-            further += self.rows[below, ANCHOR]
+        if self.straight and below > 0:
+            span = self.rows[below, NORMAL] - self.rows[below - 1, NORMAL]
+            deeper += span
+            further += self.rows[below, SLOPE] * span
             below -= 1
-        self._extend(below, further, load_step)
-
-    def _slip(self) -> None:
-        """Cut the polyline where it exceeds the load point, and extend it to there."""
-        lower = self.top - 1
-        # The mirror image never exceeds the load point.
-        while max(self._excess(lower, POINT, FORWARD), self._excess(lower, POINT, BACKWARD)) > 0:
-            lower -= 1
-        upper = lower + 1
-        # The cut is in the sum `own`; on a face of an earlier cone the other one is constant.
-        other = self._constant(upper)
-        full = upper == AXIS
-        oblique = other == NEITHER and not full
-        if full:
-            other = BACKWARD if self._excess(AXIS, POINT, FORWARD) > 0 else FORWARD
-        elif oblique:
-            other = self._last_reached(lower, upper)
-        own = 1 - other
-        keep = self._excess(POINT, lower, own)
-        if keep <= 0:
-            self._extend(lower, 0.0, self.rows[upper, STEP])
-            return
-        # In full slip the corner is that of the mirror image, and both sums grow from the axis.
-        source = upper - full
-        rest = keep * full
-        further = 0.0
-        if oblique:
-            self._cut(lower, upper, own, other, keep)
-            source = CORNER
-            rest = self.rows[CORNER, GROWTH + other]
-            span = self.rows[upper, GROWTH + FORWARD] + self.rows[upper, GROWTH + BACKWARD]
-            further = self.rows[upper, ANCHOR] * ((keep + rest) / span)
-        self._copy(upper, POINT, own, keep)
-        self._copy(upper, source, other, rest)
-        self.rows[upper, ANCHOR] = further if rest > 0 else keep * (0.5 - own)
-        self.rows[upper, NORMAL] = self._normal(upper)
-        self.top = self.changed = upper
-        reach = self._excess(POINT, upper, other)
-        if reach <= 0:
-            # The corner is the load point.
-            self._copy(upper, POINT, other, rest)
+        if self.x + self.y <= self.rows[below, FORWARD]:
+            slope = -1.0
+        elif self.x - self.y <= self.rows[below, BACKWARD]:
+            slope = 1.0
         else:
-            self.top = upper + 1
-            self._copy(self.top, POINT, own, 0.0)
-            self._copy(self.top, POINT, other, reach)
-            self.rows[self.top, ANCHOR] = reach * (0.5 - other)
-            self.rows[self.top, STEP] = self.rows[upper, STEP]
-        self.rows[self.top, NORMAL] = self.x
+            slope = min(max(further / deeper, -1.0), 1.0)
+        self._extend(below, slope, load_step)
 
-    def _cut(self, lower: int, upper: int, own: int, other: int, keep: float) -> None:
-        """Find the corner's other sum, `keep` above the lower end of a segment in its own."""
-        growth = self.rows[upper, GROWTH + other]
-        over = self._excess(upper, POINT, own)
-        # From the nearer end, so that the distances to both are free of cancellation.
-        near = keep <= over
-        base = lower if near else upper
-        distance = keep if near else -over
-        # On the whole segment both sums differ by twice the growth of the anchor.
-        twice = self.rows[upper, ANCHOR] * (2 - 4 * own)
-        less = distance * (twice / self.rows[upper, GROWTH + own])
-        if 2 * abs(less) < abs(distance):
-            # The sums grow nearly alike: to both parts of the own step a small one is added, so
-            # that small slopes keep their digits and none arises from rounding errors.
-            move = self.rows[POINT, own] - self.rows[base, own]
-            move_low = rounding(self.rows[POINT, own], -self.rows[base, own], move)
-            move_low += self.rows[POINT, LOW + own] - self.rows[base, LOW + own] - less
-            step = distance - less
-        else:
-            move = distance * (growth / self.rows[upper, GROWTH + own])
-            move_low = 0.0
-            step = move
-        rest = max(step if near else growth + step, 0.0)
-        high = self.rows[base, other]
-        total = high + move
-        low = rounding(high, move, total) + move_low + self.rows[base, LOW + other]
-        self._put(CORNER, other, total + low, rounding(total, low, total + low), rest)
-
-    def _last_reached(self, lower: int, upper: int) -> int:
-        """Sum in which the load point is reached further out on a segment where both grow."""
-        over_forward = self._excess(upper, POINT, FORWARD)
-        over_backward = self._excess(upper, POINT, BACKWARD)
-        # Parts of the segment, compared crosswise.
-        forward = self._excess(POINT, lower, FORWARD) * self.rows[upper, GROWTH + BACKWARD]
-        backward = self._excess(POINT, lower, BACKWARD) * self.rows[upper, GROWTH + FORWARD]
-        first = (over_forward > 0) & ((over_backward <= 0) | (forward <= backward))
-        return BACKWARD if first else FORWARD
-
-    def _extend(self, below: int, further: float, load_step: float) -> None:
-        """Push the load point onto a vertex; two segments on the same face become one.
-
-        `further` is the growth of the anchor if both sums grow; if one does, it is half of that.
-        """
-        forward = self._excess(POINT, below, FORWARD)
-        backward = self._excess(POINT, below, BACKWARD)
-        if below > AXIS and (
-            (backward <= 0 and self.rows[below, GROWTH + BACKWARD] == 0)
-            or (forward <= 0 and self.rows[below, GROWTH + FORWARD] == 0)
+    def _slip(self, forward: float, backward: float) -> None:
+        """Cut the polyline where it exceeds the sums of the load point, and extend it to there."""
+        upper = self.top
+        while upper > 0 and (
+            self.rows[upper - 1, FORWARD] > forward or self.rows[upper - 1, BACKWARD] > backward
         ):
+            upper -= 1
+        step = self.rows[upper, STEP]
+        over_forward = self.rows[upper, FORWARD] - forward
+        over_backward = self.rows[upper, BACKWARD] - backward
+        if upper == 0:
+            # All springs slip.
+            in_forward = over_forward > 0
+            if in_forward:
+                self._put(0, forward, -forward, 0.0, 0.0, step)
+            else:
+                self._put(0, -backward, backward, 0.0, 0.0, step)
+        else:
+            # Lengths of the segment above the corner, of which the larger one decides.
+            slope = self.rows[upper, SLOPE]
+            by_forward = over_forward / (1 + slope) if over_forward > 0 and slope > -1 else 0.0
+            by_backward = over_backward / (1 - slope) if over_backward > 0 and slope < 1 else 0.0
+            in_forward = by_forward > by_backward
+            error = ROUNDING * (abs(forward) + abs(backward))
+            if in_forward:
+                at_vertex = self.rows[upper - 1, FORWARD] >= forward
+                other = self.rows[upper, BACKWARD] - by_forward * (1 - slope)
+                backward = other if other < backward - error else backward
+            else:
+                at_vertex = self.rows[upper - 1, BACKWARD] >= backward
+                other = self.rows[upper, FORWARD] - by_backward * (1 + slope)
+                forward = other if other < forward - error else forward
+            if at_vertex:
+                upper -= 1
+            else:
+                normal = max((forward + backward) / 2, self.rows[upper - 1, NORMAL])
+                self._put(upper, forward, backward, normal, slope, step)
+        self.top = self.changed = upper
+        self._extend(upper, -1.0 if in_forward else 1.0, step)
+
+    def _extend(self, below: int, slope: float, load_step: float) -> None:
+        """Push the load point onto a vertex; two segments on the same face become one."""
+        forward = self.x + self.y
+        backward = self.x - self.y
+        if below > 0 and abs(slope) == 1 and self.rows[below, SLOPE] == slope:
             below -= 1
-            forward = self._excess(POINT, below, FORWARD)
-            backward = self._excess(POINT, below, BACKWARD)
-        at = below
-        if forward > 0 or backward > 0:
-            at = below + 1
-            self.rows[at, STEP] = load_step
-            self.rows[at, ANCHOR] = further
-            if forward <= 0 or backward <= 0:
-                self.rows[at, ANCHOR] = (max(forward, 0.0) - max(backward, 0.0)) / 2
-            self.rows[at, GROWTH + FORWARD] = max(forward, 0.0)
-            self.rows[at, GROWTH + BACKWARD] = max(backward, 0.0)
-            self.changed = min(self.changed, at)
-        self.top = at
-        self.rows[at, NORMAL] = self.x
-        self._copy(at, POINT, FORWARD, self.rows[at, GROWTH + FORWARD])
-        self._copy(at, POINT, BACKWARD, self.rows[at, GROWTH + BACKWARD])
+        if forward > self.rows[below, FORWARD] or backward > self.rows[below, BACKWARD]:
+            below += 1
+            self._put(below, forward, backward, self.x, slope, load_step)
+            self.changed = min(self.changed, below)
+        self.top = below
+        self.rows[below, NORMAL] = self.x
 
-    def _constant(self, at: int) -> int:
-        """Sum that is constant on the segment below a vertex."""
-        if self.rows[at, GROWTH + BACKWARD] == 0:
-            return BACKWARD
-        return FORWARD if self.rows[at, GROWTH + FORWARD] == 0 else NEITHER
-
-    def _put(self, at: int, own: int, high: float, low: float, growth: float) -> None:
-        self.rows[at, own] = high
-        self.rows[at, LOW + own] = low
-        self.rows[at, GROWTH + own] = growth
-
-    def _copy(self, at: int, source: int, own: int, growth: float) -> None:
-        """Give a vertex a sum of another one."""
-        self._put(at, own, self.rows[source, own], self.rows[source, LOW + own], growth)
-
-    def _excess(self, upper: int, lower: int, own: int) -> float:
-        """Difference of a sum between two vertices."""
-        difference: float = (self.rows[upper, own] - self.rows[lower, own]) + (
-            self.rows[upper, LOW + own] - self.rows[lower, LOW + own]
-        )
-        return difference
-
-    def _normal(self, at: int) -> float:
-        """Normal coordinate of a vertex, half of both sums."""
-        high: float = self.rows[at, FORWARD] + self.rows[at, BACKWARD]
-        low: float = self.rows[at, LOW + FORWARD] + self.rows[at, LOW + BACKWARD]
-        return max(high + low, 0.0) / 2
+    def _put(
+        self, at: int, forward: float, backward: float, normal: float, slope: float, step: float
+    ) -> None:
+        self.rows[at, FORWARD] = forward
+        self.rows[at, BACKWARD] = backward
+        self.rows[at, NORMAL] = normal
+        self.rows[at, SLOPE] = slope
+        self.rows[at, STEP] = step
 
 
 class SlipFront:
@@ -375,24 +279,26 @@ class SlipFront:
             y = y0 + (y - y0) * (x0 / (x0 - x))
             x = 0.0
         self.f = self.b = self.s = 0.0
-        self.f_end = decrease(x0, y0, x, y)
-        self.b_end = decrease(x0, -y0, x, -y)
         self.s_end = y0 - y
+        self.f_end = x0 - x + self.s_end
+        self.b_end = x0 - x - self.s_end
         if max(self.f_end, self.b_end) <= 0:
             return
         at = self.tops[i]
         below = self.parent[at] if at >= 0 else -1
         while below >= 0:
-            rise = self.vertices[RISE, at]
-            fall = self.vertices[FALL, at]
+            span = max(self.vertices[0, at] - self.vertices[0, below], 0.0)
+            turn = self.vertices[1, at] * span
+            rise = span + turn
+            fall = span - turn
             part = 1.0
             if self.f + rise >= self.f_end and self.b + fall >= self.b_end:
                 # The front ends where neither sum exceeds that of the new load point any more.
                 part = (self.f_end - self.f) / rise if self.f < self.f_end else 0.0
                 other = (self.b_end - self.b) / fall if self.b < self.b_end else 0.0
                 part = min(max(part, other), 1.0)
-            lower = self.vertices[PLACE, below] + (1 - part) * (rise + fall) / 2
-            self._sweep(i, part * rise, part * fall, part * self.vertices[TURN, at], lower)
+            lower = self.vertices[0, below] + (1 - part) * span
+            self._sweep(i, part * rise, part * fall, part * turn, lower)
             if part < 1:
                 return
             at = below
@@ -491,16 +397,3 @@ def accumulate(parent: Indices, step: Array, total: Array) -> None:
     for i in range(len(parent)):
         below = parent[i]
         total[i] = 0.0 if below < 0 else total[below] + step[i]
-
-
-def decrease(x0: float, y0: float, x: float, y: float) -> float:
-    """Return x0 + y0 - (x + y) of four doubles, with the rounding errors of both sums."""
-    before = x0 + y0
-    after = x + y
-    return (before - after) + (rounding(x0, y0, before) - rounding(x, y, after))
-
-
-def rounding(a: float, b: float, total: float) -> float:
-    """Return the rounding error of total = a + b, exactly (Knuth's two-sum)."""
-    part = total - a
-    return (a - (total - part)) + (b - part)

@@ -15,8 +15,7 @@ V_0 ... V_m a straight load step to P leaves
 
 `slip_kernel.PolylineStack` is this recurrence.
 
-Coordinates are unevaluated sums (high, low) of two doubles. Load points and most corners are
-therefore exact copies of the input, and differences stay accurate at small amplitudes. Normal
+The sums of a corner are copies of those of load points, so that errors do not accumulate. Normal
 coordinates are depths where displacements are prescribed, and reduced normal forces where forces
 are. Source: notes, §10.
 """
@@ -24,21 +23,18 @@ are. Source: notes, §10.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import fsum
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.history import slip_kernel as kernel
-from mdr_core.history.slip_layout import ANCHOR, AXIS, COLUMNS, GROWTH, LOW, MIRROR, NORMAL, STEP
+from mdr_core.history.slip_layout import COLUMNS, NORMAL, SLOPE, STEP
 from mdr_core.typing import Array, Flags, Indices
 
 # A step adds at most three vertices: the one on the axis, a corner and the load point.
 _VERTICES: Final = 3
 # Beside the vertices removed, the slip front ends on one segment more, or on the axis.
 _ENDS: Final = 2
-# Numbers of a vertex of a tree.
-_VERTEX: Final = 4
 # Numbers of an interval of springs that slip.
 _INTERVAL: Final = 7
 # The load point may divide a segment in two, each of which has three intervals.
@@ -62,7 +58,7 @@ class Polyline(NamedTuple):
     """Polyline from the axis to the load point."""
 
     vertices: Array
-    """Vertices, with the columns of `slip_layout`, shape (n, 8); none in separation."""
+    """Vertices, with the columns of `slip_layout`, shape (n, 5); none in separation."""
     normal: float
     """Normal coordinate of the load point, exactly as it was given; <= 0 in separation."""
     tangential: float
@@ -72,11 +68,6 @@ class Polyline(NamedTuple):
     def in_contact(self) -> bool:
         """True unless the bodies are separated."""
         return len(self.vertices) > 0
-
-    @property
-    def sums(self) -> Array:
-        """Sums normal + anchor and normal - anchor of each vertex, shape (n, 2)."""
-        return self.vertices[:, :LOW] + self.vertices[:, LOW:NORMAL]
 
     @property
     def load_step(self) -> Indices:
@@ -91,7 +82,7 @@ class VertexTree:
     parent: Indices
     """Index of the vertex below, -1 on the axis; shape (m,)."""
     vertices: Array
-    """Normal coordinate, growth of both sums and of the anchor of each vertex, shape (4, m)."""
+    """Normal coordinate, and slope of the anchor below each vertex, shape (2, m)."""
     top: Indices
     """Vertex of the load point after each step, -1 in separation; shape (n,)."""
     start: tuple[int, float, float]
@@ -107,24 +98,19 @@ class VertexTree:
         return self.vertices[0]
 
     @property
-    def anchor(self) -> Array:
-        """Growth of the anchor over the segment below each vertex, without cancellation."""
-        return self.vertices[3]
+    def slope(self) -> Array:
+        """Slope of the anchor on the segment below each vertex, from -1 to 1."""
+        return self.vertices[1]
 
     @cached_property
     def span(self) -> Array:
-        """Length of the segment below each vertex in the normal coordinate."""
-        return np.asarray((self.vertices[1] + self.vertices[2]) / 2)
-
-    @property
-    def slope(self) -> Array:
-        """Slope of the anchor on the segment below each vertex, from -1 to 1."""
-        return np.asarray(self.anchor / self.span)
+        """Length of the segment below each vertex in the normal coordinate, any on the axis."""
+        return np.maximum(self.normal - self.normal[self.parent], 0.0)
 
     @property
     def on_face(self) -> Flags:
         """True where the springs of the segment below a vertex are at their friction limit."""
-        return np.asarray((self.vertices[1] == 0) | (self.vertices[2] == 0))
+        return np.asarray(np.abs(self.slope) == 1)
 
     @property
     def last(self) -> Indices:
@@ -164,14 +150,13 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
     path, held = np.array(points[:2]), as_tree(start)
     steps = points.continues, np.ascontiguousarray(points.load_step)
     made, most = held.parent.size, held.parent.size + _VERTICES * points.normal.size
-    number, parent = np.empty(AXIS + most, dtype=np.intp), np.empty(most, dtype=np.intp)
-    vertices, top = np.empty((_VERTEX, most)), np.empty(points.normal.size, dtype=np.intp)
-    number[:AXIS], number[AXIS : AXIS + made] = -1, np.arange(made)
+    number, parent = np.arange(most), np.empty(most, dtype=np.intp)
+    vertices, top = np.empty((2, most)), np.empty(points.normal.size, dtype=np.intp)
     parent[:made], vertices[:, :made] = held.parent, held.vertices
     rows, stack = _stacked(start, top.size)
     made = stack.run(path, *steps, number, parent, vertices, top)
     line = Polyline(_polyline_on(stack, rows), *path[:, -1].tolist())
-    longest = stack.highest - MIRROR
+    longest = stack.highest + 1
     return VertexTree(parent[:made], vertices[:, :made], top, held.start, path, longest), line
 
 
@@ -179,7 +164,7 @@ def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, i
     """Return the polyline after one straight step, and how many vertices it left unchanged."""
     rows, stack = _stacked(line, 1)
     stack.move(normal, tangential, continues=False, load_step=0)
-    return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed - AXIS
+    return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed
 
 
 def moved_each(vertices: Array, ends: Indices, path: Array) -> tuple[Array, Indices]:
@@ -187,29 +172,29 @@ def moved_each(vertices: Array, ends: Indices, path: Array) -> tuple[Array, Indi
 
     Parameters
     ----------
-    vertices : vertices of all polylines, one after another, shape (m, 9).
+    vertices : vertices of all polylines, one after another, shape (m, 5).
     ends : end of each polyline among them, shape (n,).
     path : normal and tangential coordinates before the step and after it, shape (4, n).
     """
     longest = int(np.diff(ends, prepend=0).max(initial=0))
-    rows = np.empty((AXIS + longest + _VERTICES, COLUMNS))
+    rows = np.empty((longest + _VERTICES, COLUMNS))
     moved, moved_ends = np.empty((len(vertices) + _VERTICES * ends.size, COLUMNS)), ends.copy()
-    stack = kernel.PolylineStack(rows, MIRROR, 0.0, 0.0)
+    stack = kernel.PolylineStack(rows, -1, 0.0, 0.0)
     made = stack.run_each(ends, path, vertices, moved, moved_ends)
     return read_only(moved[:made]), moved_ends
 
 
 def _stacked(line: Polyline, steps: int) -> tuple[Array, kernel.PolylineStack]:
     """Return a stack that starts with a polyline, and its rows, with room for some steps."""
-    size = AXIS + len(line.vertices)
+    size = len(line.vertices)
     rows = np.empty((size + _VERTICES * steps, COLUMNS))
-    rows[AXIS:size] = line.vertices
+    rows[:size] = line.vertices
     return rows, kernel.PolylineStack(rows, size - 1, line.normal, line.tangential)
 
 
 def _polyline_on(stack: kernel.PolylineStack, rows: Array) -> Array:
     """Return the vertices of the polyline on a stack."""
-    return read_only(rows[AXIS : stack.top + 1].copy())
+    return read_only(rows[: stack.top + 1].copy())
 
 
 def separated(normal: float, tangential: float) -> Polyline:
@@ -227,20 +212,11 @@ def as_tree(line: Polyline, following: Polyline | None = None) -> VertexTree:
 def stacked(span: Array, slope: Array, load_step: Indices) -> Polyline:
     """Return the polyline from the axis whose segments have the given lengths and slopes."""
     vertices = np.zeros((span.size + 1, COLUMNS))
-    vertices[0, GROWTH:ANCHOR] = 1.0
-    growth = span * (1 + slope), span * (1 - slope), span * slope
-    vertices[1:, NORMAL:].T[:] = np.cumsum(span), *growth, load_step
-    for column in range(LOW):
-        high = low = 0.0
-        for i, step in enumerate(vertices[1:, GROWTH + column].tolist(), start=1):
-            total = high + step
-            low += kernel.rounding(high, step, total)
-            high = total
-            vertices[i, [column, LOW + column]] = high, low
-    forward, backward, forward_low, backward_low = vertices[-1, :NORMAL].tolist()
-    normal = fsum([forward, forward_low, backward, backward_low]) / 2
-    tangential = fsum([forward, forward_low, -backward, -backward_low]) / 2
-    return Polyline(read_only(vertices), normal, tangential)
+    growth = span * (1 + slope), span * (1 - slope), span
+    vertices[1:, : NORMAL + 1] = np.cumsum(growth, axis=1).T
+    vertices[1:, SLOPE], vertices[1:, STEP] = slope, load_step
+    forward, backward, normal = vertices[-1, : NORMAL + 1].tolist()
+    return Polyline(read_only(vertices), normal, (forward - backward) / 2)
 
 
 def through(sums: Array, load_step: Sequence[int], normal: float, tangential: float) -> Polyline:
@@ -248,25 +224,18 @@ def through(sums: Array, load_step: Sequence[int], normal: float, tangential: fl
 
     Parameters
     ----------
-    sums : normal + anchor, normal - anchor and the low parts of both, from the axis, shape (n, 4).
+    sums : normal + anchor and normal - anchor, from the axis, shape (n, 2).
     load_step : label of the segment above each vertex, shape (n,).
     normal, tangential : coordinates of the load point.
     """
     vertices = np.zeros((len(sums) + 1, COLUMNS))
-    forward, backward = normal + tangential, normal - tangential
-    low = (
-        kernel.rounding(normal, tangential, forward),
-        kernel.rounding(normal, -tangential, backward),
-    )
-    vertices[:, :NORMAL] = np.vstack([sums, [forward, backward, *low]])
+    vertices[:, :NORMAL] = np.vstack([sums, [normal + tangential, normal - tangential]])
+    vertices[:, NORMAL] = vertices[:, :NORMAL].sum(axis=1) / 2
+    vertices[-1, NORMAL] = normal
+    rise, fall = np.diff(vertices[:, :NORMAL], axis=0).T
+    with np.errstate(invalid="ignore"):
+        vertices[1:, SLOPE] = np.clip((rise - fall) / (rise + fall), -1.0, 1.0)
     vertices[1:, STEP] = load_step
-    vertices[:, NORMAL] = np.abs(vertices[:, :NORMAL].sum(axis=1)) / 2
-    step = np.diff(vertices[:, :NORMAL], axis=0)
-    vertices[0, GROWTH:ANCHOR] = 1.0
-    vertices[1:, GROWTH:ANCHOR] = step[:, :LOW] + step[:, LOW:]
-    # Summed exactly, since the anchor may grow far less than both sums.
-    anchors = vertices[:, :NORMAL] * (0.5, -0.5, 0.5, -0.5)
-    vertices[1:, ANCHOR] = [fsum(row) for row in np.hstack([anchors[1:], -anchors[:-1]]).tolist()]
     return Polyline(vertices, normal, tangential)
 
 

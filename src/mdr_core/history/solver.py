@@ -26,6 +26,8 @@ from mdr_core.validation import extremes, not_negative, only_one
 
 # Rounding error of the sums over the segments, relative to that of the profile.
 _SUMS: Final = 40.0
+# Rounding error of the sums of two coordinates, relative to the larger one.
+_ROUNDING: Final = 2 * float(np.finfo(float).eps)
 # Place of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
@@ -196,7 +198,21 @@ class LoadHistory(validity.ContactResults):
         """Bound on the error of each result, relative to its largest value in the history."""
         rounding = (_SUMS + self._condition_number) * self.normal.error_estimate
         chords = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
-        return rounding + chords
+        return rounding + chords + _ROUNDING * self._small_amplitude
+
+    @property
+    def _small_amplitude(self) -> float:
+        """Relative condition number of steps of the tangential load and of the slip front [1].
+
+        They have the rounding error of the larger one of both coordinates.
+        """
+        normal, tangential = np.maximum(self.path.coordinates[0], 0.0), self.path.coordinates[1]
+        least, most = np.sort([normal.max(), np.abs(tangential).max()])
+        deeper, further = np.diff(normal), np.abs(np.diff(tangential))
+        travel = np.max(np.where(normal[1:] > 0, further - deeper, 0.0))
+        # Loads that grow in the ratio of friction move the front by rounding errors alone.
+        sizes = least, travel if travel > 8 * _ROUNDING * most else 0.0
+        return float(sum(most / size for size in sizes if size > 0))
 
     @cached_property
     def _condition_number(self) -> float:

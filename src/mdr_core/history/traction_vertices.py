@@ -15,13 +15,12 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.equivalent_1d import stick_edge
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array
 
-# Up to this part of its normal coordinate a segment is so short that a difference over it would
-# lose more than three of sixteen digits.
+# Up to this part of its normal coordinate a segment is so short that a difference of conjugates
+# would lose more than three of sixteen digits.
 SHORT: Final = 2e-3
 
 
@@ -46,15 +45,12 @@ class TractionVertices:
     def conjugate_step(self) -> Array:
         """Conjugate of each vertex above that of its parent."""
         tree, conjugate = self.tree, self.conjugate
-        if self.moments.profile.has_no_partial_slip:
-            # Depth and force are proportional.
-            return np.asarray(conjugate / np.where(tree.normal > 0, tree.normal, 1.0) * tree.span)
-        step = conjugate - conjugate[tree.parent]
+        step = np.maximum(conjugate - conjugate[tree.parent], 0.0)
         short = np.flatnonzero(tree.span < SHORT * tree.normal)
         if short.size:
             ends = self.coordinate[tree.parent[short]], self.coordinate[short]
             step[short] = tree.span[short] * self.moments.mean_slope(*ends)
-        return np.asarray(step)
+        return step
 
     @cached_property
     def shear(self) -> Array:
@@ -69,7 +65,7 @@ class TractionVertices:
     def _summed(self, *, conjugate: bool) -> Array:
         """Sum of the slopes times the steps in the normal coordinate, or in its conjugate."""
         tree = self.tree
-        return tree.summed(tree.slope * self.conjugate_step if conjugate else tree.anchor)
+        return tree.summed(tree.slope * (self.conjugate_step if conjugate else tree.span))
 
     @cached_property
     def square(self) -> Array:
@@ -78,15 +74,15 @@ class TractionVertices:
         With the mean m = F_x/(2 mu E* a) it is a m^2 + V: see `variance_growth`.
         """
         tree, moments, coordinate = self.tree, self.moments, self.coordinate
-        depth, step, growth = tree.normal, tree.span, tree.anchor
+        depth, step = tree.normal, tree.span
         if moments.over_forces:
-            depth, step = self.conjugate, np.maximum(self.conjugate_step, 0.0)
-            growth = tree.slope * step
+            depth, step = self.conjugate, self.conjugate_step
         upper = np.flatnonzero(tree.parent >= 0)
         lower, grown = tree.parent[upper], np.zeros(tree.parent.shape)
         ends = np.array([coordinate[lower], coordinate[upper]])
         over_depths = interval_moments(moments.profile, over_forces=False)
-        segments = depth[lower], step[upper], growth[upper], ends, self.shear[lower]
+        growth = tree.slope[upper] * step[upper]
+        segments = depth[lower], step[upper], growth, ends, self.shear[lower]
         grown[upper] = variance_growth(over_depths, *segments)
         radius = moments.profile.contact_radius(coordinate)
         shear = np.square(self.shear) / np.where(radius > 0, 4 * radius, 1.0)
@@ -121,17 +117,3 @@ def variance_growth(
     return np.asarray(
         np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
     )
-
-
-def widths(moments: IntervalMoments, tree: VertexTree, coordinate: Array) -> Array:
-    """Return the widths of a polyline's segments in the contact coordinate, shape (n - 1,).
-
-    `coordinate` has the contact coordinates of its vertices, shape (n,).
-    """
-    width = coordinate[1:] - coordinate[:-1]
-    short = np.flatnonzero(tree.span[1:] < SHORT * tree.normal[1:])
-    if short.size:
-        upper, span = tree.normal[1:][short], tree.span[1:][short]
-        edges = coordinate[1:][short], span / upper, tree.normal[short] / upper
-        _, width[short] = stick_edge(moments.profile, *edges, of_force=moments.over_forces)
-    return width

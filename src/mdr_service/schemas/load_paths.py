@@ -21,8 +21,8 @@ from mdr_service.schemas.quantities import (
 from mdr_service.settings import SETTINGS
 
 Regime = Literal["no_contact", "stick", "partial_slip", "full_slip"]
-# Sums of a vertex and their low parts, and the numbers of an arc.
-_Vertex = Annotated[list[float], Field(min_length=4, max_length=7)]
+# Sums of a vertex, and the numbers of an arc.
+_Vertex = Annotated[list[float], Field(min_length=2, max_length=5)]
 
 
 class NormalPoints(Choice):
@@ -157,10 +157,10 @@ class HistoryState(Strict):
     regime: Regime = Field(description="Slip regime of the last sample.")
     polylines: list[list[_Vertex]] = Field(
         description="Slip memory: the vertices of a polyline from the axis, without the load point "
-        "[length], or [length²] under a tangential force: normal coordinate + anchor, normal "
-        "coordinate − anchor, and the low parts of both. Three polylines, with three numbers more "
-        "on each arc, after steps along which a depth and a tangential force, or a normal force "
-        "and a displacement, both change.",
+        "[length], or [length²] under a tangential force: normal coordinate + anchor and normal "
+        "coordinate − anchor. Three polylines, with three numbers more on each arc, after steps "
+        "along which a depth and a tangential force, or a normal force and a displacement, both "
+        "change.",
         min_length=1,
         max_length=3,
     )
