@@ -1,8 +1,8 @@
 """Modulus, contact point, offset and adhesion from a measured curve of force over depth.
 
-Least squares of F = E* F^(d - d_0; w/E*) + F_0 with exact slopes: linear in E* and F_0, and
-searched in d_0 and w/E*, because the sum of squares may have several minima. With adhesion F^ is
-that of the outermost stable state, as on unloading, and zero after the pull-off.
+Least squares of F = E* F^(d - d_0; w/E*) + F_0 with exact slopes, from the best of many d_0 and
+w/E*, because the sum of squares may have several minima. With adhesion F^ is that of the outermost
+stable state, as on unloading, and zero after the pull-off.
 
 Source: notes, §15.
 """
@@ -17,6 +17,7 @@ from typing import ClassVar, Final, NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
 from scipy.special import chdtrc, fdtrc
 
 from mdr_core import adhesion, normal, validity
@@ -38,25 +39,18 @@ PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesio
 # Contact points that are tried first, part of the range of depths before the first of them, and
 # points of the curve that are used there.
 _TRIED, _BEFORE, _USED = 120, 1.0, 100
-# Minima of these from which the search starts, and its largest number of steps.
-_STARTS, _STEPS = 3, 100
-# Change of the contact point over the range of depths, and of w/E* over itself, that is rounding.
-_CONVERGED: Final = 1e-13
+# Relative change of the sum of squares, and of the parameters, at which the search ends.
+_CONVERGED: Final = 1e-15
 # Retractions that are tried first, at the contact radius of the whole range of depths and over it.
 _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
 # Multiple of the pull-off depth beyond which no point is in contact.
 _AFTER: Final = 1.5
-# Part of w/E* that a step leaves, at least: it is positive.
-_LEAST: Final = 0.01
 # Points in contact, at least, in addition to the parameters.
 _SPARE: Final = 2
 # Polynomials over the depth that the residuals of a right shape do not contain, and the probability
 # of a warning that is false.
 _DEGREES, _FALSE_ALARM = 8, 0.01
-# Fall of the force below that before contact, over its rise, that is adhesion.
-_DIP: Final = 0.1
-# Contact point [length], and w/E* [length].
-_State = tuple[float, float]
+_Parameters = dict[str, float]
 # Scatter over the largest force that is rounding error.
 _ROUNDING: Final = 1e-11
 
@@ -122,12 +116,8 @@ class Fit(validity.ContactResults):
         """Warnings that do not depend on the bodies."""
         found = list(self.normal.warnings_without_bodies)
         if self.misfit < _FALSE_ALARM:
-            measured = self.normal_force + self.residual
-            before = measured[self.indentation_depth.argmin()]
-            remedy = "" if "force_offset" in self.fit else "; fit the force_offset too"
-            is_adhesive = "work_of_adhesion" in self.fit
-            if not is_adhesive and before - measured.min() > _DIP * (measured.max() - before):
-                remedy = "; the force falls below that before contact: fit the work_of_adhesion too"
+            left = " and ".join(name for name in PARAMETERS[2:] if name not in self.fit)
+            remedy = f"; fit {left} too, if the curve has them" if left else ""
             message = (
                 f"the residuals are not noise (probability {self.misfit:.1g}): the shape, the "
                 "range of the fit or the model is wrong, and the standard errors do not hold"
@@ -248,26 +238,20 @@ def _adhesive(curve: "_Model") -> "_Model":
         used = np.r_[:count, least + 1 : depth.size]
         return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
 
-    d0, work = without_others(0).best()
-    try:
-        pull_off = adhesion.Curve(curve.profile, sqrt(2 * pi * work)).least["indentation_depth"]
-    except InputError as error:
-        raise InputError(("profile",), error.detail) from None
+    found = without_others(0).best()
+    c = sqrt(2 * pi * found["work_of_adhesion"] / found["e_star"])
+    pull_off = adhesion.Curve(curve.profile, c).least["indentation_depth"]
     jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
-    return without_others(min(int(np.searchsorted(depth, d0 + _AFTER * pull_off)), jump))
+    after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
+    return without_others(min(after, jump))
 
 
 class _Point(NamedTuple):
-    """Best linear parameters for the nonlinear ones, with slopes and residuals of the forces."""
+    """Forces of the model, and their slopes in the fitted parameters."""
 
-    parameters: dict[str, float]
+    forces: Array
     slopes: Array
-    residual: Array
     touching: int
-
-    @property
-    def squares(self) -> float:
-        return float(np.sum(np.square(self.residual)))
 
 
 def _forces(
@@ -299,7 +283,7 @@ def _forces(
 
 @dataclass(frozen=True, eq=False)
 class _Model:
-    """Curve, and the model whose linear parameters follow from contact point and w/E*."""
+    """Curve, and the model that is fitted to it."""
 
     profile: Profile
     depth: Array
@@ -309,8 +293,8 @@ class _Model:
     touches: Flags
     """Points that are not after a pull-off."""
 
-    def best(self) -> _State:
-        """Return contact point and w/E* of the least sum of squares."""
+    def best(self) -> _Parameters:
+        """Return the parameters of the least sum of squares, or an InputError."""
         low, high = float(self.depth.min()), float(self.depth.max())
         limits, tried, works = (0.0, 0.0), np.zeros(1), np.zeros(1)
         deepest = (
@@ -326,90 +310,89 @@ class _Model:
         some = np.argsort(self.depth)[:: max(1, self.depth.size // _USED)]
         used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
         coarse = replace(self, **used)
-        starts: list[tuple[float, _State]] = []
+        starts: list[tuple[float, _Parameters]] = []
         for work in works.tolist():
             pressed = coarse.depth - tried[:, None]
             forces, *_ = _forces(self.profile, pressed, work, coarse.touches)
-            squares = np.array([np.sum(np.square(coarse.linear(row)[1])) for row in forces])
-            inner = np.pad(squares, 1, constant_values=inf)
-            minima = np.flatnonzero((squares <= inner[:-2]) & (squares <= inner[2:]))
-            starts += [(squares[i], (float(tried[i]), work)) for i in minima]
-        found = [coarse.refined(state, *limits) for _, state in sorted(starts)[:_STARTS]]
-        return self.refined(min(found, key=lambda state: coarse.at(state).squares), *limits)
+            for point, reduced in zip(tried.tolist(), forces, strict=True):
+                squares, modulus, offset = coarse.linear(reduced)
+                values = modulus, point, offset, work * modulus
+                starts.append((squares, dict(zip(PARAMETERS, values, strict=True))))
+        _, start = min(starts, key=lambda each: each[0])
+        if start["e_star"] <= 0:
+            detail = "does not rise as on this profile: compression is positive, reverse its sign"
+            raise InputError(("normal_force",), detail)
+        return self.refined(start, *limits)
 
-    def refined(self, state: _State, low: float, high: float) -> _State:
-        """Return the nearest minimum by the Gauss-Newton method."""
-        span, here, fixed = high - low, self.at(state), dict.fromkeys(PARAMETERS, 0.0)
-        for _ in range(_STEPS):
-            d0, work = state
-            scale = np.linalg.norm(here.slopes, axis=0)
-            scale = np.where(scale > 0, scale, 1.0)
-            change, *_ = np.linalg.lstsq(here.slopes / scale, here.residual, rcond=None)
-            step, part = fixed | dict(zip(self.fit, change / scale, strict=True)), 1.0
-            # Half of a step that leads too far.
-            while True:
-                moved = min(max(d0 + part * step["contact_point"], low), high - _CONVERGED * span)
-                modulus = here.parameters["e_star"] + part * step["e_star"]
-                total = work * here.parameters["e_star"] + part * step["work_of_adhesion"]
-                other = max(total / modulus, _LEAST * work) if modulus > 0 else work
-                if abs(moved - d0) <= _CONVERGED * span and abs(other - work) <= _CONVERGED * work:
-                    return state
-                there = self.at((moved, other))
-                if there.squares < here.squares:
-                    break
-                part /= 2
-            state, here = (moved, other), there
-        return state
+    def linear(self, reduced: Array) -> tuple[float, float, float]:
+        """Return the least squares, modulus and offset for forces over E*."""
+        top = float(np.abs(reduced).max()) or 1.0
+        columns = np.column_stack([reduced / top, np.ones_like(reduced)])
+        values = np.array([(self.e_star or 0.0) * top, 0.0])
+        free = ["e_star" in self.fit, "force_offset" in self.fit]
+        values[free], *_ = np.linalg.lstsq(columns[:, free], self.force - columns @ values)
+        left = self.force - columns @ values
+        return float(left @ left), float(values[0]) / top, float(values[1])
 
-    def linear(self, reduced: Array) -> tuple[dict[str, float], Array]:
-        """Return the best modulus and offset for forces over E*, and the residuals."""
-        columns = {"e_star": reduced, "force_offset": np.ones_like(reduced)}
-        fitted = [name for name in columns if name in self.fit]
-        goal = self.force if self.e_star is None else self.force - self.e_star * reduced
-        known = {"e_star": self.e_star or 0.0, "force_offset": 0.0}
-        if not fitted:
-            return known, goal
-        matrix = np.column_stack([columns[name] for name in fitted])
-        scale = np.maximum(np.abs(matrix).max(axis=0), np.finfo(float).tiny)
-        solved, *_ = np.linalg.lstsq(matrix / scale, goal, rcond=None)
-        return known | dict(zip(fitted, (solved / scale).tolist(), strict=True)), (
-            goal - matrix / scale @ solved
+    def refined(self, start: _Parameters, low: float, high: float) -> _Parameters:
+        """Return the nearest minimum, with the contact point between its limits."""
+        size = float(np.abs(self.force).max()) or 1.0
+        units = start | {"contact_point": high - low, "force_offset": size}
+        unit = np.array([units[name] for name in self.fit])
+        ends = {"contact_point": (low, high), "force_offset": (-inf, inf)}
+        bounds = np.transpose([ends.get(name, (0.0, inf)) for name in self.fit]) / unit
+
+        def at(x: Array) -> _Parameters:
+            return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
+
+        def residual(x: Array) -> Array:
+            return (self.at(at(x)).forces - self.force) / size
+
+        def jacobian(x: Array) -> Array:
+            return self.at(at(x)).slopes * unit / size
+
+        first = np.array([start[name] for name in self.fit]) / unit
+        found = least_squares(
+            *(residual, first, jacobian, bounds),
+            x_scale="jac",
+            ftol=_CONVERGED,
+            xtol=_CONVERGED,
+            gtol=None,
         )
+        return at(found.x)
 
-    def at(self, state: _State) -> _Point:
-        """Return the best fit with a contact point and w/E*."""
-        d0, work = state
-        forces, by_depth, by_work = _forces(self.profile, self.depth - d0, work, self.touches)
-        linear, residual = self.linear(forces)
+    def at(self, parameters: _Parameters) -> _Point:
+        """Return the forces of the model, and their slopes."""
+        e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
+        ratio = work / e_star
+        forces, by_depth, by_work = _forces(self.profile, self.depth - d0, ratio, self.touches)
         columns = {
             # At constant w.
-            "e_star": forces - work * by_work,
-            "contact_point": -linear["e_star"] * by_depth,
+            "e_star": forces - ratio * by_work,
+            "contact_point": -e_star * by_depth,
             "force_offset": np.ones_like(forces),
             "work_of_adhesion": by_work,
         }
         slopes = np.column_stack([columns[name] for name in self.fit])
-        return _Point(linear, slopes, residual, int(np.count_nonzero(by_depth)))
+        return _Point(e_star * forces + offset, slopes, int(np.count_nonzero(by_depth)))
 
     def result(
-        self, state: _State, noise: float | None, body_thickness: float | None, rtol: float
+        self, found: _Parameters, noise: float | None, body_thickness: float | None, rtol: float
     ) -> Fit:
-        """Return the fit with nonlinear parameters, or an InputError."""
-        parameters, slopes, residual, touching = self.at(state)
+        """Return the fit with these parameters, or an InputError."""
+        forces, slopes, touching = self.at(found)
         _require_points(touching, self)
-        if parameters["e_star"] <= 0:
-            detail = "falls with the depth: a compressive force is positive, reverse its sign"
-            raise InputError(("normal_force",), detail)
+        residual = self.force - forces
         free = self.depth.size - len(self.fit)
         scatter = float(np.sqrt(np.sum(np.square(residual)) / free))
         scale = np.linalg.norm(slopes, axis=0)
         # The inverse of a triangle, because the square of the matrix would lose half of the digits.
         inverse = np.linalg.inv(np.linalg.qr(slopes / scale, mode="r"))
         deviations = np.linalg.norm(inverse, axis=1)
-        material = Material(parameters["e_star"], body_thickness=body_thickness)
-        work = state[1] * material.e_star
+        material = Material(found["e_star"], body_thickness=body_thickness)
+        work = found["work_of_adhesion"]
         solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
-        deepest = max(float(self.depth.max()) - state[0], 0.0)
+        deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)
         contact = solve(self.profile, material, indentation_depth=deepest, rtol=rtol)
         condition = float(np.linalg.norm(inverse, 2))
         sigma = noise or scatter
@@ -417,9 +400,9 @@ class _Model:
             self.fit,
             contact,
             self.depth,
-            self.force - residual,
-            state[0],
-            parameters["force_offset"],
+            forces,
+            found["contact_point"],
+            found["force_offset"],
             work,
             sigma * deviations / scale,
             (inverse @ inverse.T) / np.multiply.outer(deviations, deviations),

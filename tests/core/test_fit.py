@@ -102,15 +102,14 @@ def test_pull_off_of_a_flat_punch_is_no_fit() -> None:
 def test_tip_on_which_adhesion_has_no_pull_off_is_no_fit() -> None:
     depth, force = jkr("paraboloid", np.geomspace(0.062, 0.15, 20))
     names = ["e_star", "work_of_adhesion"]
-    with pytest.raises(mdr.InputError, match="adhesion spreads the contact") as error:
+    with pytest.raises(mdr.InputError, match="does not rise as on this profile"):
         fit.solve(mdr.Power(1.0, 0.4), indentation_depth=depth, normal_force=force, fit=names)
-    assert error.value.path == ("profile",)
 
 
 @pytest.mark.parametrize("sign", [0, -1])
 def test_curves_without_a_rise_are_no_adhesive_contact(sign: int) -> None:
     force = sign * forces(SHAPES["paraboloid"])
-    with pytest.raises(mdr.InputError, match=r"in contact, 0: measure deeper|falls with the depth"):
+    with pytest.raises(mdr.InputError, match=r"in contact, 0: measure deeper|does not rise"):
         fitted(SHAPES["paraboloid"], force, fit=["e_star", "work_of_adhesion"])
 
 
@@ -291,11 +290,11 @@ def test_curve_that_is_deeper_than_the_profile_is_refused() -> None:
 def test_misfit_by_an_offset_or_by_adhesion_says_so() -> None:
     profile, depth = mdr.Paraboloid(1.0), np.linspace(-5e-3, 1e-2, 200)
     for force, remedy in (
-        (forces(profile) + 1e-3 * forces(profile).max(), "fit the force_offset too"),
-        (adhesive(profile, depth), "fit the work_of_adhesion too"),
+        (forces(profile) + 1e-3 * forces(profile).max(), "force_offset"),
+        (adhesive(profile, depth), "work_of_adhesion"),
     ):
         (misfit,) = (each for each in fitted(profile, force).warnings if each.code == "misfit")
-        assert misfit.message.endswith(remedy)
+        assert remedy in misfit.message
 
 
 def adhesive(profile: Profile, depth: Array) -> Array:
