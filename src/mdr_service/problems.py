@@ -5,7 +5,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-import orjson
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
@@ -13,10 +12,8 @@ from mdr_core.errors import AccuracyError, InputError
 from mdr_service import sentences
 
 MEDIA_TYPE: Final = "application/problem+json"
-# Enough to show a pattern, in a document below 4 kB.
+# Enough to show a pattern.
 MAX_ERRORS: Final = 20
-# A document has at most 4 kB; the members beside `errors` fit in the rest.
-_MAX_ERROR_BYTES: Final = 3000
 # Longer than any field name of a request; a longer name is text of the client.
 MAX_NAME: Final = 64
 # Pydantic builds the list of all errors: in 2 ms up to this number, in half a second for 10⁵.
@@ -106,8 +103,9 @@ def document(error: ServiceError) -> dict[str, Any]:
         "status": error.type.status,
         "detail": error.detail,
     }
-    if listed := _bounded(error.errors):
-        found["errors"] = listed
+    if error.errors:
+        listed = error.errors[:MAX_ERRORS]
+        found["errors"] = [{"pointer": where, "detail": detail} for where, detail in listed]
     return found
 
 
@@ -152,16 +150,3 @@ def pointer(path: Iterable[str | int]) -> str:
     """
     steps = itertools.takewhile(lambda step: len(step) <= MAX_NAME, map(str, path))
     return "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in steps)
-
-
-def _bounded(errors: Iterable[Error]) -> list[dict[str, str]]:
-    """Return the first errors, as many as fit into the document."""
-    listed: list[dict[str, str]] = []
-    size = 0
-    for where, detail in itertools.islice(errors, MAX_ERRORS):
-        error = {"pointer": where, "detail": detail}
-        size += len(orjson.dumps(error))
-        if size > _MAX_ERROR_BYTES:
-            break
-        listed.append(error)
-    return listed

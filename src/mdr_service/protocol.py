@@ -1,14 +1,14 @@
 """HTTP/1.1 protocol of the server: uvicorn's on h11, with bounds against hostile clients.
 
 h11 bounds what it keeps of an incomplete request, and reads the next request after the response to
-the one before. Time, the number of headers and the progress of a client that reads are bounded
-here, because the application has no access to them. The class relies on internals of uvicorn, whose
-version is pinned for that reason; tests check that every overridden method exists and is called.
+the one before; the kernel drops a client that reads nothing. Time and the number of headers are
+bounded here, because the application has no access to them. The class relies on internals of
+uvicorn, whose version is pinned for that reason; tests check that every overridden method exists
+and is called.
 """
 
 import re
 import socket
-import struct
 import sys
 from asyncio import AbstractEventLoop, Transport
 from typing import Any, Final, cast
@@ -27,19 +27,15 @@ MAX_HEADER_BYTES: Final = 32_768
 """Maximum length of request line and headers; nginx has 32 kB as well, Apache 8 kB a line."""
 MAX_HEADER_FIELDS: Final = 100
 """Maximum number of headers, as in Apache."""
-# Interval at which the client's progress is checked.
+# Interval at which the arrival of a request is checked.
 _CHECK_SECONDS: Final = 2.0
-# A client that reads less than this of a response in `_WRITE_SECONDS` counts as not reading.
-# Measured: 20 kB/s pass, 5 kB/s do not.
-_WRITTEN_BYTES: Final = 16_384
-# Longer than the pauses of slow mobile networks, which last some seconds.
+# Time for which a client may read nothing of a response: longer than the pauses of slow mobile
+# networks, which last some seconds.
 _WRITE_SECONDS: Final = 10.0
-# Send buffer of the kernel, which by default hides megabytes from the measurement.
+# Send buffer of the kernel, which by default keeps megabytes of each response.
 _SEND_BUFFER_BYTES: Final = 131_072
 # Time for a rejected client to finish sending and read the response.
 _LINGER_SECONDS: Final = 1.0
-# `struct linger` of socket(7): what the kernel has not sent is discarded.
-_DISCARD: Final = struct.pack("ii", 1, 0)
 # Start of the client's own text in a message of h11.
 _SENT: Final = re.compile(r":? (?:bytearray|b['\"]).*", re.DOTALL)
 
@@ -62,32 +58,26 @@ class BoundedProtocol(H11Protocol):
         self._rejected = False
         # Time of the first byte of the current request, or of the connection.
         self._awaited_since = self.loop.time()
-        # Unsent bytes in the transport at the last progress of the client, and its time.
-        self._unsent, self._unsent_since = 0, 0.0
-        self._check = self.loop.call_later(_CHECK_SECONDS, self._check_progress)
+        self._check = self.loop.call_later(_CHECK_SECONDS, self._check_arrival)
 
     # uvicorn has the narrower type as well.
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        self._socket = transport.get_extra_info("socket")
-        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+        link = transport.get_extra_info("socket")
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+        if option := getattr(socket, "TCP_USER_TIMEOUT", None):
+            # Of Linux.
+            link.setsockopt(socket.IPPROTO_TCP, option, round(1e3 * _WRITE_SECONDS))
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._check.cancel()
         self._unset_keepalive_if_required()
         super().connection_lost(exc)
 
-    def _check_progress(self) -> None:
-        """Close the connection if its client sends or reads too slowly."""
-        self._check = self.loop.call_later(_CHECK_SECONDS, self._check_progress)
-        now = self.loop.time()
-        unsent = self.transport.get_write_buffer_size()
-        if not unsent or not self._unsent or unsent <= self._unsent - _WRITTEN_BYTES:
-            self._unsent, self._unsent_since = unsent, now
-        elif now - self._unsent_since > _WRITE_SECONDS:
-            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _DISCARD)
-            self.transport.abort()
-        late = now - self._awaited_since > SETTINGS.request_seconds
+    def _check_arrival(self) -> None:
+        """Close the connection if its client sends too slowly."""
+        self._check = self.loop.call_later(_CHECK_SECONDS, self._check_arrival)
+        late = self.loop.time() - self._awaited_since > SETTINGS.request_seconds
         awaited = self.timeout_keep_alive_task is None and (
             self.conn.their_state in {h11.IDLE, h11.SEND_BODY}
         )
@@ -96,13 +86,7 @@ class BoundedProtocol(H11Protocol):
             slow = problems.HEADERS_TOO_SLOW if in_headers else problems.BODY_TOO_SLOW
             self._reject(slow, f"a request must arrive within {SETTINGS.request_seconds:g} s")
 
-    def resume_writing(self) -> None:
-        self._unsent = 0
-        super().resume_writing()
-
     def data_received(self, data: bytes) -> None:
-        # A client that sends the next request is reading, or will wait for its response.
-        self._unsent = 0
         if self.timeout_keep_alive_task is not None:
             self._awaited_since = self.loop.time()
         # A piece at a time: some ten thousand short headers would delay the other connections.

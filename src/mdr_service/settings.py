@@ -6,10 +6,10 @@ and of the OpenAPI document. They are therefore fixed when the service starts.
 
 import os
 from collections.abc import Mapping
-from typing import Annotated, Final, Self
+from math import ceil
+from typing import Annotated, Final
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 PREFIX: Final = "MDR_"
 
@@ -69,23 +69,14 @@ class Settings(BaseModel):
         le=86_400,
         description="Maximum time in which a request arrives, headers and body [s].",
     )
-    shutdown_seconds: int = Field(
-        15,
-        ge=1,
-        description="Maximum time for requests in flight after SIGTERM; more than "
-        "MDR_BUDGET_SECONDS and MDR_QUEUE_SECONDS together [s].",
-    )
     cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
         (), description="Origins allowed by CORS, separated by commas."
     )
 
-    @model_validator(mode="after")
-    def _ends_in_time(self) -> Self:
-        if self.shutdown_seconds <= self.budget_seconds + self.queue_seconds:
-            raise PydanticCustomError(
-                "shutdown", "must be more than MDR_BUDGET_SECONDS and MDR_QUEUE_SECONDS together"
-            )
-        return self
+    @property
+    def shutdown_seconds(self) -> int:
+        """Maximum time for requests in flight after SIGTERM [s]."""
+        return ceil(self.queue_seconds + self.budget_seconds) + 1
 
 
 def from_environment(environment: Mapping[str, str]) -> Settings:
@@ -101,9 +92,8 @@ def from_environment(environment: Mapping[str, str]) -> Settings:
     try:
         return Settings.model_validate(given)
     except ValidationError as error:
-        # An error of the model as a whole is about `shutdown_seconds`, which depends on two others.
-        faults = [((*each["loc"], "shutdown_seconds")[0], each["msg"]) for each in error.errors()]
-        lines = [f"{PREFIX}{str(name).upper()}: {message}" for name, message in faults]
+        found = [(str(each["loc"][0]), each["msg"]) for each in error.errors()]
+        lines = [f"{PREFIX}{name.upper()}: {message}" for name, message in found]
         raise SystemExit("\n".join(lines)) from None
 
 

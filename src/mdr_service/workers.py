@@ -10,7 +10,7 @@ next, and one that computes in several processes gives back the last while anoth
 import logging
 from asyncio import CancelledError, Event, Future, create_task, wait
 from collections import Counter
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from math import ceil
@@ -28,17 +28,12 @@ _Result = TypeVar("_Result")
 
 AT_ONCE_BYTES: Final = 16_384
 """Longest query that is parsed on the event loop; the worst one is rejected in 2 ms."""
-# Interval at which idle processes are checked.
-_BEAT_INTERVAL: Final = 5.0
 # A start takes a second or two, most of it for SciPy.
 _START_SECONDS: Final = 30.0
+# Part of `queue_seconds` for which a computation waits before it displaces another.
+_FAIR_SHARE: Final = 0.25
 # Pause after a failure: short enough to recover soon, long enough not to use up a core.
 _PAUSE: Final = 1.0
-# Interval at which running computations are compared with waiting ones.
-_FAIR_INTERVAL: Final = 0.25
-# Part of `queue_seconds` for which a computation waits before it may displace another, and runs
-# before it may be displaced.
-_FAIR_SHARE: Final = 0.25
 
 _logger: Final = logging.getLogger(__name__)
 
@@ -52,13 +47,11 @@ class _Job:
     turn: Future[ComputeProcess] = field(default_factory=Future)
     """The process in which it runs, once its turn has come."""
     since: float = field(default_factory=monotonic)
-    """Time at which it began to wait or to run."""
-    scope: CancelScope = field(default_factory=CancelScope)
-    """Cancelled if the computation has to make room."""
+    """Time at which it began to wait."""
 
     @property
     def age(self) -> float:
-        """Time for which it has waited or run."""
+        """Time for which it has waited."""
         return monotonic() - self.since
 
 
@@ -70,7 +63,7 @@ class WorkerPool:
         self._processes: set[ComputeProcess] = set()
         self._idle: list[ComputeProcess] = []
         self._waiting: list[_Job] = []
-        self._running: list[_Job] = []
+        self._running: dict[_Job, ComputeProcess] = {}
         self._supervised = False
         # Set once every process has started, or one has failed to.
         self._settled = Event()
@@ -89,8 +82,7 @@ class WorkerPool:
         try:
             async with create_task_group() as tasks:
                 for _ in range(self._settings.compute_processes):
-                    tasks.start_soon(self._repeat, self._keep_process)
-                tasks.start_soon(self._repeat, self._keep_fair)
+                    tasks.start_soon(self._keep_process)
                 with move_on_after(_START_SECONDS):
                     await self._settled.wait()
                 yield
@@ -99,17 +91,17 @@ class WorkerPool:
         finally:
             self._supervised = False
 
-    async def _repeat(self, step: Callable[[], Awaitable[None]]) -> None:
-        """Repeat a step for ever, whatever it raises."""
+    async def _keep_process(self) -> None:
+        """Start one process after the other."""
         while True:
             try:
-                await step()
+                await self._lend_process()
             except Exception:
                 _logger.exception("compute process failed")
                 self._settled.set()
                 await sleep(_PAUSE)
 
-    async def _keep_process(self) -> None:
+    async def _lend_process(self) -> None:
         """Start a process, lend it to computations, and count its end, whatever the reason."""
         process = await ComputeProcess.start()
         ended = create_task(process.wait())
@@ -120,13 +112,7 @@ class WorkerPool:
             self._offer(process)
             if len(self._processes) == self._settings.compute_processes:
                 self._settled.set()
-            while not ended.done():
-                await wait([ended], timeout=_BEAT_INTERVAL)
-                if process in self._idle and not ended.done():
-                    # A stopped process is found before a query meets it.
-                    self._idle.remove(process)
-                    await process.beat()
-                    self._offer(process)
+            await wait([ended])
         finally:
             self._processes.discard(process)
             if process in self._idle:
@@ -159,12 +145,10 @@ class WorkerPool:
         """
         job = _Job()
         process = await self._take_process(job)
-        job.since = monotonic()
-        self._running.append(job)
+        self._running[job] = process
         try:
-            with job.scope:
-                await process.beat()
-                outcome = await process.call(self._settings.budget_seconds, function, *arguments)
+            await process.beat()
+            outcome = await process.call(self._settings.budget_seconds, function, *arguments)
         except TimeoutError:
             process.end = "time"
             detail = f"the time limit of a query is {self._settings.budget_seconds:g} s"
@@ -172,14 +156,14 @@ class WorkerPool:
         except Exception as error:
             # Whatever the exception is, the process is lost, and nothing else.
             process.kill()
+            if process.end == "displaced":
+                reason = "terminated: another client waited, and this one computed more"
+                raise self._busy(reason) from None
             raise _lost("the compute process ended or did not respond") from error
         finally:
-            self._running.remove(job)
+            del self._running[job]
             if process.usable:
                 self._offer(process)
-        if job.scope.cancelled_caught:
-            process.end = "displaced"
-            raise self._busy("terminated: another client waited, and this one computed more")
         return cast("_Result", _raised(outcome))
 
     async def check(self) -> None:
@@ -198,8 +182,12 @@ class WorkerPool:
             counts = Counter(each.client for each in queue)
             last = max(queue, key=lambda each: (counts[each.client], each.since))
             last.turn.set_exception(self._busy("the queue is full"))
+        share = _FAIR_SHARE * self._settings.queue_seconds
         try:
-            await wait([job.turn], timeout=self._settings.queue_seconds)
+            await wait([job.turn], timeout=share)
+            if not job.turn.done():
+                self._displace(job)
+            await wait([job.turn], timeout=self._settings.queue_seconds - share)
         except CancelledError:
             if job.turn.done() and not job.turn.exception():
                 self._offer(job.turn.result())
@@ -214,21 +202,18 @@ class WorkerPool:
             raise _lost("a compute process has ended and is not replaced yet")
         raise self._busy("no compute process became available")
 
+    def _displace(self, waiting: _Job) -> None:
+        """Terminate the last computation of a client that has two more than the waiting one."""
+        running = Counter(job.client for job in self._running)
+        last = max(self._running, key=lambda job: (running[job.client], job.since), default=None)
+        if last and running[last.client] > running[waiting.client] + 1:
+            self._running[last].end = "displaced"
+            self._running[last].kill()
+
     def _busy(self, reason: str) -> ServiceError:
         """Return the problem of a rejected computation, to be repeated after the longest wait."""
         after = max([1, *(ceil(job.age) for job in self._waiting)])
         return ServiceError(problems.BUSY, f"{reason}; try again in {after} s", retry_after=after)
-
-    async def _keep_fair(self) -> None:
-        """Terminate the last computation of a client with several, if another has long waited."""
-        share = _FAIR_SHARE * self._settings.queue_seconds
-        await sleep(_FAIR_INTERVAL)
-        running = Counter(job.client for job in self._running)
-        least = min((running[job.client] for job in self._waiting if job.age > share), default=None)
-        if least is not None and len(self._running) == self._settings.compute_processes:
-            last = max(self._running, key=lambda job: (running[job.client], job.since))
-            if running[last.client] > least + 1 and last.age > share:
-                last.scope.cancel()
 
 
 def _raised(outcome: object) -> object:

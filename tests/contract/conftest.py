@@ -24,7 +24,6 @@ def address() -> Iterator[str]:
     patient = {
         "MDR_QUEUE_SECONDS": "100",
         "MDR_BUDGET_SECONDS": "100",
-        "MDR_SHUTDOWN_SECONDS": "250",
     }
     with running(service(port), port, subprocess.DEVNULL, **patient):
         yield f"http://127.0.0.1:{port}/"

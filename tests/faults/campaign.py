@@ -166,7 +166,7 @@ def connections_beside(attack: str) -> Campaign:
 
 async def first_visits(port: int, server: psutil.Process) -> list[Row]:
     """Fifty browsers that download the largest file of the explorer at once, before any other."""
-    text = request("/explorer/plotly.min.js", None, ("Accept-Encoding: gzip",))
+    text = request("/explorer/plotly.min.js", None)
     before, taken = server.memory_info().rss, sum(server.cpu_times()[:2])
     watching = asyncio.create_task(largest_memory(server))
     answers = await asyncio.gather(*(once(port, text) for _ in range(50)))

@@ -47,7 +47,6 @@ class Kills:
     async def kill(self) -> None:
         """Kill one or all compute processes again and again."""
         while time.monotonic() < self.end:
-            # Often longer than the interval at which idle processes are checked.
             await asyncio.sleep(self.between((0.0, 3.0), (5.0, 12.0)))
             living = compute_processes(self.server)
             for each in self.random.choice([living[:1], living[-1:], living]):

@@ -41,7 +41,6 @@ LONGER = {
 PATIENT = {
     "MDR_QUEUE_SECONDS": "100",
     "MDR_BUDGET_SECONDS": "100",
-    "MDR_SHUTDOWN_SECONDS": "250",
 }
 
 
@@ -98,7 +97,6 @@ def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time()
     environment = PATIENT | {
         "MDR_BUDGET_SECONDS": "20",
         "MDR_QUEUE_SECONDS": "20",
-        "MDR_SHUTDOWN_SECONDS": "41",
         "MDR_REQUEST_SECONDS": "1",
     }
     with (

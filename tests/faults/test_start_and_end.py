@@ -43,7 +43,6 @@ def test_signal_ends_the_service_cleanly(stop: signal.Signals, workers: str) -> 
 
 
 BRIEF = {
-    "MDR_SHUTDOWN_SECONDS": "1",
     "MDR_BUDGET_SECONDS": "0.4",
     "MDR_QUEUE_SECONDS": "0.4",
 }
@@ -197,7 +196,7 @@ def test_port_in_use_is_reported_before_the_compute_processes_start() -> None:
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("MDR_MAX_LOADS", "many"), ("MDR_SHUTDOWN_SECONDS", "14"), ("MDR_QUEUE_SECONDS", "nan")],
+    [("MDR_MAX_LOADS", "many"), ("MDR_QUEUE_SECONDS", "nan")],
 )
 def test_invalid_setting_exits_with_one_line(name: str, value: str) -> None:
     (ended,) = failed(service(free_port()), **{name: value})

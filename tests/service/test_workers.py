@@ -17,7 +17,7 @@ import pytest
 from anyio.from_thread import start_blocking_portal
 
 from mdr_core.errors import AccuracyError, DefectError, InputError
-from mdr_service import observability, problems, workers
+from mdr_service import observability, problems
 from mdr_service.compute_process import ComputeProcess
 from mdr_service.problems import ServiceError
 from mdr_service.settings import Settings
@@ -30,7 +30,6 @@ ONE = Settings(
     queue_length=1,
     queue_seconds=60.0,
     budget_seconds=60.0,
-    shutdown_seconds=121,
 )
 HASTY = ONE.model_copy(update={"queue_seconds": 0.2})
 PATIENCE = 30.0
@@ -261,20 +260,6 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
     run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
 
 
-def test_process_stopped_while_idle_is_detected_without_a_query(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(workers, "_BEAT_INTERVAL", 0.1)
-
-    async def test(pool: WorkerPool) -> None:
-        stopped = await pool.run_in_process(own_process)
-        os.kill(stopped, signal.SIGSTOP)
-        await wait_for(lambda: not process_exists(stopped))
-        assert await pool.run_in_process(own_process) != stopped
-
-    run(test)
-
-
 def test_process_killed_while_idle_is_replaced_and_counted() -> None:
     async def test(pool: WorkerPool) -> None:
         counted, killed = lost_processes(), await pool.run_in_process(own_process)
@@ -286,9 +271,8 @@ def test_process_killed_while_idle_is_replaced_and_counted() -> None:
 
 
 @pytest.mark.parametrize("error", [RuntimeError, struct.error, EOFError, MemoryError])
-@pytest.mark.parametrize("found_by", ["a query", "the check of idle processes"])
 def test_any_failure_of_an_exchange_loses_that_process_only(
-    monkeypatch: pytest.MonkeyPatch, error: type[Exception], found_by: str
+    monkeypatch: pytest.MonkeyPatch, error: type[Exception]
 ) -> None:
     call = ComputeProcess.call
 
@@ -299,13 +283,11 @@ def test_any_failure_of_an_exchange_loses_that_process_only(
     async def test(pool: WorkerPool) -> None:
         first, counted = await pool.run_in_process(own_process), lost_processes()
         monkeypatch.setattr(ComputeProcess, "call", fail)
-        if found_by == "a query":
-            assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
+        assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
         await wait_for(lambda: not process_exists(first))
         assert await pool.run_in_process(own_process) != first
         assert lost_processes() == counted + 1
 
-    monkeypatch.setattr(workers, "_BEAT_INTERVAL", 60.0 if found_by == "a query" else 0.1)
     run(test)
 
 

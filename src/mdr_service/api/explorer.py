@@ -1,36 +1,30 @@
 """The explorer, the page at ``/`` with its files, the manual, and the texts to which they link."""
 
-import gzip
 import sys
-from collections.abc import AsyncIterator
-from functools import cache, partial
+from functools import cache
 from importlib.metadata import distribution
 from pathlib import Path
-from threading import Lock
 from typing import Final
 
 import orjson
-from anyio import to_thread
 from fastapi import APIRouter, FastAPI, Request
 from starlette.responses import (
-    FileResponse,
     JSONResponse,
     PlainTextResponse,
     RedirectResponse,
     Response,
-    StreamingResponse,
 )
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
 from mdr_service.api.documentation import PAGE_HEADERS
-from mdr_service.middleware import LONG, header
 
 router = APIRouter(include_in_schema=False)
 
 _OWN: Final = distribution("mdr-contact")
 _README: Final = str(_OWN.metadata.json["description"])
 _LICENSE: Final = _OWN.read_text("licenses/LICENSE")
+_HEADERS: Final = PAGE_HEADERS | {"Cache-Control": "no-cache", "Accept-Ranges": "none"}
 # Built by `make docs`, and in the image.
 MANUAL: Final = Path(sys.prefix, "share", "mdr", "manual")
 _LINKS: Final = {
@@ -47,49 +41,18 @@ _LINKS: Final = {
 }
 
 
-# The file of Plotly is compressed in 0.15 s of a core: once, however many clients ask for it first.
-_reading: Final = Lock()
-
-
-@cache
-def _content(path: str, _changed: float, *, compressed: bool) -> bytes:
-    content = Path(path).read_bytes()
-    return gzip.compress(content, compresslevel=6, mtime=0) if compressed else content
-
-
-def _content_once(path: str, changed: float, *, compressed: bool) -> bytes:
-    """Return a file, read and compressed once."""
-    with _reading:
-        return _content(path, changed, compressed=compressed)
-
-
-async def _pieces(content: bytes) -> AsyncIterator[memoryview]:
-    """Yield a file in pieces; a longer one would count as memory of each request."""
-    for begin in range(0, len(content), LONG):
-        yield memoryview(content)[begin : begin + LONG]
-
-
 class Pages(StaticFiles):
     """Files with the security policy of the pages; browsers revalidate them on every visit."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """Return a file, compressed if the client takes that, or the status 304.
+        """Return a file, or the status 304.
 
         A header `Range` is ignored, as RFC 9110 allows: the files are small.
         """
+        scope["headers"] = [each for each in scope["headers"] if each[0] != b"range"]
         response = await super().get_response(path, scope)
-        headers = PAGE_HEADERS | {"Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
-        response.headers.update(headers)
-        if not isinstance(response, FileResponse) or not response.stat_result:
-            return response
-        compressed = "gzip" in header(scope, b"accept-encoding")
-        file = str(response.path), response.stat_result.st_mtime
-        content = await to_thread.run_sync(partial(_content_once, *file, compressed=compressed))
-        if compressed:
-            response.headers["Content-Encoding"] = "gzip"
-        response.headers["Content-Length"] = str(len(content))
-        del response.headers["Accept-Ranges"]
-        return StreamingResponse(_pieces(content), response.status_code, response.headers)
+        response.headers.update(_HEADERS)
+        return response
 
 
 FILES: Final = Pages(packages=[("mdr_service", "explorer"), ("plotly", "package_data")])
@@ -101,7 +64,7 @@ async def page(request: Request) -> Response:
     if request.headers.get("accept", "").startswith("application/json"):
         return JSONResponse(_LINKS, headers={"Vary": "Accept"})
     response = await FILES.get_response("index.html", request.scope)
-    response.headers["Vary"] = "Accept, Accept-Encoding"
+    response.headers["Vary"] = "Accept"
     return response
 
 
