@@ -35,7 +35,6 @@ SOURCES: Final = {
         "A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technol. 120 (2001) 281-291, as in Lethe"
     ),
     "wu": "finite elements of C.-Y. Wu, as in `chung-ooi`; points of the figure as in Kratos",
-    "aspher": "boundary elements of ASPHER 0.1.3 with Coulomb's friction, 64 x 64 elements",
     "contactmechanics": "L. Pastewka et al., ContactMechanics, test_reference_solutions.py",
     "jkr": "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301-313",
     "kendall": "K. Kendall, J. Phys. D 4 (1971) 1186-1195",
@@ -51,5 +50,13 @@ SOURCES: Final = {
         "al., J. Biomech. 5 (1972) 541-551; integral equation solved in verification/layers.py"
     ),
     "dimitriadis": "E. K. Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810",
+    "compressed-ball": (
+        "A. I. Lur'e, Three-Dimensional Problems of the Theory of Elasticity, 1964: series of a "
+        "solid sphere, evaluated in verification/compressed_ball.py"
+    ),
+    "transverse-slip": (
+        "Boundary elements with the displacements of Cerruti and Coulomb's friction: "
+        "verification/transverse_slip.py"
+    ),
     "ring-elements": "Independent numerical solution, with bounds: verification/ring_elements.py",
 }
