@@ -77,12 +77,12 @@ sweeps: .venv/development
 	$(BIN)/python docs/figures/sweep_map.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
-CHARTS := pressure traction pareto hertz_contact partial_slip history wear_evolution scaling wire stability
+CHARTS := pressure traction pareto hertz_contact partial_slip history contact_laws wear_evolution scaling wire stability
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 
 chart-%: .venv-bench/peers
-	PYTHONPATH=.:benchmarks .venv-bench/bin/python benchmarks/charts/$*.py
+	PYTHONPATH=.:benchmarks OMP_NUM_THREADS=1 .venv-bench/bin/python benchmarks/charts/$*.py
 
 # Needs no reference codes: the curves are those of the tests.
 chart-stability: .venv/development
@@ -150,13 +150,14 @@ clean:
 
 # Reference codes have an environment of their own that contains the project as well, so that one
 # process times both in turn.
-# PyAbel and openAbel are compiled here, against the NumPy and Cython of the lock.
+# PyAbel, openAbel and ASPHER are compiled here, against the NumPy and Cython of the lock.
 PEERS := .venv-bench/bin/python -m pip --disable-pip-version-check --quiet install
-.venv-bench/peers: requirements.lock requirements-bench.lock requirements-bench-openabel.lock setup.py $(COMPILED)
+.venv-bench/peers: requirements.lock $(wildcard requirements-bench*.lock) setup.py $(COMPILED)
 	$(PYTHON) -m venv .venv-bench
 	$(PEERS) --require-hashes --requirement requirements.lock
 	$(PEERS) --require-hashes --no-build-isolation --requirement requirements-bench.lock
 	$(PEERS) --require-hashes --no-build-isolation --no-deps --ignore-requires-python \
 		--requirement requirements-bench-openabel.lock
+	$(PEERS) --require-hashes --no-build-isolation --no-deps --requirement requirements-bench-aspher.lock
 	$(PEERS) --no-deps --no-build-isolation --editable .
 	touch $@
