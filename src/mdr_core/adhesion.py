@@ -7,7 +7,7 @@ less the state of a flat punch that is retracted by
 
 so that the energy release rate at its edge is the work of adhesion w. With phi = g'(a) sqrt(a) and
 c = sqrt(2 pi w/E*) a state is stable under a prescribed force for phi > (3/2) c, under a prescribed
-depth for phi > c/2. Every crossing of these levels is found, between nodes that resolve phi; the
+depth for phi > c/2. The crossings of these levels are found between nodes that resolve phi; the
 state under a load is the outermost stable one, which unloading from a large contact reaches, and
 the pull-off is the lowest load of all stable branches.
 
@@ -25,7 +25,6 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from mdr_core import validation
-from mdr_core.breaks import has_many_breaks
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
@@ -41,10 +40,8 @@ _SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
 # Decades of contact coordinates in which states are searched on either side of 1, and nodes in
 # each: phi bends over a factor of e or more, except next to a break.
 _DECADES, _PER_DECADE = 75, 12
-# Relative distances of nodes from a break, and nodes in each interval of a table.
+# Relative distances of nodes from a break, and nodes between breaks.
 _NEXT, _IN_PIECE = np.logspace(-15, -0.5, 59), 9
-# Nodes around an extremum of phi next to a level.
-_FINE: Final = 201
 # Bound of the logarithm of phi over its level: root finding takes no infinite values.
 _STEEPEST: Final = 50.0
 # Delta_l of a paraboloid at pull-off over the range of adhesion, for Tabor's number 1.
@@ -66,16 +63,6 @@ class Curve:
 
     def __init__(self, profile: Profile, c: float) -> None:
         self.profile, self.c = profile, c
-        breaks, top = profile.coordinate_breaks, min(10.0**_DECADES, profile.domain)
-        count = 2 * _DECADES * _PER_DECADE + 1
-        parts: list[Any] = [[top], breaks, np.logspace(-_DECADES, _DECADES, count)]
-        if has_many_breaks(profile):
-            edges = np.concatenate([[0.0], breaks, [top]])
-            parts.append(np.linspace(edges[:-1], edges[1:], _IN_PIECE).ravel())
-            breaks = np.array(profile.breaks, dtype=float)
-        parts += [np.multiply.outer(breaks, 1 + sign * _NEXT).ravel() for sign in (-1, 1)]
-        nodes = np.unique(np.concatenate(parts))
-        self._nodes = nodes[(nodes >= 10.0**-_DECADES) & (nodes <= top)]
         # The edge of a flat punch stays until the energy release rate reaches w.
         fixed = (np.zeros(1), np.full(1, inf)) if profile.has_no_partial_slip else None
         self.stable = {name: fixed or self._branches(name) for name in _SHARES}
@@ -83,6 +70,18 @@ class Curve:
         lows = {name: self.load(name, low) for name, (low, _) in self.stable.items()}
         self.least = {name: float(low.min()) for name, low in lows.items()}
         self.at_pull_off = self.stable["normal_force"][0][np.argmin(lows["normal_force"])]
+
+    @cached_property
+    def _nodes(self) -> Array:
+        """Coordinates that resolve phi, ascending."""
+        profile, top = self.profile, min(10.0**_DECADES, self.profile.domain)
+        edges = np.concatenate([[0.0], np.ravel(profile.coordinate_breaks), [top]])
+        breaks = coordinate_from_radius(profile, np.array(profile.breaks, dtype=float))
+        near = np.multiply.outer(breaks, np.concatenate([1 - _NEXT, 1 + _NEXT]))
+        between = np.linspace(edges[:-1], edges[1:], _IN_PIECE)
+        decades = np.logspace(-_DECADES, _DECADES, 2 * _DECADES * _PER_DECADE + 1)
+        nodes = np.unique(np.concatenate([np.ravel(near), np.ravel(between), decades]))
+        return nodes[(nodes >= 10.0**-_DECADES) & (nodes <= top)]
 
     def retraction(self, coordinate: Array) -> Array:
         """Delta_l [length]."""
@@ -113,13 +112,6 @@ class Curve:
             return np.clip(ratio, -_STEEPEST, _STEEPEST)
 
         nodes, values = self._nodes, height(self._nodes)
-        # An extremum between nodes may reach the level although they lie on one side of it.
-        size = np.abs(values)
-        before, own, after = size[:-2], size[1:-1], size[2:]
-        near = (own <= before) & (own <= after) & (2 * own <= np.maximum(before, after))
-        at = np.flatnonzero(near) + 1
-        nodes = np.union1d(nodes, np.linspace(nodes[at - 1], nodes[at + 1], _FINE))
-        values = height(nodes)
         stable = values > 0
         end = self.profile.domain
         if not stable[-1] or (stable[0] and values[0] < values[1]):
