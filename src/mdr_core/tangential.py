@@ -12,10 +12,10 @@ from mdr_core import conditioning, equivalent_1d, stick_zone, validity
 from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
+from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
 from mdr_core.normal import EDGE_ERROR, NormalContact, not_reached
 from mdr_core.profiles import Profile
-from mdr_core.slip_energy import slip_moment
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, only_one, require_positive, require_type
@@ -328,3 +328,21 @@ def solve(
         # The prescribed load is returned bit-identical.
         vars(result)[name] = given
     return result
+
+
+def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
+    """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx [length^3].
+
+    It is D^2/4 int 2t(1-t) 2 dx, where D = g(a) - g(c), and t from 0 to 1 is the part of it up to
+    x: a Bernstein moment of the springs.
+
+    Source: notes, §6. Parameters: see `depth_step`.
+    """
+    shape = np.broadcast_shapes(coordinate.shape, width.shape, stick.shape)
+    high, width, low = (np.broadcast_to(end, shape).ravel() for end in (coordinate, width, stick))
+    swept = {name: np.broadcast_to(profile.parameters[name], shape) for name in profile.swept}
+    profile = profile.with_parameters({name: column.ravel() for name, column in swept.items()})
+    span = equivalent_1d.depth_step(profile, high, width, low)
+    moments = interval_moments(profile, over_forces=False)
+    found = moments.over(profile.depth(low), span, np.array([low, high]))
+    return np.asarray(np.square(span) * found.weights[1] / 4).reshape(shape)[()]

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from mdr_core import fields, normal, slip_energy
+from mdr_core import fields, normal, tangential
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError
 from mdr_core.profiles import PowerTerm, Series
@@ -93,7 +93,7 @@ def test_slip_moment_of_a_narrow_and_of_a_wide_annulus(
         with mpmath.workdps(DIGITS):
             exact = slip_moment(terms, mpmath.mpf(a), mpmath.mpf(c))
         profile, ends = series(*terms), [number(one) for one in (a, a - c, c)]
-        result = float(slip_energy.slip_moment(profile, *ends))
+        result = float(tangential.slip_moment(profile, *ends))
         # A rule in log(x) does not resolve the exponent 200, whose term is 1e-10 of the depth.
         bound = 1e-11 if terms is MIXED else 1e-13
         assert result == pytest.approx(float(exact), rel=bound, abs=0)

@@ -11,10 +11,10 @@ import numpy as np
 from mdr_core.elementwise import number
 from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
-from mdr_core.history import dissipation, slip_memory
+from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.traction_vertices import SHORT, variance_growth
+from mdr_core.history.traction_vertices import SHORT, TractionVertices, variance_growth
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
@@ -207,8 +207,8 @@ class ContactState(Results):
         """Energy dissipated by friction on the step of `advance` that led here [force length]."""
         if self.before is None:
             return 0.0
-        tree = slip_memory.as_tree(self.before, self.polyline)
-        return float(self.energy_unit * dissipation.per_step(self._moments, tree)[-1])
+        vertices = TractionVertices(self._moments, slip_memory.as_tree(self.before, self.polyline))
+        return float(self.energy_unit * vertices.dissipation[-1])
 
     @property
     def energy_unit(self) -> float:

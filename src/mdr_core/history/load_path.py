@@ -127,28 +127,13 @@ class SampledPath:
 
         Raises InputError for a tangential force above mu F_N at a sample.
         """
-        mu, e_star = self.start.friction_coefficient, self.start.e_star
-        scale = mu * e_star / (1.0 if self.over_forces else self.start.g_star)
+        scale = self.start.friction_coefficient * self.start.e_star
+        scale /= 1.0 if self.over_forces else self.start.g_star
         normal, tangential = self._normal_coordinate, self.tangential_loads / scale
-        # The rounding of `scale` and of samples between the points does not decide between the
-        # regimes.
-        apart = np.abs(tangential)
-        apart -= normal
-        near = np.zeros(0, dtype=np.intp)
-        if apart.max() >= -2 * _ROUNDING * normal.max():
-            near = np.flatnonzero(np.abs(apart, out=apart) <= 2 * _ROUNDING * normal)
-        given = near[near % self.per_step == 0]
-        n, at_limit = normal[given], tangential[given]
-        limit, prescribed = scale * n, np.abs(self.tangential_loads[given])
         if self.over_forces:
             tangential = self.within_friction(normal, tangential, np.append(-1, self.step))
-            limit = mu * (e_star * n if self.depth_prescribed else self.normal_loads[given])
-        least, most = np.nextafter(n, 0.0), np.nextafter(n, 2 * n)
-        size = np.where(prescribed < limit, np.minimum(np.abs(at_limit), least), n)
-        if not self.over_forces:
-            size = np.where(prescribed > limit, np.maximum(np.abs(at_limit), most), size)
-        tangential[near] = np.copysign(normal[near], tangential[near])
-        tangential[given] = np.copysign(size, at_limit)
+        else:
+            tangential = _at_limit(normal, tangential)
         return np.array([normal, tangential])
 
     def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
@@ -174,9 +159,7 @@ class SampledPath:
                 "friction_coefficient x normal_force; reduce it, or prescribe "
                 "tangential_displacement",
             )
-        # At the limit, up to rounding error, all springs slip.
-        at_limit = np.abs(tangential) >= limit * (1 - _ROUNDING)
-        return np.where(at_limit, np.copysign(limit, tangential), tangential)
+        return _at_limit(limit, tangential)
 
 
 def build(
@@ -216,6 +199,12 @@ def build(
         for before, each in zip((begin.normal, begin.tangential), points, strict=True)
     )
     return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step, begin)
+
+
+def _at_limit(limit: Array, tangential: Array) -> Array:
+    """Return tangential loads, those at the limit but for rounding errors exactly there."""
+    near = np.abs(np.abs(tangential) - limit) <= 2 * _ROUNDING * limit
+    return np.where(near, np.copysign(limit, tangential), tangential)
 
 
 def _along(points: Array, count: int) -> Array:

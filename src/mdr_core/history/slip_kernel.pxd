@@ -42,18 +42,16 @@ cdef class SlipFront:
     cdef const double[:, :] vertices
     cdef double[:, ::1] path, intervals
     cdef Py_ssize_t count
-    cdef double f, b, s, f_end, b_end, s_end
+    cdef double n, s, n_end, s_end, f_end, b_end
 
     @cython.locals(i=Py_ssize_t)
     cpdef Py_ssize_t run(self)
     @cython.locals(at=Py_ssize_t, below=Py_ssize_t, in_backward=bint)
     cdef void _descend(self, Py_ssize_t i) noexcept
-    cdef void _sweep(
-        self, Py_ssize_t i, double rise, double fall, double turn, double lower
-    ) noexcept
+    cdef void _sweep(self, Py_ssize_t i, double span, double turn, double lower) noexcept
     @cython.locals(in_backward=bint)
     cdef void _slip(
-        self, Py_ssize_t i, double rise, double fall, double upper_side, double lower_side,
+        self, Py_ssize_t i, double span, double turn, double upper_side, double lower_side,
         double lower
     ) noexcept
     @cython.locals(new=Py_ssize_t)

@@ -13,7 +13,7 @@ from mdr_core.typing import Array, Flags, Indices
 FORWARD = 0  # normal + anchor
 BACKWARD = 1  # normal - anchor
 # Relative rounding error of the sums of a corner.
-ROUNDING = 2.0**-51
+ROUNDING = 2.0**-50
 
 
 class PolylineStack:
@@ -253,10 +253,10 @@ class SlipFront:
         self.path = path
         self.intervals = intervals
         self.count = 0
-        # Distance of the front from the load point before the step, in both sums and the anchor.
-        self.f = self.b = self.s = 0.0
-        # The same of the load point after it.
-        self.f_end = self.b_end = self.s_end = 0.0
+        # Distance of the front from the load point before the step: normal coordinate and anchor.
+        self.n = self.s = 0.0
+        # That of the load point after it, and its sum and difference.
+        self.n_end = self.s_end = self.f_end = self.b_end = 0.0
 
     def run(self) -> int:
         """Follow the front on all steps; return the number of intervals."""
@@ -278,10 +278,11 @@ class SlipFront:
         elif x <= 0:
             y = y0 + (y - y0) * (x0 / (x0 - x))
             x = 0.0
-        self.f = self.b = self.s = 0.0
+        self.n = self.s = 0.0
+        self.n_end = x0 - x
         self.s_end = y0 - y
-        self.f_end = x0 - x + self.s_end
-        self.b_end = x0 - x - self.s_end
+        self.f_end = self.n_end + self.s_end
+        self.b_end = self.n_end - self.s_end
         if max(self.f_end, self.b_end) <= 0:
             return
         at = self.tops[i]
@@ -289,16 +290,16 @@ class SlipFront:
         while below >= 0:
             span = max(self.vertices[0, at] - self.vertices[0, below], 0.0)
             turn = self.vertices[1, at] * span
-            rise = span + turn
-            fall = span - turn
             part = 1.0
-            if self.f + rise >= self.f_end and self.b + fall >= self.b_end:
+            f = self.n + self.s
+            b = self.n - self.s
+            if f + (span + turn) >= self.f_end and b + (span - turn) >= self.b_end:
                 # The front ends where neither sum exceeds that of the new load point any more.
-                part = (self.f_end - self.f) / rise if self.f < self.f_end else 0.0
-                other = (self.b_end - self.b) / fall if self.b < self.b_end else 0.0
+                part = (self.f_end - f) / (span + turn) if f < self.f_end else 0.0
+                other = (self.b_end - b) / (span - turn) if b < self.b_end else 0.0
                 part = min(max(part, other), 1.0)
             lower = self.vertices[0, below] + (1 - part) * span
-            self._sweep(i, part * rise, part * fall, part * turn, lower)
+            self._sweep(i, part * span, part * turn, lower)
             if part < 1:
                 return
             at = below
@@ -306,38 +307,35 @@ class SlipFront:
         # The front rests on the axis, and all springs slip until the end of the step.
         side = self._side()
         in_backward = self._is_in_backward(side)
-        slip = self.b_end - self.b if in_backward else self.f_end - self.f
+        slip = self.b_end - self.n + self.s if in_backward else self.f_end - self.n - self.s
         if slip > 0:
             start = self._gap(in_backward, side)
             span = abs(x - start)
             self._add(i, min(start, x), span, slip * span / 2, 0.0, 0.0, slip)
 
-    def _sweep(self, i: int, rise: float, fall: float, turn: float, lower: float) -> None:
+    def _sweep(self, i: int, span: float, turn: float, lower: float) -> None:
         """Move the front down a segment, to the normal coordinate `lower`."""
         upper_side = self._side()
-        self.f += rise
-        self.b += fall
+        self.n += span
         self.s += turn
         lower_side = self._side()
         if (upper_side > 0 and lower_side < 0) or (upper_side < 0 and lower_side > 0):
             # The load point passes through the segment: friction acts in both sums in turn.
             part = upper_side / (upper_side - lower_side)
             rest = 1 - part
-            middle = lower + rest * (rise + fall) / 2
-            self._slip(i, part * rise, part * fall, upper_side, 0.0, middle)
-            self._slip(i, rest * rise, rest * fall, 0.0, lower_side, lower)
+            self._slip(i, part * span, part * turn, upper_side, 0.0, lower + rest * span)
+            self._slip(i, rest * span, rest * turn, 0.0, lower_side, lower)
         else:
-            self._slip(i, rise, fall, upper_side, lower_side, lower)
+            self._slip(i, span, turn, upper_side, lower_side, lower)
 
     def _slip(
-        self, i: int, rise: float, fall: float, upper_side: float, lower_side: float, lower: float
+        self, i: int, span: float, turn: float, upper_side: float, lower_side: float, lower: float
     ) -> None:
         """Add the intervals of a segment on which friction acts in one sum."""
         in_backward = self._is_in_backward(upper_side + lower_side)
-        slip = fall if in_backward else rise
+        slip = span - turn if in_backward else span + turn
         if slip <= 0:
             return
-        span = (rise + fall) / 2
         start = self._gap(in_backward, upper_side)
         end = self._gap(in_backward, lower_side)
         # Above `lower` the front moves from `span` to 0, the load point from span + start to end.
@@ -373,15 +371,11 @@ class SlipFront:
             self.intervals[5, new], self.intervals[6, new] = s, i
 
     def _side(self) -> float:
-        """Distance of the front in f times the step in b, less the other product.
+        """Twice the cross product of the front's distance and the load point's.
 
-        It is positive where b is exceeded first, negative where f is. With the normal coordinate
-        and the anchor it is twice the same difference, which keeps its digits where the anchor
-        moves far less than the normal coordinate.
+        It is positive where b is exceeded first, negative where f is.
         """
-        if 2 * abs(self.s_end) < min(self.f_end, self.b_end):
-            return self.s * (self.f_end + self.b_end) - (self.f + self.b) * self.s_end
-        return self.f * self.b_end - self.b * self.f_end
+        return 2 * (self.s * self.n_end - self.n * self.s_end)
 
     def _is_in_backward(self, side: float) -> bool:
         """True where friction acts in b: by the side, where both sums decrease."""

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.history import dissipation, slip_memory
+from mdr_core.history import slip_memory
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.traction_vertices import TractionVertices
 from mdr_core.interval_moments import IntervalMoments
@@ -64,7 +64,7 @@ class StepResults:
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
-        return self._per_step(lambda block: dissipation.per_step(self.moments, block.tree))
+        return self._per_step(lambda block: block.dissipation)
 
     @cached_property
     def regime(self) -> Indices:
