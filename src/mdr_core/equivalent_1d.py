@@ -28,6 +28,8 @@ _NARROW: Final = 0.05
 _NODES: Final = 16
 # Fraction of the load at full slip up to which the width, not the stick edge, is the unknown.
 EARLY: Final = 0.05
+# Largest logarithm of a radius over the scale of a profile.
+_MAX_LOG: Final = 300.0
 
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
@@ -186,8 +188,10 @@ def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
     scale = number(1.0) * profile.scale
     with np.errstate(all="ignore"):
         at_scale, slope = load_and_slope(profile, of_force=of_force)(scale)
-        start = scale * np.exp(np.log(target / at_scale) * (at_scale / (scale * slope)))
-        return where((start > 0) & (start < inf), start, scale)
+        ratio = np.log(target / at_scale) * (at_scale / (scale * slope))
+        # Where a load hardly rises at the scale, its power leads out of the range of doubles.
+        start = scale * np.exp(np.clip(ratio, -_MAX_LOG, _MAX_LOG))
+        return where(start > 0, start, scale)
 
 
 def _step(

@@ -12,15 +12,14 @@ from scipy.interpolate import make_interp_spline
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
+from mdr_core.abel.stress import stress_integral
 from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
-from mdr_core.inversion import invert
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import composite_rule, gauss_legendre
 from mdr_core.typing import Array, Flags, Indices, Parameter
-from mdr_core.validation import require_inside
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
@@ -240,8 +239,7 @@ class Tabulated(Profile):
     def _under_radius(self, radius: Array, kernel: Kernel) -> Array:
         """(2/pi) int_0^r g' K dx of the spline."""
         self._require_inside(radius)
-        r, value = np.ravel(radius), np.zeros(np.size(radius))
-        value[r > 0] = self._spline.under(0.0, self._end, r[r > 0], kernel)
+        value = self._spline.under(0.0, self._end, np.ravel(radius), kernel)
         return (2 / np.pi * value).reshape(np.shape(radius))[()]
 
     def g(self, x: Array) -> Array:
@@ -289,44 +287,11 @@ class Tabulated(Profile):
             total += (high - low) / 2 * (weights @ density)
         return total.reshape(np.shape(coordinate))[()]
 
-    def coordinate_from_depth(self, depth: Array) -> Array:
-        return self._inverse(depth, "indentation_depth", of_force=False)
-
-    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        return self._inverse(reduced_force, "normal_force", of_force=True)
-
-    @cached_property
-    def _at_breaks(self) -> tuple[Array, ...]:
-        """Radii of axis, knots, breaks and end, and depth and reduced force there, with slopes."""
-        radii = np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
-        return radii, *self.depth_and_slope(radii), *self.force_and_slope(radii)
-
-    def _inverse(self, target: Array, load: str, *, of_force: bool) -> Array:
-        radii, *loads = self._at_breaks
-        top, slope = loads[2:] if of_force else loads[:2]
-        require_inside(("load", load), target > top[-1], self._end)
-        piece = np.minimum(top[1:].searchsorted(target) + 1, radii.size - 1)
-        high, low = radii[piece], radii[piece - 1]
-        function = self.force_and_slope if of_force else self.depth_and_slope
-
-        def sloped(s: Array) -> tuple[Array, Array]:
-            value, slope = function(s)
-            return value, s * slope / value
-
-        # From the power that rises as the load does at the upper end.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            # The operator ** of one number and of many may differ in the last bit.
-            power = np.power(target / top[piece], top[piece] / (high * slope[piece]))
-            start = high * power
-        inside = (start > low) & (start < high)
-        start = where(inside, start, (low + high) / 2)
-        return invert(sloped, target, start, low * 0.0, high, self.kind)
-
     # Fields.
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        edges = self._at_breaks[0]
+        edges = np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
         return tuple(map(self._branch, edges[:-1], edges[1:]))
 
     def _branch(self, start: float, stop: float) -> Branch:
@@ -358,7 +323,10 @@ class Tabulated(Profile):
         return np.asarray(slope)
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
-        value = 2 / np.pi * self._grouped(c, r, arccosine)
+        def under(low: float, at: Array) -> Array:
+            return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
+
+        value = _of_each(under, (c,), r)
         for factor, shape in self._flanks:
             past = r > shape.flat_radius
             inner = np.maximum(c[past], shape.flat_radius)
@@ -366,24 +334,11 @@ class Tabulated(Profile):
         return value
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
-        value = (
-            2
-            / np.pi
-            * np.concatenate([[0.0], self._spline.under(0.0, float(a[0]), r, arcsine)])[1:]
-        )
+        value = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
         for factor, shape in self._flanks:
             if a[0] > shape.flat_radius:
                 s = float(inverse_hypot(a[0], shape.flat_radius))
                 value += factor * shape.outer_displacement(a, r, rtol, s)
-        return value
-
-    def _grouped(self, c: Array, r: Array, kernel: Kernel) -> Array:
-        """Integrals int_c^r g' K dx of the spline, those with one c together."""
-        value = np.zeros_like(r)
-        for low in np.unique(c).tolist():
-            own = (c == low) & (r > low)
-            if own.any():
-                value[own] = self._spline.under(low, self._end, r[own], kernel)
         return value
 
     def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:
@@ -428,17 +383,10 @@ class Tabulated(Profile):
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
         a, width, c, *_ = annulus
-        total = _of_each(self._spline.stress, (c, a, width), radius) / np.pi
+        total = _of_each(self._spline.stress, (c, a, width), radius)
         for factor, shape in self._flanks:
-            b = shape.flat_radius
-            s_a = inverse_hypot(np.maximum(a, b), b)
-            s_c = inverse_hypot(np.maximum(c, b), b)
-            gap = np.where(c > b, width * (a + c) / np.where(s_a > 0, s_a + s_c, 1.0), s_a)
-            on = np.broadcast_to(s_a > 0, radius.shape)
-            if on.any():
-                part = Annulus(s_a, gap, c, a).at(on)
-                total[on] += factor * shape.pressure_kernel(part, radius[on], rtol)
-        return total
+            total += factor * stress_integral(shape.branches, annulus, radius, rtol)
+        return total / np.pi
 
 
 def tip_points(coefficients: Sequence[float], largest_height: float) -> tuple[Array, Array]:
@@ -457,9 +405,7 @@ def _radii(area: ArrayLike) -> Array:
     return np.sqrt(section / np.pi)
 
 
-def _of_each(
-    function: Callable[..., Array], ends: tuple[Array, Array, Array], radius: Array
-) -> Array:
+def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Array) -> Array:
     """Values at radii (m,) of a function of single annuli, those of one annulus together."""
     if all(end.size == 1 for end in ends):
         return function(*(end.item() for end in ends), radius)
