@@ -15,12 +15,11 @@ from mdr_core.quadrature import gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps, annulus_maps
+from mdr_core.wear.worn_annulus import ALMOST
 
 # Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
 # contact of a paraboloid grows by half a width, that of a power 100 by less.
 _GROWTH: Final = 4.0
-# As near to the end of a profile as its functions are evaluated: they may be infinite there.
-_ALMOST: Final = 1 - 1e-9
 # Up to this part of the stick radius a step of g is the integral of its slope: a difference has
 # a rounding error of 1e-16/_NARROW, the rule of 8 points an error of _NARROW^16.
 _NARROW: Final = 0.05
@@ -125,7 +124,7 @@ class InitialState:
     @cached_property
     def domain(self) -> float:
         """Radius up to which the profile is evaluated [length]."""
-        return _ALMOST * float(np.asarray(self.normal.profile.domain))
+        return ALMOST * float(np.asarray(self.normal.profile.domain))
 
     @cached_property
     def growth_to_end(self) -> float:

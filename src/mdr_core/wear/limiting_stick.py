@@ -20,10 +20,9 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 from mdr_core.wear.worn_annulus import WornAnnulus
 
-# Points of the search for the largest of several possible stick zones ...
-_POINTS: Final = 65
-# ... and bisections about the best of them.
-_HALVINGS: Final = 40
+# Points of the search for the largest of several possible stick zones, and those of each of the
+# rounds in which the interval becomes four times narrower: a largest value is exact to 1e-16.
+_POINTS, _FEWER, _ROUNDS = 65, 9, 12
 # Relative rounding error of a load and of a step of the depth.
 _ROUNDING: Final = 16 * float(np.finfo(float).eps)
 
@@ -139,11 +138,12 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         edge = np.maximum(top - width, profile.first_coordinate)
         c, step = profile.contact_radius(edge), equivalent_1d.depth_step(profile, top, width, edge)
         slope = c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
-        return c * step, width * slope / (c * step)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return c * step, width * slope / (c * step)
 
     widest = top - profile.first_coordinate
-    low, high, most = _first_crossing(carried, widest, target)
-    separated = (most < target) | contact.full_slip
+    low, high = _first_crossing(lambda width: carried(width)[0], widest, target)
+    separated = ~(carried(high)[0] >= target) | contact.full_slip
     target = where(separated, 0.0, target)
     width = invert(
         carried,
@@ -156,8 +156,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     edge = top - width
     radius = where(width > 0, profile.contact_radius(edge), normal.contact_radius)
     step = _step_of_force(contact, amplitude, radius)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slope = np.abs(carried(width)[1])
+    slope = np.abs(carried(width)[1])
     # Next to the largest force the error is of second order.
     error = _ROUNDING / (where(slope > 0, slope, 0.0) + np.sqrt(_ROUNDING))
     found = edge, radius, profile.radius_width(top, width)
@@ -165,32 +164,24 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
 
 
 def _first_crossing(
-    sloped: Callable[[Array], tuple[Array, Array]], widest: Array, target: Array
-) -> tuple[Array, Array, Array]:
-    """Return the ends of the first interval on which a function, with its slope, rises to a target.
+    function: Callable[[Array], Array], widest: Array, target: Array
+) -> tuple[Array, Array]:
+    """Return the ends of the first interval of [0, widest] in which a function reaches a target.
 
-    And its largest value in [0, widest]: if this is below the target, there is no such interval.
-    For a profile with a slope discontinuity the function can rise, fall and rise again.
+    Where it does not, they enclose its largest value. For a profile with a slope discontinuity the
+    function can rise, fall and rise again.
     """
-    places = np.multiply.outer(np.linspace(0.0, 1.0, _POINTS), widest)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        values = np.array([sloped(place)[0] for place in places])
-        peak = np.argmax(values, axis=0)[None]
-        left = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
-        right = np.take_along_axis(places, np.minimum(peak + 1, _POINTS - 1), axis=0)[0]
-        for _ in range(_HALVINGS):
-            middle = (left + right) / 2
-            rising = sloped(middle)[1] > 0
-            left, right = np.where(rising, middle, left), np.where(rising, right, middle)
-        at_peak, _ = sloped(left)
-    reached = values >= target
-    found = reached.any(axis=0)
-    index = np.argmax(reached, axis=0)[None]
-    before = np.take_along_axis(places, np.maximum(index - 1, 0), axis=0)[0]
-    at = np.take_along_axis(places, index, axis=0)[0]
-    start = np.take_along_axis(places, np.maximum(peak - 1, 0), axis=0)[0]
-    most = np.maximum(at_peak, values.max(axis=0))
-    return np.where(found, before, start), np.where(found, at, left), most
+    low, high = np.zeros_like(widest), widest
+    for points in (_POINTS, *(_FEWER,) * _ROUNDS):
+        places = low + np.multiply.outer(np.linspace(0.0, 1.0, points), high - low)
+        values = np.array([function(place) for place in places])
+        reached = values >= target
+        first = np.where(reached.any(axis=0), reached.argmax(axis=0), values.argmax(axis=0))[None]
+        # A crossing lies before the first place that reaches the target, a peak on either side.
+        low = np.take_along_axis(places, np.maximum(first - 1, 0), axis=0)[0]
+        beyond = np.where(reached.any(axis=0), first, np.minimum(first + 1, points - 1))
+        high = np.take_along_axis(places, beyond, axis=0)[0]
+    return low, high
 
 
 # By the constant load and the amplitude.

@@ -6,25 +6,23 @@ Source: notes, §9.
 """
 
 from dataclasses import dataclass
-from math import factorial
 from typing import Final
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
 
 from mdr_core.abel.displacement import Kernel, arccosine
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
+from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array, Indices
 
 # Relative tolerance of the integrals, about 500 times the rounding error. A looser one would save
 # less than a tenth of the time, and the worn depth is a difference.
 RTOL: Final = 1e-13
-# A pole of g' is approached up to here: beyond, its distance is dominated by rounding error.
-_BEFORE_POLE: Final = 1e-12
-# Angle up to which t - sin t is summed as a series, and its coefficients of t^3, t^5, ...
-_SMALL: Final = 1.0
-_SINE: Final = [(-1) ** k / factorial(2 * k + 3) for k in range(9)]
+# As near to the end of a profile as its functions are evaluated: they may be infinite there.
+ALMOST: Final = 1 - 1e-9
+# Gauss-Legendre nodes of the area of a segment, over an angle of at most pi/2.
+_NODES: Final = 10
 
 
 @dataclass(frozen=True)
@@ -38,10 +36,7 @@ class WornAnnulus:
     @property
     def largest_width(self) -> Array:
         """Width at which the annulus reaches the end of the profile [length]."""
-        ends = [float(self.profile.domain)]
-        # An interval that ends before its pole does not reach it.
-        ends += [b.pole * (1 - _BEFORE_POLE) for b in self.profile.branches if b.stop >= b.pole]
-        return np.asarray(min(ends) - self.stick)
+        return np.asarray(ALMOST * float(self.profile.domain) - self.stick)
 
     def chosen(self, which: Indices) -> "WornAnnulus":
         """Return some of the annuli."""
@@ -113,8 +108,8 @@ def _rate(x: Array, root: Array) -> Array:
 
 
 def _segment(x: Array, root: Array) -> Array:
-    """Return int_x^r sqrt(r^2 - t^2) dt = (r^2/4) (t - sin(t)), t = 2 arccos(x/r)."""
-    t = 2 * np.arctan2(root, x)
-    small = np.minimum(t, _SMALL)
-    series = small**3 * polyval(small * small, _SINE)
-    return np.asarray((x * x + root * root) / 4 * np.where(t < _SMALL, series, t - np.sin(t)))
+    """Return int_x^r sqrt(r^2 - t^2) dt = r^2 int_0^arccos(x/r) sin^2 t dt."""
+    angle = np.arctan2(root, x)
+    nodes, weights = gauss_legendre(_NODES)
+    sines = np.sin(np.multiply.outer(angle, (1 + nodes) / 2))
+    return np.asarray((x * x + root * root) * angle / 2 * (sines**2 @ weights))
