@@ -52,7 +52,8 @@ SOURCES: Final = {
     "dimitriadis": "E. K. Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810",
     "compressed-ball": (
         "A. I. Lur'e, Three-Dimensional Problems of the Theory of Elasticity, 1964: series of a "
-        "solid sphere, evaluated in verification/compressed_ball.py"
+        "solid sphere, evaluated in verification/compressed_ball.py; finite elements in "
+        "tests/oracles/ball_elements.py agree to 5e-4"
     ),
     "transverse-slip": (
         "Boundary elements with the displacements of Cerruti and Coulomb's friction: "
