@@ -23,10 +23,6 @@ from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
 from mdr_core.typing import Array
 
-# Diagonal of a triangle, over the largest, that is rounding error.
-_SINGULAR: Final = 1e-15
-# Weight against what few points leave open, beside the roughness.
-_FEWEST: Final = 1e-6
 # Derivative of the slope whose mean square is the roughness of measured heights: a parabola has
 # none.
 _ROUGH: Final = 3
@@ -145,54 +141,18 @@ def _between(basis: TableBasis, other: TableBasis, coefficients: Array) -> Array
 
 def _least_roughness(basis: TableBasis) -> Array:
     """Return the coefficients of the interpolant whose last derivative jumps least."""
-    points, rows = basis.points, basis.heights
-    inner = points.x > 0
-    # A height at a small radius is met as accurately, relatively.
-    weight = _HEAVY / points.x[inner]
+    points, size = basis.points, basis.heights.shape[1]
     largest = float(np.abs(basis.heights[:, : basis.size - 1]).max())
     jumps = largest * basis.jumps()
-    goal = points.y
-    used = np.ones(rows.shape[1], dtype=bool)
+    # A height at a small radius is met as accurately, relatively.
+    weight = np.where(points.x > 0, _HEAVY / np.where(points.x > 0, points.x, 1.0), 0.0)
+    given = np.full(size, np.nan)
     if points.offset_known:
-        goal = goal - points.y[0]
-        used[-2] = False
-    system = np.vstack([rows[inner] * weight[:, None], jumps])[:, used]
-    right = np.concatenate([goal[inner] * weight, np.zeros(len(jumps))])
-    size = system.shape[1]
-    triangle = _triangle(system)
-    scale = np.abs(np.diag(triangle))
-    if len(system) < size or scale.min() <= _SINGULAR * scale.max():
-        # Few points leave coefficients open: a jump of the slope explains more than all else.
-        rest = _FEWEST * np.eye(size)
-        rest[range(basis.size - 1, size - 2, 2)] *= _FEWEST
-        system, right = np.vstack([system, rest]), np.append(right, np.zeros(size))
-        triangle = _triangle(system)
-
-    def solved(count: int) -> Array:
-        """Solution by the first columns; the last one is the slope on the axis."""
-        own, part = triangle[:count, :count], system[:, :count]
-        # The points outweigh the roughness: a step of refinement gives their digits back.
-        found = np.zeros(size)
-        for _ in range(2):
-            gradient = part.T @ (right - part @ found[:count])
-            found[:count] += solve_triangular(own, solve_triangular(own, gradient, trans="T"))
-        return found
-
-    smooth, sharp = solved(size - 1), solved(size)
-    next_to_tip = jumps[:_TIP_KNOTS, used]
-    roughness = [float(np.linalg.norm(next_to_tip @ each)) for each in (smooth, sharp)]
+        given[-2] = points.y[0]
+    smooth, sharp = (_solved(basis, weight, jumps, given, sharp=tip) for tip in (False, True))
+    roughness = [float(np.linalg.norm(jumps[:_TIP_KNOTS] @ each)) for each in (smooth, sharp)]
     is_sharp = roughness[0] > max(_SHARPER * roughness[1], ROUNDED * largest)
-    found = sharp if is_sharp else smooth
-    result = np.zeros(rows.shape[1])
-    result[used] = found
-    if points.offset_known:
-        result[-2] = points.y[0]
-    return result
-
-
-def _triangle(system: Array) -> Array:
-    """Triangle of the QR decomposition."""
-    return np.asarray(np.linalg.qr(system, mode="r"))
+    return sharp if is_sharp else smooth
 
 
 def _measured(
@@ -246,18 +206,29 @@ def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
 
 
 def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
-    """Return the coefficients of least misfit and roughness, some of which are given, by QR.
+    """Return the coefficients of least misfit and roughness of a spectrum, some of them given."""
+    rough = np.sqrt(chosen.weight) * basis.derivative(min(_ROUGH, basis.degree))
+    return _solved(basis, basis.points.weight, rough, given, sharp=chosen.sharp)
+
+
+def _solved(basis: TableBasis, weight: Array, rough: Array, given: Array, *, sharp: bool) -> Array:
+    """Return the coefficients of least misfit and roughness, those that are not given, by QR.
 
     The largest rows come first, so that a small weight of the roughness keeps its digits.
     Source: cox-higham.
+
+    Parameters
+    ----------
+    weight : of the misfit at each point.
+    rough : rows of the roughness.
+    given : coefficients that are known, NaN for the others.
+    sharp : the slope on the axis is a coefficient; else it is zero.
     """
-    weight = basis.points.weight
-    rough = np.sqrt(chosen.weight) * basis.derivative(min(_ROUGH, basis.degree))
     system = np.vstack([basis.heights * weight[:, None], rough])
     right = np.concatenate([basis.points.y * weight, np.zeros(len(rough))])
     order = np.argsort(-np.abs(system).max(axis=1), kind="stable")
     free = np.isnan(given)
-    free[-1] &= chosen.sharp
+    free[-1] &= sharp
     result = np.where(np.isnan(given), 0.0, given)
     right = (right - system @ result)[order]
     rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
