@@ -254,7 +254,7 @@ class IntervalMoments:
             slope = profile.depth_slope_beyond(place, origin, past)
         else:
             slope = profile.depth_slope(place)
-        # Rounding puts nodes of the narrowest intervals on a break, beyond which g' may be infinite.
+        # Rounding puts nodes of narrow intervals on a break, beyond which g' may be infinite.
         slope = np.where(slope < inf, slope, slope.min(axis=0))
         rise, measure = moved * slope, weights * moved * profile.radius_slope(place)
         if self.over_forces:
