@@ -50,7 +50,8 @@ _NOTES: Final = (
     (
         "For the punch with rounded edges of Ciavarella (Int. J. Solids Struct. 36 (1999) "
         "4149-4181) no printed numbers were available: its cases are problems 3 and 4 of `mdr-5`, "
-        "equations (5.59) to (5.70), and ring elements."
+        "equations (5.59) to (5.70), and ring elements. For the same reason the impacts of glass "
+        "and cellulose acetate by Foerster et al. (Phys. Fluids 6 (1994) 1108-1115) are left out."
     ),
 )
 
