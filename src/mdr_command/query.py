@@ -151,12 +151,12 @@ def _content(arguments: argparse.Namespace) -> bytes:
     profile = _table(arguments, given)
     if not given:
         query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
-        return respond(name, query, media_type, appearance=look)
+        return respond(name, query, media_type, look)
     if arguments.file:
         raise InputError((), "give the request by a file or by options, not both")
     parameters = PARAMETERS[name].model_validate(given)
     with parameters.pointing():
-        return respond(name, parameters.query(profile), media_type, parameters.members, look)
+        return respond(name, parameters.query(profile), media_type, look, parameters.members)
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
@@ -201,7 +201,9 @@ def _options(command: str) -> dict[str, FieldInfo]:
     """Return the parameters that are options; every command has options for a picture."""
     fields = PARAMETERS[command].model_fields if command in PARAMETERS else {}
     return {
-        name: field for name, field in fields.items() if name not in {"format", "size", "units"}
+        name: field
+        for name, field in fields.items()
+        if name not in content_negotiation.Form.model_fields
     }
 
 

@@ -4,18 +4,32 @@ import re
 from collections.abc import Sequence
 from typing import Final, Literal
 
+from pydantic import BaseModel, Field, SkipValidation
+
 from mdr_service import problems
 from mdr_service.serializers import FORMATS, PICTURES
 from mdr_service.serializers.panels import Units
 from mdr_service.serializers.picture import Appearance
 
 Format = Literal["json", "csv", "npz", "txt", "svg", "png", "pdf"]
-FORMAT: Final = "Format of the response; overrides `Accept`"
 SIZE: Final = "Width x height of a picture in millimetres, 50 to 400 each, such as `90x60`"
 UNITS: Final = (
     "Units of length, force and pressure that the labels of a picture name, such as `mm,N,MPa`: "
     "nothing is converted"
 )
+
+
+class Form(BaseModel):
+    """Parameters of a URL that tell the form of the response."""
+
+    # An unknown format is not acceptable (406) rather than invalid.
+    format: SkipValidation[Format | None] = Field(
+        default=None, description="Format of the response; overrides `Accept`"
+    )
+    size: str | None = Field(default=None, description=SIZE)
+    units: str | None = Field(default=None, description=UNITS)
+
+
 _SIZE: Final = re.compile(r"(\d{2,3})x(\d{2,3})", re.ASCII)
 _SMALLEST, _LARGEST = 50, 400
 # Characters that every font has, and none that starts a formula.

@@ -52,8 +52,8 @@ def respond(
     name: str,
     query: Query | BatchQuery | bytes | dict[str, str],
     media_type: str,
-    members: Sequence[str] = (),
     appearance: Appearance = AS_USUAL,
+    members: Sequence[str] = (),
 ) -> bytes:
     """Return the response content of a query or a batch.
 
@@ -62,8 +62,8 @@ def respond(
     name : name of the query, a key of `SCHEMAS`, or ``batch``.
     query : the request, or its text or the parameters that stand for it, which are first parsed.
     media_type : media type of the content.
-    members : members of the result to return, by default all; a picture shows all.
     appearance : size and units of a picture.
+    members : members of the result to return, by default all; a picture shows all.
 
     Raises
     ------

@@ -105,7 +105,7 @@ class ServiceMiddleware:
         client, _ = scope.get("client") or ("", 0)
         record = RequestRecord(name, scope["method"], client)
         observability.CURRENT.set(record)
-        sender = _Sender(self.transfers, record, send)
+        sender = _sender(record, send)
         if scope["method"] == "HEAD":
             # The server leaves out the body.
             scope = {**scope, "method": "GET"}
@@ -145,39 +145,31 @@ def _log(record: RequestRecord, route: object) -> None:
     _requests.info("request", extra={"members": members})
 
 
-class _Sender:
-    """Sends one response: adds the common headers, and sends a long body in pieces.
+def _sender(record: RequestRecord, send: Send) -> Send:
+    """Return what sends a response: adds the common headers, and sends a long body in pieces.
 
     The server buffers what the client does not read: a piece waits until the one before it is
     written.
     """
 
-    def __init__(self, transfers: Transfers, record: RequestRecord, send: Send) -> None:
-        self.transfers = transfers
-        self.record = record
-        self.send = send
-        self.start: Message = {}
-
-    async def __call__(self, message: Message) -> None:
+    async def send_pieces(message: Message) -> None:
         if message["type"] == "http.response.start":
-            self.start = message
+            record.status = message["status"]
+            own = (b"x-request-id", record.id.encode("ascii")), *_ALWAYS
+            await send({**message, "headers": [*message["headers"], *own]})
             return
         body = memoryview(message.get("body", b""))
-        if not self.record.status:
-            if len(body) > LONG:
-                try:
-                    self.transfers.add(self.record, len(body))
-                except ServiceError as error:
-                    response = problem_response(error)
-                    self.start.update(status=response.status_code, headers=response.raw_headers)
-                    body = memoryview(response.body)
-            self.record.status = self.start["status"]
-            marks = (b"x-request-id", self.record.id.encode("ascii"))
-            await self.send({**self.start, "headers": [*self.start["headers"], marks, *_ALWAYS]})
         while len(body) > LONG:
-            await self.send({"type": message["type"], "body": body[:LONG], "more_body": True})
+            await send({"type": message["type"], "body": body[:LONG], "more_body": True})
             body = body[LONG:]
-        await self.send({**message, "body": body})
+        await send({**message, "body": body})
+
+    return send_pieces
+
+
+def hold(request: Request, size: int) -> None:
+    """Count a long body of a request, or a part of one, until its response is sent."""
+    request.app.state.transfers.add(observability.CURRENT.get(), size)
 
 
 def problem_response(error: ServiceError, headers: Mapping[str, str] | None = None) -> Response:
@@ -223,7 +215,7 @@ async def read_body(request: Request) -> bytes:
         if size > SETTINGS.max_body_bytes:
             raise await _too_large(request)
         if size > LONG:
-            request.app.state.transfers.add(observability.CURRENT.get(), len(chunk))
+            hold(request, len(chunk))
         chunks.append(chunk)
     return b"".join(chunks)
 

@@ -81,7 +81,6 @@ def extend(app: FastAPI) -> None:
         # The service validates each request of a batch alone, so that its model has any object.
         _refer(schemas["BatchItem"], "request", [query.model for query in SCHEMAS.values()])
         _refer(schemas["BatchItemAnswer"], "answer", [query.answer for query in SCHEMAS.values()])
-        schemas["Settings"]["additionalProperties"] = False
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])
             for needed in schemas[name].get("dependentRequired", {}).values():

@@ -11,13 +11,13 @@ from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, SkipValidation, create_model
+from pydantic import BeforeValidator, ConfigDict, Field, create_model
 from pydantic_core import PydanticCustomError
 
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
-from mdr_service.content_negotiation import FORMAT, SIZE, UNITS, Format
+from mdr_service.content_negotiation import Form
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
@@ -51,7 +51,7 @@ def _whole(text: str) -> int:
 # A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
 _Number = Annotated[float, BeforeValidator(_number)] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
-_Length = Annotated[int, Field(ge=2, le=SETTINGS.max_loads), BeforeValidator(_whole)] | None
+_Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
 # By the type of the field in JSON.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _LOADS: Final = frozenset({"load", "tangential", "oscillation"})
@@ -66,7 +66,7 @@ _BODIES: Final = (
 _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 
 
-class Parameters(BaseModel):
+class Parameters(Form):
     """Parameters of a URL that stand for a request."""
 
     model_config = ConfigDict(extra="forbid")
@@ -79,10 +79,6 @@ class Parameters(BaseModel):
     scale: Literal["linear", "log"] | None = Field(
         default=None, description="Spacing of a range, linear by default"
     )
-    # An unknown format is not acceptable (406), as for POST, rather than invalid.
-    format: SkipValidation[Format | None] = Field(default=None, description=FORMAT)
-    size: str | None = Field(default=None, description=SIZE)
-    units: str | None = Field(default=None, description=UNITS)
     answers: str | None = Field(
         default=None, description="Members of the response, separated by commas; by default all"
     )

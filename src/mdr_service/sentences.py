@@ -148,20 +148,13 @@ def _length(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
     return f"at least {'one value is' if least == 1 else f'{least} values are'} needed"
 
 
-def _range(error: ErrorDetails, place: Path, model: _Model | None) -> str:
+def _range(error: ErrorDetails, place: Path, _model: _Model | None) -> str:
     bounds: dict[str, float] = dict(error["ctx"])
     least = bounds.get("ge")
     if least is not None and 0 <= least <= _TINY:
         return f"{POSITIVE}, at least {least:g}" if least else not_negative(_field(place))
-    for owner in _models(error, place[:-1], model):
-        if field := owner.model_fields.get(str(place[-1])):
-            # The other end of the range.
-            parts = [(part, end) for part in field.metadata for end in _BOUNDS]
-            bounds |= {end: getattr(part, end) for part, end in parts if hasattr(part, end)}
-    if bounds.keys() == {"ge", "le"}:
-        return f"must lie from {bounds['ge']:.15g} to {bounds['le']:.15g}"
-    texts = [f"{text} {bounds[name]:.15g}" for name, text in _BOUNDS.items() if name in bounds]
-    return f"must be {' and '.join(texts)}"
+    ((end, bound),) = bounds.items()
+    return f"must be {_BOUNDS[end]} {bound:.15g}"
 
 
 _Writer = Callable[[ErrorDetails, Path, _Model | None], str]

@@ -24,29 +24,23 @@ def _separated(text: object) -> object:
 class Settings(BaseModel):
     """Limits of a server process; the variable is ``MDR_`` and the name in capitals."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
     max_body_bytes: int = Field(
         4 * 1024**2, ge=1024, description="Maximum length of a request body [bytes]."
     )
-    max_loads: int = Field(100_000, ge=1, description="Maximum number of loads in a request.")
-    max_radii: int = Field(100_000, ge=2, description="Maximum number of radii in a request.")
+    max_length: int = Field(
+        100_000,
+        ge=2,
+        description="Maximum number of loads, radii, cycles or samples in a request.",
+    )
     max_numbers: int = Field(
         1_000_000,
         ge=2,
         description="Maximum number of values in a response: loads × radii × quantities.",
     )
-    max_samples: int = Field(
-        100_000,
-        ge=1,
-        description="Maximum number of samples of a history: points × samples_per_step.",
-    )
-    max_cycles: int = Field(
-        100_000, ge=1, description="Maximum number of cycles, and of entries of `cycles` of wear."
-    )
     max_batch: int = Field(1_000, ge=1, description="Maximum number of queries in a batch.")
     max_table_points: int = Field(2_000, ge=2, description="Maximum number of points of a table.")
-    max_series_terms: int = Field(100, ge=1, description="Maximum number of terms of a series.")
     max_transfer_bytes: int = Field(
         32 * 1024**2,
         ge=0,

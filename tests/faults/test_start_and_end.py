@@ -196,7 +196,7 @@ def test_port_in_use_is_reported_before_the_compute_processes_start() -> None:
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("MDR_MAX_LOADS", "many"), ("MDR_QUEUE_SECONDS", "nan")],
+    [("MDR_MAX_LENGTH", "many"), ("MDR_QUEUE_SECONDS", "nan")],
 )
 def test_invalid_setting_exits_with_one_line(name: str, value: str) -> None:
     (ended,) = failed(service(free_port()), **{name: value})

@@ -107,7 +107,7 @@ def test_numbers_of_a_batch_are_limited_in_total(client: Client) -> None:
     many_samples = {
         "ask": "history",
         "request": HISTORY
-        | {"cycles": HISTORY["cycles"] | {"count": SETTINGS.max_samples // 4 - 1}},
+        | {"cycles": HISTORY["cycles"] | {"count": SETTINGS.max_length // 4 - 1}},
     }
     # As many as one response may hold.
     assert SETTINGS.max_numbers % len(LOADS) == 0

@@ -274,7 +274,7 @@ REJECTED = {
     "a range of one": ("normal", {**BALL, "e_star": 1, **RANGE, "n": 1}, "n"),
     "a range of too many": (
         "normal",
-        {**BALL, "e_star": 1, **RANGE, "n": SETTINGS.max_loads + 1},
+        {**BALL, "e_star": 1, **RANGE, "n": SETTINGS.max_length + 1},
         "n",
     ),
     "a count that is not whole": ("normal", {**BALL, "e_star": 1, **RANGE, "n": 2.5}, "n"),

@@ -155,7 +155,7 @@ def test_zero_load_gives_zero(client: Client) -> None:
 
 def test_samples_are_limited(client: Client) -> None:
     for load_path in (PATHS["one force"], PATHS["a force and displacements"]):
-        asked = query(**history_of(*load_path, samples_per_step=SETTINGS.max_samples // 3 + 1))
+        asked = query(**history_of(*load_path, samples_per_step=SETTINGS.max_length // 3 + 1))
         response = client.post(PATH, asked)
         assert response.status_code == 422
         pointers = [error["pointer"] for error in response.json()["errors"]]
@@ -165,9 +165,9 @@ def test_samples_are_limited(client: Client) -> None:
 def test_cycles_are_limited(client: Client) -> None:
     told_by = {"normal": {"normal_force": 1.0}, "tangential": {"tangential_force": 0.1}}
     for more, pointer in (
-        ({"count": SETTINGS.max_samples // 2}, "/cycles"),
-        ({"count": SETTINGS.max_samples, "samples_per_step": 2}, "/cycles/samples_per_step"),
-        ({"count": SETTINGS.max_samples + 1}, "/cycles/count"),
+        ({"count": SETTINGS.max_length // 2}, "/cycles"),
+        ({"count": SETTINGS.max_length, "samples_per_step": 2}, "/cycles/samples_per_step"),
+        ({"count": SETTINGS.max_length + 1}, "/cycles/count"),
     ):
         response = client.post(PATH, query(cycles=told_by | more))
         assert response.status_code == 422

@@ -10,7 +10,7 @@ from fastapi import FastAPI, Request
 from starlette.responses import Response
 
 from mdr_service import middleware
-from mdr_service.middleware import LONG, Transfers, read_body
+from mdr_service.middleware import LONG, Transfers, hold, read_body
 from mdr_service.settings import SETTINGS
 
 TEXT = bytes(range(256)) * (LONG // 100)
@@ -69,7 +69,8 @@ def application(endpoint: Callable[[Request], Awaitable[Response]], limit: int =
     return app
 
 
-async def long_response(_request: Request) -> Response:
+async def long_response(request: Request) -> Response:
+    hold(request, len(TEXT))
     return Response(TEXT)
 
 

@@ -472,12 +472,12 @@ OTHER_QUERIES = {
     ),
     "too many samples": (
         "tangential/history",
-        history_query(history(more=f', "samples_per_step": {SETTINGS.max_samples}')),
+        history_query(history(more=f', "samples_per_step": {SETTINGS.max_length}')),
         "/history/samples_per_step",
     ),
     "too many points of a history": (
         "tangential/history",
-        history_query(history(f'{{"normal_force": [{"1," * SETTINGS.max_loads}1]}}')),
+        history_query(history(f'{{"normal_force": [{"1," * SETTINGS.max_length}1]}}')),
         "/history/normal/normal_force",
     ),
     "an unknown field of a history": (
@@ -702,7 +702,7 @@ OTHER_QUERIES = {
     "very many cycles": ("wear/evolution", evolution_query(cycles="[1, 1.1e12]"), "/cycles/1"),
     "too many numbers of cycles": (
         "wear/evolution",
-        evolution_query(cycles=f"[{'1,' * SETTINGS.max_samples}1]"),
+        evolution_query(cycles=f"[{'1,' * SETTINGS.max_length}1]"),
         "/cycles",
     ),
     "cycles beyond friction": (
@@ -776,7 +776,7 @@ OTHER_QUERIES = {
     "too many points": ("stress", fields(more=', "points": 1000000000'), "/points"),
     "too many radii": (
         "stress",
-        fields(more=f', "radius": [{"0," * SETTINGS.max_radii}0]'),
+        fields(more=f', "radius": [{"0," * SETTINGS.max_length}0]'),
         "/radius",
     ),
     "null for friction": (
@@ -851,7 +851,7 @@ def test_problem_does_not_repeat_the_input(client: Client) -> None:
     ("radius", "detail"),
     [
         (-1.0, "must be positive, at least 1e-50"),
-        (1e60, "must lie from 1e-50 to 1e+50"),
+        (1e60, "must be at most 1e+50"),
     ],
 )
 def test_bounds_are_stated_in_short(client: Client, radius: float, detail: str) -> None:
@@ -895,9 +895,9 @@ def test_list_at_the_limit_is_accepted(client: Client) -> None:
     def loads(count: int) -> bytes:
         return query(load=json.dumps({"normal_force": [1.0] * count}))
 
-    response = client.post_text("/v1/normal", loads(SETTINGS.max_loads))
-    assert len(response.json()["contact_radius"]) == SETTINGS.max_loads
-    response = client.post_text("/v1/normal", loads(SETTINGS.max_loads + 1))
+    response = client.post_text("/v1/normal", loads(SETTINGS.max_length))
+    assert len(response.json()["contact_radius"]) == SETTINGS.max_length
+    response = client.post_text("/v1/normal", loads(SETTINGS.max_length + 1))
     assert pointers(response) == ["/load/normal_force"]
 
 

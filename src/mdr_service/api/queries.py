@@ -8,7 +8,8 @@ from fastapi.types import DecoratedCallable
 from starlette.responses import Response
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
-from mdr_service.api.query_route import BatchResponder, QueryRoute, Responder, url_parameters
+from mdr_service.api.query_route import QueryRoute, answer, form_of, url_parameters
+from mdr_service.content_negotiation import Form
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
@@ -25,7 +26,7 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 router = APIRouter(route_class=QueryRoute, responses=POST_FAILURES)
-Send = Annotated[Responder, Depends()]
+_Form = Annotated[Form, Query()]
 
 
 def _examples(name: str) -> Any:
@@ -43,17 +44,16 @@ def _post(name: str, tag: str, summary: str) -> Callable[[DecoratedCallable], De
     return router.post(operation_id=name, **_described(name, tag, summary))
 
 
-# `QueryRoute` reads the signatures of these functions and does the same, faster.
+# Declarations: `QueryRoute` reads their signatures, and handles the requests.
 
 
 @_post("normal", "contact", "Normal contact under a depth, a force or a contact radius")
-async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send) -> Response:
+async def normal(query: Annotated[NormalQuery, _examples("normal")], form: _Form) -> None:
     """Compute the frictionless contact of a profile with an elastic half-space.
 
     Every list of the response has one entry per load. `method` names the most expensive method
     used, `error_estimate` is an upper bound on the relative error of every number.
     """
-    return await send("normal", query)
 
 
 @_post(
@@ -61,14 +61,13 @@ async def normal(query: Annotated[NormalQuery, _examples("normal")], send: Send)
     "contact",
     "Modulus, contact point, offset and adhesion from a measured curve of force over depth",
 )
-async def fit(query: Annotated[FitQuery, _examples("fit")], send: Send) -> Response:
+async def fit(query: Annotated[FitQuery, _examples("fit")], form: _Form) -> None:
     """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
 
     The standard errors hold for independent errors of the forces of equal size. A warning `misfit`
     tells that the residuals are not such noise: then the shape or the model is wrong.
     `error_estimate` is the numerical error of the parameters.
     """
-    return await send("fit", query)
 
 
 @_post(
@@ -77,18 +76,17 @@ async def fit(query: Annotated[FitQuery, _examples("fit")], send: Send) -> Respo
     "Partial slip under a tangential force or displacement, or a stick radius",
 )
 async def tangential(
-    query: Annotated[TangentialQuery, _examples("tangential")], send: Send
-) -> Response:
+    query: Annotated[TangentialQuery, _examples("tangential")], form: _Form
+) -> None:
     """Compute a contact with friction, loaded normally first and then tangentially once.
 
     Every list of the response has one entry per pair of loads. A tangential force beyond µ F_N has
     no equilibrium and is rejected; a displacement beyond full slip has the regime `full_slip`.
     """
-    return await send("tangential", query)
 
 
 @_post("history", "contact", "Load history: an arbitrary load path or identical cycles")
-async def history(query: Annotated[HistoryQuery, _examples("history")], send: Send) -> Response:
+async def history(query: Annotated[HistoryQuery, _examples("history")], form: _Form) -> None:
     """Follow a load path from first contact, and return samples along it.
 
     The controls vary linearly from point to point. Paths of depths and displacements, and of
@@ -102,11 +100,10 @@ async def history(query: Annotated[HistoryQuery, _examples("history")], send: Se
     `slip_fronts`. `energy_per_cycle` and `secant_stiffness` belong to
     `cycles`.
     """
-    return await send("history", query)
 
 
 @_post("impact", "contact", "Oblique impact: rebound, duration and loss of energy by friction")
-async def impact(query: Annotated[ImpactQuery, _examples("impact")], send: Send) -> Response:
+async def impact(query: Annotated[ImpactQuery, _examples("impact")], form: _Form) -> None:
     """Compute the rebound of bodies that hit each other with normal and tangential velocities.
 
     The normal motion is elastic, and the tangential force follows from the slip memory of the
@@ -114,17 +111,15 @@ async def impact(query: Annotated[ImpactQuery, _examples("impact")], send: Send)
     list of the response has one entry per impact. `error_estimate` is an estimate, relative to the
     velocity and the energy before the impact.
     """
-    return await send("impact", query)
 
 
 @_post("stress", "contact", "Surface stresses, slip and displacement over the radius")
-async def stress(query: Annotated[StressQuery, _examples("stress")], send: Send) -> Response:
+async def stress(query: Annotated[StressQuery, _examples("stress")], form: _Form) -> None:
     """Compute the fields named in `quantities`, and nothing else, by load and radius.
 
     `error_estimate` bounds the error of each field relative to its largest value. A rounding error
     of a requested radius near a, c or a break is not included.
     """
-    return await send("stress", query)
 
 
 @_post(
@@ -133,8 +128,8 @@ async def stress(query: Annotated[StressQuery, _examples("stress")], send: Send)
     "Stresses beneath the surface of either body, their peaks and the onset of yield",
 )
 async def subsurface(
-    query: Annotated[SubsurfaceQuery, _examples("subsurface")], send: Send
-) -> Response:
+    query: Annotated[SubsurfaceQuery, _examples("subsurface")], form: _Form
+) -> None:
     """Compute the stresses named in `quantities` by load, depth z and x, in the plane of one y.
 
     `error_estimate` is relative to the largest stress of the response. With a `yield_strength` of
@@ -142,11 +137,10 @@ async def subsurface(
     at the same ratio of tangential to normal force. The tangential force acts on body 1 along x,
     its reaction on body 2.
     """
-    return await send("subsurface", query)
 
 
 @_post("wear", "wear", "Limiting state of fretting wear under a small oscillation")
-async def wear(query: Annotated[WearQuery, _examples("wear")], send: Send) -> Response:
+async def wear(query: Annotated[WearQuery, _examples("wear")], form: _Form) -> None:
     """Compute the limiting profile: the annulus outside the stick zone wears until it is unloaded.
 
     The given controls are held constant. With a constant depth and displacement amplitude, and with
@@ -158,7 +152,6 @@ async def wear(query: Annotated[WearQuery, _examples("wear")], send: Send) -> Re
     In full slip, wear is unbounded under a constant force (`endless_wear`), and ends in separation
     at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).
     """
-    return await send("wear", query)
 
 
 @_post(
@@ -166,9 +159,7 @@ async def wear(query: Annotated[WearQuery, _examples("wear")], send: Send) -> Re
     "wear",
     "Fretting wear over the cycles: profile and pressure up to the limiting state",
 )
-async def evolution(
-    query: Annotated[EvolutionQuery, _examples("evolution")], send: Send
-) -> Response:
+async def evolution(query: Annotated[EvolutionQuery, _examples("evolution")], form: _Form) -> None:
     """Integrate the wear law dh/dN = K µ p S over the cycles.
 
     h is the worn depth at a radius, and S the sliding distance of a cycle there. The given controls
@@ -179,7 +170,6 @@ async def evolution(
     contact wears: without bound under a constant force (`endless_wear`), at a constant depth until
     contact is lost (`contact_lost`).
     """
-    return await send("evolution", query)
 
 
 @router.post(
@@ -189,15 +179,12 @@ async def evolution(
     summary="Queries of any kind, each with its own answer or problem",
     response_model=BatchAnswer,
 )
-async def batch(
-    query: Annotated[BatchQuery, _examples("batch")], send: Annotated[BatchResponder, Depends()]
-) -> Response:
+async def batch(query: Annotated[BatchQuery, _examples("batch")], form: _Form) -> None:
     """Compute each query as at its own endpoint, in the given order.
 
     The status is 200 if the list itself is valid. Each entry has its own `status`, with the
     `answer` or the `problem`, whose pointers are into its own `request`.
     """
-    return await send("batch", query)
 
 
 _get_router: Final = APIRouter(responses=GET_FAILURES, dependencies=[Depends(url_parameters)])
@@ -213,10 +200,10 @@ def _declare_get(name: str, tag: str, title: str, model: Any) -> None:
 
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """
-        send = Responder(request, parameters.format, parameters.size, parameters.units)
+        form = form_of(request, name, parameters.format, parameters.size, parameters.units)
         with parameters.pointing():
             query = await url_parameters(request) if parameters.n else parameters.query()
-            response = await send(name, query, parameters.members)
+            response = await answer(request, name, query, form, parameters.members)
         response.headers.update(_CACHED)
         return response
 

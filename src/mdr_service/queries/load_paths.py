@@ -80,8 +80,8 @@ def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
 def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:
     """Raise InputError if the load path of a query has too many samples."""
     path = query.path
-    if path and path.samples > SETTINGS.max_samples:
+    if path and path.samples > SETTINGS.max_length:
         name = "cycles" if query.has("cycles") else "history"
         place = ("samples_per_step",) if path.samples_per_step > 1 else ()
-        detail = f"the number of samples must not exceed {SETTINGS.max_samples}"
+        detail = f"the number of samples must not exceed {SETTINGS.max_length}"
         raise InputError((name, *place), detail)

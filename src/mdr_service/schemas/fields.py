@@ -36,7 +36,7 @@ class FieldQuery(Query):
         "or the worn annulus, clustered at the singular radii",
         default=None,
         ge=2,
-        le=SETTINGS.max_radii,
+        le=SETTINGS.max_length,
     )
     quantities: list[Any]
 

@@ -10,7 +10,7 @@ from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
 
 Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
-_CURVE = {"min_length": 3, "max_length": SETTINGS.max_loads, "fail_fast": True}
+_CURVE = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
 
 
 class FitQuery(Query):

@@ -85,7 +85,7 @@ class LoadPath(Strict):
         "Number of samples per load step, evenly spaced in the controls, the last at its end",
         default=1,
         ge=1,
-        le=SETTINGS.max_samples,
+        le=SETTINGS.max_length,
     )
 
     @property
@@ -135,7 +135,7 @@ class Cycles(LoadPath):
     tangential: TangentialAmplitude = Field(
         description="Exactly one control: the amplitude of displacement or tangential force."
     )
-    count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_cycles)
+    count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_length)
 
     @property
     def steps(self) -> int:

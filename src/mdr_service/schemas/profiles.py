@@ -9,6 +9,8 @@ from mdr_service.schemas.quantities import Signed, Size, Strict, positive, quant
 from mdr_service.settings import SETTINGS
 
 _COEFFICIENT = "length^(1-exponent)"
+# A series of more powers is none that a body has; each costs a sum.
+_MAX_TERMS = 100
 
 
 class FlatPunchProfile(Strict):
@@ -74,7 +76,7 @@ class SeriesProfile(Strict):
         "list",
         "The terms of the sum, each a coefficient and an exponent",
         min_length=1,
-        max_length=SETTINGS.max_series_terms,
+        max_length=_MAX_TERMS,
     )
 
 

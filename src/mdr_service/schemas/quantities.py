@@ -50,7 +50,7 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
 def places(meaning: str) -> Any:
     """Return the optional field of a list of radii, coordinates or depths."""
     # The first invalid element is reported, not all of a hundred thousand.
-    size = {"min_length": 1, "max_length": SETTINGS.max_radii, "fail_fast": True}
+    size = {"min_length": 1, "max_length": SETTINGS.max_length, "fail_fast": True}
     return quantity("length", meaning, default=None, **size)
 
 
@@ -75,7 +75,7 @@ _KEYWORD: Final = {"x-smallest-magnitude": SMALLEST}
 Size = Annotated[float, Field(ge=0, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
 Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
 # The first invalid element is reported, not all of a hundred thousand.
-_Many = Field(min_length=1, max_length=SETTINGS.max_loads, fail_fast=True)
+_Many = Field(min_length=1, max_length=SETTINGS.max_length, fail_fast=True)
 
 # It reports errors for the branch that the value belongs to only. Pydantic inserts the branch into
 # the location of an error: the brackets tell it from a member of a request.

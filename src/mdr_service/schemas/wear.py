@@ -77,7 +77,7 @@ class EvolutionQuery(_FrettingQuery):
         "1",
         "Numbers of cycles of the response, ascending, up to 1e12",
         min_length=1,
-        max_length=SETTINGS.max_cycles,
+        max_length=SETTINGS.max_length,
         fail_fast=True,
     )
     resolution: int = quantity(
