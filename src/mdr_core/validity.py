@@ -34,8 +34,6 @@ _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 _WALL: Final = 3.0
 # Contact radius over the thickness of a body from which it is reported, with room for rounding.
 _THIN: Final = 0.1 * (1 + 1e-9)
-# Part of an error that a warning does not mention.
-_NO_PART: Final = 5e-4
 # Radii that a warning lists, so that it stays one sentence.
 _LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
@@ -216,23 +214,20 @@ def of_normal_contact(
     radial, slope, wall, error = _half_space(contact, material)
     is_known = material is not None and material.dundurs_beta is not None
 
-    def size() -> str:
-        steepest, total = extremes(slope)[1], extremes(error)[1]
+    def message() -> str:
+        steepest, total, flank = (extremes(each)[1] for each in (slope, error, wall))
         assumed = "" if is_known else f" (Poisson's ratio {ASSUMED_RATIO} assumed)"
         parts = {
-            f"from the neglected radial displacement{assumed}": radial * steepest,
-            f"from the slope {steepest:.2g} at the contact edge": steepest * steepest,
-            "from the side wall of the elastic punch": extremes(wall)[1],
+            "the neglected radial displacement": radial * steepest,
+            f"the slope {steepest:.2g} at the contact edge": steepest * steepest,
+            "the side wall of the elastic punch": flank,
         }
-        largest = max(parts, key=lambda cause: parts[cause])
-        said = [f"{_per_cent(part)} {cause}" for cause, part in parts.items() if part > _NO_PART]
-        several = f"{_per_cent(total)}: {', '.join(said)}" if said[1:] else said[0]
-        size = several if total < 1 else f"over 100 %, mainly {largest}"
-        wall_counts = parts[largest] == extremes(wall)[1]
-        remedy = "take a far stiffer punch as rigid" if wall_counts else "reduce the slope there"
+        cause = max(parts, key=lambda cause: parts[cause])
+        by_wall = parts[cause] == flank
+        remedy = "take a far stiffer punch as rigid" if by_wall else "reduce the slope there"
         return (
-            f"the half-space approximation has an estimated error of {size}; {remedy}, or use "
-            "finite elements"
+            f"the half-space approximation has an estimated error of {_per_cent(total)}{assumed}, "
+            f"mainly from {cause}; {remedy}, or use finite elements"
         )
 
     ratios = () if material is None else material.poissons_ratios
@@ -247,7 +242,7 @@ def of_normal_contact(
         )
 
     exceeds = error > _HALF_SPACE_ERROR
-    steep = Finding("half_space", exceeds, size, error, 0.01, "finite_elements")
+    steep = Finding("half_space", exceeds, message, error, 0.01, "finite_elements")
     infinite = _infinite(contact, yields)
     plastic = Finding("plastic", infinite, places, instead="rounded_tip")
     if material is None or material.body_thickness is None:
@@ -259,8 +254,7 @@ def _thin_body(contact: LoadedContact, material: Material) -> Finding:
     part, error = _layer(contact, material)
 
     def message() -> str:
-        largest = extremes(error)[1]
-        size = f"about {_per_cent(largest)}" if largest < 1 else "over 100 %"
+        size = _per_cent(extremes(error)[1])
         return (
             f"the contact radius is {extremes(part)[1]:.3g} of the thickness of the body, which is "
             f"stiffer than a half-space by {size}; use a smaller load, or finite elements"
@@ -416,4 +410,4 @@ def _wall_error(contact: LoadedContact, share: float | None) -> Parameter:
 
 
 def _per_cent(part: float) -> str:
-    return f"{100 * part:.2g} %"
+    return f"{100 * part:.2g} %" if part < 1 else "over 100 %"
