@@ -137,8 +137,8 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         """Return c (d - g(c)), and its logarithmic slope, `width` below the contact's edge."""
         edge = np.maximum(top - width, profile.first_coordinate)
         c, step = profile.contact_radius(edge), equivalent_1d.depth_step(profile, top, width, edge)
-        slope = c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
         with np.errstate(divide="ignore", invalid="ignore"):
+            slope = c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
             return c * step, width * slope / (c * step)
 
     widest = top - profile.first_coordinate
