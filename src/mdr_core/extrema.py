@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, whole
-from mdr_core.elementwise import every, full, is_number, some, where
+from mdr_core.elementwise import full, is_number, some, where
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
 
@@ -113,14 +113,10 @@ def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Arra
 def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape of `edge`."""
     if not slip:
-        at_axis = profile.falls_from_axis(edge)
-        if every(at_axis):
-            return profile.axis_stress(edge)
-        if some(at_axis):
-            result = np.empty_like(edge)
-            result[at_axis] = profile.axis_stress(edge[at_axis])
-            result[~at_axis] = _search(profile, edge[~at_axis])
-            return result
+        at_axis, result = np.atleast_1d(profile.falls_from_axis(edge)), np.atleast_1d(edge) + 0.0
+        result[at_axis] = profile.axis_stress(result[at_axis])
+        result[~at_axis] = _search(profile, result[~at_axis])
+        return result.reshape(edge.shape)[()]
     return _search(profile, *map(np.atleast_1d, (edge, *slip))).reshape(edge.shape)[()]
 
 

@@ -1,6 +1,5 @@
 """Stick zone and slip annulus under one monotonic tangential load."""
 
-from math import inf
 from typing import Final
 
 import numpy as np
@@ -11,7 +10,7 @@ from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import extremes, first_index
+from mdr_core.validation import extremes, first_index, require_finite
 
 # Quantities of the normal contact that limit those of the tangential one.
 CONTROLS: Final = {
@@ -49,13 +48,10 @@ def solve(
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
     """Direction and magnitude of the load, which is checked; a single sign 1 stands for all."""
-    low, high = extremes(given)
-    if not (low > -inf and high < inf):
-        detail = "must be finite" if given.size else "at least one load is needed"
-        bad = ~np.isfinite(given)
-        index = first_index(bad) if given.size else ()
-        raise InputError(("tangential", name, *index), detail, bad)
-    if low >= 0 or name == "stick_radius":
+    if not given.size:
+        raise InputError(("tangential", name), "at least one load is needed")
+    require_finite(("tangential", name), given)
+    if extremes(given)[0] >= 0 or name == "stick_radius":
         return _POSITIVE, given
     return np.sign(given), np.abs(given)
 

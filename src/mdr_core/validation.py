@@ -118,6 +118,14 @@ def require_not_negative(path: tuple[str | int, ...], values: Array) -> None:
         raise InputError((*path, *first), detail, bad)
 
 
+def require_finite(path: tuple[str | int, ...], values: Array) -> None:
+    """Raise InputError at the first of the values that is not finite."""
+    low, high = extremes(values)
+    if np.size(values) and not (low > -inf and high < inf):
+        bad = np.asarray(~np.isfinite(values))
+        raise InputError((*path, *first_index(bad)), FINITE, bad)
+
+
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
     """Raise InputError at the first load whose results leave the range of double precision.
 

@@ -17,7 +17,7 @@ import pytest
 from mdr_core import equivalent_1d, history, normal, tangential
 from mdr_core.fields import normal as normal_fields
 from mdr_core.fields import tangential as tangential_fields
-from mdr_core.history import contact_state, slip_memory, traction_vertices
+from mdr_core.history import contact_state, slip_memory, step_results
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import KINDS, Paraboloid, Profile, Sphere, SphericalTipCone
 from mdr_core.profiles import base as profiles
@@ -179,8 +179,8 @@ def test_tangential_force_of_a_history_needs_nothing_else(controls: str) -> None
     """Whatever its length: neither slip and energies nor the normal contact of each sample."""
     for steps in (10, 100_000):
         with (
-            patch.object(traction_vertices, "_work", never),
-            patch.object(traction_vertices, "variance_growth", never),
+            patch.object(step_results, "_work", never),
+            patch.object(step_results, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
             patch.object(IntervalMoments, "over", never),
             patch.object(history.LoadHistory, "normal", property(never)),
@@ -194,8 +194,8 @@ def test_a_step_computes_only_what_is_requested() -> None:
     state = history.unloaded(Sphere(1.5), 3.7, 2.9, 0.37)
     for depth, displacement in ((0.2, 0.01), (0.25, 0.03), (0.22, -0.01), (0.23, 0.02)):
         with (
-            patch.object(traction_vertices, "_work", never),
-            patch.object(traction_vertices, "variance_growth", never),
+            patch.object(step_results, "_work", never),
+            patch.object(step_results, "variance_growth", never),
             patch.object(contact_state, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
         ):

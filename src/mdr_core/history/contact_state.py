@@ -3,25 +3,23 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from math import isfinite
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from mdr_core.elementwise import number
 from mdr_core.equivalent_1d import coordinate_from_load
-from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.traction_vertices import SHORT, TractionVertices, variance_growth
+from mdr_core.history.step_results import SHORT, TractionVertices, variance_growth
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
 from mdr_core.typing import Array
 from mdr_core.validation import (
-    FINITE,
+    require_finite,
     require_inside,
     require_single_positive,
     require_single_profile,
@@ -303,9 +301,8 @@ def advance(
     require_type("state", state, ContactState, "a state, as from history.unloaded")
     depth = single(("indentation_depth",), indentation_depth)
     displacement = single(("tangential_displacement",), tangential_displacement)
-    for name, value in (("indentation_depth", depth), ("tangential_displacement", displacement)):
-        if not isfinite(value):
-            raise InputError((name,), FINITE)
+    require_finite(("indentation_depth",), number(depth))
+    require_finite(("tangential_displacement",), number(displacement))
     profile, largest = state.profile, state.profile.largest_loads
     if largest is not None:
         require_inside(("indentation_depth",), number(depth) > largest[0], profile.domain)

@@ -7,16 +7,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.elementwise import every
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree
-from mdr_core.history.traction_vertices import TractionVertices
+from mdr_core.history.step_results import TractionVertices
 from mdr_core.interval_moments import interval_moments
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import FINITE, as_numbers, first_index, require_inside, require_type
+from mdr_core.validation import as_numbers, require_finite, require_inside, require_type
 
 
 class Polylines(NamedTuple):
@@ -130,8 +129,7 @@ def advance_many(
     for row, (name, values) in zip(path[2:], loads.items(), strict=True):
         if np.shape(values) not in {(), (count,)}:
             raise InputError((name,), f"must be one number, or one for each of {count} contacts")
-        if not every(np.isfinite(values)):
-            raise InputError((name, *first_index(~np.isfinite(values))), FINITE)
+        require_finite((name,), values)
         row[:] = values
     profile, largest = contact.profile, contact.profile.largest_loads
     if largest is not None:

@@ -6,7 +6,6 @@ of each pair is prescribed and both change, it is nonlinear in either plane: see
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 from typing import Final
 
 import numpy as np
@@ -18,7 +17,7 @@ from mdr_core.history.saved_state import UNLOADED, SavedState
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import FINITE, extremes, not_negative
+from mdr_core.validation import require_finite, require_not_negative
 
 # A force at the onset of full slip differs from mu F_N by the rounding of both.
 _ROUNDING: Final = 8 * float(np.finfo(float).eps)
@@ -223,11 +222,6 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     points = np.atleast_1d(value)
     if points.ndim != 1 or points.size == 0:
         raise InputError(("history", axis, name), "must be a list of at least one number")
-    least, most = extremes(points)
-    forces = name == "normal_force"
-    if not ((least >= 0 if forces else least > -inf) and most < inf):
-        bad = ~np.isfinite(points) | ((points < 0) & forces)
-        first = int(np.flatnonzero(bad)[0])
-        detail = not_negative(name) if forces and points[first] < 0 else FINITE
-        raise InputError(("history", axis, name, first), detail)
+    require = require_not_negative if name == "normal_force" else require_finite
+    require(("history", axis, name), points)
     return points

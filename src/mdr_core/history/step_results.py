@@ -1,4 +1,13 @@
-"""Results of the tangential foundation at every load point of a sequence of straight steps."""
+"""Results of the tangential foundation at every load point, from the polylines of its slip memory.
+
+Along the polyline the anchor grows by k dw, where w is the depth at which a spring comes into
+contact. With I(w) = F_N/E* of the contact of depth w,
+
+    F_x/(mu E*) = sum k_i (I_i - I_i-1),    I = 2 int a dw,
+
+for every profile. Where forces are prescribed the normal coordinate is I itself, and the anchors
+follow from the same slopes: u_x G*/(mu E*) = sum k_i (w_i - w_i-1). Source: notes, §10.
+"""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -9,9 +18,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.history import slip_memory
-from mdr_core.history.slip_memory import LoadPoints, Polyline
-from mdr_core.history.traction_vertices import TractionVertices
-from mdr_core.interval_moments import IntervalMoments
+from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
+from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Indices
 
 # Steps evaluated at once, so that their arrays stay in the processor's cache.
@@ -23,6 +31,137 @@ _ROUNDING: Final = 16 * float(np.finfo(float).eps)
 _KEPT: Final = 262_144
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
+# Up to this part of its normal coordinate a segment is so short that a difference of conjugates
+# would lose more than three of sixteen digits.
+SHORT: Final = 2e-3
+
+
+@dataclass(frozen=True)
+class TractionVertices:
+    """Vertices of the polylines, with the contact whose edge each of them is."""
+
+    moments: IntervalMoments
+    tree: VertexTree
+
+    @cached_property
+    def coordinate(self) -> Array:
+        """Contact coordinate of each vertex."""
+        return self.moments.contact_coordinate(self.tree.normal)
+
+    @cached_property
+    def conjugate(self) -> Array:
+        """Reduced force of each vertex, or its depth where forces are prescribed."""
+        return self.moments.conjugate(self.coordinate)
+
+    @cached_property
+    def conjugate_step(self) -> Array:
+        """Conjugate of each vertex above that of its parent."""
+        tree, conjugate = self.tree, self.conjugate
+        step = np.maximum(conjugate - conjugate[tree.parent], 0.0)
+        short = np.flatnonzero(tree.span < SHORT * tree.normal)
+        if short.size:
+            ends = self.coordinate[tree.parent[short]], self.coordinate[short]
+            step[short] = tree.span[short] * self.moments.mean_slope(*ends)
+        return step
+
+    @cached_property
+    def shear(self) -> Array:
+        """F_x/(mu E*) of each vertex as the load point [length^2]."""
+        return self._summed(conjugate=not self.moments.over_forces)
+
+    @cached_property
+    def anchor(self) -> Array:
+        """Anchor of each vertex above that of the axis, a depth [length]."""
+        return self._summed(conjugate=self.moments.over_forces)
+
+    def _summed(self, *, conjugate: bool) -> Array:
+        """Sum of the slopes times the steps in the normal coordinate, or in its conjugate."""
+        tree = self.tree
+        return tree.summed(tree.slope * (self.conjugate_step if conjugate else tree.span))
+
+    @property
+    def dissipation(self) -> Array:
+        """G* D/(mu E*)^2 of every step [length^3], >= 0.
+
+        On each segment that the slip front sweeps it is the integral of a polynomial of degree 2
+        over the springs, in three intervals: see `slip_kernel.SlipFront`. In Bernstein moments of
+        the springs it is a sum of positive terms. Where forces are prescribed the identity holds
+        with the reduced force in place of the depth and the measure |d(1/2x)| in place of 2 dx.
+        Source: notes, §10.
+        """
+        intervals, count = self.tree.slip_intervals, self.tree.top.size
+        if not intervals.size:
+            return np.zeros(count)
+        work = _work(self.moments, intervals)
+        return np.asarray(np.bincount(intervals[6].astype(np.intp), work, count), dtype=float)
+
+    @cached_property
+    def square(self) -> Array:
+        """int (anchor of the vertex - anchor)^2 dx over 0 < x < a of each vertex [length^3].
+
+        With the mean m = F_x/(2 mu E* a) it is a m^2 + V: see `variance_growth`.
+        """
+        tree, moments, coordinate = self.tree, self.moments, self.coordinate
+        depth, step = tree.normal, tree.span
+        if moments.over_forces:
+            depth, step = self.conjugate, self.conjugate_step
+        upper = np.flatnonzero(tree.parent >= 0)
+        lower, grown = tree.parent[upper], np.zeros(tree.parent.shape)
+        ends = np.array([coordinate[lower], coordinate[upper]])
+        over_depths = interval_moments(moments.profile, over_forces=False)
+        growth = tree.slope[upper] * step[upper]
+        segments = depth[lower], step[upper], growth, ends, self.shear[lower]
+        grown[upper] = variance_growth(over_depths, *segments)
+        radius = moments.profile.contact_radius(coordinate)
+        shear = np.square(self.shear) / np.where(radius > 0, 4 * radius, 1.0)
+        return np.asarray(shear + tree.summed(grown))
+
+
+def variance_growth(
+    moments: IntervalMoments, low: Array, span: Array, growth: Array, ends: Array, shear: Array
+) -> Array:
+    """Return the growth of V = int (anchor - mean)^2 dx over 0 < x < a along segments [length^3].
+
+    By the theorem of parallel axes the integral about another anchor is larger by a m^2, where m is
+    its distance from the mean. V does not depend on the load point and grows along the polyline by
+    squares: the energy of every traction is a sum of squares.
+
+    Parameters
+    ----------
+    moments : those over intervals of depth.
+    low, span, growth : lower end, length in depth, and growth of the anchor, shape (n,).
+    ends : contact coordinates of both ends, shape (2, n).
+    shear : F_x/(mu E*) of the lower end as the load point.
+    """
+    # The measure of the moments is 2 dx.
+    first, middle, last = moments.over(low, span, ends).weights / 2
+    width = first + middle + last
+    inner, outer = moments.profile.contact_radius(ends)
+    outer = np.where(outer > 0, outer, 1.0)
+    some_width, some_inner = np.where(width > 0, width, 1.0), np.where(inner > 0, inner, 1.0)
+    # Anchors of a segment: mean above its lower end in parts of their growth, and variance.
+    mean, spread = (last + middle / 2) / some_width, first * last - np.square(middle) / 4
+    apart = growth * mean + np.where(inner > 0, shear / (2 * some_inner), 0.0)
+    return np.asarray(
+        np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
+    )
+
+
+def _work(moments: IntervalMoments, intervals: Array) -> Array:
+    """Return G* D/(mu E*)^2 of each interval, given by its seven numbers."""
+    (low, length), coefficients, full = intervals[:2], intervals[2:5], intervals[5]
+    edges = moments.contact_coordinate(np.append(low, low + length)).reshape(2, -1)
+    weights = moments.over(low, length, edges).weights
+    # Over forces the measure is infinite on the axis, where M is zero.
+    some = coefficients > 0
+    work = np.multiply(coefficients, weights, where=some, out=np.zeros(weights.shape)).sum(axis=0)
+    slides = np.flatnonzero(full > 0)
+    if slides.size:
+        # Prescribed forces do not exceed friction: full slip is rounding error there.
+        at = edges[0, slides]
+        mean = moments.conjugate(at) + length[slides] * moments.profile.contact_radius(at)
+        work[slides] = 0.0 if moments.over_forces else work[slides] + full[slides] * mean
+    return np.asarray(work)
 
 
 class _Block(NamedTuple):

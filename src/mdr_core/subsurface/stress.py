@@ -8,12 +8,11 @@ from numpy.typing import ArrayLike
 
 from mdr_core import fields
 from mdr_core.adhesion import AdhesiveContact
-from mdr_core.errors import InputError
 from mdr_core.fields.radii import Edges, error_near, rim_error
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array, Numbers
-from mdr_core.validation import require_not_negative, require_poissons_ratio
+from mdr_core.validation import require_finite, require_not_negative, require_poissons_ratio
 
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
 # radius, by which a point is moved off the surface, where the kernels are singular.
@@ -119,8 +118,7 @@ def stress(
         return StressTensor(*np.moveaxis(contact.superposed(tensor), -1, 0))
     where = [np.asarray(part, dtype=float) for part in (x, y, z)]
     for name, given in zip("xyz", where, strict=True):
-        if not np.isfinite(given).all():
-            raise InputError((name,), "must be finite")
+        require_finite((name,), given)
     require_not_negative(("z",), where[2])
     require_poissons_ratio(("poissons_ratio",), poissons_ratio)
     across, aside, depth = np.broadcast_arrays(*where)
