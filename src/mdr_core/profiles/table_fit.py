@@ -141,14 +141,12 @@ def _between(basis: TableBasis, other: TableBasis, coefficients: Array) -> Array
 
 def _least_roughness(basis: TableBasis) -> Array:
     """Return the coefficients of the interpolant whose last derivative jumps least."""
-    points, size = basis.points, basis.heights.shape[1]
+    points = basis.points
     largest = float(np.abs(basis.heights[:, : basis.size - 1]).max())
     jumps = largest * basis.jumps()
     # A height at a small radius is met as accurately, relatively.
-    weight = np.where(points.x > 0, _HEAVY / np.where(points.x > 0, points.x, 1.0), 0.0)
-    given = np.full(size, np.nan)
-    if points.offset_known:
-        given[-2] = points.y[0]
+    weight = _HEAVY / np.maximum(points.x, points.x[1])
+    given = np.full(basis.heights.shape[1], np.nan)
     smooth, sharp = (_solved(basis, weight, jumps, given, sharp=tip) for tip in (False, True))
     roughness = [float(np.linalg.norm(jumps[:_TIP_KNOTS] @ each)) for each in (smooth, sharp)]
     is_sharp = roughness[0] > max(_SHARPER * roughness[1], ROUNDED * largest)

@@ -42,8 +42,6 @@ class TablePoints:
     breaks: tuple[float, ...]
     declared: tuple[float, ...]
     """Breaks as they are given [length]."""
-    offset_known: bool
-    """True if the first point lies on the axis."""
     rounded: bool
     """True if radii or heights show that they are rounded; the weights are those of that error."""
     scale: tuple[float, float]
@@ -78,7 +76,7 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
     declared = tuple(breaks)
-    return TablePoints(x, y, weight, scaled, declared, bool(x[0] == 0), rounded, (end, height))
+    return TablePoints(x, y, weight, scaled, declared, rounded, (end, height))
 
 
 def off_axis(r: Array, f: Array) -> str:
