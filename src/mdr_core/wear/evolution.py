@@ -293,16 +293,12 @@ def solve(
         if np.ndim(number):
             raise InputError((place,), "must be a single number")
     tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    if contact.profile.has_no_partial_slip and tangential_contact.full_slip.any():
-        raise InputError(
-            ("tangential", name),
-            "full slip of a flat punch: the pressure at its edge is infinite; round the edge",
-        )
-    if tangential_contact.full_slip.any() and name == "tangential_force":
-        raise InputError(
-            ("tangential", name),
-            "full slip at any displacement: reduce the force, or prescribe the displacement",
-        )
+    if tangential_contact.full_slip and contact.profile.has_no_partial_slip:
+        detail = "full slip of a flat punch: the pressure at its edge is infinite; round the edge"
+        raise InputError(("tangential", name), detail)
+    if tangential_contact.full_slip and name == "tangential_force":
+        detail = "full slip at any displacement: reduce the force, or prescribe the displacement"
+        raise InputError(("tangential", name), detail)
     numbers, nodes = _checked_cycles(cycles), int(resolution) + _MIN_NODES
     initial = InitialState(tangential_contact, float(wear_coefficient), nodes)
     coarser = replace(initial, nodes=int(nodes * _COARSER))

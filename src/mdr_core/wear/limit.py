@@ -96,7 +96,7 @@ class LimitingWear(validity.ContactResults):
     @property
     def stick_radius(self) -> Array:
         """Stick radius c [length]: inside it nothing wears. Source: mdr-5, Eq. (5.80)."""
-        return where(self.stick_zone.unbounded, 0.0, self.stick_zone.radius)
+        return self.stick_zone.radius
 
     @cached_property
     def wear_width(self) -> Array:
@@ -123,15 +123,10 @@ class LimitingWear(validity.ContactResults):
     @cached_property
     def indentation_depth(self) -> Array:
         """Depth d [length]: constant, or g(c) and the step at the stick edge."""
-        contact = self.normal
-        depth = broadcast(contact.indentation_depth, self.stick_zone.step.shape)
+        zone = self.stick_zone
         if self._holds_depth:
-            return depth
-        profile, sticks = contact.profile, self.stick_zone.radius > 0
-        # g(c), and zero in full slip.
-        edge = where(sticks, self.stick_zone.coordinate, profile.first_coordinate)
-        grown = where(sticks, profile.depth(edge), 0.0) + self.stick_zone.step
-        return where(self.stick_zone.unbounded, inf, grown)
+            return broadcast(self.normal.indentation_depth, zone.step.shape)
+        return self.normal.profile.depth(zone.coordinate) + zone.step
 
     @cached_property
     def normal_force(self) -> Array:
@@ -139,14 +134,11 @@ class LimitingWear(validity.ContactResults):
 
         Source: mdr-5, Eq. (5.90), for any profile.
         """
-        contact, profile = self.normal, self.normal.profile
+        contact, zone = self.normal, self.stick_zone
         if not self._holds_depth:
-            return broadcast(contact.normal_force, self.stick_zone.step.shape)
-        edge = where(
-            self.stick_zone.separated, profile.first_coordinate, self.stick_zone.coordinate
-        )
-        inside = where(self.stick_zone.separated, 0.0, profile.reduced_force(edge))
-        return contact.e_star * (inside + 2 * self.stick_zone.radius * self.stick_zone.step)
+            return broadcast(contact.normal_force, zone.step.shape)
+        inside = contact.profile.reduced_force(zone.coordinate)
+        return contact.e_star * (inside + 2 * zone.radius * zone.step)
 
     @cached_property
     def tangential_displacement(self) -> Array:
@@ -165,9 +157,9 @@ class LimitingWear(validity.ContactResults):
         contact = self.tangential_contact
         if contact.control == "tangential_force" or self.normal.profile.has_no_partial_slip:
             return where(self.stick_zone.separated, 0.0, contact.tangential_force)
-        modulus = contact.friction_coefficient * self.normal.e_star
-        carried = 2 * modulus * self.stick_zone.radius * self.stick_zone.step
-        return where(self.stick_zone.unbounded, contact.limiting_force, carried)
+        unbounded, modulus = self.stick_zone.unbounded, 2 * self.normal.e_star
+        carried = modulus * self.stick_zone.radius * where(unbounded, 0.0, self.stick_zone.step)
+        return where(unbounded, contact.limiting_force, contact.friction_coefficient * carried)
 
     @cached_property
     def worn_volume(self) -> Array:

@@ -37,9 +37,7 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
         # At the outer edge of the annulus the terms cancel but for rounding error.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
 
-    result = _filled(worn, r, values)
-    result[np.ravel(stick_zone.unbounded)] = inf
-    return result.reshape(outer.shape + r.shape)
+    return _filled(worn, r, values).reshape(outer.shape + r.shape)
 
 
 def pressure(stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
@@ -48,8 +46,7 @@ def pressure(stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
     Source: mdr-5, Eqs. (5.34), (5.79), (5.82).
     """
     profile = stick_zone.profile
-    # In full slip the limiting pressure is zero.
-    radius = np.where(stick_zone.separated | stick_zone.unbounded, 0.0, stick_zone.radius)
+    radius = stick_zone.radius
     c, step, edge = (np.ravel(part) for part in (radius, stick_zone.step, stick_zone.coordinate))
     moduli = np.ravel(np.broadcast_to(e_star, radius.shape))
 

@@ -7,6 +7,7 @@ d - g(c) at the stick edge describe the whole limiting state. Source: notes, §9
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from typing import Final
 
 import numpy as np
@@ -31,7 +32,7 @@ _ROUNDING: Final = 16 * float(np.finfo(float).eps)
 class LimitingStick:
     """Stick zone in the limit; all arrays of one shape.
 
-    In full slip c is zero, and the step is the depth.
+    In full slip c is zero, and the step is the depth, which is infinite under a constant force.
     """
 
     profile: Profile
@@ -110,10 +111,7 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
         widest,
         f"{profile.kind}'s stick edge under a constant force",
     )
-    moved = where(unbounded, contact.stick_coordinate, top - width)
-    radius = where(width > 0, profile.contact_radius(moved), contact.stick_radius)
-    found = moved, radius, profile.radius_width(top, width)
-    error = full(_ROUNDING, width)
+    found, error = _beneath(profile, top, width), full(_ROUNDING, width)
     return _from(contact, step, unbounded=unbounded, moved=found, width_error=error)
 
 
@@ -153,13 +151,11 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         where(target > 0, high, 2.0),
         f"{profile.kind}'s stick edge at a constant depth",
     )
-    edge = top - width
-    radius = where(width > 0, profile.contact_radius(edge), normal.contact_radius)
-    step = _step_of_force(contact, amplitude, radius)
+    found = _beneath(profile, top, width)
+    step = _step_of_force(contact, amplitude, found[1])
     slope = np.abs(carried(width)[1])
     # Next to the largest force the error is of second order.
     error = _ROUNDING / (where(slope > 0, slope, 0.0) + np.sqrt(_ROUNDING))
-    found = edge, radius, profile.radius_width(top, width)
     return _from(contact, step, separated=separated, moved=found, width_error=error)
 
 
@@ -182,6 +178,12 @@ def _first_crossing(
         beyond = np.where(reached.any(axis=0), first, np.minimum(first + 1, points - 1))
         high = np.take_along_axis(places, beyond, axis=0)[0]
     return low, high
+
+
+def _beneath(profile: Profile, top: Array, width: Array) -> tuple[Array, Array, Array]:
+    """Return the coordinate, radius and slip width at a width beneath the contact's edge."""
+    edge = top - width
+    return edge, profile.contact_radius(edge), profile.radius_width(top, width)
 
 
 # By the constant load and the amplitude.
@@ -219,10 +221,12 @@ def _from(
     """
     unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
     normal = contact.normal
-    # In separation c = 0, and all of the depth is worn.
-    lost = normal.profile.first_coordinate, 0.0, normal.contact_radius, normal.indentation_depth
+    # In full slip c = 0, and all of the depth is worn.
+    depth = where(unbounded, inf, normal.indentation_depth)
+    lost = normal.profile.first_coordinate, 0.0, normal.contact_radius, depth
     found = zip(lost, (*(moved or unworn), step), strict=True)
-    coordinate, radius, slip_width, step = (where(separated, *pair) for pair in found)
+    slides = separated | unbounded
+    coordinate, radius, slip_width, step = (where(slides, *pair) for pair in found)
     # Without a normal load nothing wears.
     loaded = normal.coordinate > normal.profile.first_coordinate
     # A flat punch either sticks or is in full slip.
