@@ -46,8 +46,9 @@ def invert(
     """Return s with function(s) = target for an increasing function.
 
     Newton's method in log(s) and log(function), which all profiles make nearly straight. [low,
-    high] brackets the root and shrinks by the signs of the residual; a step that leaves it is
-    replaced by its middle.
+    high] brackets the root and shrinks by the signs of the residual; a step that leaves it, or
+    follows one that did not halve the residual, is replaced by its middle: beside a break the steps
+    can lead from one side to the other and back.
 
     Parameters
     ----------
@@ -71,6 +72,7 @@ def invert(
     s, root_at_zero = start, low
     done = ~positive
     settling = done & positive
+    before = inf
     with np.errstate(all="ignore"):
         for _ in range(_MAX_STEPS):
             value, slope = function(s)
@@ -94,7 +96,9 @@ def invert(
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-            usable = ((proposed > low) & (proposed < high)) | last
+            halved = 2 * abs(residual) <= before
+            usable = ((proposed > low) & (proposed < high) & halved) | last
+            before = abs(residual)
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), inf)
             # A converged root stays: it does not depend on how long the others take.

@@ -195,3 +195,17 @@ def test_table_of_three_points_with_a_break(breaks: list[float]) -> None:
     contact = solve(table, 1.0, contact_radius=1.5)
     assert float(contact.indentation_depth) > 0
     assert np.isfinite(fields.pressure(contact, [0.0, 0.5, 1.2])).all()
+
+
+def test_depth_just_beyond_a_break_of_few_points() -> None:
+    """Newton's steps can lead from one side of the break to the other and back."""
+    r = [0.0, 0.00677896346046757, 0.0657986089008723, 0.218283503583321, 0.255485577995918]
+    f = [0.0, 7.26415265443211e-07, 6.87301849555073e-05, 0.000792528154780227]
+    table = Tabulated(
+        [*r, 0.476484650709328],
+        [*f, 0.00110882851505726, 0.00545299844501481],
+        breaks=[0.0477689933031986],
+    )
+    depth = 1.8069165676637576e-05
+    contact = solve(table, 1.0, indentation_depth=depth)
+    assert table.g(contact.contact_radius) == pytest.approx(depth, rel=1e-12, abs=0)

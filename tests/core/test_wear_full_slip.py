@@ -12,7 +12,15 @@ from numpy.polynomial.legendre import leggauss
 
 from mdr_core import normal
 from mdr_core.errors import InputError
-from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Profile, RoundedPunch, Tabulated
+from mdr_core.profiles import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    Profile,
+    RoundedPunch,
+    Tabulated,
+    TruncatedCone,
+)
 from mdr_core.wear import evolution, limit
 from tests.oracles.wear_full_slip import FullSlip
 
@@ -204,3 +212,14 @@ def test_an_unloaded_contact_does_not_wear(profile: Profile, load: dict[str, flo
     assert worn.worn_volume == worn.dissipated_energy == 0
     assert worn.worn_depth([0.0, 0.2, 0.6]).max() == 0
     assert not {"endless_wear", "contact_lost"} & {each.code for each in worn.warnings}
+
+
+@pytest.mark.long
+def test_force_of_a_contact_that_is_lost_is_not_negative() -> None:
+    cone = TruncatedCone(5.118414318771832e-4, 0.02031281477070676)
+    contact = normal.solve(cone, 1.37706586091e11, indentation_depth=2.9158660487485462e-9)
+    worn = evolution.solve(
+        contact, 9.4253178667e10, 0.5, wear_coefficient=8.54232917622404e-12,
+        cycles=[566475.5919754602], tangential_displacement=2.7268679184697464e-9, resolution=16,
+    )  # fmt: skip
+    assert 0 <= worn.normal_force[0] < worn.error_estimate * float(contact.normal_force)

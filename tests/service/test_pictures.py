@@ -222,8 +222,11 @@ def test_curve_is_cut_where_it_is_infinite(
     assert axes.get_ylim()[1] < np.nanmax(curve[:, 1])
 
 
-def test_a_single_infinite_value_is_in_sight(monkeypatch: pytest.MonkeyPatch) -> None:
-    figure = drawn("stress", CONE, monkeypatch)
+@pytest.mark.parametrize("query", [CONE, CONE | {"radius": [0.0, 10.0]}], ids=["", "beside zero"])
+def test_a_single_infinite_value_is_in_sight(
+    query: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    figure = drawn("stress", query, monkeypatch)
     assert panels(figure)[0].get_xlim()[0] <= 0.0
     assert "∞" in names(figure)
 

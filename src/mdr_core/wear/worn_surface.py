@@ -61,7 +61,8 @@ class WornSurface:
         if initial.constant_force:
             return np.full(self.cycles.shape, float(force))
         unit = 2 * float(initial.normal.e_star) * initial.depth_unit * initial.length_unit
-        return self._each(lambda state: unit * state.force, force)
+        # Once nothing touches, rounding errors are left of either sign.
+        return np.maximum(self._each(lambda state: unit * state.force, force), 0.0)
 
     @cached_property
     def worn_volume(self) -> Array:

@@ -120,8 +120,8 @@ def _draw_curves(axes: _Axes, panel: Panel) -> None:
         axes.axvline(0.0, linewidth=0.0)
     for place in places:
         axes.axvline(place, linestyle=":", linewidth=0.8, color="0.4", label="∞")
-    if places:
-        axes.set_ylim(*np.clip(axes.dataLim.intervaly, -bound, bound or 1.0))
+    if places and bound:
+        axes.set_ylim(*np.clip(axes.dataLim.intervaly, -bound, bound))
 
 
 def _draw_map(axes: _Axes, panel: Map) -> Any:
