@@ -104,7 +104,6 @@ class Fit(validity.ContactResults):
     )
     method: ClassVar[str] = "least_squares"
     g_star: ClassVar[None] = None
-    slips_from: ClassVar[float] = np.inf
 
     @property
     def e_star(self) -> float:

@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isfinite
 from typing import ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.elementwise import broadcast, common_shape, some, where
+from mdr_core.elementwise import broadcast, common_shape, where
 from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -60,8 +59,6 @@ class NormalContact(validity.ContactResults):
     quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
     g_star: ClassVar[None] = None
     """No shear modulus, as there is no friction."""
-    slips_from: ClassVar[float] = inf
-    """Least radius with slip; infinite without."""
 
     @property
     def normal(self) -> Self:
@@ -179,23 +176,31 @@ class NormalContact(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found = list(self.profile.notices)
-        if isinstance(self.profile, Tabulated):
-            found += validity.notices([validity.table_end(self), validity.smoothed(self)])
-        if not isfinite(extremes(self.mean_pressure)[1]):
-            message = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
-            found.append(Notice("singular", message))
-        if some(validity.infinite_pressure(self)):
-            radii = validity.listed_infinite_radii(self)
-            found.append(Notice("singular", f"maximum_pressure is infinite, at radius {radii}"))
-        if self.error_estimate > self.rtol:
-            found.append(not_reached(self.rtol, self.error_estimate))
+        return self.warnings_with(self.rtol, self.error_estimate)
+
+    def warnings_with(self, rtol: float, error: float) -> tuple[Notice, ...]:
+        """Return the warnings about shape and loads, and about an error above `rtol`."""
+        found = [*self.profile.notices, *validity.notices(self.findings)]
+        if error > rtol:
+            found.append(not_reached(rtol, error))
         return tuple(found)
+
+    @property
+    def findings(self) -> list[validity.Finding]:
+        """Findings that depend on shape and loads alone."""
+        sharp = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
+        found = [
+            validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
+            validity.infinite_maximum(self),
+        ]
+        if isinstance(self.profile, Tabulated):
+            return [validity.table_end(self), validity.smoothed(self, self.profile), *found]
+        return found
 
 
 def not_reached(rtol: float, error: float) -> Notice:
-    """Return the warning that double precision does not reach a relative accuracy."""
-    message = f"rtol = {rtol:.1e} is below what double precision reaches here: see error_estimate"
+    """Return the warning that results do not reach a relative accuracy."""
+    message = f"rtol = {rtol:.1e} is not reached here: see error_estimate"
     return Notice("accuracy", message, error, rtol)
 
 

@@ -14,7 +14,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
-from mdr_core.normal import EDGE_ERROR, NormalContact, not_reached
+from mdr_core.normal import EDGE_ERROR, NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
@@ -131,11 +131,6 @@ class TangentialContact(validity.ContactResults):
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
         return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
-
-    @property
-    def slips_from(self) -> Array:
-        """Least radius with slip [length]; infinite without."""
-        return where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
 
     @cached_property
     def tangential_stiffness(self) -> Array:
@@ -259,10 +254,7 @@ class TangentialContact(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
-        if self.error_estimate > self.normal.rtol:
-            found.append(not_reached(self.normal.rtol, self.error_estimate))
-        return tuple(found)
+        return self.normal.warnings_with(self.normal.rtol, self.error_estimate)
 
 
 def solve(

@@ -85,8 +85,6 @@ class SolvedContact(Protocol):
     @property
     def g_star(self) -> Parameter | None: ...
     @property
-    def slips_from(self) -> Parameter: ...
-    @property
     def solved(self) -> "SolvedContact": ...
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]: ...
@@ -154,7 +152,8 @@ def findings(contact: SolvedContact, material: Material | None) -> list[Finding]
     contact : contact with or without friction, or load history; for wear the one before wear.
     material : effective moduli, as from `from_bodies`; None where they are unknown.
     """
-    found = of_normal_contact(contact.normal, material, contact.slips_from)
+    slips = contact.g_star is not None
+    found = of_normal_contact(contact.normal, material, slips=slips)
     if contact.g_star is not None:
         beta = None if material is None else material.dundurs_beta
         found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
@@ -163,26 +162,22 @@ def findings(contact: SolvedContact, material: Material | None) -> list[Finding]
 
 def table_end(contact: LoadedContact) -> Finding:
     """Return `table_end`: contacts that come near the last radius of a table."""
-    a, end = contact.contact_radius, contact.profile.domain
-    near = a > _NEAR_END * (end if contact.profile.kind == "tabulated" else np.inf)
+    part = contact.contact_radius / contact.profile.domain
 
     def message() -> str:
-        part = extremes(a)[1] / extremes(end)[1]
         return (
-            f"the contact reaches {part:.3f} of the table's last radius: "
+            f"the contact reaches {extremes(part)[1]:.3f} of the table's last radius: "
             "extend the table beyond the contact edge"
         )
 
-    part = a / contact.profile.domain
-    return Finding("table_end", near, message, part, _NEAR_END, "longer_table")
+    return Finding("table_end", part > _NEAR_END, message, part, _NEAR_END, "longer_table")
 
 
-def smoothed(contact: LoadedContact) -> Finding:
+def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
     """Return `smoothed`: depths that are not large against a table's deviation from its points."""
-    profile, a = contact.profile, contact.contact_radius
-    if not isinstance(profile, Tabulated) or profile.meets_points:
-        return Finding("smoothed", full(0.0, a) > 0, lambda: "")
-    depth = profile.g(a)
+    depth = profile.g(contact.contact_radius)
+    if profile.meets_points:
+        return Finding("smoothed", depth < 0, lambda: "")
     rms, (largest, radius) = profile.fit.rms, profile.fit.largest
     part = where(depth > 0, largest / where(depth > 0, depth, 1.0), 0.0)
 
@@ -197,7 +192,7 @@ def smoothed(contact: LoadedContact) -> Finding:
 
 
 def of_normal_contact(
-    contact: LoadedContact, material: Material | None = None, slips_from: Parameter = np.inf
+    contact: LoadedContact, material: Material | None = None, *, slips: bool = False
 ) -> list[Finding]:
     """Return `half_space`, `thin_body` and `plastic`.
 
@@ -207,7 +202,7 @@ def of_normal_contact(
     a tenth of the thickness. `plastic`: the deviatoric stress is infinite somewhere, which no
     material can bear.
 
-    `slips_from` is the least radius with slip in each case [length].
+    With `slips`, there is friction: slip may reach any radius.
 
     Source: hay; notes, §8.
     """
@@ -232,18 +227,16 @@ def of_normal_contact(
 
     ratios = () if material is None else material.poissons_ratios
 
-    def yields(radius: Parameter) -> Flags:
-        return infinite_deviator(contact.profile, radius, ratios, slips_from)
-
     def places() -> str:
         return (
-            f"the elastic pressure is infinite at radius {listed_infinite_radii(contact, yields)}: "
+            f"the elastic pressure is infinite at radius {_infinite_radii(contact)}: "
             "a real material yields there under any load; round the tip or edge"
         )
 
     exceeds = error > _HALF_SPACE_ERROR
     steep = Finding("half_space", exceeds, message, error, 0.01, "finite_elements")
-    infinite = _infinite(contact, yields)
+    yields = infinite_deviator(contact.profile, 0.0, ratios, 0.0 if slips else np.inf)
+    infinite = _infinite_pressure(contact) & yields
     plastic = Finding("plastic", infinite, places, instead="rounded_tip")
     if material is None or material.body_thickness is None:
         return [steep, plastic]
@@ -327,13 +320,13 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     return Finding("impossible_moduli", impossible, unphysical, value, limit)
 
 
-def _always(_radius: Parameter) -> bool:
-    return True
+def infinite_maximum(contact: LoadedContact) -> Finding:
+    """Return `singular`: loads under which the pressure is infinite somewhere."""
 
+    def message() -> str:
+        return f"maximum_pressure is infinite, at radius {_infinite_radii(contact)}"
 
-def infinite_pressure(contact: LoadedContact) -> Flags:
-    """Return the loads under which the pressure is infinite somewhere."""
-    return _infinite(contact, _always)
+    return Finding("singular", _infinite_pressure(contact), message)
 
 
 def infinite_deviator(
@@ -359,22 +352,19 @@ def infinite_deviator(
     return np.isinf(profile.tip_pressure) | (radius >= slips_from)
 
 
-def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> Flags:
+def _infinite_pressure(contact: LoadedContact) -> Flags:
     found = contact.contact_radius < 0
     for b in contact.profile.infinite_pressure_radii:
-        found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
+        found = found | (contact.loaded & (b <= contact.contact_radius))
         if every(found):
             break
     return found
 
 
-def listed_infinite_radii(
-    contact: LoadedContact, counts: Callable[[Parameter], Flags | bool] = _always
-) -> str:
-    """Return the radii of infinite pressure that count in the largest contact, as text."""
+def _infinite_radii(contact: LoadedContact) -> str:
+    """Radii of infinite pressure in the largest contact, as text."""
     largest = extremes(contact.contact_radius)[1]
-    radii = contact.profile.infinite_pressure_radii
-    least = (extremes(b)[0] for b in radii if some(counts(b)))
+    least = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)
     return listed([f"{b:.12g}" for b in least if b <= largest])
 
 

@@ -164,8 +164,7 @@ def _warnings(
     contact = source.normal
     flags: dict[str, Any] = {each.code: each.where for each in findings(query, source)}
     flags |= {notice.code: True for notice in contact.profile.notices}
-    flags["table_end"] = validity.table_end(contact).where
-    flags["singular"] = validity.infinite_pressure(contact)
+    flags |= {each.code: each.where for each in contact.findings}
     flags["accuracy"] = source.error_estimates > query.rtol
     found = np.full(size, None)
     for code, where in flags.items():

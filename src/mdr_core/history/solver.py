@@ -143,11 +143,6 @@ class LoadHistory(validity.ContactResults):
         """Effective shear modulus [pressure]."""
         return self.path.start.g_star
 
-    @property
-    def slips_from(self) -> Array:
-        """Least radius with slip [length], in full slip alone; else infinite."""
-        return np.where(self.regime == "full_slip", 0.0, np.inf)
-
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
@@ -226,11 +221,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
-        if self.error_estimate > self.rtol:
-            text = f"rtol = {self.rtol:.1e} was not reached on this load path; see error_estimate"
-            found.append(Notice("accuracy", text, self.error_estimate, self.rtol))
-        return tuple(found)
+        return self.normal.warnings_with(self.rtol, self.error_estimate)
 
 
 def solve(
