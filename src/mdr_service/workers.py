@@ -44,8 +44,6 @@ class _Job:
 
     client: str = field(default_factory=observability.client)
     """Address of the client."""
-    turn: Future[ComputeProcess] = field(default_factory=Future)
-    """The process in which it runs, once its turn has come."""
     since: float = field(default_factory=monotonic)
     """Time at which it began to wait."""
 
@@ -62,7 +60,8 @@ class WorkerPool:
         self._settings = settings
         self._processes: set[ComputeProcess] = set()
         self._idle: list[ComputeProcess] = []
-        self._waiting: list[_Job] = []
+        # Each computation with the process in which it will run, or runs; in the order of arrival.
+        self._waiting: dict[_Job, Future[ComputeProcess]] = {}
         self._running: dict[_Job, ComputeProcess] = {}
         self._supervised = False
         # Set once every process has started, or one has failed to.
@@ -78,18 +77,17 @@ class WorkerPool:
         self._self_test = self_test
         observability.QUEUE.set_function(lambda: len(self._waiting))
         observability.PROCESSES.set_function(lambda: sum(each.usable for each in self._processes))
-        self._supervised = True
-        try:
-            async with create_task_group() as tasks:
+        async with create_task_group() as tasks:
+            self._supervised = True
+            try:
                 for _ in range(self._settings.compute_processes):
                     tasks.start_soon(self._keep_process)
                 with move_on_after(_START_SECONDS):
                     await self._settled.wait()
                 yield
+            finally:
                 self._supervised = False
                 tasks.cancel_scope.cancel()
-        finally:
-            self._supervised = False
 
     async def _keep_process(self) -> None:
         """Start one process after the other."""
@@ -127,15 +125,12 @@ class WorkerPool:
 
     def _offer(self, process: ComputeProcess) -> None:
         """Give an idle process to the client that computes least, of its first computation."""
-        if queue := self._queue():
-            running = Counter(job.client for job in self._running)
-            min(queue, key=lambda job: running[job.client]).turn.set_result(process)
-        else:
+        if not self._waiting:
             self._idle.append(process)
-
-    def _queue(self) -> list[_Job]:
-        """Return the computations whose turn has not come, in the order of arrival."""
-        return [job for job in self._waiting if not job.turn.done()]
+            return
+        running = Counter(job.client for job in self._running)
+        job = min(self._waiting, key=lambda each: running[each.client])
+        self._waiting.pop(job).set_result(process)
 
     async def run_in_process(self, function: Callable[..., _Result], *arguments: Any) -> _Result:
         """Return the result of a function of a module, computed in a process.
@@ -176,28 +171,28 @@ class WorkerPool:
         if self._idle:
             # The process used last has kept its tables.
             return self._idle.pop()
-        self._waiting.append(job)
-        if len(queue := self._queue()) > self._settings.queue_length:
+        turn = self._waiting[job] = Future[ComputeProcess]()
+        if len(self._waiting) > self._settings.queue_length:
             # The client with the most computations in the queue gives up its last.
-            counts = Counter(each.client for each in queue)
-            last = max(queue, key=lambda each: (counts[each.client], each.since))
-            last.turn.set_exception(self._busy("the queue is full"))
+            counts = Counter(each.client for each in self._waiting)
+            last = max(self._waiting, key=lambda each: (counts[each.client], each.since))
+            self._waiting.pop(last).set_exception(self._busy("the queue is full"))
         share = _FAIR_SHARE * self._settings.queue_seconds
         try:
-            await wait([job.turn], timeout=share)
-            if not job.turn.done():
+            await wait([turn], timeout=share)
+            if not turn.done():
                 self._displace(job)
-            await wait([job.turn], timeout=self._settings.queue_seconds - share)
+            await wait([turn], timeout=self._settings.queue_seconds - share)
         except CancelledError:
-            if job.turn.done() and not job.turn.exception():
-                self._offer(job.turn.result())
+            if turn.done() and not turn.exception():
+                self._offer(turn.result())
             raise
         finally:
-            self._waiting.remove(job)
+            self._waiting.pop(job, None)
             if record := observability.CURRENT.get():
                 record.queued += job.age
-        if job.turn.done():
-            return job.turn.result()
+        if turn.done():
+            return turn.result()
         if len(self._processes) < self._settings.compute_processes:
             raise _lost("a compute process has ended and is not replaced yet")
         raise self._busy("no compute process became available")

@@ -136,7 +136,7 @@ def test_client_that_sends_a_rejected_long_body_receives_the_response(port: int)
     assert b"urn:mdr:problem:body-too-large" in response
 
 
-@pytest.mark.parametrize(("fields", "listed"), [(15, 15), (5_000, 20), (50_000, 1)])
+@pytest.mark.parametrize(("fields", "listed"), [(15, 15), (5_000, 20), (50_000, 20)])
 def test_number_of_listed_errors_is_bounded(
     connection: http.client.HTTPConnection, fields: int, listed: int
 ) -> None:
@@ -146,8 +146,7 @@ def test_number_of_listed_errors_is_bounded(
     assert len(response) <= 4096
     errors = json.loads(response)["errors"]
     pointers = [each["pointer"] for each in errors]
-    assert pointers == ([f"/f{n}" for n in range(listed)] if listed > 1 else [""])
-    assert listed > 1 or "50000" in errors[0]["detail"]
+    assert pointers == [f"/f{n}" for n in range(listed)]
 
 
 @pytest.mark.parametrize(

@@ -29,14 +29,12 @@ def form_of(
 ) -> tuple[str, Appearance]:
     """Return media type and appearance of the response, by parameters or the header ``Accept``."""
     accept = header(request.scope, b"accept", "*/*")
-    if format_ is None and accept == "*/*":
-        # Most clients accept anything, and take a picture as it is.
-        type_ = JSON
-    else:
-        # A batch is JSON only.
-        type_ = media_type(format_, accept, ["json"] if name == "batch" else list(FORMATS))
-    is_usual = size is None and units is None
-    return type_, AS_USUAL if is_usual else appearance(type_, size, units)
+    if format_ is size is units is None and accept == "*/*":
+        # As most clients ask.
+        return JSON, AS_USUAL
+    # A batch is JSON only.
+    found = media_type(format_, accept, ["json"] if name == "batch" else list(FORMATS))
+    return found, appearance(found, size, units)
 
 
 async def answer(
