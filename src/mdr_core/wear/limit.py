@@ -30,9 +30,9 @@ from mdr_core.wear.arguments import grid, one_amplitude
 # Width of the worn annulus over that of the slip annulus, where both are narrow: the mean of
 # r cos(t) - c up to the angle arccos(c/r) is two thirds of r - c.
 _NARROW: Final = 1.5
-# Part of the largest width of a worn annulus from which it is tested whether it reaches the end of
-# the profile; any part below 1 serves.
-_AT_END: Final = 0.99
+# Part of the largest width of a worn annulus from which it reaches the end of the profile: without
+# a root the search for the width ends there, but for rounding.
+_AT_END: Final = 1 - 1e-12
 # Exponent of the slip width in the worn volume, with room.
 _OF_VOLUME: Final = 3.0
 # Relative error of a worn volume above which there is no answer.
@@ -395,19 +395,11 @@ def solve(
 def _require_room(wear: LimitingWear) -> None:
     """Raise InputError if a worn annulus would reach beyond the end of the profile."""
     profile = wear.tangential_contact.normal.profile
-    if profile.has_no_partial_slip or not float(profile.domain) < inf:
+    if profile.has_no_partial_slip:
         return
-    stick_zone, annulus = wear.stick_zone, wear.stick_zone.annulus
-    wearing = (stick_zone.step > 0) & ~stick_zone.unbounded
-    largest = annulus.largest_width
-    # Next to a pole of g' there is no room.
-    beyond = wearing & (largest <= 0).reshape(wearing.shape)
-    if not beyond.any():
-        width = np.ravel(where(wearing, wear.wear_width, 0.0))
-        step = np.ravel(where(wearing, stick_zone.step, 0.0))
-        # Without a root the search for the width ends there.
-        if (width > _AT_END * largest).any():
-            beyond = (annulus.mean_rise(largest) < step).reshape(wearing.shape)
+    wearing = (wear.stick_zone.step > 0) & ~wear.stick_zone.unbounded
+    largest = wear.stick_zone.annulus.largest_width.reshape(wearing.shape)
+    beyond = wearing & (wear.wear_width > _AT_END * largest)
     if beyond.any():
         raise InputError(
             ("load", wear.tangential_contact.normal.control, *first_index(beyond)),

@@ -35,8 +35,9 @@ class WornAnnulus:
 
     @property
     def largest_width(self) -> Array:
-        """Width at which the annulus reaches the end of the profile [length]."""
-        return np.asarray(ALMOST * float(self.profile.domain) - self.stick)
+        """Width at which the annulus reaches the end of the profile [length], > 0."""
+        room = ALMOST * float(self.profile.domain) - self.stick
+        return np.asarray(np.maximum(room, np.finfo(float).tiny))
 
     def chosen(self, which: Indices) -> "WornAnnulus":
         """Return some of the annuli."""
