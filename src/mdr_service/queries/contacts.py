@@ -166,16 +166,15 @@ def checked(
 ) -> Result:
     """Return `values` by name if they are finite, or infinite only where `infinite` allows it.
 
-    Raises InputError, which points at the load of the query, if a value overflows, and DefectError
-    if one is NaN without an overflow.
+    Raises InputError if a value overflows, and DefectError if one is NaN without an overflow.
     """
     suspect = {name: np.asarray(v) for name, v in values.items() if not _finite(v)}
     for name, array in suspect.items():
         stray = np.isinf(array) & ~np.asarray((infinite or {}).get(name, False))
         if stray.any():
             first = int(np.argwhere(stray)[0][0])
-            place = ("radius", first) if name == "initial_profile" else query.place(first)
-            raise InputError(place, f"{name} leaves the range of double precision here")
+            detail = f"{name} leaves the range of double precision at its entry {first}"
+            raise InputError(tuple(query.controls)[:1], detail)
     for name, array in suspect.items():
         if np.isnan(array).any():
             raise DefectError(f"{name} is not a number")

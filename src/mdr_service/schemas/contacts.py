@@ -67,11 +67,6 @@ class Choice(Strict, json_schema_extra=_describe_choice):
         value = self.value
         return len(value) if isinstance(value, list) else 1
 
-    def place(self, index: int) -> tuple[str | int, ...]:
-        """Return the path from here to one of the values, the last one if they are fewer."""
-        is_list = isinstance(self.value, list)
-        return (self.control, min(index, self.count - 1)) if is_list else (self.control,)
-
 
 class Load(Choice):
     """Normal load: exactly one control, a number or a list."""
@@ -248,10 +243,6 @@ class Query(Strict):
     def numbers(self) -> int:
         """Number of values over the radius, or over positions, in the response."""
         return 0
-
-    def place(self, index: int) -> tuple[str | int, ...]:
-        """Return the path to the normal load of an entry of the response."""
-        return ("load", *self.controls["load"].place(index))
 
 
 class NormalQuery(Query):

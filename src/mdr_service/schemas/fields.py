@@ -85,11 +85,6 @@ class LoadedQuery(Query):
     def path(self) -> LoadPath | None:
         return self.history
 
-    def place(self, index: int) -> tuple[str | int, ...]:
-        if self.has("history"):
-            return ("history", *self.history.place("normal", self.history.steps - 1))
-        return super().place(index)
-
 
 NEEDED: Final = {
     "tangential": ["load", "friction_coefficient"],

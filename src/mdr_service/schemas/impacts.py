@@ -40,7 +40,3 @@ class ImpactQuery(Query):
     def loads(self) -> int:
         velocities = self.normal_velocity, self.tangential_velocity
         return max(len(each) if isinstance(each, list) else 1 for each in velocities)
-
-    def place(self, index: int) -> tuple[str | int, ...]:
-        is_list = isinstance(self.normal_velocity, list)
-        return ("normal_velocity", index) if is_list else ("normal_velocity",)

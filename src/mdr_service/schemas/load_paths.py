@@ -105,9 +105,10 @@ class LoadPath(Strict):
         return force_prescribed == (self.normal.control == "indentation_depth")
 
     def place(self, axis: str, step: int) -> tuple[str | int, ...]:
-        """Return the path from here to the value at the end of a load step."""
+        """Return the path from here to the value at the end of a load step, the last of fewer."""
         choice: Choice = getattr(self, axis)
-        return (axis, *choice.place(step))
+        index = (min(step, choice.count - 1),) if isinstance(choice.value, list) else ()
+        return (axis, choice.control, *index)
 
 
 class History(LoadPath):
@@ -192,7 +193,3 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
         """Number of values of the state, which takes time as others do."""
         lines = self.initial_state.polylines if self.has("initial_state") else []
         return sum(len(vertex) for line in lines for vertex in line)
-
-    def place(self, index: int) -> tuple[str | int, ...]:
-        name = "cycles" if self.has("cycles") else "history"
-        return (name, *self.path.place("normal", index // self.path.samples_per_step))
