@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import inf, pi, sqrt
-from typing import ClassVar, Final, NamedTuple
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -245,14 +245,6 @@ def _adhesive(curve: "_Model") -> "_Model":
     return without_others(min(after, jump))
 
 
-class _Point(NamedTuple):
-    """Forces of the model, and their slopes in the fitted parameters."""
-
-    forces: Array
-    slopes: Array
-    touching: int
-
-
 def _forces(
     profile: Profile, pressed: Array, work: float, touches: Flags
 ) -> tuple[Array, Array, Array]:
@@ -345,10 +337,10 @@ class _Model:
             return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
 
         def residual(x: Array) -> Array:
-            return (self.at(at(x)).forces - self.force) / size
+            return (self.at(at(x))[0] - self.force) / size
 
         def jacobian(x: Array) -> Array:
-            return self.at(at(x)).slopes * unit / size
+            return self.at(at(x))[1] * unit / size
 
         first = np.array([start[name] for name in self.fit]) / unit
         found = least_squares(
@@ -360,8 +352,8 @@ class _Model:
         )
         return at(found.x)
 
-    def at(self, parameters: _Parameters) -> _Point:
-        """Return the forces of the model, and their slopes."""
+    def at(self, parameters: _Parameters) -> tuple[Array, Array]:
+        """Return the forces of the model, and their slopes in the fitted parameters."""
         e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
         ratio = work / e_star
         forces, by_depth, by_work = _forces(self.profile, self.depth - d0, ratio, self.touches)
@@ -373,14 +365,14 @@ class _Model:
             "work_of_adhesion": by_work,
         }
         slopes = np.column_stack([columns[name] for name in self.fit])
-        return _Point(e_star * forces + offset, slopes, int(np.count_nonzero(by_depth)))
+        return e_star * forces + offset, slopes
 
     def result(
         self, found: _Parameters, noise: float | None, body_thickness: float | None, rtol: float
     ) -> Fit:
         """Return the fit with these parameters, or an InputError."""
-        forces, slopes, touching = self.at(found)
-        _require_points(touching, self)
+        forces, slopes = self.at(found)
+        _require_points(int(np.sum(forces != found["force_offset"])), self)
         residual = self.force - forces
         free = self.depth.size - len(self.fit)
         scatter = float(np.sqrt(np.sum(np.square(residual)) / free))

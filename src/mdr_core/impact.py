@@ -226,13 +226,11 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
             raise InputError((name,), "at least one value is needed")
         if not every(good):
             raise InputError((name, *first_index(~good)), detail)
-    if speeds.ndim == along.ndim == 1 and speeds.size != along.size:
-        detail = f"{along.size} values for {speeds.size} normal velocities: give one, or as many"
-        raise InputError(("tangential_velocity",), detail)
     try:
         return np.broadcast_arrays(speeds, along)
     except ValueError:
-        detail = f"the shape {along.shape} does not agree with {speeds.shape} of normal_velocity"
+        shapes = f"has the shape {along.shape}, but normal_velocity {speeds.shape}"
+        detail = f"{shapes}: give one, or as many"
         raise InputError(("tangential_velocity",), detail) from None
 
 

@@ -1,8 +1,7 @@
 """Time and disk space of a sweep, extrapolated from a sample of its cases."""
 
-import os
-import sys
 from collections.abc import Iterator
+from importlib import import_module
 from math import log2
 from time import process_time
 from typing import Final, NamedTuple
@@ -30,7 +29,7 @@ class Estimate(NamedTuple):
     chunk: int
     """Cases in a chunk."""
     processes: int
-    """Worker processes; 0 where their start takes longer than they save."""
+    """Processes; 1 is this one, where the start of others takes longer than they save."""
     seconds: float
     """Time on an idle machine, including the start of the workers and the writing."""
     disk: float
@@ -39,19 +38,12 @@ class Estimate(NamedTuple):
     @property
     def lines(self) -> Iterator[str]:
         """Printed lines of the estimate."""
-        where = f"{self.processes} worker processes" if self.processes else "this process"
+        where = f"{self.processes} worker processes" if self.processes > 1 else "this process"
         yield f"cases    {self.rows:,}"
         yield f"chunks   {-(-self.rows // self.chunk):,} of {self.chunk:,} cases"
         time = f"{self.seconds:,.1f} s ({self.seconds / 3600:,.1f} h)"
         yield f"time     about {time} on an idle machine, in {where}"
         yield f"disk     at most {self.disk / 1024**2:,.0f} MiB during the sweep"
-
-
-def _cores() -> int:
-    """Return the number of processors that this process may use; macOS has no affinity."""
-    if sys.platform == "darwin":
-        return os.cpu_count() or 1
-    return len(os.sched_getaffinity(0))
 
 
 def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate:
@@ -75,15 +67,14 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     tables.write(pa.BufferOutputStream(), ".parquet", [rows], {})
     writing = (process_time() - start) / part.num_rows
     solving /= part.num_rows
-    processors = _cores()
-    saved = source.rows * solving * (1 - 1 / processors)
-    processes = workers or (processors if saved > START_SECONDS else 1)
-    processes = 0 if processes == 1 else processes
-    start_up = START_SECONDS if processes else 0.0
+    processes = workers or 1
+    if workers is None and source.rows * solving > 2 * START_SECONDS:
+        processes = import_module("dask.system").CPU_COUNT
+    start_up = START_SECONDS if processes > 1 else 0.0
     return Estimate(
         rows=source.rows,
         chunk=min(2 ** int(log2(max(_CHUNK_SECONDS / solving, 1.0))), tables.ROW_GROUP),
         processes=processes,
-        seconds=start_up + source.rows * (solving / max(processes, 1) + writing),
+        seconds=start_up + source.rows * (solving / processes + writing),
         disk=2 * source.rows * rows.nbytes / part.num_rows,
     )

@@ -50,7 +50,7 @@ def run(arguments: Namespace) -> int:
     with checkpoint.opened(manifest, restart=arguments.restart) as done:
         missing = [index for index in range(-(-source.rows // chunk)) if index not in done]
         chunks = zip(missing, source.batches(chunk, missing), strict=True)
-        if arguments.scheduler or estimate.processes:
+        if arguments.scheduler or estimate.processes > 1:
             workers = arguments.scheduler, estimate.processes
             solved = scheduler.in_workers(spec, chunks, *workers)
         else:
