@@ -101,7 +101,7 @@ class Scene:
                 if count >= target:
                     states.append(state)
                     break
-                rate = self.wear * self.friction * state.pressure * 4 * slip
+                rate = self._rate(state, slip)
                 bound = 4 * self.dr / (np.pi * self.e_star)
                 per_cycle = self.wear * self.friction * 4 * float(slip.max())
                 step = min(target - count, longest)
@@ -114,6 +114,13 @@ class Scene:
                 if target - count < 1e-9 * target:
                     count = target
         return states
+
+    def rate(self, f: Array, controls: Controls) -> Array:
+        """df/dN of a profile on the grid."""
+        return self._rate(*self._state(f, controls, 0.0, 0.0))
+
+    def _rate(self, state: State, slip: Array) -> Array:
+        return self.wear * self.friction * state.pressure * 4 * slip
 
     def _over_area(self, values: Array) -> float:
         return float(2 * np.pi * np.sum(values * self.r) * self.dr)
