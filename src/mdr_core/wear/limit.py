@@ -24,7 +24,7 @@ from mdr_core.validation import (
     require_single_profile,
     require_type,
 )
-from mdr_core.wear import limit_fields, limiting_stick
+from mdr_core.wear import limit_fields, limiting_stick, worn_annulus
 from mdr_core.wear.arguments import grid, one_amplitude
 
 # Width of the worn annulus over that of the slip annulus, where both are narrow: the mean of
@@ -107,9 +107,10 @@ class LimitingWear(validity.ContactResults):
         else:
             target = where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
             start = where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
-            widest = self.stick_zone.annulus.largest_width.reshape(target.shape)
-            flat = (np.ravel(part) for part in (target, np.minimum(start, 0.9 * widest)))
-            worn = self.stick_zone.annulus.width_where_worn(*flat).reshape(target.shape)
+            c = self.stick_zone.radius
+            start = np.minimum(start, 0.9 * worn_annulus.largest_width(self.normal.profile, c))
+            flat = (np.ravel(part) for part in (c, target, start))
+            worn = worn_annulus.width_where_worn(self.normal.profile, *flat).reshape(target.shape)
         return where(self.stick_zone.unbounded, inf, worn)
 
     @cached_property
@@ -171,8 +172,8 @@ class LimitingWear(validity.ContactResults):
         volume, flat = np.zeros(width.size), np.ravel(width)
         # Without slip there is no annulus.
         worn = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
-        step = np.ravel(self.stick_zone.step)[worn]
-        volume[worn] = self.stick_zone.annulus.chosen(worn).worn_volume(flat[worn], step)
+        c, step = (np.ravel(part)[worn] for part in (self.stick_zone.radius, self.stick_zone.step))
+        volume[worn] = worn_annulus.worn_volume(self.normal.profile, c, flat[worn], step)
         return where(unbounded, inf, volume.reshape(width.shape)[()])
 
     @cached_property
@@ -293,7 +294,7 @@ class LimitingWear(validity.ContactResults):
         if "pressure" in names:
             found.append(np.max(np.where(r < c + error, error * c / product, 0.0)))
         if names & {"worn_depth", "limiting_profile"}:
-            highest = _HIGHEST * zone.annulus.angle(np.ravel(self.wear_width))[:, None]
+            highest = _HIGHEST * worn_annulus.angle(c, np.ravel(self.wear_width)[:, None])
             worn = (c > 0) & (c - error < r) & (r < end + error)
             with np.errstate(divide="ignore", invalid="ignore"):
                 found.append(np.max(np.where(worn, error / (highest * np.sqrt(product)), 0.0)))
@@ -398,7 +399,7 @@ def _require_room(wear: LimitingWear) -> None:
     if profile.has_no_partial_slip:
         return
     wearing = (wear.stick_zone.step > 0) & ~wear.stick_zone.unbounded
-    largest = wear.stick_zone.annulus.largest_width.reshape(wearing.shape)
+    largest = worn_annulus.largest_width(profile, wear.stick_radius)
     beyond = wearing & (wear.wear_width > _AT_END * largest)
     if beyond.any():
         raise InputError(

@@ -9,7 +9,7 @@ import numpy as np
 from mdr_core.abel.annulus import whole
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
-from mdr_core.wear.worn_annulus import RTOL
+from mdr_core.wear.worn_annulus import RTOL, angle
 
 # Pairs of loads and radii handled at once: bounds the memory, whatever their number.
 _BLOCK: Final = 8192
@@ -20,20 +20,15 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
 
     Source: mdr-5, Eqs. (5.75), (5.82).
     """
-    profile, annulus, step = stick_zone.profile, stick_zone.annulus, np.ravel(stick_zone.step)
-    inner, end = annulus.stick[:, None], np.ravel(outer)[:, None]
+    profile, c, step = stick_zone.profile, np.ravel(stick_zone.radius), np.ravel(stick_zone.step)
+    inner, end = c[:, None], np.ravel(outer)[:, None]
     # In full slip the axis wears as well, and a flat punch wears up to its edge.
     worn = (r <= end if profile.has_no_partial_slip else r < end) & ((r > inner) | (inner == 0))
     worn &= (step > 0)[:, None]
 
     def values(load: Indices, at: Array) -> Array:
-        annuli = annulus.chosen(load)
-        width = at - annuli.stick
-        # S(0; r) is the profile itself.
-        lag = np.where(profile.has_no_partial_slip, 0.0, profile.f(at))
-        some = np.flatnonzero(annuli.stick > 0)
-        lag[some] = annuli.chosen(some).slip_kernel(width[some])
-        share = np.where(at > 0, 2 / np.pi * annuli.angle(width), 1.0)
+        lag = profile.slip_kernel(c[load], at, RTOL)
+        share = np.where(at > 0, 2 / np.pi * angle(c[load], at - c[load]), 1.0)
         # At the outer edge of the annulus the terms cancel but for rounding error.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
 

@@ -6,7 +6,6 @@ d - g(c) at the stick edge describe the whole limiting state. Source: notes, §9
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 from typing import Final
 
@@ -19,7 +18,6 @@ from mdr_core.normal import EDGE_ERROR
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
-from mdr_core.wear.worn_annulus import WornAnnulus
 
 # Points of the search for the largest of several possible stick zones, and those of each of the
 # rounds in which the interval becomes four times narrower: a largest value is exact to 1e-16.
@@ -52,11 +50,6 @@ class LimitingStick:
     """Relative error of the slip width by that of the stick radius, where that has moved [1]."""
     error: Array
     """Error of c [length]."""
-
-    @cached_property
-    def annulus(self) -> WornAnnulus:
-        """Worn annuli of all loads, in one row."""
-        return WornAnnulus(self.profile, np.ravel(self.radius))
 
 
 def by_depth_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
